@@ -63,7 +63,8 @@ static wh_status_t judge_centre(const wh_align_result_t *result, const wh_rim_t 
     return result->eccentricity <= limits->eccentricity ? WH_OK : WH_STATUS_TOO_ECCENTRIC;
 }
 
-static void turn_by(wh_align_result_t *result, wh_mark_t mark, double direction, double nominal, double sd) {
+static void turn_by(wh_align_result_t *result, wh_align_mark_t mark, double direction, double nominal,
+                    double sd) {
     result->mark = mark;
     result->turn = wh_align_wrap(direction - nominal);
     result->sd_turn = sd;
@@ -76,7 +77,7 @@ static wh_status_t find_marks(const wh_rim_scan_t *scan, const wh_rim_ray_t *ray
         const wh_status_t status = wh_notch_find(scan, rays, &result->circle, &nominal->notch,
                                                  nominal->transmission > 0, &result->notch);
         if (status == WH_OK) {
-            turn_by(result, WH_MARK_NOTCH, result->notch.direction, nominal->notch.direction,
+            turn_by(result, WH_ALIGN_MARK_NOTCH, result->notch.direction, nominal->notch.direction,
                     result->notch.sd_direction);
         }
         return status;
@@ -87,8 +88,8 @@ static wh_status_t find_marks(const wh_rim_scan_t *scan, const wh_rim_ray_t *ray
     const wh_status_t status = wh_flats_find(scan, rays, &result->circle, shapes, result->flats);
     if (status == WH_OK) {
         const size_t f = result->flats[0].length > 0 ? 0 : 1;
-        turn_by(result, f == 0 ? WH_MARK_PRIMARY_FLAT : WH_MARK_SECONDARY_FLAT, result->flats[f].direction,
-                shapes[f].direction, result->flats[f].sd_direction);
+        turn_by(result, f == 0 ? WH_ALIGN_MARK_PRIMARY_FLAT : WH_ALIGN_MARK_SECONDARY_FLAT,
+                result->flats[f].direction, shapes[f].direction, result->flats[f].sd_direction);
     }
     return status;
 }

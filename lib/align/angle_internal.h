@@ -1,5 +1,5 @@
-/* Angles in double for the room, also where the library's own numbers are floats: within the room. On a rim of
- * 150 mm a float's sine is off by 10 um. */
+/* Angles in double, also where the library's own numbers are floats: within the room. On a rim of 150 mm a
+ * float's sine is off by 10 um. */
 #ifndef WH_ALIGN_ANGLE_INTERNAL_H
 #define WH_ALIGN_ANGLE_INTERNAL_H
 

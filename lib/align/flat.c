@@ -151,32 +151,46 @@ static bool agree(const wh_flat_shape_t *nominal, const wh_flat_t *flats) {
     return fabs(wh_align_wrap(flats[1].direction - flats[0].direction - wanted)) <= DIRECTION_OFF;
 }
 
+/* What was found, and whether nothing contradicts it. */
+typedef struct {
+    wh_flat_t flats[WH_RIM_FLATS];
+    size_t count;
+    bool sure;
+} found_t;
+
+static void judge(const wh_scanned_t *of, const wh_flat_shape_t *nominal, const wh_dent_t *dent,
+                  found_t *found) {
+    chord_t chord;
+    if (!fit(of, dent, &chord)) {
+        found->sure = false;
+        return;
+    }
+    const wh_flat_t flat = tell(of, &chord);
+    const size_t f = which(nominal, flat.length);
+    if (f < WH_RIM_FLATS && found->flats[f].length == 0) {
+        found->flats[f] = flat;
+        ++found->count;
+    } else {
+        found->sure = false;
+    }
+}
+
 wh_status_t wh_flats_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_flat_shape_t nominal[WH_RIM_FLATS], wh_flat_t flats[WH_RIM_FLATS]) {
     const wh_scanned_t of = {scan, rays, circle, circle->radius};
     const wh_dents_t dents = wh_dents_find(&of);
-    wh_flat_t found[WH_RIM_FLATS] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
-    size_t count = 0;
-    bool sure = dents.whole;
+    found_t found = {{{0, 0, 0, 0}, {0, 0, 0, 0}}, 0, dents.whole};
     for (size_t d = 0; d < dents.count; ++d) {
         if (is_wide(&of, nominal, &dents.dents[d])) {
-            chord_t chord;
-            const bool is_chord = fit(&of, &dents.dents[d], &chord);
-            const wh_flat_t flat = is_chord ? tell(&of, &chord) : found[0];
-            const size_t f = is_chord ? which(nominal, flat.length) : WH_RIM_FLATS;
-            if (f < WH_RIM_FLATS && found[f].length == 0) {
-                found[f] = flat;
-                ++count;
-            } else {
-                sure = false;
-            }
+            judge(&of, nominal, &dents.dents[d], &found);
         }
     }
-    if (count > 0 && sure && agree(nominal, found)) {
+    if (found.count > 0 && found.sure && agree(nominal, found.flats)) {
         for (size_t f = 0; f < WH_RIM_FLATS; ++f) {
-            flats[f] = found[f];
+            flats[f] = found.flats[f];
         }
         return WH_OK;
     }
-    return count > 0 || !sure || !wh_scanned_is_whole(&of) ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
+    const bool may_be = found.count > 0 || !found.sure || !wh_scanned_is_whole(&of);
+    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
 }

@@ -30,18 +30,19 @@ typedef struct {
 
 /* The notch of a scan, as wh_circle_fit left rays and circle; `nominal` is a notch that wh_rim_validate
  * accepts, whose direction does not count. `glass`: single samples may see through the wafer.
- * WH_OK; WH_STATUS_NOTCH_NOT_SURE: a dent could be the notch or another one, or not all of the rim was seen and
- * no notch; WH_STATUS_NO_NOTCH; WH_STATUS_TWO_NOTCHES. If it fails, `notch` is unchanged. Nothing is checked.
- * Cost for 3600 samples: about 15 us. */
+ * WH_OK; WH_STATUS_NOTCH_NOT_SURE: a dent could be the notch or another one, or not all of the rim was seen
+ * and no notch; WH_STATUS_NO_NOTCH; WH_STATUS_TWO_NOTCHES. If it fails, `notch` is unchanged. Nothing is
+ * checked. Cost for 3600 samples: about 15 us. */
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch)
     WH_SYMBOL(wh_notch_find);
 
-/* The flats of a scan, by their lengths, give or take 3.5 mm: flats[f] is the one of nominal[f]; its length is
- * 0 if it was not seen. A nominal length of 0: there is none.
- * WH_OK: at least one was found, and nothing that contradicts it; WH_STATUS_NOTCH_NOT_SURE: its length is not of one
- * nominal flat alone, or two lie otherwise than the nominal ones by more than 5 degrees, or not all of the rim
- * was seen and no flat; WH_STATUS_NO_NOTCH: no flat. If it fails, `flats` are unchanged. Cost: about 40 us. */
+/* The flats of a scan, by their lengths, give or take 3.5 mm: flats[f] is the one of nominal[f]; its length
+ * is 0 if it was not seen. A nominal length of 0: there is none.
+ * WH_OK: at least one was found, and nothing that contradicts it; WH_STATUS_NOTCH_NOT_SURE: its length is not
+ * of one nominal flat alone, or two lie otherwise than the nominal ones by more than 5 degrees, or not all of
+ * the rim was seen and no flat; WH_STATUS_NO_NOTCH: no flat. If it fails, `flats` are unchanged. Nothing is
+ * checked. Cost: about 40 us. */
 wh_status_t wh_flats_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_flat_shape_t nominal[WH_RIM_FLATS], wh_flat_t flats[WH_RIM_FLATS])
     WH_SYMBOL(wh_flats_find);

@@ -89,7 +89,7 @@ static against_t hold_against(const search_t *search, const vee_t *vee, size_t i
     const double k = across < 0 ? -1 : 1;
     const double ks = k * vee->sine;
     const double kc = k * vee->cosine;
-    /* The flank's normal is (-ks, cosine); `off` is the distance from the flank, `slope` that of a unit of the ray. */
+    /* The flank's normal is (-ks, cosine); `off` is the distance from it, `slope` the ray's along it. */
     const double from_apex = along - vee->apex;
     const double off = vee->cosine * across - ks * from_apex;
     const double slope = vee->cosine * ray_across - ks * ray_along;
@@ -144,7 +144,7 @@ static double tukey(double residual, double cut) {
     return rest > 0 ? rest * rest : 0;
 }
 
-/* One step with the flanks' samples of a choice under a cut; what is known of the opening counts as one more. */
+/* A step with a choice's flank samples under a cut. What is known of the opening counts as one more. */
 static bool step(const search_t *search, const wh_dent_t *dent, const vee_t *choice, double cut, vee_t *vee) {
     const double sigma = search->of.circle->scatter;
     const double depth = depth_of(search, choice);
@@ -270,6 +270,32 @@ static void look_at(const search_t *search, const vee_t *vee, size_t i, look_t *
     }
 }
 
+static look_t look_around(const search_t *search, const wh_dent_t *dent, const vee_t *vee) {
+    look_t look = {{0, 0}, 0, 0, 0, 0};
+    const size_t beside = (size_t)(BESIDE / search->spacing) + 2;
+    for (size_t k = 0; k < dent->count + 2 * beside; ++k) {
+        look_at(search, vee, place_of(search->of.scan, dent, k, beside), &look);
+    }
+    return look;
+}
+
+static bool has_flanks(const search_t *search, const look_t *look) {
+    const size_t least = look->on_side[0] < look->on_side[1] ? look->on_side[0] : look->on_side[1];
+    if (look->off > 0 || look->light > LIGHT) {
+        return false;
+    }
+    return search->glass ? least >= 1 && look->on_side[0] + look->on_side[1] >= 3 : least >= 2;
+}
+
+/* As deep and as open as a notch, and its bottom where that belongs. */
+static bool has_shape(const search_t *search, const wh_dent_t *dent, const vee_t *vee) {
+    const double depth = depth_of(search, vee);
+    const double more = depth - search->nominal->depth;
+    const double bottom = BOTTOM_OFF + MAY_BE_OFF * search->of.circle->scatter;
+    return more > -SHALLOWER && more < DEEPER && fabs(vee->half - search->half) < OPENING_OFF &&
+           fabs(dent->depth - depth) < bottom;
+}
+
 static finding_t judge(const search_t *search, const wh_dent_t *dent, vee_t *vee) {
     if (!is_as_wide(search, dent)) {
         return IS_NONE;
@@ -277,25 +303,13 @@ static finding_t judge(const search_t *search, const wh_dent_t *dent, vee_t *vee
     if (!fit(search, dent, vee)) {
         return search->glass ? IS_DOUBTFUL : IS_NONE;
     }
-    look_t look = {{0, 0}, 0, 0, 0, 0};
-    const size_t beside = (size_t)(BESIDE / search->spacing) + 2;
-    for (size_t k = 0; k < dent->count + 2 * beside; ++k) {
-        look_at(search, vee, place_of(search->of.scan, dent, k, beside), &look);
-    }
-    const double scatter = search->of.circle->scatter;
-    const double more = depth_of(search, vee) - search->nominal->depth;
-    const size_t least = look.on_side[0] < look.on_side[1] ? look.on_side[0] : look.on_side[1];
-    const bool fits = look.off == 0 && look.light <= LIGHT &&
-                      (search->glass ? least >= 1 && look.on_side[0] + look.on_side[1] >= 3 : least >= 2);
-    const bool is_deep = more > -SHALLOWER && more < DEEPER;
-    const bool is_open = fabs(vee->half - search->half) < OPENING_OFF;
-    const double bottom_off = fabs(dent->depth - depth_of(search, vee));
-    const bool is_round = bottom_off < BOTTOM_OFF + MAY_BE_OFF * scatter;
-    if (fits && is_deep && is_open && is_round) {
+    const look_t look = look_around(search, dent, vee);
+    if (has_flanks(search, &look) && has_shape(search, dent, vee)) {
         return IS_NOTCH;
     }
-    const double most = CLEARLY_OFF * scatter;
-    return !search->glass && look.squares > most * most * (double)look.flank ? IS_NONE : IS_DOUBTFUL;
+    const double most = CLEARLY_OFF * search->of.circle->scatter;
+    const bool is_off = look.squares > most * most * (double)look.flank;
+    return is_off && !search->glass ? IS_NONE : IS_DOUBTFUL;
 }
 
 /* ------------------------------------------------------------------------------------------ the whole */
@@ -311,6 +325,30 @@ static void tell(const search_t *search, const vee_t *vee, wh_notch_t *notch) {
     notch->used = vee->used;
 }
 
+/* How many dents are deep enough to be the notch, and what they are; the first notch. */
+typedef struct {
+    size_t deep;
+    size_t counts[3];
+    wh_notch_t first;
+} tally_t;
+
+static tally_t judge_all(const search_t *search, const wh_dents_t *dents) {
+    tally_t tally = {0, {0, 0, 0}, {0, 0, 0, 0, 0}};
+    for (size_t d = 0; d < dents->count; ++d) {
+        const wh_dent_t *dent = &dents->dents[d];
+        if (dent->depth >= DEEP * search->nominal->depth) {
+            vee_t vee;
+            const finding_t finding = judge(search, dent, &vee);
+            if (finding == IS_NOTCH && tally.counts[IS_NOTCH] == 0) {
+                tell(search, &vee, &tally.first);
+            }
+            ++tally.counts[finding];
+            ++tally.deep;
+        }
+    }
+    return tally;
+}
+
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch) {
     search_t search = {{scan, rays, circle, nominal->depth + DEEPER + CUT * circle->scatter},
@@ -320,27 +358,14 @@ wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, c
                        glass};
     search.spacing = wh_scanned_spacing(&search.of);
     const wh_dents_t dents = wh_dents_find(&search.of);
-    wh_notch_t first = {0, 0, 0, 0, 0};
-    size_t deep = 0;
-    size_t counts[3] = {0, 0, 0};
-    for (size_t d = 0; d < dents.count; ++d) {
-        if (dents.dents[d].depth >= DEEP * nominal->depth) {
-            vee_t vee;
-            const finding_t finding = judge(&search, &dents.dents[d], &vee);
-            if (finding == IS_NOTCH && counts[IS_NOTCH] == 0) {
-                tell(&search, &vee, &first);
-            }
-            ++counts[finding];
-            ++deep;
-        }
-    }
-    if (counts[IS_NOTCH] > 1) {
+    const tally_t tally = judge_all(&search, &dents);
+    if (tally.counts[IS_NOTCH] > 1) {
         return WH_STATUS_TWO_NOTCHES;
     }
-    if (counts[IS_NOTCH] == 1 && counts[IS_DOUBTFUL] == 0 && dents.whole) {
-        *notch = first;
+    if (tally.counts[IS_NOTCH] == 1 && tally.counts[IS_DOUBTFUL] == 0 && dents.whole) {
+        *notch = tally.first;
         return WH_OK;
     }
-    return deep > 0 || !dents.whole || !wh_scanned_is_whole(&search.of) ? WH_STATUS_NOTCH_NOT_SURE
-                                                                        : WH_STATUS_NO_NOTCH;
+    const bool may_be = tally.deep > 0 || !dents.whole || !wh_scanned_is_whole(&search.of);
+    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
 }

@@ -71,19 +71,24 @@ static double depth_of(const wh_scanned_t *of, size_t i) {
     return depth < most ? depth : most;
 }
 
-static void meet(walk_t *walk, const wh_scanned_t *of, size_t i, double least) {
-    const double depth = 0 - of->rays[i].residual;
-    const bool inside = wh_scanned_counts(of, i) && depth > least;
-    if (inside && walk->dent.count == 0) {
+/* A sample more that belongs to the dent. */
+static void lengthen(walk_t *walk, const wh_scanned_t *of, size_t i) {
+    if (walk->dent.count == 0) {
         walk->dent.first = i;
         walk->dent.depth = 0;
     }
-    if (inside || walk->dent.count > 0) {
+    const double depth = depth_of(of, i);
+    walk->dent.depth = depth > walk->dent.depth ? depth : walk->dent.depth;
+    ++walk->dent.count;
+    walk->bridge = 0;
+}
+
+static void meet(walk_t *walk, const wh_scanned_t *of, size_t i, double least) {
+    if (wh_scanned_counts(of, i) && of->rays[i].residual < -least) {
+        lengthen(walk, of, i);
+    } else if (walk->dent.count > 0) {
         ++walk->dent.count;
-        walk->bridge = inside ? 0 : walk->bridge + 1;
-    }
-    if (inside && depth > walk->dent.depth && depth_of(of, i) > walk->dent.depth) {
-        walk->dent.depth = depth_of(of, i);
+        ++walk->bridge;
     }
     if (walk->bridge > BRIDGE) {
         finish(walk);

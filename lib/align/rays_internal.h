@@ -23,8 +23,8 @@ typedef struct {
     bool whole; /* no dent was left out */
 } wh_dents_t;
 
-/* A scan, its rays and its circle, as the fits of marks take them. `deepest`: a sample further in than this is
- * light through glass, or of something else. */
+/* A scan, its rays and its circle, as the fits of marks take them. `deepest`: a sample further in than this
+ * is light through glass, or of something else. */
 typedef struct {
     const wh_rim_scan_t *scan;
     const wh_rim_ray_t *rays;

@@ -125,7 +125,7 @@ static void each_verdict_has_its_cause(void **state) {
     wh_sensor_t sensor = wh_sensor_nominal(150);
     wh_align_result_t result = verdict_on(&sensor, &nominal, &nominal, &limits);
     assert_int_equal(result.verdict, WH_OK);
-    assert_int_equal(result.mark, WH_MARK_NOTCH);
+    assert_int_equal(result.mark, WH_ALIGN_MARK_NOTCH);
     assert_true(fabs(result.turn - 0.7) < 5e-5 && fabs(result.notch.depth - 1) < 0.02);
     assert_true(fabs(result.eccentricity - 5) < 0.001 && fabs(result.direction + 0.927295) < 1e-3);
     assert_true(result.masked > 5 && result.hidden == 0 && result.rms < 0.004);
@@ -142,7 +142,7 @@ static void each_verdict_has_its_cause(void **state) {
     rim = nominal;
     rim.notch.depth = 0;
     assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NO_NOTCH);
-    assert_int_equal(verdict_on(&sensor, &rim, &rim, &limits).mark, WH_MARK_NONE);
+    assert_int_equal(verdict_on(&sensor, &rim, &rim, &limits).mark, WH_ALIGN_MARK_NONE);
     sensor.hidden_count = 1;
     sensor.hidden[0] = (wh_arc_t){0.6, 0.2};
     assert_int_equal(verdict_on(&sensor, &nominal, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
@@ -162,7 +162,7 @@ static void two_notches_are_told_from_one(void **state) {
     wh_align_result_t result;
     assert_int_equal(wh_align_estimate(&scan, &sensor, &nominal, &limits, rays, &result), WH_OK);
     assert_int_equal(result.verdict, WH_STATUS_TWO_NOTCHES);
-    assert_int_equal(result.mark, WH_MARK_NONE);
+    assert_int_equal(result.mark, WH_ALIGN_MARK_NONE);
 }
 
 static void flats_are_told_by_their_lengths(void **state) {
@@ -174,14 +174,14 @@ static void flats_are_told_by_their_lengths(void **state) {
     wh_sensor_t sensor = wh_sensor_nominal(75);
     wh_align_result_t result = verdict_on(&sensor, &nominal, &nominal, &limits);
     assert_int_equal(result.verdict, WH_OK);
-    assert_int_equal(result.mark, WH_MARK_PRIMARY_FLAT);
+    assert_int_equal(result.mark, WH_ALIGN_MARK_PRIMARY_FLAT);
     assert_true(fabs(result.turn - 0.7) < 5e-5);
     assert_true(fabs(result.flats[0].length - 57.5) < 0.01 && fabs(result.flats[1].length - 37.5) < 0.01);
     assert_true(fabs(result.flats[1].direction - 2.2) < 5e-5);
     wh_rim_t rim = nominal;
     rim.flats[0].length = 0;
     result = verdict_on(&sensor, &rim, &nominal, &limits);
-    assert_int_equal(result.mark, WH_MARK_SECONDARY_FLAT);
+    assert_int_equal(result.mark, WH_ALIGN_MARK_SECONDARY_FLAT);
     assert_true(fabs(result.turn - 0.7) < 5e-5);
     rim.flats[1].length = 30;
     assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
