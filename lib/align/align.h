@@ -54,10 +54,9 @@ wh_align_limits_t wh_align_limits_default(void) WH_SYMBOL(wh_align_limits_defaul
  * what the wafer should be: its radius, its notch if the depth is above 0, else its flats if there are any,
  * and its transmission. `rays` are the caller's memory, one a point; afterwards they hold each sample's
  * residual, for a plot. Returns WH_OK if there is a verdict. Else `result` is unchanged:
- * WH_STATUS_NULL_ARGUMENT,
- * WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE (the nominal wafer, the sensor, the limits, or the scan's
- * offset, pixel or count), WH_STATUS_BAD_SCAN, WH_STATUS_TOO_FEW_SAMPLES. Cost for 3600 samples: about
- * 250 us. */
+ * WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE (the nominal wafer, the sensor, the
+ * limits, or the scan's offset, pixel or count), WH_STATUS_BAD_SCAN, WH_STATUS_TOO_FEW_SAMPLES. Cost for 3600
+ * samples: about 250 us. */
 wh_status_t wh_align_estimate(const wh_rim_scan_t *scan, const wh_sensor_t *sensor, const wh_rim_t *nominal,
                               const wh_align_limits_t *limits, wh_rim_ray_t *rays, wh_align_result_t *result)
     WH_SYMBOL(wh_align_estimate);

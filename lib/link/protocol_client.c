@@ -66,8 +66,12 @@ static void restore_simulator(wh_protocol_client_t *client) {
     if (!asked || !client->has_state) {
         return;
     }
-    ++client->counters.restored;
-    if (!client->senders.shared &&
+    if (client->restores_most > 0 && client->restores++ == client->restores_most) {
+        client->refusal = WH_STATUS_NOT_RESTORED;
+        return;
+    }
+    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* asked for by us: no news */
+    if (client->restores_most == 0 && !client->senders.shared &&
         (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
         client->restored_us = now;
         wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
@@ -161,8 +165,7 @@ static void take_message(wh_protocol_client_t *client, const waferhand_state *me
     }
 }
 
-static void on_state(void *user, const void *data, size_t size) {
-    wh_protocol_client_t *client = user;
+void wh_protocol_client_hear(wh_protocol_client_t *client, const void *data, size_t size) {
     waferhand_state message;
     if (!wh_link_decode_state(data, size, &message)) {
         ++client->counters.malformed;
@@ -170,6 +173,10 @@ static void on_state(void *user, const void *data, size_t size) {
     }
     take_message(client, &message, data, size);
     (void)waferhand_state_decode_cleanup(&message);
+}
+
+static void on_state(void *user, const void *data, size_t size) {
+    wh_protocol_client_hear(user, data, size);
 }
 
 /* ------------------------------------------------------------------------------------------------ waiting */

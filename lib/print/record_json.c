@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
-#include "../record/throughput.h"
+#include "../record/steady.h"
 #include "../sim/faults.h"
 #include "../text/json.h"
 
@@ -242,6 +242,24 @@ json_t *wh_throughput_to_json(const wh_record_t *record) {
     return object;
 }
 
+static json_t *steady_cycle(const wh_record_t *record) {
+    const wh_steady_cycle_t steady = wh_steady_cycle(record);
+    const bool found = steady.found == WH_STEADY_FOUND;
+    const bool given = found && steady.figure == WH_FIGURE_GIVEN;
+    const char *reason = found ? wh_throughput_reason(steady.figure) : wh_steady_reason(steady.found);
+    json_t *object = wh_json_set(
+        json_object(),
+        "wafers_per_hour %g reason %s found %i begin_s %g end_s %g wafers %lld times %lld cycle %lld",
+        given ? steady.wafers_per_hour : HUGE_VAL, reason, found,
+        found ? wh_throughput_seconds(record, steady.begin) : HUGE_VAL,
+        found ? wh_throughput_seconds(record, steady.end) : HUGE_VAL,
+        found ? (json_int_t)steady.wafers : WH_JSON_NONE, found ? (json_int_t)steady.times : WH_JSON_NONE,
+        steady.mark > 0 ? (json_int_t)steady.mark : WH_JSON_NONE);
+    return wh_json_set(object, "first_command %lld commands %lld",
+                       found ? (json_int_t)steady.first : WH_JSON_NONE,
+                       found ? (json_int_t)steady.count : WH_JSON_NONE);
+}
+
 /* ------------------------------------------------------------------------------------------------- cycles */
 
 static json_t *cycle(const wh_record_t *record, size_t i, size_t wafers) {
@@ -353,6 +371,7 @@ static void put_head(const wh_record_t *record, json_t *root) {
                       (json_int_t)record->slices, (json_int_t)record->missed, record->simulated_s,
                       record->wall_s, (unsigned long long)record->hash);
     wh_json_put(root, "throughput", wh_throughput_to_json(record));
+    wh_json_put(root, "steady_cycle", steady_cycle(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));
 }
 

@@ -33,6 +33,8 @@
 #ifndef WH_PRINT_STUDY_PRINT_H
 #define WH_PRINT_STUDY_PRINT_H
 
+#include <jansson.h>
+
 #include "../study/tally.h"
 #include "../text/style.h"
 
@@ -49,6 +51,9 @@ bool wh_study_is_kept(const wh_study_result_t *result);
 /* 0, or -1 if writing failed. */
 int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_style_t *style);
 int wh_study_print_json(const wh_study_result_t *result, FILE *out);
+
+/* The object that wh_study_print_json prints. */
+json_t *wh_study_to_json(const wh_study_result_t *result);
 
 /* Each trial as a line of CSV, as of RFC 4180 but that lines end with a line feed; of a tally that has the
  * lines of all. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations were

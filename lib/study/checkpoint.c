@@ -240,13 +240,20 @@ static json_t *put_tally(const wh_tally_t *tally) {
                      "lines", put_lines(&tally->lines));
 }
 
-static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *tally) {
-    const char *lines = json_string_value(json_object_get(root, "lines"));
-    return lines && wh_trial_lines_read(&tally->lines, lines, tally->wafer_count) &&
-           take_count(json_object_get(root, "trials"), &tally->trials) &&
+static bool take_counts(const json_t *root, wh_tally_t *tally) {
+    return take_count(json_object_get(root, "trials"), &tally->trials) &&
            take_count(json_object_get(root, "met"), &tally->met) &&
            take_count(json_object_get(root, "ended"), &tally->ended) &&
-           take_count(json_object_get(root, "whole"), &tally->whole) &&
+           take_count(json_object_get(root, "whole"), &tally->whole);
+}
+
+static bool take_lines(const json_t *lines, wh_tally_t *tally) {
+    return json_is_string(lines) &&
+           wh_trial_lines_read(&tally->lines, json_string_value(lines), tally->wafer_count);
+}
+
+static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *tally) {
+    return take_counts(root, tally) && take_lines(json_object_get(root, "lines"), tally) &&
            take_events(json_object_get(root, "events"), tally) &&
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&

@@ -38,12 +38,9 @@ static void remove_at(wh_stretches_t *stretches, size_t at) {
             (stretches->count - at) * sizeof *stretches->items);
 }
 
-bool wh_stretches_add(wh_stretches_t *stretches, wh_stretch_t stretch) {
-    const size_t at = find(stretches, stretch.first);
+/* Puts a stretch before the one at `at`, as one with those that it touches. */
+static void join(wh_stretches_t *stretches, size_t at, wh_stretch_t stretch) {
     wh_stretch_t *items = stretches->items;
-    if (stretch.count == 0 || (at < stretches->count && items[at].first < end_of(&stretch))) {
-        return false;
-    }
     const bool after = at > 0 && end_of(&items[at - 1]) == stretch.first;
     const bool before = at < stretches->count && items[at].first == end_of(&stretch);
     if (after) {
@@ -57,6 +54,14 @@ bool wh_stretches_add(wh_stretches_t *stretches, wh_stretch_t stretch) {
     if (after && before) {
         remove_at(stretches, at);
     }
+}
+
+bool wh_stretches_add(wh_stretches_t *stretches, wh_stretch_t stretch) {
+    const size_t at = find(stretches, stretch.first);
+    if (stretch.count == 0 || (at < stretches->count && stretches->items[at].first < end_of(&stretch))) {
+        return false;
+    }
+    join(stretches, at, stretch);
     stretches->trials += stretch.count;
     return true;
 }

@@ -27,6 +27,7 @@ typedef struct {
 typedef struct {
     wh_script_run_options_t run; /* script, parameters, limits; without decisions and trial */
     uint64_t seed, trials;
+    bool draws_nothing;       /* errors are given: the layout need not say what is drawn */
     wh_script_run_t nominal;  /* the run without errors */
     wh_decisions_t decisions; /* of it */
     const wh_layout_t *layout;

@@ -98,7 +98,7 @@ bool wh_study_open(wh_study_t *study) {
     if (!study->layout || !study->nominal.record.wafers) {
         return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
-    if (!study->layout->errors) {
+    if (!study->layout->errors && !study->draws_nothing) {
         return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
                                            "dx = 0.3 } }, here or in the script)");
     }
@@ -108,7 +108,7 @@ bool wh_study_open(wh_study_t *study) {
     }
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
-    study->causes = wh_causes_of(study->layout, &study->cause_count);
+    study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
     if (!choose_lines(study)) {
         return false;
     }
@@ -238,10 +238,10 @@ static void bar_close(const bar_t *bar) {
 
 /* ------------------------------------------------------------------------------------------------ playing */
 
-static size_t count_threads(const wh_study_options_t *options) {
+size_t wh_study_threads(size_t wanted) {
     cpu_set_t processors;
-    if (options->threads > 0) {
-        return options->threads;
+    if (wanted > 0) {
+        return wanted;
     }
     if (sched_getaffinity(0, sizeof processors, &processors) != 0) {
         return 1;
@@ -324,7 +324,7 @@ wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *
     wh_pool_t pool;
     wh_study_end_t end = WH_STUDY_FAILED;
     catch_signals();
-    if (!wh_pool_open(&pool, study, count_threads(options))) {
+    if (!wh_pool_open(&pool, study, wh_study_threads(options->threads))) {
         fprintf(stderr, "waferhand study: no memory or threads (expected fewer with --threads)\n");
     } else if (ranks->rank > 0) {
         end = wh_ranks_help(ranks, &pool, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;

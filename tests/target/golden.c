@@ -271,6 +271,43 @@ static bool scan(int32_t samples) {
     return good && (samples < 3600 || result.verdict == WH_OK);
 }
 
+/* A wafer on a gripper goes through two beams; when, and the centre that this tells. False if it tells none. */
+static bool pass_beams(void) {
+    const double across[2] = {60, -110};
+    const wh_pose_t base = wh_pose_identity();
+    const wh_centring_t known = wh_centring_nominal(150);
+    wh_rim_t rim = wh_rim_nominal(150);
+    wh_crossing_t crossings[WH_CROSSINGS];
+    wh_centres_t centres = {0};
+    wh_pose_t lies = base;
+    size_t count = 0;
+    rim.notch.direction = (double)below(6283) / 1000;
+    lies.r.x = (wh_real_t)below(1000) / 500;
+    lies.r.y = -(wh_real_t)below(1000) / 500;
+    for (int32_t beam = 0; beam < 2; ++beam) {
+        const wh_beam_t line = wh_beam_at(&base, 0, across[beam], -10, 10);
+        bool broken = false;
+        for (int slice = -25; slice < 25; ++slice) {
+            wh_pose_t poses[2] = {base, base};
+            poses[0].r.x = (wh_real_t)(8 * slice);
+            poses[1].r.x = (wh_real_t)(8 * slice + 8);
+            const wh_shade_t shade = {wh_slice_motion_between(&poses[0], &poses[1]), &lies, &rim, NULL};
+            double part = 0;
+            while (count < WH_CROSSINGS && wh_beam_next(&line, &shade, 1, &part, &broken)) {
+                add_double(part);
+                (void)wh_beam_crossing(&line, &shade.motion, part, 0.016, &crossings[count]);
+                crossings[count].beam = beam;
+                crossings[count++].edge = broken ? WH_CROSSING_IN : WH_CROSSING_OUT;
+            }
+        }
+    }
+    const wh_status_t status = wh_centring_solve(&known, crossings, count, &centres);
+    add_double(centres.candidates[0].x);
+    add_double(centres.candidates[0].y);
+    add_double(centres.candidates[0].sd_centre);
+    return status == WH_OK;
+}
+
 /* In halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
     printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
@@ -314,5 +351,11 @@ int main(void) {
         good = scan(wafer == 0 ? 3600 : 180) && good;
     }
     failed += report("scan", good);
+    hash = WH_HASH_START;
+    good = true;
+    for (int wafer = 0; wafer < 20; ++wafer) {
+        good = pass_beams() && good;
+    }
+    failed += report("beams", good);
     return failed;
 }

@@ -184,6 +184,12 @@ static void a_state_grows_with_its_study(void **state) {
     assert_false(wh_checkpoint_read(&study, text, strlen(text), &refused, message, sizeof message));
     assert_string_equal(message,
                         "of another study: its seed is \"0000000000000004\" (expected \"0000000000000005\")");
+    --study.seed;
+    char *lines = strstr(text, "\"lines\":\"");
+    assert_non_null(lines);
+    lines[strlen("\"lines\":\"") + 2] = 'x';
+    assert_false(wh_checkpoint_read(&study, text, strlen(text), &refused, message, sizeof message));
+    assert_string_equal(message, "damaged (expected a study's state)");
     assert_int_equal(refused.done.trials + refused.tally.trials, 0);
     free(text);
     free(one);
