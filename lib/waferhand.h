@@ -42,6 +42,8 @@
 #include "align/rim.h"
 #include "align/sensing.h"
 #include "align/circle.h"
+#include "align/marks.h"
+#include "align/align.h"
 #include "align/centring.h"
 #include "align/beam.h"
 #include "align/teaching.h"

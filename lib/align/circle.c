@@ -2,6 +2,7 @@
 #include "circle.h"
 
 #include "angle_internal.h"
+#include "rays_internal.h"
 #include "solve_internal.h"
 
 /* The start: circles through three of at most so many samples, and the one with the least median is taken. */
@@ -350,32 +351,6 @@ static void mask(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, double cut) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-/* Sine and cosine of a step of at most SMALL_STEP turn the ray before; every FRESH rays both are new. */
-#define SMALL_STEP 0.02
-#define FRESH 32
-
-static void turn_ray(const wh_rim_ray_t *before, double angle, wh_rim_ray_t *ray) {
-    const double square = angle * angle;
-    const double sine = angle * (1 - square / 6 * (1 - square / 20));
-    const double versine = square / 2 * (1 - square / 12 * (1 - square / 30));
-    ray->cosine = before->cosine - (before->cosine * versine + before->sine * sine);
-    ray->sine = before->sine - (before->sine * versine - before->cosine * sine);
-}
-
-static void begin_rays(const wh_rim_scan_t *scan, wh_rim_ray_t *rays) {
-    for (size_t i = 0; i < scan->count; ++i) {
-        const wh_rim_point_t *point = &scan->points[i];
-        const double by = i % FRESH == 0 ? 1 : point->angle - scan->points[i - 1].angle;
-        if (fabs(by) < SMALL_STEP) {
-            turn_ray(&rays[i - 1], by, &rays[i]);
-        } else {
-            wh_align_sin_cos(point->angle, &rays[i].sine, &rays[i].cosine);
-        }
-        rays[i].weight = point->sight == WH_SIGHT_RIM ? 1 : 0;
-        rays[i].residual = 0;
-    }
-}
-
 /* What counts of the chosen samples moves the circle as long as their median sinks. */
 static void settle(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *chosen, wh_circle_t *circle,
                    double *median) {
@@ -488,7 +463,7 @@ wh_status_t wh_circle_fit(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circ
     if (status != WH_OK) {
         return status;
     }
-    begin_rays(scan, rays);
+    wh_rays_begin(scan, rays);
     const start_t chosen = choose_samples(scan, fit.seen);
     double median;
     pass_t pass;

@@ -1,5 +1,5 @@
-/* Random wafers on random chucks: how far the circle of a scan is from the truth and from what it states; the
- * same fit by Eigen; and scans, rims and sensors that are none. WH_ALIGN_WAFERS=n takes so many wafers. */
+/* Random wafers on random chucks: how far circle, notch and flats of a scan are from the truth and from what is
+ * stated; verdicts; the circle by Eigen; and scans, rims and sensors that are none. WH_ALIGN_WAFERS=n takes so many wafers. */
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "support/support.h"
 
-#include "align/circle.h"
+#include "align/align.h"
 
 namespace {
 
@@ -154,8 +154,12 @@ void the_centre_is_as_near_as_it_says(void **) {
             hide(chuck, one.degrees);
             Scan scan(chuck);
             wh_circle_t circle;
-            assert_int_equal(scan.fit(circle), WH_OK);
             const bool flat = chuck.rim.notch.depth == 0;
+            const wh_status_t status = scan.fit(circle);
+            if (status == WH_STATUS_CENTRE_NOT_SURE && flat && one.degrees == 180) {
+                continue; /* flats and chips leave less than half of what is seen */
+            }
+            assert_int_equal(status, WH_OK);
             errors.see(circle, chuck.placement, flat ? one.of_flats : one.limit);
         }
         errors.finish(one.degrees);
@@ -263,6 +267,102 @@ void the_fit_is_eigens(void **) {
     std::printf("off Eigen's by at most %.2e mm; the deviations by a part of %.2e\n", position, deviation);
     assert_true(position <= 1e-9);
     assert_true(deviation <= 1e-4);
+}
+
+/* ------------------------------------------------------------------------------------------------ the whole */
+
+/* Up to 2 mm wide, at most half as deep: less than a notch, whatever their number. */
+void chip(wh_rim_t &rim) {
+    rim.chip_count = 1 + static_cast<int32_t>(wh_test_below(3));
+    for (int32_t i = 0; i < rim.chip_count; ++i) {
+        wh_chip_t &one = rim.chips[i];
+        one.direction = wh_test_uniform(-pi, pi);
+        one.width = wh_test_uniform(0.2, 2);
+        one.depth = wh_test_uniform(0.1, 0.5) * one.width;
+    }
+}
+
+struct Crowd {
+    const char *name;
+    double noise, glass, degrees;
+    bool chipped, flat;
+    double unsure; /* at most, a part */
+};
+
+/* What the verdicts of a crowd of wafers were worth. */
+struct Verdicts {
+    double largest = 0, deviations = 0, squares = 0, in_deviations = 0;
+    int sure = 0, unsure = 0;
+
+    void see(const wh_align_result_t &result, const Chuck &chuck) {
+        if (result.verdict != WH_OK) {
+            assert_int_not_equal(result.verdict, WH_STATUS_NO_NOTCH);
+            ++unsure;
+            return;
+        }
+        const double off =
+            std::hypot(result.circle.x - chuck.placement.x, result.circle.y - chuck.placement.y);
+        const double turn = std::fabs(std::remainder(result.turn - chuck.placement.turn, 2 * pi));
+        assert_true(off <= 10 * um && off <= 6 * result.circle.sd_centre);
+        assert_true(turn <= 0.05 * rad && turn <= 6 * result.sd_turn);
+        largest = std::max(largest, turn / rad);
+        deviations = std::max({deviations, off / result.circle.sd_centre, turn / result.sd_turn});
+        squares += std::pow(turn / rad, 2);
+        in_deviations += std::pow(turn / result.sd_turn, 2);
+        ++sure;
+    }
+    void finish(const Crowd &crowd) const {
+        const double honest = std::sqrt(in_deviations / sure);
+        std::printf(
+            "%s: %d sure, %d not; turn off by %.5f degrees rms, %.5f at most; %.2f deviations, %.3f rms\n",
+            crowd.name, sure, unsure, std::sqrt(squares / sure), largest, deviations, honest);
+        assert_true(unsure <= crowd.unsure * (sure + unsure) + 1);
+        assert_true(std::fabs(honest - 1) <= 0.1 + 3 / std::sqrt(sure));
+    }
+};
+
+wh_align_result_t estimate(const Chuck &chuck, Scan &scan) {
+    wh_rim_t nominal = wh_rim_nominal(chuck.rim.notch.depth > 0 ? 150 : 75);
+    nominal.flats[1] = chuck.rim.flats[1];
+    nominal.transmission = chuck.rim.transmission;
+    const wh_align_limits_t limits = wh_align_limits_default();
+    wh_align_result_t result;
+    assert_int_equal(
+        wh_align_estimate(&scan.scan, &chuck.sensor, &nominal, &limits, scan.rays.data(), &result), WH_OK);
+    return result;
+}
+
+/* Never wrong: the centre off by 10 um, the turn by 0.05 degrees, or one of them by 6 of its deviations. */
+void a_verdict_is_right_or_not_sure(void **) {
+    static const Crowd crowds[] = {
+        {"clean", 5 * um, 0, 0, false, false, 0.001},
+        {"flats", 5 * um, 0, 0, false, true, 0.001},
+        {"chipped", 5 * um, 0, 0, true, false, 0.05},
+        {"20 um of noise", 20 * um, 0, 0, false, false, 0.001},
+        {"noise, chipped", 20 * um, 0, 0, true, false, 0.05},
+        {"glass", 5 * um, 0.5, 0, false, false, 0.02},
+        {"glass, chipped", 5 * um, 0.5, 0, true, false, 0.1},
+        {"half hidden", 5 * um, 0, 180, false, false, 0.6},
+        {"half hidden, chipped", 5 * um, 0, 180, true, false, 0.7},
+    };
+    for (const Crowd &crowd : crowds) {
+        wh_test_seed();
+        Verdicts verdicts;
+        for (int wafer = 0; wafer < wafers() / 2 + 1; ++wafer) {
+            Chuck chuck = draw(crowd.flat ? 3 : 0);
+            chuck.trial.trial = static_cast<uint64_t>(wafer);
+            chuck.rim.chip_count = 0;
+            chuck.rim.transmission = crowd.glass;
+            chuck.sensor.noise = crowd.noise;
+            hide(chuck, crowd.degrees);
+            if (crowd.chipped) {
+                chip(chuck.rim);
+            }
+            Scan scan(chuck);
+            verdicts.see(estimate(chuck, scan), chuck);
+        }
+        verdicts.finish(crowd);
+    }
 }
 
 /* -------------------------------------------------------------------------------------------- bad input */
@@ -414,9 +514,8 @@ void wrong_rims_and_sensors_are_named(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_centre_is_as_near_as_it_says),
-        cmocka_unit_test(the_fit_is_eigens),
-        cmocka_unit_test(what_is_no_scan_is_refused),
+        cmocka_unit_test(the_centre_is_as_near_as_it_says), cmocka_unit_test(the_fit_is_eigens),
+        cmocka_unit_test(a_verdict_is_right_or_not_sure),   cmocka_unit_test(what_is_no_scan_is_refused),
         cmocka_unit_test(wrong_rims_and_sensors_are_named),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
