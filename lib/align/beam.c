@@ -133,9 +133,9 @@ static point_t turn_back_part(const wh_slice_motion_t *motion, double t, const p
 /* A line seen from a frame. */
 typedef struct {
     point_t from, along;
-} line_t;
+} ray_t;
 
-static line_t line_in_gripper(const wh_beam_t *beam, const wh_slice_motion_t *motion, double part) {
+static ray_t line_in_gripper(const wh_beam_t *beam, const wh_slice_motion_t *motion, double part) {
     const double t = motion->angle < 0 ? 1 : part;
     const wh_vec3_t *r = &motion->begin->r;
     const wh_vec3_t *to = &motion->end->r;
@@ -146,12 +146,12 @@ static line_t line_in_gripper(const wh_beam_t *beam, const wh_slice_motion_t *mo
     const wh_mat3_t *R = motion->angle < 0 ? &motion->end->R : &motion->begin->R;
     const point_t turned_from = turn_back(R, &from);
     const point_t turned_along = turn_back(R, &along);
-    const line_t line = {turn_back_part(motion, t, &turned_from), turn_back_part(motion, t, &turned_along)};
+    const ray_t line = {turn_back_part(motion, t, &turned_from), turn_back_part(motion, t, &turned_along)};
     return line;
 }
 
-static line_t line_in_body(const wh_beam_t *beam, const wh_shade_t *shade, double part) {
-    line_t line = line_in_gripper(beam, &shade->motion, part);
+static ray_t line_in_body(const wh_beam_t *beam, const wh_shade_t *shade, double part) {
+    ray_t line = line_in_gripper(beam, &shade->motion, part);
     const wh_pose_t *inner = shade->gripper_from_wafer;
     if (inner != NULL) {
         const point_t from = {line.from.x - (double)inner->r.x, line.from.y - (double)inner->r.y,
@@ -163,7 +163,7 @@ static line_t line_in_body(const wh_beam_t *beam, const wh_shade_t *shade, doubl
 }
 
 /* Where the line meets the plane z = 0: x and y there, and z is how far along the line. */
-static point_t meet(const line_t *line) {
+static point_t meet(const ray_t *line) {
     const double t = -line->from.z / line->along.z;
     const point_t at = {line->from.x + t * line->along.x, line->from.y + t * line->along.y, t};
     return at;
@@ -204,7 +204,7 @@ static double outline_distance(const wh_blade_outline_t *outline, const point_t 
 }
 
 static double distance_at(const wh_beam_t *beam, const wh_shade_t *shade, double part) {
-    const line_t line = line_in_body(beam, shade, part);
+    const ray_t line = line_in_body(beam, shade, part);
     const point_t at = meet(&line);
     const double aside =
         shade->rim != NULL ? rim_distance(shade->rim, &at) : outline_distance(shade->outline, &at);
@@ -218,8 +218,8 @@ static double distance_at(const wh_beam_t *beam, const wh_shade_t *shade, double
  * if nothing moves; negative: the body breaks no beam in this slice. */
 static double way_of(const wh_beam_t *beam, const wh_shade_t *shade) {
     const wh_slice_motion_t *motion = &shade->motion;
-    const line_t first = line_in_body(beam, shade, 0);
-    const line_t last = line_in_body(beam, shade, 1);
+    const ray_t first = line_in_body(beam, shade, 0);
+    const ray_t last = line_in_body(beam, shade, 1);
     const double cosine = fabs(first.along.z) < fabs(last.along.z) ? fabs(first.along.z) : fabs(last.along.z);
     if (!(cosine >= LEAST_COSINE)) {
         return -1;
@@ -334,7 +334,7 @@ bool wh_beam_crossing(const wh_beam_t *beam, const wh_slice_motion_t *motion, do
     const double parts[3] = {part, 0, 1};
     point_t at[3];
     for (size_t i = 0; i < 3; ++i) {
-        const line_t line = line_in_gripper(beam, motion, parts[i]);
+        const ray_t line = line_in_gripper(beam, motion, parts[i]);
         if (!(fabs(line.along.z) >= LEAST_COSINE)) {
             return false;
         }

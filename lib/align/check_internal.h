@@ -10,8 +10,8 @@ typedef struct {
 } wh_field_check_t;
 
 static inline wh_field_check_t wh_field_check_begin(void) {
-    const wh_field_check_t check = {WH_OK, {NULL, WH_NONE}};
-    return check;
+    const wh_field_check_t begun = {WH_OK, {NULL, WH_NONE}};
+    return begun;
 }
 
 /* Keeps the first finding; NaN is below each least value and above each greatest. */

@@ -131,8 +131,7 @@ static bool meet(const fit_t *fit, const wh_pose_t *gripper, double at[2], doubl
     return true;
 }
 
-/* The centre of what was taken, in the gripper's frame, and how it goes with the station's x, y, z and yaw.
- * */
+/* The centre of what was taken, in the gripper's frame, and how that goes with the station's x, y, z, yaw. */
 static void carried(const fit_t *fit, const wh_teach_measurement_t *m, double centre[2], double slope[2][4]) {
     const vector_t inner = {{m->x, m->y, 0}};
     const vector_t arm = turn(&fit->R, &inner);

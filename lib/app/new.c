@@ -72,7 +72,7 @@ static bool ask(const char *question, char answer[80]) {
 /* Asks until the answer is a number that fits, or nothing, which is `usual`. */
 static bool ask_number(const char *question, uint64_t usual, bool (*fits)(uint64_t), uint64_t *number) {
     char answer[80];
-    char *end = NULL;
+    char *end = answer;
     do {
         if (!ask(question, answer)) {
             return false;

@@ -169,8 +169,9 @@ wh_scanning_t wh_layout_scanning(const wh_layout_t *layout);
 /* The edge sensor at a gripper's chuck; null if it has none. */
 const wh_scanner_t *wh_layout_scanner(const wh_layout_t *layout, int32_t gripper);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults,
- * edge sensors and rims, machine, and the names and places of stations, grippers and wafers. The path is left out. Cost: linear. */
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
+ * sensors and rims, machine, and the names and places of stations, grippers and wafers. The path is left out.
+ * Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* The name of a part of the collision world, wafers included; null if there is no such part. */

@@ -9,7 +9,8 @@
 #define LEAST_DIAMETER 20
 #define MOST_DIAMETER 600
 
-/* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder steps. */
+/* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder
+ * steps. */
 #define MOST_PASSED (WH_SCAN_SLICE - 2)
 
 /* Required, or with a default, which keeps its bits. */
@@ -23,7 +24,8 @@ static double read_angle(wh_reader_t *reader, const char *field, double fallback
 
 /* ------------------------------------------------------------------------------------------------ sensors */
 
-/* Refuses what would end each scan early: more samples in a slice than a state carries, or a chuck too fast. */
+/* Refuses what would end each scan early: more samples in a slice than a state carries, or a chuck too
+ * fast. */
 static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, const wh_sensor_t *sensor) {
     const double speed = layout->machine.chuck_limits.speed;
     const double way = speed * (double)layout->slice_us / 1e6;

@@ -1,8 +1,8 @@
 /* Edge scans: the sensor at a prealigner is armed with the next slice's command, and the samples that the
  * states bring are collected.
  *
- * Each state carries the samples of its own slice, and how many were taken up to it. So states that come twice
- * add nothing; states that never came (of a free run) leave holes, which are counted. */
+ * Each state carries the samples of its own slice, and how many were taken up to it. So states that come
+ * twice add nothing; states that never came (of a free run) leave holes, which are counted. */
 #include <stdlib.h>
 #include <string.h>
 

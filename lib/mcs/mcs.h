@@ -71,8 +71,8 @@ typedef struct {
     void *user;
 } wh_mcs_listener_t;
 
-/* Who hears of slices: decisions, recorder, the collected scan, what STATUS tells and a collision check beside a simulator
- * elsewhere, the run's listener. */
+/* Who hears of slices: decisions, recorder, the collected scan, what STATUS tells and a collision check
+ * beside a simulator elsewhere, the run's listener. */
 #define WH_MCS_LISTENERS 6
 
 /* How many lines of a script are told that led to a command within functions. */

@@ -21,7 +21,7 @@ static json_t *why_of(bool fails, const wh_budget_why_t *why) {
                        why->line > 0 ? (json_int_t)why->line : WH_JSON_NONE, why->command, why->text);
 }
 
-/* ------------------------------------------------------------------------------------------- each by itself */
+/* ----------------------------------------------------------------------------------------- each by itself */
 
 static json_t *error_text(const wh_budget_t *budget, size_t station, size_t axis, int32_t value) {
     char text[WH_BUDGET_TEXT];
@@ -60,7 +60,7 @@ static json_t *error(const void *subject, size_t i) {
                        side_of(budget, station, axis, 1), NULL);
 }
 
-/* ------------------------------------------------------------------------------------------------ together */
+/* ----------------------------------------------------------------------------------------------- together */
 
 static json_t *half(const void *subject, size_t i) {
     const wh_budget_t *budget = subject;

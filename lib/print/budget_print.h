@@ -10,8 +10,8 @@
  *            --error takes; null: none), trials, widest_step, why }
  *   all:     of all errors together: share (of each width), proved (false: nothing is), half (station, error,
  *            half: up and down), tried and tried_without_collisions (how many points of the box, by kind:
- *            alike, opposite, alone, corner, inside, beside), inside_errors, outside_errors (what run --error takes),
- *            why
+ *            alike, opposite, alone, corner, inside, beside), inside_errors, outside_errors (what run --error
+ *            takes), why
  *   tightest, next: station, error, width, rim_mm (null: none)
  * and why is null or { name, error (its number, or null), line (or null), command (or ""), text }.
  */

@@ -24,7 +24,7 @@ static const char *station_name(const table_t *table, size_t station) {
     return table->budget->study->layout->stations[station].name;
 }
 
-/* ------------------------------------------------------------------------------------------- each by itself */
+/* ----------------------------------------------------------------------------------------- each by itself */
 
 #define WHY 120
 
@@ -173,7 +173,7 @@ static void print_how(const table_t *table) {
             widest_step(budget, false), widest_step(budget, true));
 }
 
-/* ------------------------------------------------------------------------------------------------ together */
+/* ----------------------------------------------------------------------------------------------- together */
 
 static void print_half(const table_t *table) {
     const wh_budget_t *budget = table->budget;
@@ -250,7 +250,7 @@ static void print_witnesses(const table_t *table) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- summary */
+/* ------------------------------------------------------------------------------------------------ summary */
 
 /* "A", "A and B", "A, B and 3 others": the stations that are like the tightest. */
 static void print_alike(const table_t *table) {

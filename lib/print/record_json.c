@@ -243,21 +243,20 @@ json_t *wh_throughput_to_json(const wh_record_t *record) {
 }
 
 static json_t *steady_cycle(const wh_record_t *record) {
+    static const char *const fields =
+        "wafers_per_hour %g reason %s found %i begin_s %g end_s %g wafers %lld times %lld cycle %lld "
+        "first_command %lld commands %lld";
     const wh_steady_cycle_t steady = wh_steady_cycle(record);
-    const bool found = steady.found == WH_STEADY_FOUND;
-    const bool given = found && steady.figure == WH_FIGURE_GIVEN;
-    const char *reason = found ? wh_throughput_reason(steady.figure) : wh_steady_reason(steady.found);
-    json_t *object = wh_json_set(
-        json_object(),
-        "wafers_per_hour %g reason %s found %i begin_s %g end_s %g wafers %lld times %lld cycle %lld",
-        given ? steady.wafers_per_hour : HUGE_VAL, reason, found,
-        found ? wh_throughput_seconds(record, steady.begin) : HUGE_VAL,
-        found ? wh_throughput_seconds(record, steady.end) : HUGE_VAL,
-        found ? (json_int_t)steady.wafers : WH_JSON_NONE, found ? (json_int_t)steady.times : WH_JSON_NONE,
-        steady.mark > 0 ? (json_int_t)steady.mark : WH_JSON_NONE);
-    return wh_json_set(object, "first_command %lld commands %lld",
-                       found ? (json_int_t)steady.first : WH_JSON_NONE,
-                       found ? (json_int_t)steady.count : WH_JSON_NONE);
+    if (steady.found != WH_STEADY_FOUND) {
+        return wh_json_set(json_object(), fields, HUGE_VAL, wh_steady_reason(steady.found), false, HUGE_VAL,
+                           HUGE_VAL, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE);
+    }
+    return wh_json_set(json_object(), fields,
+                       steady.figure == WH_FIGURE_GIVEN ? steady.wafers_per_hour : HUGE_VAL,
+                       wh_throughput_reason(steady.figure), true, wh_throughput_seconds(record, steady.begin),
+                       wh_throughput_seconds(record, steady.end), (json_int_t)steady.wafers,
+                       (json_int_t)steady.times, steady.mark > 0 ? (json_int_t)steady.mark : WH_JSON_NONE,
+                       (json_int_t)steady.first, (json_int_t)steady.count);
 }
 
 /* ------------------------------------------------------------------------------------------------- cycles */

@@ -58,8 +58,8 @@ json_t *wh_study_to_json(const wh_study_result_t *result);
 /* Each trial as a line of CSV, as of RFC 4180 but that lines end with a line feed; of a tally that has the
  * lines of all. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations were
  * missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off mm; of
- * each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the trial drew, of
- * each error whose width is not 0. Numbers read back as the same double. 0, or -1 if writing failed. */
+ * each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the trial drew,
+ * of each error whose width is not 0. Numbers read back as the same double. 0, or -1 if writing failed. */
 int wh_study_print_csv(const wh_study_result_t *result, FILE *out);
 
 /* An expectation's text without what was found instead. Writes at most `size` bytes. */

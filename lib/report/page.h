@@ -1,12 +1,13 @@
-/* A page, of a report or of a study: one HTML file with everything in it that it needs, for it is read from disk, without a
- * network.
+/* A page, of a report or of a study: one HTML file with everything in it that it needs, for it is read from
+ * disk, without a network.
  *
- * It is lib/report/page/report.html.in or study.html.in, built into the program. A name between two @ in it stands for a
- * file: another one of lib/report/page, or one of the JavaScript that others wrote (three.min.js,
- * OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css), read when the page is made from where
- * the distribution puts it: /usr/share/javascript, unless the program was built with another JAVASCRIPT= or
- * the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@ report/document.h's
- * object, or report/study_document.h's, packed (text/packed.h): an hour's is a seventh so.
+ * It is lib/report/page/report.html.in or study.html.in, built into the program. A name between two @ in it
+ * stands for a file: another one of lib/report/page, or one of the JavaScript that others wrote
+ * (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css), read when the page is
+ * made from where the distribution puts it: /usr/share/javascript, unless the program was built with another
+ * JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@
+ * report/document.h's object, or report/study_document.h's, packed (text/packed.h): an hour's is a seventh
+ * so.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H

@@ -53,7 +53,7 @@ static const char *colour_of(size_t series) {
     return series < NAMED ? colours[series] : "#9aa3ad";
 }
 
-/* ---------------------------------------------------------------------------------------------------- axes */
+/* --------------------------------------------------------------------------------------------------- axes */
 
 /* 1, 2 or 5 times a power of ten, such that about five fit in. */
 static double tick_step(const scale_t *scale) {
@@ -65,10 +65,12 @@ static double tick_step(const scale_t *scale) {
 
 static void draw_ticks(const drawing_t *d, const scale_t *scale, bool is_x, double top, double bottom) {
     const double step = tick_step(scale);
-    for (double i = ceil(scale->low / step - 1e-9); i * step <= scale->high + 1e-9 * step; ++i) {
-        const double at = place(scale, i * step);
+    const int64_t last = (int64_t)floor(scale->high / step + 1e-9);
+    for (int64_t i = (int64_t)ceil(scale->low / step - 1e-9); i <= last; ++i) {
+        const double value = (double)i * step;
+        const double at = place(scale, value);
         char text[WH_SWEEP_VALUE];
-        wh_sweep_text(i * step, text);
+        wh_sweep_text(value, text);
         if (is_x) {
             fprintf(d->out,
                     "<path class=\"grid\" d=\"M%.1f %.1fV%.1f\"/><text class=\"x\" x=\"%.1f\" y=\"%.1f\">%s"
@@ -106,10 +108,14 @@ static bool has_any(const drawing_t *d, const panel_t *panel) {
     return false;
 }
 
-/* -------------------------------------------------------------------------------------------------- points */
+/* ------------------------------------------------------------------------------------------------- points */
 
 static double x_of(const drawing_t *d, size_t point) {
     return place(&d->x, wh_sweep_value(d->sweep, point, 0));
+}
+
+static size_t series_of(const drawing_t *d, size_t point) {
+    return d->series > 0 ? point % d->series : 0;
 }
 
 static void draw_curve(const drawing_t *d, const panel_t *panel, const scale_t *y, size_t series) {
@@ -130,7 +136,7 @@ static void draw_point(const drawing_t *d, size_t i, double y) {
     const double x = x_of(d, i);
     if (d->sweep->points[i].verdict == WH_SWEEP_OK) {
         fprintf(d->out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\"/>\n", x, y,
-                colour_of(i % d->series));
+                colour_of(series_of(d, i)));
     } else {
         fprintf(d->out, "<path class=\"bad\" d=\"M%.1f %.1fl8 8m0 -8l-8 8\"/>\n", x - 4, y - 4);
     }
@@ -159,7 +165,7 @@ static void draw_lanes(const drawing_t *d, double top) {
             top - 6);
     draw_ticks(d, &d->x, true, top, top + LANE * (double)d->series);
     for (size_t i = 0; i < d->sweep->point_count; ++i) {
-        draw_point(d, i, top + LANE * ((double)(i % d->series) + 0.5));
+        draw_point(d, i, top + LANE * ((double)series_of(d, i) + 0.5));
     }
 }
 

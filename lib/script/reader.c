@@ -131,7 +131,7 @@ __attribute__((noreturn)) static void refuse_field(const wh_reader_t *reader, co
     char list[WANTED_SIZE] = "";
     char meant[WH_NEAREST_TEXT] = "";
     size_t count = 0;
-    for (; known[count].name && count < MOST_FIELDS; ++count) {
+    for (; count < MOST_FIELDS && known[count].name; ++count) {
         const size_t used = strlen(list);
         names[count] = known[count].name;
         snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? " " : "", names[count]);

@@ -79,8 +79,8 @@ static bool is_sampled(const wh_scan_t *scan) {
     return good;
 }
 
-/* The magnitude of a scan's turn, as bits, which have the order of numbers: a processor without doubles needs no
- * function for them here. */
+/* The magnitude of a scan's turn, as bits, which have the order of numbers: a processor without doubles needs
+ * no function for them here. */
 #define TURN_MOST UINT64_C(0x40c3880000000000)     /* 1e4 */
 #define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* beyond are those that are no number */
 

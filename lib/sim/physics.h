@@ -78,11 +78,11 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - for each gripper with positions known: 2, its index, known, before[0], before[1] and slips;
  *   - for each slot in use: 3, its index, phase, kind, target, other, value, offset, from, until, before,
  *     placed;
- *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count and
- *     so many samples.
- * So a run with ideal vacuum, without pads, faults and scans, has the table's hash. Nothing is checked; grippers
- * from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10 for
- * each with positions, 45 for each slot in use, and up to 73 for a scan.
+ *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count
+ *     and so many samples.
+ * So a run with ideal vacuum, without pads, faults and scans, has the table's hash. Nothing is checked;
+ * grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10
+ * for each with positions, 45 for each slot in use, and up to 73 for a scan.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);

@@ -159,12 +159,12 @@ static wh_placement_t placement_at(const sight_t *sight, double turn) {
 /* Takes this many samples, which are due. */
 static void read_samples(const wh_scanner_t *scanner, const sight_t *sight, double speed, size_t count,
                          wh_scan_t *scan) {
+    const double own = sight->is_held ? speed : 0;
     for (size_t i = 0; i < count; ++i) {
         const int64_t k = scan->first + (scan->count > 0 ? scan->taken : -scan->taken);
         const double angle = wh_sensor_angle(&scanner->sensor, k);
         const wh_placement_t placement = placement_at(sight, angle);
-        const wh_glance_t glance = {
-            angle, sight->is_held ? speed : 0, {scanner->seed, scan->number}, (uint32_t)scan->taken};
+        const wh_glance_t glance = {angle, own, {scanner->seed, scan->number}, (uint32_t)scan->taken};
         scan->samples[i] = sight->rim ? wh_sensor_read(&scanner->sensor, sight->rim, &placement, &glance) : 0;
         ++scan->taken;
     }
@@ -206,8 +206,8 @@ static size_t count_due(const wh_sensor_t *sensor, const wh_scan_t *scan, double
         return 0;
     }
     due -= (size_t)passed;
-    const size_t left = (size_t)((up ? scan->count : -scan->count) - scan->taken);
-    return due < left ? due : left;
+    const int32_t left = (up ? scan->count : -scan->count) - scan->taken;
+    return due < (size_t)left ? due : (size_t)left;
 }
 
 /* The samples of this slice, of a scan that is armed. */
@@ -238,10 +238,10 @@ static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table,
 static void take_order(const wh_scanning_t *scanning, const wh_grasp_t *table, const wh_scan_order_t *order,
                        wh_scan_t *scan) {
     const uint32_t number = scan->number;
+    const wh_scanner_t *scanner = find_scanner(scanning, order->gripper);
     if (order->kind == WH_SCAN_DISARM) {
         end_scan(scan);
-    } else if (order->kind == WH_SCAN_ARM) {
-        const wh_scanner_t *scanner = find_scanner(scanning, order->gripper);
+    } else if (order->kind == WH_SCAN_ARM && scanner) {
         memset(scan, 0, sizeof *scan);
         scan->number = number + 1;
         scan->armed = true;

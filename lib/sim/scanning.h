@@ -8,8 +8,8 @@
  * The chuck's turn is read off its gripper's pose, so faults that stop an axis stop the sampling, too. Whole
  * turns are counted while the sensor is armed, for a chuck that turns by less than half a turn a slice.
  *
- * A simulator has sensors after wh_simulator_set_scanning (simulator.h). A firmware that does not call it does
- * not link this file, nor lib/align.
+ * A simulator has sensors after wh_simulator_set_scanning (simulator.h). A firmware that does not call it
+ * does not link this file, nor lib/align.
  *
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
@@ -93,15 +93,15 @@ wh_status_t wh_scanning_validate(const wh_scanning_t *scanning, size_t gripper_c
 wh_status_t wh_scanning_check(const wh_scanning_t *scanning, const wh_scan_order_t *order)
     WH_SYMBOL(wh_scanning_check);
 
-/* After a slice of `slice_s` seconds: takes the samples that the chuck has passed in it, then the order, which
- * wh_scanning_check has accepted; so a sensor that is armed in this slice samples from its end on. Seen is the
- * wafer that the chuck's gripper holds, else the one nearest to the chuck's plane of those in the sensor's
- * gap, WH_SCAN_GAP up and down; either must be off the axis by less than half its radius, less 1 mm. Without
- * one each sample is 0, whatever hides the line. A wafer that lies face down is seen mirrored; how it is
- * tilted does not count. A scan ends early, with fewer samples taken than were ordered, in a slice that has
- * more than WH_SCAN_SLICE of them, turns the chuck faster than WH_SCAN_SPEED, or takes it beyond 9000 rad. No argument may be null. Cost:
- * of a scan that is armed an arc tangent, linear in wafers if the chuck's gripper holds none, and
- * wh_sensor_read for each sample. */
+/* After a slice of `slice_s` seconds: takes the samples that the chuck has passed in it, then the order,
+ * which wh_scanning_check has accepted; so a sensor that is armed in this slice samples from its end on. Seen
+ * is the wafer that the chuck's gripper holds, else the one nearest to the chuck's plane of those in the
+ * sensor's gap, WH_SCAN_GAP up and down; either must be off the axis by less than half its radius, less 1 mm.
+ * Without one each sample is 0, whatever hides the line. A wafer that lies face down is seen mirrored; how it
+ * is tilted does not count. A scan ends early, with fewer samples taken than were ordered, in a slice that
+ * has more than WH_SCAN_SLICE of them, turns the chuck faster than WH_SCAN_SPEED, or takes it beyond 9000
+ * rad. No argument may be null. Cost: of a scan that is armed an arc tangent, linear in wafers if the chuck's
+ * gripper holds none, and wh_sensor_read for each sample. */
 void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,
                       const wh_scan_order_t *order, wh_scan_t *scan) WH_SYMBOL(wh_scanning_step);
 

@@ -69,8 +69,8 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
 wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     WH_SYMBOL(wh_simulator_set_physics);
 
-/* Gives the simulator edge sensors (scanning.h), in place of those that it had: at first none. The arrays must
- * outlive the simulator and its copies. Refuses what wh_scanning_validate refuses, a run that has begun
+/* Gives the simulator edge sensors (scanning.h), in place of those that it had: at first none. The arrays
+ * must outlive the simulator and its copies. Refuses what wh_scanning_validate refuses, a run that has begun
  * (WH_STATUS_OUT_OF_RANGE), null pointers and a simulator that is not initialised; the simulator is then
  * unchanged. Cost: wh_scanning_validate. */
 wh_status_t wh_simulator_set_scanning(wh_simulator_t *simulator, const wh_scanning_t *scanning)
@@ -84,10 +84,10 @@ wh_status_t wh_simulator_set_scanning(wh_simulator_t *simulator, const wh_scanni
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check and wh_scanning_check refuse; without edge sensors any order. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a
- * simulator that is not initialised nothing is read or written, and `state` shows no wafer and no gripper.
- * `seq` and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step, wh_cell_judge and
- * wh_scanning_step.
+ * wh_faults_check and wh_scanning_check refuse; without edge sensors any order. With a null pointer
+ * (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a simulator that is not initialised nothing is
+ * read or written, and `state` shows no wafer and no gripper. `seq` and `utime` are handed back; faults go by
+ * `seq`. Cost: wh_grasp_step, wh_cell_judge and wh_scanning_step.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
     WH_SYMBOL(wh_simulator_step);

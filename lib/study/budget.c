@@ -284,7 +284,7 @@ static bool find_errors(wh_budget_crew_t *crew, const size_t stations[], size_t 
     return done;
 }
 
-/* ---------------------------------------------------------------------------------------- which allows least */
+/* ------------------------------------------------------------------------------------- which allows least */
 
 double wh_budget_rim(const wh_budget_t *budget, size_t station, size_t axis) {
     const wh_budget_error_t *error = &budget->stations[station].errors[axis];

@@ -63,8 +63,8 @@ typedef struct {
     wh_budget_error_t errors[WH_SPREADS];
 } wh_budget_station_t;
 
-/* The kinds of points of the box that are tried: corners that are alike at all stations; that are opposite
- * at every other one; of one station alone; of all by chance; points inside, by chance; and corners beside the
+/* The kinds of points of the box that are tried: corners that are alike at all stations; that are opposite at
+ * every other one; of one station alone; of all by chance; points inside, by chance; and corners beside the
  * one beyond which it fails: one error turned over, or, where collisions are not looked for, two. */
 typedef enum {
     WH_BOX_ALIKE,

@@ -93,8 +93,8 @@ static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t si
     return taken;
 }
 
-/* Sends fewer and fewer trials, so that all ranks end at about the same time; none at all means that there are
- * no more. */
+/* Sends fewer and fewer trials, so that all ranks end at about the same time; none at all means that there
+ * are no more. */
 static bool send_trials(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
     const wh_pool_news_t news = wh_pool_look(pool);
     const wh_stretch_t sent = wh_pool_take(pool, news.queued / (4 * (uint64_t)ranks->size) + news.pace);

@@ -58,7 +58,8 @@ typedef struct {
     double r, low, high; /* -1 <= low <= r <= high <= 1 */
 } wh_correlation_t;
 
-/* Failing is not determined by fewer failed or other trials than this; nothing by fewer than twice as many. */
+/* Failing is not determined by fewer failed or other trials than this; nothing by fewer than twice as
+ * many. */
 #define WH_RELATION_FEWEST 5
 
 /* The interval is Fisher's (R. A. Fisher, Metron 1 (1921) 3): atanh(r) plus and minus z / sqrt(n - 3). z is

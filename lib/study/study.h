@@ -41,8 +41,8 @@ typedef struct {
 } wh_study_t;
 
 /* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed, trials and, if the
- * line of each trial is wanted, `lines`, which is then `trials`; and close it either way. False, and the reason on stderr, when script, layout or study are not usable, or when
- * nothing is checked. */
+ * line of each trial is wanted, `lines`, which is then `trials`; and close it either way. False, and the
+ * reason on stderr, when script, layout or study are not usable, or when nothing is checked. */
 bool wh_study_open(wh_study_t *study);
 void wh_study_close(wh_study_t *study);
 

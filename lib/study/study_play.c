@@ -75,7 +75,7 @@ static bool choose_lines(wh_study_t *study) {
                 study->wafer_count, study->wafer_count == 1 ? "" : "s");
         return false;
     }
-    const uint64_t some = each > 10 ? 10 * WH_STUDY_LINES / each : WH_STUDY_LINES;
+    const uint64_t some = each > 10 ? UINT64_C(10) * WH_STUDY_LINES / each : WH_STUDY_LINES;
     study->lines = study->lines > some ? study->lines : some;
     return true;
 }

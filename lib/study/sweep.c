@@ -113,7 +113,7 @@ void wh_sweep_text(double value, char text[WH_SWEEP_VALUE]) {
     (void)snprintf(text, WH_SWEEP_VALUE, "%.12g", fabs(value) > 0 ? value : 0.0);
 }
 
-/* ---------------------------------------------------------------------------------------------- one thread */
+/* --------------------------------------------------------------------------------------------- one thread */
 
 typedef struct {
     wh_script_sweep_t *sweep;

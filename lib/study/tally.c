@@ -142,8 +142,8 @@ static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nomi
            wafer->holder == nominal->holder;
 }
 
-/* How far off the wafer ends; infinite if it is elsewhere. `ends` becomes what the sums have; false, and it is
- * unchanged, if they have nothing. */
+/* How far off the wafer ends; infinite if it is elsewhere. `ends` becomes what the sums have; false, and it
+ * is unchanged, if they have nothing. */
 static bool add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal,
                       double ends[WH_TALLY_QUANTITIES], double *off) {
     *off = 0;
@@ -216,8 +216,9 @@ static void add_wafers(wh_tally_t *tally, const wh_study_t *study, const wh_outc
     for (size_t w = 0; w < study->wafer_count; ++w) {
         double ends[WH_TALLY_QUANTITIES];
         double off;
-        if (add_wafer(&tally->wafers[w], &outcome->wafers[w], &study->wafers[w], ends, &off) &&
-            w < tally->relations.wafer_count) {
+        const bool is_there =
+            add_wafer(&tally->wafers[w], &outcome->wafers[w], &study->wafers[w], ends, &off);
+        if (w < tally->relations.wafer_count && is_there) {
             wh_relations_add_wafer(&tally->relations, w, ends);
         }
         line->off = off > line->off ? off : line->off;

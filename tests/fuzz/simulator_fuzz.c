@@ -142,6 +142,17 @@ static wh_physics_t take_physics(bytes_t *in) {
     return physics;
 }
 
+static wh_scan_order_t take_order(bytes_t *in) {
+    wh_scan_order_t order;
+    memset(&order, 0, sizeof order);
+    order.kind = (wh_scan_order_kind_t)(take_byte(in) % 4);
+    order.gripper = take_byte(in) % 4;
+    order.count = take_int(in);
+    take(in, &order.first, sizeof order.first);
+    order.first %= order.count & 1 ? 10000 : INT64_MAX;
+    return order;
+}
+
 static wh_command_t take_command(bytes_t *in, size_t gripper_count, int64_t seq) {
     wh_command_t command;
     memset(&command, 0, sizeof command);
@@ -157,11 +168,7 @@ static wh_command_t take_command(bytes_t *in, size_t gripper_count, int64_t seq)
         command.grippers[g].valve = take_byte(in) % 16 == 15 ? take_int(in) : kind >> (g % 4) & 1;
     }
     if (kind & 64) {
-        command.scan.kind = (wh_scan_order_kind_t)(take_byte(in) % 4);
-        command.scan.gripper = take_byte(in) % 4;
-        command.scan.count = take_int(in);
-        take(in, &command.scan.first, sizeof command.scan.first);
-        command.scan.first %= command.scan.count & 1 ? 10000 : INT64_MAX;
+        command.scan = take_order(in);
     }
     command.fault_count = kind & 32 ? take_byte(in) % (WH_COMMAND_FAULTS + 2) : 0;
     for (size_t i = 0; i < command.fault_count && i < WH_COMMAND_FAULTS; ++i) {

@@ -367,11 +367,19 @@ static void wafers_lie_where_the_slots_frame_says(void **state) {
     assert_near(start->R.m[0][0], -1, 0);
 }
 
+typedef struct {
+    const char *fields, *message;
+} wrong_t;
+
+static void expect_all_refused(const wrong_t rows[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        expect_refused(rows[i].fields, rows[i].message);
+    }
+}
+
 static void what_is_wrong_is_named(void **state) {
     (void)state;
-    static const struct {
-        const char *fields, *message;
-    } rows[] = {
+    static const wrong_t rows[] = {
         {"", "stations: nothing"},
         {STATIONS, "grippers: nothing"},
         {GRIPPERS STATIONS "colour = 3", "cell.lua: colour: 3 (expected one of the fields wafer"},
@@ -411,6 +419,13 @@ static void what_is_wrong_is_named(void **state) {
          "cell.lua: wafers.w1: a table (expected a list: entries 1, 2, ... without names and gaps)"},
         {GRIPPERS STATIONS "wafers = { [1] = { station = 'A', slot = 1 }, [3] = { } }",
          "cell.lua: wafers[3]: a table (expected a list: entries 1, 2, ... without names and gaps)"},
+    };
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
+}
+
+static void what_is_wrong_with_sensors_and_rims_is_named(void **state) {
+    (void)state;
+    static const wrong_t rows[] = {
         {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, sensor = { } } }",
          "stations.A.sensor: a table (expected nothing: only a station of kind \"prealigner\""},
         {PREALIGNER("sensor = { pixels = 3 }"), "stations.P.sensor.pixels: 3 (expected one of the fields"},
@@ -444,9 +459,7 @@ static void what_is_wrong_is_named(void **state) {
         {PREALIGNER("sensor = { }") RIM("chips = { {}, {}, {}, {}, {}, {}, {}, {}, {} }"),
          "wafers[2].rim.chips: a table (expected at most 8 of them"},
     };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
-        expect_refused(rows[i].fields, rows[i].message);
-    }
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
 }
 
 /* Of several unknown fields the same one is named in every run, whatever Lua's order. */
@@ -480,6 +493,8 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_named, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_sensors_and_rims_is_named, open_sandbox,
+                                        close_sandbox),
         cmocka_unit_test_setup_teardown(the_first_unknown_field_by_name_is_reported, open_sandbox,
                                         close_sandbox),
     };
