@@ -87,7 +87,7 @@ static wh_status_t find_marks(const wh_rim_scan_t *scan, const wh_rim_ray_t *ray
     }
     const wh_status_t status = wh_flats_find(scan, rays, &result->circle, shapes, result->flats);
     if (status == WH_OK) {
-        const size_t f = result->flats[0].length > 0 ? 0 : 1;
+        const size_t f = result->flats[0].length > 0 ? (size_t)0 : (size_t)1;
         turn_by(result, f == 0 ? WH_ALIGN_MARK_PRIMARY_FLAT : WH_ALIGN_MARK_SECONDARY_FLAT,
                 result->flats[f].direction, shapes[f].direction, result->flats[f].sd_direction);
     }
@@ -122,7 +122,7 @@ wh_status_t wh_align_estimate(const wh_rim_scan_t *scan, const wh_sensor_t *sens
         return status;
     }
     wh_align_result_t found;
-    memset(&found, 0, sizeof found);
+    (void)memset(&found, 0, sizeof found);
     status = wh_circle_fit(scan, rays, &found.circle);
     if (status == WH_OK) {
         describe(scan, rays, &found);

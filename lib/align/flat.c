@@ -8,7 +8,7 @@
 #define LENGTH_OFF 3.5
 #define DIRECTION_OFF (5 * WH_ALIGN_PI / 180)
 /* Samples next to a flat's ends do not count. */
-#define ENDS 3
+#define ENDS ((size_t)3)
 #define LEAST_USED 12
 #define CUT 6
 #define STEPS 25

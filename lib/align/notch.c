@@ -51,7 +51,7 @@ typedef struct {
     double half;    /* expected */
     double spacing; /* of samples on the rim, mm */
     bool glass;
-} search_t;
+} vee_search_t;
 
 /* A sample against a V. */
 typedef struct {
@@ -73,11 +73,11 @@ static double below_bottom(const vee_t *vee, const wh_notch_shape_t *nominal) {
     return nominal->bottom * (1 / vee->sine - 1);
 }
 
-static double depth_of(const search_t *search, const vee_t *vee) {
+static double depth_of(const vee_search_t *search, const vee_t *vee) {
     return search->of.circle->radius - vee->apex - below_bottom(vee, search->nominal);
 }
 
-static against_t hold_against(const search_t *search, const vee_t *vee, size_t i) {
+static against_t hold_against(const vee_search_t *search, const vee_t *vee, size_t i) {
     const wh_rim_ray_t *ray = &search->of.rays[i];
     double x;
     double y;
@@ -118,7 +118,7 @@ static size_t place_of(const wh_rim_scan_t *scan, const wh_dent_t *dent, size_t 
 /* --------------------------------------------------------------------------------------------- the fit */
 
 /* From the dent's centroid and depth. */
-static void begin(const search_t *search, const wh_dent_t *dent, vee_t *vee) {
+static void begin(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
     double sum_x = 0;
     double sum_y = 0;
     for (size_t k = 0; k < dent->count; ++k) {
@@ -145,7 +145,8 @@ static double tukey(double residual, double cut) {
 }
 
 /* A step with a choice's flank samples under a cut. What is known of the opening counts as one more. */
-static bool step(const search_t *search, const wh_dent_t *dent, const vee_t *choice, double cut, vee_t *vee) {
+static bool step(const vee_search_t *search, const wh_dent_t *dent, const vee_t *choice, double cut,
+                 vee_t *vee) {
     const double sigma = search->of.circle->scatter;
     const double depth = depth_of(search, choice);
     wh_normal_begin(&vee->normal, 3);
@@ -180,7 +181,7 @@ static bool step(const search_t *search, const wh_dent_t *dent, const vee_t *cho
     return fabs(vee->half - search->half) < 1 && vee->step < 2;
 }
 
-static bool fit(const search_t *search, const wh_dent_t *dent, vee_t *vee) {
+static bool fit(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
     static const double cuts[] = {0.4, 0.15};
     const double last = CUT * search->of.circle->scatter;
     begin(search, dent, vee);
@@ -201,7 +202,7 @@ static bool fit(const search_t *search, const wh_dent_t *dent, vee_t *vee) {
 /* ------------------------------------------------------------------------------------ is it the notch */
 
 /* As wide at half of its depth as a notch is, to two samples and a part. */
-static bool is_as_wide(const search_t *search, const wh_dent_t *dent) {
+static bool is_as_wide(const vee_search_t *search, const wh_dent_t *dent) {
     size_t wide = 0;
     for (size_t k = 0; k < dent->count; ++k) {
         const size_t i = place_of(search->of.scan, dent, k, 0);
@@ -221,10 +222,10 @@ typedef struct {
     size_t off;        /* elsewhere than it should be */
     double squares;    /* of the flanks' residuals */
     size_t flank;
-} look_t;
+} vee_look_t;
 
 /* A sample's deviation and that of the V there. */
-static double may_be_off(const search_t *search, const vee_t *vee, const against_t *against) {
+static double may_be_off(const vee_search_t *search, const vee_t *vee, const against_t *against) {
     double square = 1;
     for (size_t p = 0; p < 3; ++p) {
         for (size_t q = 0; q < 3; ++q) {
@@ -245,7 +246,7 @@ static void allow(const against_t *against, double depth, double may_be, double 
     }
 }
 
-static void look_at(const search_t *search, const vee_t *vee, size_t i, look_t *look) {
+static void look_at(const vee_search_t *search, const vee_t *vee, size_t i, vee_look_t *look) {
     if (search->of.scan->points[i].sight != WH_SIGHT_RIM) {
         ++look->off;
         return;
@@ -270,8 +271,8 @@ static void look_at(const search_t *search, const vee_t *vee, size_t i, look_t *
     }
 }
 
-static look_t look_around(const search_t *search, const wh_dent_t *dent, const vee_t *vee) {
-    look_t look = {{0, 0}, 0, 0, 0, 0};
+static vee_look_t look_around(const vee_search_t *search, const wh_dent_t *dent, const vee_t *vee) {
+    vee_look_t look = {{0, 0}, 0, 0, 0, 0};
     const size_t beside = (size_t)(BESIDE / search->spacing) + 2;
     for (size_t k = 0; k < dent->count + 2 * beside; ++k) {
         look_at(search, vee, place_of(search->of.scan, dent, k, beside), &look);
@@ -279,7 +280,7 @@ static look_t look_around(const search_t *search, const wh_dent_t *dent, const v
     return look;
 }
 
-static bool has_flanks(const search_t *search, const look_t *look) {
+static bool has_flanks(const vee_search_t *search, const vee_look_t *look) {
     const size_t least = look->on_side[0] < look->on_side[1] ? look->on_side[0] : look->on_side[1];
     if (look->off > 0 || look->light > LIGHT) {
         return false;
@@ -288,7 +289,7 @@ static bool has_flanks(const search_t *search, const look_t *look) {
 }
 
 /* As deep and as open as a notch, and its bottom where that belongs. */
-static bool has_shape(const search_t *search, const wh_dent_t *dent, const vee_t *vee) {
+static bool has_shape(const vee_search_t *search, const wh_dent_t *dent, const vee_t *vee) {
     const double depth = depth_of(search, vee);
     const double more = depth - search->nominal->depth;
     const double bottom = BOTTOM_OFF + MAY_BE_OFF * search->of.circle->scatter;
@@ -296,14 +297,14 @@ static bool has_shape(const search_t *search, const wh_dent_t *dent, const vee_t
            fabs(dent->depth - depth) < bottom;
 }
 
-static finding_t judge(const search_t *search, const wh_dent_t *dent, vee_t *vee) {
+static finding_t judge(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
     if (!is_as_wide(search, dent)) {
         return IS_NONE;
     }
     if (!fit(search, dent, vee)) {
         return search->glass ? IS_DOUBTFUL : IS_NONE;
     }
-    const look_t look = look_around(search, dent, vee);
+    const vee_look_t look = look_around(search, dent, vee);
     if (has_flanks(search, &look) && has_shape(search, dent, vee)) {
         return IS_NOTCH;
     }
@@ -314,7 +315,7 @@ static finding_t judge(const search_t *search, const wh_dent_t *dent, vee_t *vee
 
 /* ------------------------------------------------------------------------------------------ the whole */
 
-static void tell(const search_t *search, const vee_t *vee, wh_notch_t *notch) {
+static void tell(const vee_search_t *search, const vee_t *vee, wh_notch_t *notch) {
     const wh_circle_t *circle = search->of.circle;
     const double aside = circle->sd_centre / vee->apex;
     const double own = circle->scatter * circle->scatter * vee->normal.matrix[0][0];
@@ -332,7 +333,7 @@ typedef struct {
     wh_notch_t first;
 } tally_t;
 
-static tally_t judge_all(const search_t *search, const wh_dents_t *dents) {
+static tally_t judge_all(const vee_search_t *search, const wh_dents_t *dents) {
     tally_t tally = {0, {0, 0, 0}, {0, 0, 0, 0, 0}};
     for (size_t d = 0; d < dents->count; ++d) {
         const wh_dent_t *dent = &dents->dents[d];
@@ -351,11 +352,11 @@ static tally_t judge_all(const search_t *search, const wh_dents_t *dents) {
 
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch) {
-    search_t search = {{scan, rays, circle, nominal->depth + DEEPER + CUT * circle->scatter},
-                       nominal,
-                       nominal->opening / 2 + HALF_OPENING_MORE,
-                       0,
-                       glass};
+    vee_search_t search = {{scan, rays, circle, nominal->depth + DEEPER + CUT * circle->scatter},
+                           nominal,
+                           nominal->opening / 2 + HALF_OPENING_MORE,
+                           0,
+                           glass};
     search.spacing = wh_scanned_spacing(&search.of);
     const wh_dents_t dents = wh_dents_find(&search.of);
     const tally_t tally = judge_all(&search, &dents);

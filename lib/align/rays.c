@@ -52,7 +52,8 @@ static void finish(walk_t *walk) {
     if (walk->dent.count > 0) {
         walk->dent.count -= walk->bridge;
         if (found->count < WH_DENTS) {
-            found->dents[found->count++] = walk->dent;
+            found->dents[found->count] = walk->dent;
+            ++found->count;
         } else {
             found->whole = false;
         }

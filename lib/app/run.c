@@ -32,6 +32,11 @@ static size_t name_length(const char *error) {
     return equals ? (size_t)(equals - error) : strlen(error);
 }
 
+static bool is_of_one(const char *error, const char *other) {
+    const size_t length = name_length(error);
+    return length == name_length(other) && strncmp(error, other, length) == 0;
+}
+
 /* The errors are in the simulator of this process, and in nothing that is published or written of a run. */
 static void check_errors(const arguments_t *arguments, struct argp_state *state) {
     const wh_option_list_t *errors = &arguments->errors;
@@ -45,9 +50,7 @@ static void check_errors(const arguments_t *arguments, struct argp_state *state)
     }
     for (size_t i = 1; i < errors->count; ++i) {
         for (size_t j = 0; j < i; ++j) {
-            const size_t length = name_length(errors->items[i]);
-            if (length == name_length(errors->items[j]) &&
-                strncmp(errors->items[i], errors->items[j], length) == 0) {
+            if (is_of_one(errors->items[i], errors->items[j])) {
                 argp_error(state, "--error %s: given twice", errors->items[i]);
             }
         }

@@ -30,22 +30,28 @@ static bool take_word(char word[WH_NAME_SIZE], const char *from, const char *to)
     return true;
 }
 
+/* What stands before the equals sign; false if it does not fit. */
+static bool take_names(given_t *given, const char *equals) {
+    const char *point = equals;
+    while (point > given->text && *point != '.') {
+        --point;
+    }
+    const bool named = *point == '.';
+    return take_word(given->name, given->text, named ? point : given->text) &&
+           take_word(given->field, named ? point + 1 : given->text, equals);
+}
+
 /* A name may have points and equals signs in it: the last ones count. */
 static void take_apart(lua_State *L, given_t *given) {
     const char *equals = strrchr(given->text, '=');
-    const char *point = equals;
-    char *end = NULL;
-    while (point && point > given->text && *point != '.') {
-        --point;
-    }
-    const bool named = point && *point == '.';
-    given->value = equals ? strtod(equals + 1, &end) : 0;
-    if (!equals || !take_word(given->name, given->text, named ? point : given->text) ||
-        !take_word(given->field, named ? point + 1 : given->text, equals)) {
+    if (!equals || !take_names(given, equals)) {
         refuse(L, given, "no error (expected NAME.FIELD=VALUE, such as A.x=0.12)");
-    }
-    if (end == equals + 1 || *end != '\0' || !isfinite(given->value)) {
-        refuse(L, given, "no number (expected NAME.FIELD=VALUE, such as A.x=0.12)");
+    } else {
+        char *end = NULL;
+        given->value = strtod(equals + 1, &end);
+        if (end == equals + 1 || *end != '\0' || !isfinite(given->value)) {
+            refuse(L, given, "no number (expected NAME.FIELD=VALUE, such as A.x=0.12)");
+        }
     }
 }
 

@@ -295,6 +295,14 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
+/* An edge scan has samples in each state, and a free run takes several from one exchange to the next. */
+static void hear_state(void *user, const wh_state_t *state) {
+    const wh_mcs_process_t *control = user;
+    if (control->mcs) {
+        wh_mcs_hear(control->mcs, state);
+    }
+}
+
 /* All that comes on our own channel is our own, but for another motion control's. */
 static void on_mcs(void *user, const void *data, size_t size) {
     wh_mcs_process_t *control = user;
@@ -315,6 +323,7 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
     control->node = node;
     control->options = *options;
     control->options.tick = tell_progress;
+    control->options.taken = hear_state;
     control->options.user = control;
     return wh_node_subscribe(node, WH_CHANNEL_REQUEST, wh_mcs_process_on_request, control) &&
            wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control) &&

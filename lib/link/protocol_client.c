@@ -109,7 +109,8 @@ static bool take_over(wh_protocol_client_t *client, const waferhand_state *messa
 
 static void take(wh_protocol_client_t *client, const waferhand_state *message, const wh_state_t *state,
                  const void *data, size_t size) {
-    if (!client->has_state || state->seq != client->state.seq) {
+    const bool is_new = !client->has_state || state->seq != client->state.seq;
+    if (is_new) {
         const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
         const size_t count = state->event_count < room ? state->event_count : room;
         memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
@@ -121,6 +122,9 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->arrays.physics = *state->physics;
     client->state.physics = &client->arrays.physics;
     client->has_state = true;
+    if (is_new && client->options.taken) {
+        client->options.taken(client->options.user, &client->state);
+    }
     client->missed = message->missed;
     client->hash = (uint64_t)message->hash;
     memcpy(client->restore, data, size);

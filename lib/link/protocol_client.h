@@ -36,6 +36,9 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* not zero: send nothing more; may be null */
     bool (*interrupted)(void);         /* a signal came that is to end a wait for silence; may be null */
     void (*tick)(void *user);          /* called once a second of a long motion; may be null */
+    /* Called for each state that is taken for the first time, also for those between two exchanges of a free
+     * run; may be null. */
+    void (*taken)(void *user, const wh_state_t *state);
     void *user;
 } wh_protocol_client_options_t;
 

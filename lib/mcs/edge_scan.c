@@ -34,10 +34,8 @@ static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
 }
 
 /* Only a state of a slice after the last one that was heard of: in a free run it may come again. */
-void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state) {
-    wh_mcs_t *mcs = user;
+void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     wh_mcs_edge_t *edge = &mcs->edge;
-    (void)command;
     if (!state->physics || state->seq <= edge->seq) {
         return;
     }
@@ -51,6 +49,11 @@ void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t 
             mcs->partners.edge(mcs->partners.user, mcs);
         }
     }
+}
+
+void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state) {
+    (void)command;
+    wh_mcs_hear(user, state);
 }
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge) {
@@ -90,9 +93,10 @@ static int disarm_edge(lua_State *L) {
     return 0;
 }
 
-/* native.edge(): what was collected since arm_edge, nil without one. `samples` are dark pixels, -1 where a
- * state never came (`missed` of them); `first` is the number of the first of them, `count` how many were
- * asked for, `is_armed` if there are more to come. */
+/* native.edge(): what was collected since arm_edge, nil without one. `samples` are as many as were asked for,
+ * `count`: dark pixels, or -1 where none has come (`missed` of them), be it that its state was lost or that
+ * the scan has ended before. `first` is the number of the first of them, `is_armed` if there are more to
+ * come. */
 static int read_edge(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_edge_t *edge = &mcs->edge;
@@ -100,17 +104,18 @@ static int read_edge(lua_State *L) {
         return 0;
     }
     wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
-    wh_sandbox_charge(L, (uint64_t)edge->taken);
+    const int32_t count = magnitude(edge->order.count);
+    wh_sandbox_charge(L, (uint64_t)count);
     lua_createtable(L, 0, 5);
-    lua_createtable(L, edge->taken, 0);
-    for (int32_t i = 0; i < edge->taken; ++i) {
-        lua_pushinteger(L, edge->samples[i]);
+    lua_createtable(L, count, 0);
+    for (int32_t i = 0; i < count; ++i) {
+        lua_pushinteger(L, i < edge->taken ? edge->samples[i] : WH_NONE);
         lua_rawseti(L, -2, i + 1);
     }
     lua_setfield(L, -2, "samples");
     wh_lua_set_integer(L, "first", edge->order.first);
     wh_lua_set_integer(L, "count", edge->order.count);
-    wh_lua_set_integer(L, "missed", edge->missed);
+    wh_lua_set_integer(L, "missed", edge->missed + count - edge->taken);
     wh_lua_set_boolean(L, "is_armed", edge->armed);
     return 1;
 }

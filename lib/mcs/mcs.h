@@ -205,6 +205,9 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
  * completes one: two functions, see lua/mcs/prompt.lua and lua/mcs/completion.lua. */
 void wh_mcs_push_prompt(lua_State *L);
 
+/* A state that the link has taken, in the order in which they come; those of exchanges need not be told. */
+void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state);
+
 /* A STOP, from within the link's exchange or between two commands: the running command ends with
  * WH_STATUS_STOPPED after this slice, the next one before its first. A script can catch that error. */
 void wh_mcs_stop(wh_mcs_t *mcs);

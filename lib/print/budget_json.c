@@ -122,8 +122,9 @@ int wh_budget_print_json(const wh_budget_t *budget, FILE *out) {
     const wh_study_t *study = budget->study;
     json_t *root = wh_json_set(json_object(), "format %d ok %i script %s layout %s trials %lld", 1, true,
                                study->run.script, study->layout->path, (json_int_t)budget->trials);
-    (void)wh_json_set(root, "limit_mm %g limit_deg %g", number_of(budget->options.most[0]),
-                      number_of(budget->options.most[1]));
+    (void)wh_json_set(root, "limit_mm %g limit_deg %g collision %i caught_errors %i",
+                      number_of(budget->options.most[0]), number_of(budget->options.most[1]),
+                      study->layout->collision, budget->caught);
     (void)wh_json_add(root, "errors all tightest next",
                       wh_json_list(error, budget, WH_SPREADS * study->layout->station_count), all_of(budget),
                       station_of(budget, budget->tightest), station_of(budget, budget->next), NULL);

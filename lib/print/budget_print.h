@@ -2,6 +2,7 @@
  *
  * As JSON one object, format 1, its lists with one element a line:
  *   format, ok (true: it was found), script, layout, trials (all in all), limit_mm, limit_deg,
+ *          collision (whether it was looked for), caught_errors (in a trial that passed, by the script),
  *   errors:  station, error (x, y, z, roll, pitch, yaw), unit (mm or deg), width (passes everywhere that was
  *            tried from -width to +width), at_least (nothing failed up to the limit, in neither direction),
  *            has_effect (in a trial something differed that is judged or told), rim_mm (how far the width

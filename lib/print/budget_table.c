@@ -297,6 +297,18 @@ static void print_cause(const table_t *table) {
     fputc('\n', table->frame.out);
 }
 
+/* What the numbers do not say. */
+static void print_warnings(const table_t *table) {
+    const wh_budget_t *budget = table->budget;
+    if (!budget->study->layout->collision) {
+        fputs("\n! collisions were not looked for: the layout has no collision = true\n", table->frame.out);
+    }
+    if (budget->caught) {
+        fputs("\n! in trials that passed, the script caught errors: what it then does counts as passing\n",
+              table->frame.out);
+    }
+}
+
 /* Which station must be taught better, in words: the last line. */
 static void print_answer(const table_t *table) {
     const wh_budget_t *budget = table->budget;
@@ -334,6 +346,7 @@ int wh_budget_print_table(const wh_budget_t *budget, FILE *out, const wh_style_t
     print_half(&table);
     print_tried(&table);
     print_witnesses(&table);
+    print_warnings(&table);
     print_answer(&table);
     return ferror(out) ? -1 : 0;
 }

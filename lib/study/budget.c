@@ -368,6 +368,7 @@ bool wh_budget_find(wh_budget_t *budget, const wh_study_t *study, const wh_budge
     const bool found = find(&crew);
     for (size_t i = 0; i < options->threads; ++i) {
         budget->trials += crew.players[i].trials;
+        budget->caught = budget->caught || crew.players[i].caught;
         wh_budget_player_close(&crew.players[i]);
     }
     free(crew.players);

@@ -92,6 +92,7 @@ typedef struct {
     wh_budget_station_t *stations; /* the layout's */
     wh_budget_box_t box;
     bool two_ways;    /* trials without collisions first, then with them */
+    bool caught;      /* in a trial that passed the script caught an error that it else has not */
     uint64_t trials;  /* all in all */
     int32_t tightest; /* the station that allows least: see wh_budget_tightness; WH_NONE: nothing failed */
     int32_t next;     /* the station that allows least but for it and those like it; or WH_NONE */

@@ -57,7 +57,7 @@ static int64_t share_of(const boxing_t *boxing, const int32_t point[]) {
     int64_t share = 0;
     for (size_t i = 0; i < boxing->size; ++i) {
         const int64_t width = width_of(boxing, i);
-        if (point[i] != 0) {
+        if (point[i] != 0 && width > 0) {
             const int64_t needed = (llabs(point[i]) * boxing->box->whole + width - 1) / width;
             share = needed > share ? needed : share;
         }
@@ -71,23 +71,38 @@ static int32_t clip(int32_t value, int32_t most) {
 
 /* ------------------------------------------------------------------------------------------------- points */
 
+static size_t count_beside(const boxing_t *boxing, bool with) {
+    const size_t errors = WH_SPREADS * boxing->wanted;
+    if (!boxing->box->outside) {
+        return 0;
+    }
+    return with ? errors : errors * (errors + 1) / 2;
+}
+
+static size_t count_alone(const boxing_t *boxing, bool with) {
+    return boxing->wanted > 1 && !with ? CORNERS * boxing->wanted : 0;
+}
+
+static size_t count_drawn(const boxing_t *boxing, bool with) {
+    const uint64_t samples = boxing->budget->options.samples;
+    return (size_t)(with ? (samples + SAMPLES_WITH - 1) / SAMPLES_WITH : samples);
+}
+
 static size_t count_of(const boxing_t *boxing, wh_box_kind_t kind) {
     const bool with = boxing->level == WH_BUDGET_WITH && boxing->budget->study->layout->collision;
-    const uint64_t samples = boxing->budget->options.samples;
-    const size_t errors = WH_SPREADS * boxing->wanted;
     switch (kind) {
     case WH_BOX_ALIKE:
         return CORNERS;
     case WH_BOX_OPPOSITE:
         return boxing->wanted > 1 ? CORNERS : 0;
     case WH_BOX_ALONE:
-        return boxing->wanted > 1 && !with ? CORNERS * boxing->wanted : 0;
+        return count_alone(boxing, with);
     case WH_BOX_BESIDE:
-        return !boxing->box->outside ? 0 : with ? errors : errors * (errors + 1) / 2;
+        return count_beside(boxing, with);
     case WH_BOX_CORNER:
     case WH_BOX_INSIDE:
     default:
-        return (size_t)(with ? (samples + SAMPLES_WITH - 1) / SAMPLES_WITH : samples);
+        return count_drawn(boxing, with);
     }
 }
 
@@ -127,6 +142,9 @@ static void find_pair(size_t index, size_t *one, size_t *other) {
 /* The corner that failed last, with one error turned over for each of the first numbers, then with two. */
 static int32_t beside(const boxing_t *boxing, size_t index, size_t i, int32_t half) {
     const size_t errors = WH_SPREADS * boxing->wanted;
+    if (boxing->order[i / WH_SPREADS] == SIZE_MAX) {
+        return 0;
+    }
     const size_t number = boxing->order[i / WH_SPREADS] * WH_SPREADS + i % WH_SPREADS;
     size_t one = index;
     size_t other = index;
@@ -149,9 +167,9 @@ static int32_t coordinate(const boxing_t *boxing, wh_box_kind_t kind, size_t ind
     case WH_BOX_ALONE:
         return place == index / CORNERS ? corner_of(index % CORNERS, axis, half) : 0;
     case WH_BOX_CORNER:
-        return draw(boxing, kind, index, i) >> 31 != 0 ? half : -half;
+        return corner_of(draw(boxing, kind, index, i) >> 31, 0, half);
     case WH_BOX_BESIDE:
-        return boxing->order[i / WH_SPREADS] == SIZE_MAX ? 0 : beside(boxing, index, i, half);
+        return beside(boxing, index, i, half);
     case WH_BOX_INSIDE:
     default:
         return (int32_t)((2 * (uint64_t)half + 1) * draw(boxing, kind, index, i) >> 32) - half;

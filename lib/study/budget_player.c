@@ -17,6 +17,20 @@ static void count_events(wh_budget_player_t *player) {
     }
 }
 
+/* Errors of commands by line and number, as a tally has them. */
+static size_t count_caught(const wh_record_t *record) {
+    size_t count = 0;
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        bool is_new = command->error != WH_OK;
+        for (size_t k = 0; is_new && k < i; ++k) {
+            is_new = record->commands[k].error != command->error || record->commands[k].line != command->line;
+        }
+        count += is_new ? 1 : 0;
+    }
+    return count;
+}
+
 /* The first complaint decides: what comes after it need not be played. */
 static void end_at_complaint(void *user, const wh_command_t *command, const wh_state_t *state) {
     const wh_script_run_t *run = user;
@@ -55,6 +69,7 @@ void wh_budget_player_open(wh_budget_player_t *player, const wh_study_t *study) 
         (wh_mcs_listener_t){.slice = end_at_complaint, .user = &player->worker.run};
     wh_tally_init(&player->tally, study->wafer_count);
     count_events(player);
+    player->caught_nominally = count_caught(&study->nominal.record);
 }
 
 void wh_budget_player_close(wh_budget_player_t *player) {
@@ -120,6 +135,7 @@ static bool passes_at(wh_budget_player_t *player, const int32_t point[], wh_budg
     const bool usable = wh_worker_play(&player->worker, 0, &player->tally, message);
     const bool passes = usable && player->worker.outcome.met;
     player->differs = !passes || !is_as_without_errors(player);
+    player->caught = player->caught || (passes && player->tally.errors.count > player->caught_nominally);
     return passes;
 }
 

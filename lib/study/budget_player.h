@@ -30,6 +30,8 @@ typedef struct {
     const char **errors_by_name;
     uint32_t events[WH_EVENT_KINDS]; /* of the run without errors */
     uint64_t trials;
+    size_t caught_nominally; /* errors of commands, by line and number, of the run without errors */
+    bool caught;             /* a trial passed that had more of them */
     bool two_ways;
     bool differs; /* the last trial had another event than that run, or left a wafer elsewhere */
 } wh_budget_player_t;

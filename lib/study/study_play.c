@@ -87,14 +87,8 @@ static bool checks_nothing(const wh_study_t *study) {
            (record->slices == 0 || !study->layout->collision);
 }
 
-bool wh_study_open(wh_study_t *study) {
-    wh_script_run_options_t options = study->run;
-    options.decisions = &study->decisions;
-    if (wh_script_run(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
-        fprintf(stderr, "%s\n", study->nominal.message);
-        return false;
-    }
-    study->layout = study->nominal.mcs.layout;
+/* True if trials make sense; else standard error says why not. */
+static bool is_fit(const wh_study_t *study) {
     if (!study->layout || !study->nominal.record.wafers) {
         return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
@@ -105,6 +99,20 @@ bool wh_study_open(wh_study_t *study) {
     if (checks_nothing(study)) {
         return refuse(study->run.script, "takes no wafer and expects nothing, so that no trial could fail "
                                          "(expected get, put or expect)");
+    }
+    return true;
+}
+
+bool wh_study_open(wh_study_t *study) {
+    wh_script_run_options_t options = study->run;
+    options.decisions = &study->decisions;
+    if (wh_script_run(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
+        fprintf(stderr, "%s\n", study->nominal.message);
+        return false;
+    }
+    study->layout = study->nominal.mcs.layout;
+    if (!is_fit(study)) {
+        return false;
     }
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);

@@ -318,6 +318,14 @@ static int report(const char *what, bool good) {
     return good ? 0 : 1;
 }
 
+static bool scans(void) {
+    bool good = true;
+    for (int wafer = 0; wafer < 10; ++wafer) {
+        good = scan(wafer == 0 ? 3600 : 180) && good;
+    }
+    return good;
+}
+
 int main(void) {
     state = 20240229;
     hash = WH_HASH_START;
@@ -346,10 +354,7 @@ int main(void) {
     }
     failed += report("deviate", true);
     hash = WH_HASH_START;
-    good = true;
-    for (int wafer = 0; wafer < 10; ++wafer) {
-        good = scan(wafer == 0 ? 3600 : 180) && good;
-    }
+    good = scans();
     failed += report("scan", good);
     hash = WH_HASH_START;
     good = true;
