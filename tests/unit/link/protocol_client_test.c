@@ -290,6 +290,53 @@ static void a_free_run_hears_that_a_slice_before_the_last_was_refused(void **sta
     wh_node_close(&node);
 }
 
+static int64_t told[20];
+static size_t told_count;
+
+static void note_state(void *user, const wh_state_t *state) {
+    (void)user;
+    assert_true(told_count < sizeof told / sizeof told[0]);
+    told[told_count++] = state->seq;
+}
+
+/* Answers from slice 2 on come all at once, behind slice 4, and each of them twice. */
+static void answer_in_a_heap(void *user, const void *data, size_t size) {
+    static uint8_t kept[3][WH_LINK_DATAGRAM];
+    static size_t sizes[3];
+    waferhand_command message;
+    (void)user;
+    assert_true(wh_link_decode_command(data, size, &message));
+    (void)wh_protocol_server_command(&server, &message, NULL);
+    if (message.seq == 1) {
+        assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
+    } else if (message.seq <= 4) {
+        sizes[message.seq - 2] = server.encoded_size;
+        memcpy(kept[message.seq - 2], server.encoded, server.encoded_size);
+    }
+    for (size_t i = 0; message.seq == 4 && i < 6; ++i) {
+        assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, kept[i / 2], sizes[i / 2]));
+    }
+}
+
+/* An edge scan has samples in each state, so none of those between two exchanges may be passed over. */
+static void a_free_run_tells_each_state_that_it_takes_once(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.rate = 1000, .taken = note_state};
+    wh_state_t answer = {.status = WH_OK};
+    told_count = 0;
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_in_a_heap, NULL));
+    for (int64_t seq = 1; seq <= 5; ++seq) {
+        assert_int_equal(send_slice(seq, &answer), WH_OK);
+    }
+    (void)wh_node_drain(&node, 64);
+    assert_int_equal(told_count, 4);
+    for (size_t i = 0; i < 4; ++i) {
+        assert_int_equal(told[i], i + 1);
+    }
+    wh_node_close(&node);
+}
+
 /* Without a word from a simulator the next slice is due all the same, but for one whose state is awaited. */
 static void a_free_run_waits_for_a_state_that_is_awaited(void **state) {
     (void)state;
@@ -471,6 +518,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_free_run_hears_that_a_slice_before_the_last_was_refused, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_free_run_waits_for_a_state_that_is_awaited, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_free_run_tells_each_state_that_it_takes_once, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stop_loses_no_slice, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator,
                                         set_up, tear_down),
