@@ -257,7 +257,7 @@ Matrix3d pull_of(const geometry_rows_t &rows, const geometry_t &model, const wh_
     for (int i = 0; i < 3; ++i) {
         pulls.col(i) = rows.pull(by.row(i).transpose()) + unknown * rows.unseen_part(by.row(i).transpose());
     }
-    return pulls.transpose() * pulls;
+    return pulls.transpose().lazyProduct(pulls); /* a general product would link to the heap */
 }
 
 /* How far off a touch is, in deviations, less what it pulls the fit towards itself, or more what the fit
