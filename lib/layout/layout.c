@@ -204,6 +204,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_wafers(&reader, layout);
     wh_layout_read_sensing(&reader, layout);
     wh_layout_read_shapes(&reader, layout);
+    wh_layout_read_blades(layout);
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);
     wh_layout_read_study(&reader, layout);

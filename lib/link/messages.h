@@ -78,6 +78,7 @@ typedef struct {
     waferhand_event events[WH_LINK_EVENTS];
     waferhand_fault_slot faults[WH_FAULTS];
     int32_t samples[WH_SCAN_SLICE];
+    waferhand_latch waiting[WH_LATCHES], latches[WH_LATCHES];
 } wh_link_state_t;
 
 /* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
@@ -90,6 +91,9 @@ typedef struct {
     waferhand_fault faults[WH_FAULTS];
     waferhand_edge_sensor sensors[WH_GRIPPERS];
     double hidden[WH_GRIPPERS][2][WH_SENSOR_ARCS];
+    waferhand_door_beam beams[WH_BEAMS];
+    waferhand_outline outlines[WH_GRIPPERS];
+    double corners[WH_GRIPPERS][2][WH_OUTLINE_POINTS];
     waferhand_rim rims[WH_LINK_RIMS];
     double chips[WH_LINK_RIMS][3][WH_RIM_CHIPS];
 } wh_link_cell_t;

@@ -78,9 +78,11 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
         memcpy(storage.wafers, real->start, bytes);
     }
     const wh_scanning_t scanning = wh_layout_scanning(real);
+    const wh_latching_t latching = wh_layout_latching(real);
     wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
     status = status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
-    return status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
+    status = status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
+    return status == WH_OK ? wh_simulator_set_latching(simulator, &latching) : status;
 }
 
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {

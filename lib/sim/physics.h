@@ -17,6 +17,7 @@
 
 #include "../grasp/hold.h"
 #include "faults.h"
+#include "latching.h"
 #include "scanning.h"
 
 WH_HEADER_BEGIN
@@ -40,7 +41,8 @@ typedef struct {
     wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
     int32_t told[WH_GRIPPERS];     /* valves of the last command, before faults; no step depends on them */
     wh_faults_t faults;
-    wh_scan_t scan; /* of an edge sensor */
+    wh_scan_t scan;       /* of an edge sensor */
+    wh_latches_t latches; /* of the beams at doors */
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
@@ -79,10 +81,12 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - for each slot in use: 3, its index, phase, kind, target, other, value, offset, from, until, before,
  *     placed;
  *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count
- *     and so many samples.
- * So a run with ideal vacuum, without pads, faults and scans, has the table's hash. Nothing is checked;
+ *     and so many samples;
+ *   - once beams have been armed: 5, number, armed, first, count, slice, crossings, lost, broken,
+ *     waiting_count, latch_count, and of so many latches beam, edge, slice and the part's bits.
+ * So a run with ideal vacuum, without pads, faults, scans and beams, has the table's hash. Nothing is checked;
  * grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10
- * for each with positions, 45 for each slot in use, and up to 73 for a scan.
+ * for each with positions, 45 for each slot in use, up to 73 for a scan, and 11 for beams with four for each latch.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);

@@ -26,7 +26,7 @@ WH_REFUSE_PACKING(slice);
 
 /* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are
  * ignored. */
-typedef struct {
+struct wh_command {
     int64_t utime; /* simulated time, us: seq times the slice's length */
     int64_t seq;   /* 1 for the first slice */
     size_t gripper_count, axis_count;
@@ -35,9 +35,10 @@ typedef struct {
     size_t fault_count;
     wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin, or that get a new end */
     wh_scan_order_t scan;                         /* of the edge sensors */
-} wh_command_t;
+    wh_latch_order_t latch;                       /* of the beams at doors */
+};
 
-/* Fills in poses, valves and axes of the track's current slice; leaves faults and edge sensors alone. Pass
+/* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone. Pass
  * the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
  * wh_machine_update. */
 void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
