@@ -107,6 +107,7 @@ typedef struct {
     /* of "own": the layout does not give projz, projxy, planar, and the paper's stands */
     bool tolerance_default[WH_TOLERANCE_LIMITS];
     double wafer_diameter, wafer_thickness;
+    double wafer_spread; /* standard deviation of true diameters, by which centring goes; 0: they are exact */
     /* direction of the notch, rad about e3 from e1, and its depth, mm; depth 0: no notch */
     double notch, notch_depth;
     wh_grasp_config_t grasp;

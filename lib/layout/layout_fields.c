@@ -38,6 +38,10 @@ const wh_reader_field_t wh_layout_top_fields[] = {
 
 const wh_reader_field_t wh_layout_wafer_size_fields[] = {{"diameter", NUMBER, "mm", false},
                                                          {"thickness", NUMBER, "mm", false},
+                                                         {"spread", NUMBER,
+                                                          "mm: standard deviation of true diameters, which "
+                                                          "centring allows for; 0: none",
+                                                          false},
                                                          {"notch", "waferhand.notch", "the notch", false},
                                                          END};
 

@@ -135,8 +135,8 @@ static void set_up_listeners(wh_mcs_t *mcs) {
     mcs->recorder.layout = mcs->layout;
     mcs->recorder.cell = &mcs->real->cell;
     wh_mcs_listen(mcs, hear_record, &mcs->recorder);
-    if (mcs->layout->scanner_count > 0) {
-        wh_mcs_listen(mcs, wh_mcs_hear_edge, mcs);
+    if (mcs->layout->scanner_count + mcs->layout->beam_count > 0) {
+        wh_mcs_listen(mcs, wh_mcs_hear_slice, mcs);
     }
     if (mcs->decisions) {
         wh_mcs_listen(mcs, hear_decisions, mcs->decisions);
@@ -173,7 +173,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
     static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 26);
+    lua_createtable(L, 0, 28);
     wh_lua_set_number(L, "pitch", place->pitch);
     wh_lua_set_number(L, "stroke", station->stroke);
     wh_lua_set_number(L, "offset", station->offset);
@@ -194,6 +194,8 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
+    wh_lua_set_boolean(L, "centre", station->centre);
+    wh_lua_set_integer(L, "beams", wh_layout_beams_at(layout, index).count);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
     const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);

@@ -77,6 +77,8 @@ return function(native, lookup)
         'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
       { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
         "0, or 1e-6 mm/s^2 or more" },
+      { "centre", not target.centre or station.beams > 1, "false: %s has %d beams, and two tell a centre",
+        station.name, station.beams },
       { "retries", math.tointeger(target.retries), "a whole number" },
       { "dz", math.max(-bottom - target.dz, target.offset + target.dz) < pitch,
         "with the stroke within the pitch of %.10g mm below and above the slot", pitch },
@@ -113,6 +115,11 @@ return function(native, lookup)
         target[name] = station[name]
       end
     end
+    if word == "get" and prefix ~= "get_" and options.centre ~= nil then
+      native.fail("BAD_ARGUMENT", ("centre: %s (expected none: PUT and SWAP centre)"):format(
+        lookup.quote(options.centre)))
+    end
+    target.centre = word == "put" and target.centre
     check(target, rules(target, station, native.layout), prefix)
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
