@@ -19,6 +19,9 @@
 #define STATE_FIXED (STATE_COUNTS + 7 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8 + 6 * 4 + 1 + 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
 #define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 2 * 8 + 3 * 4)
+#define CENTRING_FIXED (FINGERPRINT + HEADER + 5 * 4)
+#define CROSSING (3 * 4 + 5 * 8)
+#define CENTRE (6 * 8 + 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
@@ -204,6 +207,15 @@ bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan
     skip(&walk, EDGE_SCAN_FIXED);
     skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * 4);
     return ends(&walk) && waferhand_edge_scan_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_centring(const void *data, size_t size, waferhand_centring *message) {
+    walk_t walk = {data, size, 0, true};
+    skip(&walk, CENTRING_FIXED);
+    const size_t crossings = take_count(&walk, WH_CROSSINGS);
+    const size_t centres = take_count(&walk, 2);
+    skip(&walk, crossings * CROSSING + centres * CENTRE);
+    return ends(&walk) && waferhand_centring_decode(data, 0, (int)size, message) == (int)size;
 }
 
 /* --------------------------------------------------------------------------------------------- recordings */

@@ -131,6 +131,51 @@ static void tell_edge(void *user, const wh_mcs_t *mcs) {
     }
 }
 
+static waferhand_crossing crossing_of(const wh_mcs_crossing_t *from, wh_crossing_use_t use) {
+    const wh_crossing_t *crossing = &from->crossing;
+    const waferhand_crossing message = {
+        crossing->beam, (int32_t)crossing->edge, (int32_t)use, from->time, crossing->x, crossing->y,
+        crossing->vx,   crossing->vy};
+    return message;
+}
+
+static waferhand_centre centre_of(const wh_centre_t *from) {
+    const waferhand_centre message = {from->x,    from->y,        from->radius, from->sd_x,
+                                      from->sd_y, from->mismatch, from->used};
+    return message;
+}
+
+static void tell_centring(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = user;
+    const wh_mcs_centring_t *centring = &mcs->centring;
+    waferhand_crossing crossings[WH_CROSSINGS];
+    waferhand_centre centres[2];
+    const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
+    for (size_t i = 0; i < centring->count; ++i) {
+        crossings[i] = crossing_of(&centring->crossings[i], centring->centres.candidates[0].use[i]);
+    }
+    for (int32_t i = 0; i < centring->centres.count; ++i) {
+        centres[i] = centre_of(&centring->centres.candidates[i]);
+    }
+    const waferhand_centring message = {.utime = mcs->pass.seq * mcs->layout->slice_us,
+                                        .seq = mcs->pass.seq,
+                                        .run = now.run,
+                                        .layout_hash = now.layout_hash,
+                                        .number = (int32_t)mcs->pass.number,
+                                        .station = centring->station,
+                                        .gripper = centring->gripper,
+                                        .status = (int32_t)centring->status,
+                                        .missed = (int32_t)centring->missed,
+                                        .crossing_count = (int32_t)centring->count,
+                                        .centre_count = centring->centres.count,
+                                        .crossings = crossings,
+                                        .centres = centres};
+    const int size = waferhand_centring_encode(control->encoded, 0, (int)sizeof control->encoded, &message);
+    if (size > 0) {
+        (void)wh_node_publish(control->node, WH_CHANNEL_LATCH, control->encoded, (size_t)size);
+    }
+}
+
 static void finished(void *user, const wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
     const wh_record_t *record = mcs->recorder.record;
@@ -295,7 +340,7 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* An edge scan has samples in each state, and a free run takes several from one exchange to the next. */
+/* States have samples of an edge scan and latches of beams, and a free run takes several from one exchange to the next. */
 static void hear_state(void *user, const wh_state_t *state) {
     const wh_mcs_process_t *control = user;
     if (control->mcs) {
@@ -343,6 +388,7 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .expected = expected,
                                .cycle = cycle,
                                .edge = tell_edge,
+                               .centring = tell_centring,
                                .finished = finished,
                                .user = control};
 }

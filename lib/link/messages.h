@@ -3,6 +3,7 @@
 #define WH_LINK_MESSAGES_H
 
 #include <waferhand_cell.h>
+#include <waferhand_centring.h>
 #include <waferhand_command.h>
 #include <waferhand_edge_scan.h>
 #include <waferhand_mcs.h>
@@ -23,6 +24,7 @@
 #define WH_CHANNEL_REQUEST "WAFERHAND_REQUEST"
 #define WH_CHANNEL_CELL "WAFERHAND_CELL"
 #define WH_CHANNEL_EDGE_SCAN "WAFERHAND_EDGE_SCAN"
+#define WH_CHANNEL_LATCH "WAFERHAND_LATCH"
 
 /* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
@@ -164,6 +166,7 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message);
+bool wh_link_decode_centring(const void *data, size_t size, waferhand_centring *message);
 
 /* The number of a request that cannot be decoded, if it has a request's fingerprint and is long enough to
  * carry one; else 0. */

@@ -167,6 +167,17 @@ static void on_edge_scan(void *user, const void *data, size_t size) {
     (void)waferhand_edge_scan_decode_cleanup(&message);
 }
 
+/* Subscribed only so that the record holds what beams told. */
+static void on_latch(void *user, const void *data, size_t size) {
+    wh_sim_process_t *simulation = user;
+    waferhand_centring message;
+    if (!wh_link_decode_centring(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_LATCH, size);
+        return;
+    }
+    (void)waferhand_centring_decode_cleanup(&message);
+}
+
 /* Subscribed only so that the record holds requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
@@ -193,6 +204,7 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
                                     wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_EDGE_SCAN, on_edge_scan, simulation) &&
+                                    wh_node_subscribe(node, WH_CHANNEL_LATCH, on_latch, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
     if (!heard) {
         return WH_STATUS_NO_NETWORK;
