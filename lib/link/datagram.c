@@ -13,10 +13,11 @@
 #define EVENT 156
 #define FAULT 132
 #define FAULT_SLOT 328
+#define LATCHING_FIXED (4 + 1 + 2 * 4 + 8 + 3 * 4)
 #define LATCH 24
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
-#define STATE_FIXED (STATE_COUNTS + 7 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8 + 6 * 4 + 1 + 8)
+#define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
 #define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 2 * 8 + 3 * 4)
 #define CENTRING_FIXED (FINGERPRINT + HEADER + 5 * 4)
@@ -129,11 +130,12 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t events = take_count(&walk, WH_LINK_EVENTS);
     const size_t faults = take_count(&walk, WH_FAULTS);
     const size_t samples = take_count(&walk, WH_SCAN_SLICE);
+    skip(&walk, STATE_FIXED - STATE_COUNTS - 5 * 4);
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT);
+    skip(&walk, samples * 4);
     const size_t waiting = take_count(&walk, WH_LATCHES);
     const size_t latches = take_count(&walk, WH_LATCHES);
-    skip(&walk, STATE_FIXED - STATE_COUNTS - 7 * 4);
-    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT);
-    skip(&walk, samples * 4 + (waiting + latches) * LATCH + CHECK);
+    skip(&walk, LATCHING_FIXED + (waiting + latches) * LATCH + CHECK);
     return ends(&walk) && is_intact(data, size) &&
            waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }

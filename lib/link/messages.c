@@ -230,19 +230,18 @@ static void put_latch_list(const wh_latch_t latches[], int32_t count, waferhand_
 }
 
 static void put_latches(const wh_latches_t *latches, wh_link_state_t *room) {
-    waferhand_state *message = &room->message;
-    message->latch_number = (int32_t)latches->number;
-    message->latch_armed = latches->armed ? 1 : 0;
-    message->latch_first = latches->first;
-    message->latch_beams = latches->count;
-    message->latch_slice = latches->slice;
-    message->latch_crossings = (int32_t)latches->crossings;
-    message->latch_lost = (int32_t)latches->lost;
-    message->latch_broken = (int32_t)latches->broken;
-    message->waiting_count = latches->waiting_count;
-    message->latch_count = latches->latch_count;
-    message->waiting = room->waiting;
-    message->latches = room->latches;
+    room->message.latching = (waferhand_latching){.waiting_count = latches->waiting_count,
+                                                  .latch_count = latches->latch_count,
+                                                  .number = (int32_t)latches->number,
+                                                  .armed = latches->armed ? 1 : 0,
+                                                  .first = latches->first,
+                                                  .beams = latches->count,
+                                                  .slice = latches->slice,
+                                                  .crossings = (int32_t)latches->crossings,
+                                                  .lost = (int32_t)latches->lost,
+                                                  .broken = (int32_t)latches->broken,
+                                                  .waiting = room->waiting,
+                                                  .latches = room->latches};
     put_latch_list(latches->waiting, latches->waiting_count, room->waiting);
     put_latch_list(latches->latches, latches->latch_count, room->latches);
 }
@@ -347,16 +346,16 @@ static void take_latch_list(const waferhand_latch in[], int32_t count, wh_latch_
     }
 }
 
-static void take_latches(const waferhand_state *message, wh_latches_t *latches) {
+static void take_latches(const waferhand_latching *message, wh_latches_t *latches) {
     memset(latches, 0, sizeof *latches);
-    latches->number = (uint32_t)message->latch_number;
-    latches->armed = message->latch_armed != 0;
-    latches->first = message->latch_first;
-    latches->count = message->latch_beams;
-    latches->slice = message->latch_slice;
-    latches->crossings = (uint32_t)message->latch_crossings;
-    latches->lost = (uint32_t)message->latch_lost;
-    latches->broken = (uint32_t)message->latch_broken;
+    latches->number = (uint32_t)message->number;
+    latches->armed = message->armed != 0;
+    latches->first = message->first;
+    latches->count = message->beams;
+    latches->slice = message->slice;
+    latches->crossings = (uint32_t)message->crossings;
+    latches->lost = (uint32_t)message->lost;
+    latches->broken = (uint32_t)message->broken;
     latches->waiting_count = message->waiting_count;
     latches->latch_count = message->latch_count;
     take_latch_list(message->waiting, message->waiting_count, latches->waiting);
@@ -414,7 +413,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
         sound = event_fits(&message->events[e], message) && sound;
     }
     take_scan(message, &arrays->physics.scan);
-    take_latches(message, &arrays->physics.latches);
+    take_latches(&message->latching, &arrays->physics.latches);
     wh_faults_clear(&arrays->physics.faults);
     arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {

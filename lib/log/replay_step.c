@@ -36,8 +36,6 @@ static const field_t head_fields[] = {{"utime", AT(state, utime), INT64},
                                       {"grippers", AT(state, gripper_count), INT32},
                                       {"faults", AT(state, fault_count), INT32},
                                       {"samples of the edge sensor", AT(state, sample_count), INT32},
-                                      {"latches to come", AT(state, waiting_count), INT32},
-                                      {"latches", AT(state, latch_count), INT32},
                                       {"missed slices", AT(state, missed), INT64},
                                       {0}};
 
@@ -48,10 +46,12 @@ static const field_t scan_fields[] = {
     {"turn", AT(state, scan_turn), REAL},           {0}};
 
 static const field_t latches_fields[] = {
-    {"number", AT(state, latch_number), INT32},     {"armed", AT(state, latch_armed), INT8},
-    {"first beam", AT(state, latch_first), INT32},  {"beams", AT(state, latch_beams), INT32},
-    {"slices", AT(state, latch_slice), INT64},      {"crossings", AT(state, latch_crossings), INT32},
-    {"lost latches", AT(state, latch_lost), INT32}, {"broken beams", AT(state, latch_broken), INT32},
+    {"latches to come", AT(latching, waiting_count), INT32},
+    {"latches", AT(latching, latch_count), INT32},
+    {"number", AT(latching, number), INT32},     {"armed", AT(latching, armed), INT8},
+    {"first beam", AT(latching, first), INT32},  {"beams", AT(latching, beams), INT32},
+    {"slices", AT(latching, slice), INT64},      {"crossings", AT(latching, crossings), INT32},
+    {"lost latches", AT(latching, lost), INT32}, {"broken beams", AT(latching, broken), INT32},
     {0}};
 
 static const field_t latch_fields[] = {{"beam", AT(latch, beam), INT32},
@@ -256,7 +256,7 @@ static bool scans_differ(const waferhand_state *recorded, const waferhand_state 
     return false;
 }
 
-static bool latches_differ(const waferhand_state *recorded, const waferhand_state *replayed,
+static bool latches_differ(const waferhand_latching *recorded, const waferhand_latching *replayed,
                            wh_replay_difference_t *difference) {
     bool found = differ(latches_fields, "beams", recorded, replayed, difference);
     for (int32_t i = 0; !found && i < recorded->waiting_count; ++i) {
@@ -291,7 +291,7 @@ static bool states_differ(const wh_layout_t *layout, const waferhand_state *reco
     }
     return events_differ(recorded, replayed, difference) || faults_differ(recorded, replayed, difference) ||
            scans_differ(recorded, replayed, difference) ||
-           latches_differ(recorded, replayed, difference) ||
+           latches_differ(&recorded->latching, &replayed->latching, difference) ||
            differ(tail_fields, "", recorded, replayed, difference);
 }
 

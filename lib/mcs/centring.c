@@ -13,6 +13,8 @@
 /* How well a latch's time and a wafer's place are known at best, s and mm. */
 #define LEAST_SD_TIME 1e-6
 #define BEYOND_CORRECTIONS 5
+/* Two places of a wafer that are as near to each other are one, mm. */
+#define AGREE 0.02
 
 /* ------------------------------------------------------------------------------------------- what is heard */
 
@@ -123,6 +125,7 @@ static wh_centring_t known_of(lua_State *L, const wh_mcs_t *mcs) {
     const double far = hypot(layout->corrections.x, layout->corrections.y) + BEYOND_CORRECTIONS;
     known.reach = far < known.radius / 3 ? far : known.radius / 3;
     known.sd_time = LEAST_SD_TIME;
+    known.agree = AGREE;
     for (int32_t b = pass->order.first; b < pass->order.first + pass->order.count; ++b) {
         const double jitter = layout->doors[b].jitter;
         known.sd_time = jitter > known.sd_time ? jitter : known.sd_time;

@@ -14,7 +14,6 @@ return function(native, errors)
   lookup.parameters.vacuum_check = { values = { "both", "get", "put", "none" } }
   lookup.parameters.handover = { values = { "new_first", "same_slice" } }
   lookup.parameters.check_map = { values = { true, false } }
-  lookup.parameters.centre = { values = { true, false } }
   lookup.options = { gripper = {}, force = { values = { true, false } } }
 
   -- How far a GET, PUT or SWAP may go beside what was taught, and where it may stop: in order.

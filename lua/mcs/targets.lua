@@ -12,7 +12,7 @@ return function(native, lookup)
   -- What else GET and PUT may say, and SWAP for its GET and its PUT: by prefix, the fields' kinds by name. The
   -- unit of a length or an angle is at the same place as in lookup.parameters.
   local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },
-                  turn = { nil, nil, "degrees" }, stop = { values = lookup.phases } }
+                  turn = { nil, nil, "degrees" }, stop = { values = lookup.phases }, centre = { values = { true, false } } }
 
   local function with_prefixes(...)
     local fields = {}
@@ -59,6 +59,18 @@ return function(native, lookup)
       target[name] = value
     end
     target.stop = options[prefix .. "stop"]
+  end
+
+  -- If a PUT goes aside by what beams say of its wafer.
+  local function read_centre(target, word, station, options, prefix)
+    local own = prefix and options[prefix .. "centre"]
+    if word == "get" and own ~= nil and own ~= false then
+      native.fail("BAD_ARGUMENT", ("%scentre: true (expected false: a PUT centres)"):format(prefix))
+    end
+    target.centre = word == "put" and prefix ~= nil and station.centre
+    if word == "put" and own ~= nil then
+      target.centre = own
+    end
   end
 
   -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
@@ -115,11 +127,7 @@ return function(native, lookup)
         target[name] = station[name]
       end
     end
-    if word == "get" and prefix ~= "get_" and options.centre ~= nil then
-      native.fail("BAD_ARGUMENT", ("centre: %s (expected none: PUT and SWAP centre)"):format(
-        lookup.quote(options.centre)))
-    end
-    target.centre = word == "put" and target.centre
+    read_centre(target, word, station, options, prefix)
     check(target, rules(target, station, native.layout), prefix)
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks

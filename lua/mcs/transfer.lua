@@ -184,6 +184,9 @@ return function(native, patterns, lookup, arm, targets, centring)
     end
     local empty, loaded = choose_grippers()
     local give = targets.at("put", station, slot, options, loaded, "put_")
+    if give.centre then
+      native.fail("BAD_ARGUMENT", "put_centre: true (expected false: the beams would see both wafers of a SWAP)")
+    end
     take.gripper = empty
     local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
@@ -198,12 +201,11 @@ return function(native, patterns, lookup, arm, targets, centring)
       centring.know_notch(take.gripper)
       centring.know_notch(give.gripper)
     end)
-    return give.centred
   end
 
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
-    return arm.move(text_of("SWAP", station, slot, options, "get_", "put_"), swap, station, slot, options)
+    arm.move(text_of("SWAP", station, slot, options, "get_", "put_"), swap, station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------ READY
@@ -273,7 +275,6 @@ return function(native, patterns, lookup, arm, targets, centring)
   local function try(word, station, slot, cell, gripper)
     local good, problem = pcall(function()
       local kind, target = transfers[word], targets.at(word, station, slot, nil, gripper)
-      target.centre = false
       kind.judge(target, arm.drive(arm.rehearse(kind.pattern, target)))
       if word == "get" and not native.held(target.gripper) then
         judge_get(target, "missing")

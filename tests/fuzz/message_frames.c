@@ -59,8 +59,8 @@ uint64_t fuzz_hash_of(const waferhand_state *message) {
     return wh_physics_state_hash(&arrays.physics, &table);
 }
 
-/* Where the hash stands: fingerprint, four words, status and seven counts before it. */
-#define HASH_AT (8 + 4 * 8 + 8 * 4)
+/* Where the hash stands: fingerprint, four words, status and five counts before it. */
+#define HASH_AT (8 + 4 * 8 + 6 * 4)
 
 static void put_hash(fuzz_frame_t *frame) {
     waferhand_state message;

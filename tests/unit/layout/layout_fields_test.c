@@ -11,7 +11,7 @@ static const char base[] =
     " pads = { friction = 0.5, force = 10 }, corrections = {}, clearance = {},"
     " robot = { theta = {}, r = {}, z = {}, yaw = {} },"
     " grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },"
-    " stations = { A = { at = { 700, 0, 900 }, slots = 2 }, B = { at = { 0, 700, 900 } },"
+    " stations = { A = { at = { 700, 0, 900 }, slots = 2, beams = { { y = 60 } } }, B = { at = { 0, 700, 900 } },"
     "   P = { kind = 'prealigner', at = { -600, 0, 950 }, sensor = { hidden = { { from = 1, width = 2 } } } "
     "} },"
     " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, flats = { { at = 0, length = 50 "
