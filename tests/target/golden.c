@@ -1,6 +1,7 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; robots as chains; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles in float as well. Prints a hash of
- * each: the lines of tests/target/golden.txt for its number type, but for the last, "transfer", which tests/verify/bits makes.
+ * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles
+ * in float as well. Prints a hash of each: the lines of tests/target/golden.txt for its number type, but for the last,
+ * "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
 #include <stdio.h>
