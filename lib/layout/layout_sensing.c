@@ -129,7 +129,8 @@ static wh_rim_t nominal_rim(wh_reader_t *reader, const wh_layout_t *layout) {
     rim.flats[0].direction = layout->notch;
     if (wh_rim_validate(&rim, &bad) != WH_OK) {
         lua_pushnumber(reader->L, layout->notch_depth);
-        wh_reader_fail(reader, "wafer.notch.depth", "0, or a depth from 0.27 to 3 mm for an edge sensor or beams");
+        wh_reader_fail(reader, "wafer.notch.depth",
+                       "0, or a depth from 0.27 to 3 mm for an edge sensor or beams");
     }
     return rim;
 }

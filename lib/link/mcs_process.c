@@ -92,90 +92,6 @@ static void cycle(void *user, const wh_mcs_t *mcs) {
     tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
 }
 
-/* One part of a scan that has ended, from sample `begin` on. */
-static void tell_part(wh_mcs_process_t *control, waferhand_edge_scan *message, const wh_mcs_edge_t *edge,
-                      int32_t begin) {
-    const int32_t left = edge->taken - begin;
-    message->part = begin / WH_LINK_SAMPLES + 1;
-    message->begin = begin;
-    message->sample_count = left < WH_LINK_SAMPLES ? left : WH_LINK_SAMPLES;
-    message->samples = &edge->samples[begin];
-    const int size = waferhand_edge_scan_encode(control->encoded, 0, (int)sizeof control->encoded, message);
-    if (size > 0) {
-        (void)wh_node_publish(control->node, WH_CHANNEL_EDGE_SCAN, control->encoded, (size_t)size);
-    }
-}
-
-static void tell_edge(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_mcs_edge_t *edge = &mcs->edge;
-    const wh_sensor_t *sensor = &wh_layout_scanner(mcs->layout, edge->order.gripper)->sensor;
-    const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
-    waferhand_edge_scan message = {.utime = edge->seq * mcs->layout->slice_us,
-                                   .seq = edge->seq,
-                                   .run = now.run,
-                                   .layout_hash = now.layout_hash,
-                                   .number = (int32_t)edge->number,
-                                   .gripper = edge->order.gripper,
-                                   .count = edge->order.count,
-                                   .first = edge->order.first,
-                                   .taken = edge->taken,
-                                   .missed = edge->missed,
-                                   .turn_samples = sensor->samples,
-                                   .pixels = wh_sensor_pixels(sensor),
-                                   .pixel = sensor->pixel,
-                                   .inner = sensor->middle - sensor->length / 2,
-                                   .parts = edge->taken > 0 ? (edge->taken - 1) / WH_LINK_SAMPLES + 1 : 1};
-    for (int32_t i = 0; i < message.parts; ++i) {
-        tell_part(control, &message, edge, i * WH_LINK_SAMPLES);
-    }
-}
-
-static waferhand_crossing crossing_of(const wh_mcs_crossing_t *from, wh_crossing_use_t use) {
-    const wh_crossing_t *crossing = &from->crossing;
-    const waferhand_crossing message = {
-        crossing->beam, (int32_t)crossing->edge, (int32_t)use, from->time, crossing->x, crossing->y,
-        crossing->vx,   crossing->vy};
-    return message;
-}
-
-static waferhand_centre centre_of(const wh_centre_t *from) {
-    const waferhand_centre message = {from->x,    from->y,        from->radius, from->sd_x,
-                                      from->sd_y, from->mismatch, from->used};
-    return message;
-}
-
-static void tell_centring(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_mcs_centring_t *centring = &mcs->centring;
-    waferhand_crossing crossings[WH_CROSSINGS];
-    waferhand_centre centres[2];
-    const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
-    for (size_t i = 0; i < centring->count; ++i) {
-        crossings[i] = crossing_of(&centring->crossings[i], centring->centres.candidates[0].use[i]);
-    }
-    for (int32_t i = 0; i < centring->centres.count; ++i) {
-        centres[i] = centre_of(&centring->centres.candidates[i]);
-    }
-    const waferhand_centring message = {.utime = mcs->pass.seq * mcs->layout->slice_us,
-                                        .seq = mcs->pass.seq,
-                                        .run = now.run,
-                                        .layout_hash = now.layout_hash,
-                                        .number = (int32_t)mcs->pass.number,
-                                        .station = centring->station,
-                                        .gripper = centring->gripper,
-                                        .status = (int32_t)centring->status,
-                                        .missed = (int32_t)centring->missed,
-                                        .crossing_count = (int32_t)centring->count,
-                                        .centre_count = centring->centres.count,
-                                        .crossings = crossings,
-                                        .centres = centres};
-    const int size = waferhand_centring_encode(control->encoded, 0, (int)sizeof control->encoded, &message);
-    if (size > 0) {
-        (void)wh_node_publish(control->node, WH_CHANNEL_LATCH, control->encoded, (size_t)size);
-    }
-}
-
 static void finished(void *user, const wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
     const wh_record_t *record = mcs->recorder.record;
@@ -387,8 +303,8 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .explain = explain,
                                .expected = expected,
                                .cycle = cycle,
-                               .edge = tell_edge,
-                               .centring = tell_centring,
+                               .edge = wh_mcs_process_tell_edge,
+                               .centring = wh_mcs_process_tell_centring,
                                .finished = finished,
                                .user = control};
 }

@@ -224,8 +224,8 @@ static void put_scan(const wh_scan_t *scan, wh_link_state_t *room) {
 
 static void put_latch_list(const wh_latch_t latches[], int32_t count, waferhand_latch out[]) {
     for (int32_t i = 0; i < count; ++i) {
-        out[i] = (waferhand_latch){latches[i].beam, (int32_t)latches[i].edge, latches[i].slice,
-                                   latches[i].part};
+        out[i] =
+            (waferhand_latch){latches[i].beam, (int32_t)latches[i].edge, latches[i].slice, latches[i].part};
     }
 }
 

@@ -323,11 +323,11 @@ static void on_latch(wh_replay_t *replay, const void *data, size_t size) {
 
 /* True if a datagram begins with the fingerprint of one of our messages. */
 static bool is_ours(const void *data, size_t size) {
-    const int64_t fingerprints[] = {
-        __waferhand_command_get_hash(),   __waferhand_state_get_hash(),     __waferhand_cell_get_hash(),
-        __waferhand_proximity_get_hash(), __waferhand_mcs_get_hash(),       __waferhand_request_get_hash(),
-        __waferhand_slices_get_hash(),    __waferhand_recording_get_hash(), __waferhand_edge_scan_get_hash(),
-        __waferhand_centring_get_hash()};
+    const int64_t fingerprints[] = {__waferhand_command_get_hash(),   __waferhand_state_get_hash(),
+                                    __waferhand_cell_get_hash(),      __waferhand_proximity_get_hash(),
+                                    __waferhand_mcs_get_hash(),       __waferhand_request_get_hash(),
+                                    __waferhand_slices_get_hash(),    __waferhand_recording_get_hash(),
+                                    __waferhand_edge_scan_get_hash(), __waferhand_centring_get_hash()};
     uint64_t first = 0;
     bool ours = false;
     memcpy(&first, data, size < sizeof first ? 0 : sizeof first);

@@ -21,7 +21,7 @@ typedef struct {
     int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
     uint32_t edge_number;
     uint32_t pass_number; /* of the armings of beams, likewise */
-    size_t size; /* of `bytes` */
+    size_t size;          /* of `bytes` */
     uint8_t bytes[];
 } saved_t;
 

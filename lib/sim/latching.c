@@ -225,9 +225,9 @@ uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, s
     for (size_t b = 0; b < latching->beam_count; ++b) {
         const wh_door_beam_t *door = &latching->beams[b];
         const wh_beam_t *beam = &door->beam;
-        const double values[] = {beam->x,   beam->y,        beam->z,         beam->ex,    beam->ey, beam->ez,
-                                 beam->low, beam->high,     door->delay_on,  door->delay_off,
-                                 door->jitter};
+        const double values[] = {beam->x,        beam->y,         beam->z,     beam->ex,
+                                 beam->ey,       beam->ez,        beam->low,   beam->high,
+                                 door->delay_on, door->delay_off, door->jitter};
         hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
         hash = wh_hash_word(hash, door->seed);
     }

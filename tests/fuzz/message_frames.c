@@ -9,8 +9,8 @@
 /* What to put right, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };
 
-static const char *const channels[] = {WH_CHANNEL_COMMAND,  WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
-                                       WH_CHANNEL_MCS,      WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
+static const char *const channels[] = {WH_CHANNEL_COMMAND,   WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
+                                       WH_CHANNEL_MCS,       WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
                                        WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
 
 static int64_t fingerprint_of(const char *channel) {
@@ -140,9 +140,9 @@ DEFINE_CHECK(edge_scan)
 DEFINE_CHECK(centring)
 
 bool fuzz_check_decoding(const fuzz_frame_t *frame) {
-    static bool (*const checks[])(const fuzz_frame_t *frame) = {
-        check_command, check_state, check_state,     check_mcs,
-        check_request, check_cell,  check_edge_scan, check_centring};
+    static bool (*const checks[])(const fuzz_frame_t *frame) = {check_command,   check_state,   check_state,
+                                                                check_mcs,       check_request, check_cell,
+                                                                check_edge_scan, check_centring};
     for (size_t i = 0; i < sizeof channels / sizeof channels[0]; ++i) {
         if (frame->channel == channels[i]) {
             return checks[i](frame);

@@ -104,8 +104,8 @@ final class ProximityMarks {
             final int count = count(data, EVENTS);
             final int faults = count(data, FAULTS);
             final int samples = count(data, SAMPLES);
-            final int body = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers + EVENT * count + FAULT * faults +
-                             SAMPLE * samples;
+            final int body = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers + EVENT * count +
+                             FAULT * faults + SAMPLE * samples;
             demand(size >= body + LATCHING + CHECK, "a whole state");
             data.position(body);
             final int latches = count(data, LATCHES) + count(data, LATCHES);

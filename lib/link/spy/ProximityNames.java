@@ -36,7 +36,7 @@ final class ProximityNames {
         count(data, FAULTS);
         count(data, SENSORS);
         count(data, BEAMS);
-        count(data, GRIPPERS); // outlines
+        count(data, GRIPPERS);   // outlines
         count(data, WAFERS + 1); // rims
         valves = new String[grippers.length];
         texts(data, grippers);

@@ -5,7 +5,16 @@
 
 /* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
  * LCM sends longer messages in fragments, which get lost one by one. */
-enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64, LATCHES = 16, NAME = 64 };
+enum {
+    DATAGRAM = 65499,
+    WAFERS = 256,
+    GRIPPERS = 8,
+    EVENTS = 64,
+    FAULTS = 16,
+    SAMPLES = 64,
+    LATCHES = 16,
+    NAME = 64
+};
 
 typedef struct {
     const char *name;
@@ -36,20 +45,19 @@ static void largest_state_fits(void **state) {
     static int32_t samples[SAMPLES];
     static waferhand_latch latches[LATCHES];
     (void)state;
-    const waferhand_state message = {.wafer_count = WAFERS,
-                                     .gripper_count = GRIPPERS,
-                                     .event_count = EVENTS,
-                                     .fault_count = FAULTS,
-                                     .sample_count = SAMPLES,
-                                     .wafers = wafers,
-                                     .grippers = grippers,
-                                     .events = events,
-                                     .faults = faults,
-                                     .samples = samples,
-                                     .latching = {.waiting_count = LATCHES,
-                                                  .latch_count = LATCHES,
-                                                  .waiting = latches,
-                                                  .latches = latches}};
+    const waferhand_state message = {
+        .wafer_count = WAFERS,
+        .gripper_count = GRIPPERS,
+        .event_count = EVENTS,
+        .fault_count = FAULTS,
+        .sample_count = SAMPLES,
+        .wafers = wafers,
+        .grippers = grippers,
+        .events = events,
+        .faults = faults,
+        .samples = samples,
+        .latching = {
+            .waiting_count = LATCHES, .latch_count = LATCHES, .waiting = latches, .latches = latches}};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
     /* Computed by hand: a header of 117, a check of 8, beams of 41, wafers of 100, grippers of 446, events of 156, slots of

@@ -350,7 +350,8 @@ static void sensors_and_rims_are_in_the_hash_once_there_is_a_sensor(void **state
     assert_true(without != usual && usual != noisy && usual != chipped && noisy != chipped);
 }
 
-#define DOOR(beams) "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10, beams = { " beams " } } }, "
+#define DOOR(beams)                                                                                          \
+    "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10, beams = { " beams " } } }, "
 
 static void beams_at_a_door_are_read(void **state) {
     (void)state;
@@ -359,12 +360,14 @@ static void beams_at_a_door_are_read(void **state) {
                       "8e-5, jitter = 3e-6, seed = 4, dx = 0.5, dy = -0.25, late = 1e-5 }"));
     assert_int_equal(layout->beam_count, 2);
     const wh_layout_beam_t *usual = &layout->beams[0];
-    const double usual_numbers[] = {usual->x,        usual->low,       usual->high, usual->dx, usual->dy,
-                                    usual->delay_on, usual->delay_off, usual->late, layout->doors[0].jitter};
+    const double usual_numbers[] = {usual->x,         usual->low,  usual->high,
+                                    usual->dx,        usual->dy,   usual->delay_on,
+                                    usual->delay_off, usual->late, layout->doors[0].jitter};
     const double wanted_usual[] = {-150, -30, 50, 0, 0, 0, 0, 0, 0};
     const wh_door_beam_t *door = &layout->doors[1];
-    const double numbers[] = {door->beam.x,    door->beam.y,   door->beam.z,    door->beam.ez, door->beam.low,
-                              door->beam.high, door->delay_on, door->delay_off, door->jitter,  (double)door->seed};
+    const double numbers[] = {door->beam.x,   door->beam.y,      door->beam.z,   door->beam.ez,
+                              door->beam.low, door->beam.high,   door->delay_on, door->delay_off,
+                              door->jitter,   (double)door->seed};
     const double wanted[] = {540.5, -110.25, 900, 1, -5, 40, 6e-5, 9e-5, 3e-6, 4};
     for (size_t i = 0; i < sizeof wanted_usual / sizeof wanted_usual[0]; ++i) {
         assert_near(usual_numbers[i], wanted_usual[i], 1e-12);
@@ -406,8 +409,7 @@ static void what_is_wrong_with_beams_is_named(void **state) {
         {GRIPPERS CENTRED("beams = { { y = 60 } }"), "stations.A.centre: true (expected false, or two"},
         {GRIPPERS CENTRED("beams = { { y = 60, x = -100 }, { y = -110 } }"),
          "stations.A.beams[1].x: -100 (expected from -157.523 to -142.477 mm, where all of a wafer passes"},
-        {GRIPPERS DOOR("{ y = 60 }") "wafer = { diameter = 700, thickness = 1 }",
-         "beams see wafers from 20"},
+        {GRIPPERS DOOR("{ y = 60 }") "wafer = { diameter = 700, thickness = 1 }", "beams see wafers from 20"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         expect_refused(rows[i][0], rows[i][1]);

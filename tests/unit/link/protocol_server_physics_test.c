@@ -216,9 +216,9 @@ static void other_broken(waferhand_state *message) {
 }
 
 static void no_other_latches_are_taken_over(void **state) {
-    static void (*const changes[])(waferhand_state * message) = {
-        other_latch, latch_of_no_beam, no_edge,  no_part, latch_of_the_past,
-        never_armed, no_beams,         other_broken};
+    static void (*const changes[])(waferhand_state * message) = {other_latch, latch_of_no_beam,  no_edge,
+                                                                 no_part,     latch_of_the_past, never_armed,
+                                                                 no_beams,    other_broken};
     static wh_protocol_server_t fresh;
     wh_script_run_options_t options = {.script = BEAMS, .partners = {.connect = connect_server}};
     wh_script_run_t run;
@@ -414,9 +414,12 @@ static void the_cell_tells_what_beams_see(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(restarted_again_and_again),   cmocka_unit_test(no_other_condition_is_taken_over),
-        cmocka_unit_test(the_cell_tells_it_all),       cmocka_unit_test(a_scan_goes_on_in_another_server),
-        cmocka_unit_test(no_other_scan_is_taken_over), cmocka_unit_test(the_cell_tells_what_sensors_see),
+        cmocka_unit_test(restarted_again_and_again),
+        cmocka_unit_test(no_other_condition_is_taken_over),
+        cmocka_unit_test(the_cell_tells_it_all),
+        cmocka_unit_test(a_scan_goes_on_in_another_server),
+        cmocka_unit_test(no_other_scan_is_taken_over),
+        cmocka_unit_test(the_cell_tells_what_sensors_see),
         cmocka_unit_test(a_pass_through_beams_goes_on_in_another_server),
         cmocka_unit_test(no_other_latches_are_taken_over),
         cmocka_unit_test(the_cell_tells_what_beams_see),

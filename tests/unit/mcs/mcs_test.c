@@ -227,30 +227,33 @@ static void theta_goes_the_longer_way_round_if_the_way_in_asks_for_it(void **sta
 /* Two doors with beams, and a wafer that is carried to and fro between them. */
 #define DOORS                                                                                                \
     "local function door(at, yaw)\n"                                                                         \
-    "  return { at = at, rpy = { 0, 0, yaw }, beams = { { y = 60, delay_on = 5e-5, delay_off = 8e-5, jitter " \
+    "  return { at = at, rpy = { 0, 0, yaw }, beams = { { y = 60, delay_on = 5e-5, delay_off = 8e-5, "       \
+    "jitter "                                                                                                \
     "= 3e-6 },\n"                                                                                            \
     "    { y = -110, delay_on = 5e-5, delay_off = 8e-5, jitter = 3e-6 } } }\n"                               \
     "end\n"                                                                                                  \
     "return { grippers = { { name = 'EE' }, { name = 'E2', at = { 0, 0, 30 } } },\n"                         \
-    "stations = { A = door({ 700, 0, 900 }, 0), B = door({ 0, 700, 900 }, 90), C = { at = { -700, 0, 900 }, " \
+    "stations = { A = door({ 700, 0, 900 }, 0), B = door({ 0, 700, 900 }, 90), C = { at = { -700, 0, 900 "   \
+    "}, "                                                                                                    \
     "rpy = { 0, 0, 180 }, slots = 2 } },\n"
 
 /* Errors of 300 passes, each with latches of its own, in the deviations that are stated with them. */
 static void centring_is_as_near_as_it_says(void **state) {
     (void)state;
-    assert_texts(DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
-                       "} } } }\n",
-                 "cell 'cell.lua' local sum, worst, n = { 0, 0 }, 0, 300\n"
-                 "for i = 1, n do\n"
-                 "  get('A', 1) local c = put('B', 1, { centre = true })\n"
-                 "  local x, y = offset('W', 'B', 1)\n"
-                 "  sum[1], sum[2] = sum[1] + (x / c.sd_dx)^2, sum[2] + (y / c.sd_dy)^2\n"
-                 "  worst = math.max(worst, x / c.sd_dx, y / c.sd_dy)\n"
-                 "  get('B', 1) put('A', 1, { dx = i % 3 - 1, dy = i % 5 - 2 })\n"
-                 "end\n"
-                 "local x, y = math.sqrt(sum[1] / n), math.sqrt(sum[2] / n)\n"
-                 "expect(math.abs(x - 1) < 0.15 and math.abs(y - 1) < 0.15 and worst < 5, x .. ' ' .. y .. ' ' "
-                 ".. worst)\n");
+    assert_texts(
+        DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
+              "} } } }\n",
+        "cell 'cell.lua' local sum, worst, n = { 0, 0 }, 0, 300\n"
+        "for i = 1, n do\n"
+        "  get('A', 1) local c = put('B', 1, { centre = true })\n"
+        "  local x, y = offset('W', 'B', 1)\n"
+        "  sum[1], sum[2] = sum[1] + (x / c.sd_dx)^2, sum[2] + (y / c.sd_dy)^2\n"
+        "  worst = math.max(worst, x / c.sd_dx, y / c.sd_dy)\n"
+        "  get('B', 1) put('A', 1, { dx = i % 3 - 1, dy = i % 5 - 2 })\n"
+        "end\n"
+        "local x, y = math.sqrt(sum[1] / n), math.sqrt(sum[2] / n)\n"
+        "expect(math.abs(x - 1) < 0.15 and math.abs(y - 1) < 0.15 and worst < 5, x .. ' ' .. y .. ' ' "
+        ".. worst)\n");
 }
 
 /* The notch goes by one of the beams' crossings, by 0.02 degrees each time. */
@@ -282,7 +285,8 @@ static void centring_goes_with_what_else_a_put_does(void **state) {
         "cell 'cell.lua' local good = true\n"
         "local function check(what, x, y)\n"
         "  local dx, dy = offset('W', 'B', 1)\n"
-        "  if not (math.abs(dx - x) < 0.02 and math.abs(dy - y) < 0.02) then good = false print(what, dx, dy) "
+        "  if not (math.abs(dx - x) < 0.02 and math.abs(dy - y) < 0.02) then good = false print(what, dx, "
+        "dy) "
         "end\n"
         "end\n"
         "local function fails(name, word, ...)\n"
@@ -307,7 +311,8 @@ static void centring_goes_with_what_else_a_put_does(void **state) {
         "fails('TOO_FEW_SAMPLES', put, 'B', 1, { centre = true, retract = 160 })\n"
         "put('B', 1)\n"
         /* refused before anything moves */
-        "fails('BAD_ARGUMENT', swap, 'B', 1, { put_centre = true }) put('C', 1, { gripper = 'E2' }) get('B', 1)\n"
+        "fails('BAD_ARGUMENT', swap, 'B', 1, { put_centre = true }) put('C', 1, { gripper = 'E2' }) get('B', "
+        "1)\n"
         "fails('BAD_ARGUMENT', put, 'C', 2, centred) fails('BAD_ARGUMENT', get, 'B', 1, centred)\n"
         "fails('BAD_ARGUMENT', put, 'B', 1, { centre = 1 })\n"
         "expect(good, 'all of it')\n");
