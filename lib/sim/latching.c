@@ -245,14 +245,16 @@ uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, s
 
 /* ----------------------------------------------------------------------------------------- in a simulator */
 
-static wh_status_t step_around(wh_simulator_t *simulator, const wh_command_t *command,
-                               wh_status_t (*step)(wh_simulator_t *simulator, const wh_command_t *command)) {
+static wh_status_t step_around(void *of, const void *by,
+                               wh_status_t (*rest)(void *simulator, const void *command)) {
+    wh_simulator_t *simulator = of;
+    const wh_command_t *command = by;
     wh_pose_t before[WH_GRIPPERS];
     const wh_grasp_t *table = &simulator->table;
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         before[g] = table->storage.grippers[g].base_from_gripper;
     }
-    const wh_status_t status = step(simulator, command);
+    const wh_status_t status = rest(simulator, command);
     if (status == WH_OK) {
         wh_latching_step(&simulator->latching, before, table, simulator->slice_s, &command->latch,
                          &simulator->physics.latches);

@@ -104,13 +104,11 @@ uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, s
                           uint64_t hash) WH_SYMBOL(wh_latching_hash);
 
 /* How a simulator reaches the functions above, so that one without beams does not link them. */
-typedef struct wh_simulator wh_simulator_t;
-typedef struct wh_command wh_command_t;
 typedef struct {
     wh_status_t (*check)(const wh_latching_t *latching, const wh_latch_order_t *order);
-    /* Steps the rest of the simulator by `step`, then the beams. */
-    wh_status_t (*around)(wh_simulator_t *simulator, const wh_command_t *command,
-                          wh_status_t (*step)(wh_simulator_t *simulator, const wh_command_t *command));
+    /* Steps the rest of a wh_simulator_t by a wh_command_t, then its beams. */
+    wh_status_t (*around)(void *simulator, const void *command,
+                          wh_status_t (*rest)(void *simulator, const void *command));
     uint64_t (*hash)(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count, uint64_t hash);
 } wh_latching_calls_t;
 

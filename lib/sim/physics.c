@@ -254,26 +254,29 @@ static uint64_t hash_scan(uint64_t hash, const wh_scan_t *scan) {
     return hash_ints(hash, scan->samples, (size_t)scan->sample_count);
 }
 
-static uint64_t hash_latch_list(uint64_t hash, const wh_latch_t latches[], int32_t count) {
-    for (int32_t i = 0; i < count; ++i) {
+static uint64_t hash_latches(uint64_t hash, const wh_latches_t *all) {
+    const int32_t head[] = {5,
+                            (int32_t)all->number,
+                            all->armed ? 1 : 0,
+                            all->first,
+                            all->count,
+                            (int32_t)all->crossings,
+                            (int32_t)all->lost,
+                            (int32_t)all->broken,
+                            all->waiting_count,
+                            all->latch_count};
+    hash = hash_ints(hash, head, sizeof head / sizeof head[0]);
+    hash = hash_word(hash, (uint64_t)all->slice);
+    for (int32_t i = 0; i < all->waiting_count + all->latch_count; ++i) {
+        const wh_latch_t *latch =
+            i < all->waiting_count ? &all->waiting[i] : &all->latches[i - all->waiting_count];
         uint64_t part;
-        memcpy(&part, &latches[i].part, sizeof part);
-        const int32_t head[] = {latches[i].beam, (int32_t)latches[i].edge};
-        hash = hash_word(hash_ints(hash, head, 2), (uint64_t)latches[i].slice);
+        memcpy(&part, &latch->part, sizeof part);
+        hash = hash_word(hash, (uint64_t)(2 * (int64_t)latch->beam + (int64_t)latch->edge));
+        hash = hash_word(hash, (uint64_t)latch->slice);
         hash = hash_word(hash, part);
     }
     return hash;
-}
-
-static uint64_t hash_latches(uint64_t hash, const wh_latches_t *latches) {
-    const int32_t head[] = {5, (int32_t)latches->number, latches->armed ? 1 : 0, latches->first,
-                            latches->count};
-    const int32_t rest[] = {(int32_t)latches->crossings, (int32_t)latches->lost, (int32_t)latches->broken,
-                            latches->waiting_count, latches->latch_count};
-    hash = hash_word(hash_ints(hash, head, 5), (uint64_t)latches->slice);
-    hash = hash_ints(hash, rest, 5);
-    hash = hash_latch_list(hash, latches->waiting, latches->waiting_count);
-    return hash_latch_list(hash, latches->latches, latches->latch_count);
 }
 
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {

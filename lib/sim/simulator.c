@@ -304,7 +304,9 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
 }
 
 /* All but the beams. */
-static wh_status_t step_rest(wh_simulator_t *simulator, const wh_command_t *command) {
+static wh_status_t step_rest(void *of, const void *by) {
+    wh_simulator_t *simulator = of;
+    const wh_command_t *command = by;
     const wh_status_t status = is_direct(simulator, command) ? step_direct(simulator, command)
                                                              : step_with_faults(simulator, command);
     if (status == WH_OK && simulator->scans) {

@@ -6,11 +6,11 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               380    304     260    232
  *     stack of wh_simulator_set_physics        264    256     208    208
- *     stack of wh_simulator_step               944   1064     652    700
- *     stack of wh_simulator_step:sampled       944    904     624    632
+ *     stack of wh_simulator_step               952   1096     668    724
+ *     stack of wh_simulator_step:sampled       952    936     640    656
  *     stack of wh_simulator_view                32     36      24     40
- *     stack of wh_simulator_hash               112    140     116    136
- *     size of wh_simulator_t                 20264          12504
+ *     stack of wh_simulator_hash               128    172     140    168
+ *     size of wh_simulator_t                 21096          13336
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
@@ -31,7 +31,7 @@ typedef struct {
     void *user;
 } wh_observer_t;
 
-struct wh_simulator {
+typedef struct {
     wh_link_t link; /* first: &simulator->link is the interface by a call */
     wh_grasp_t table;
     wh_cell_t cell;
@@ -48,7 +48,7 @@ struct wh_simulator {
     wh_latching_t latching;           /* the beams at doors */
     const wh_latching_calls_t *beams; /* null: there are none */
     uint32_t mark;                    /* WH_SIMULATOR_MARK once wh_simulator_init has set it up */
-};
+} wh_simulator_t;
 
 /* A simulator without this mark is refused (WH_STATUS_NOT_INITIALISED), as a table is: see WH_GRASP_MARK for
  * what that shows and what it does not. */

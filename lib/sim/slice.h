@@ -5,7 +5,7 @@
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_command_from_track           360    352     216    216
- *     size of wh_command_t                    1528            856
+ *     size of wh_command_t                    1544            872
  *     size of wh_state_t                        56             56
  */
 #ifndef WH_SIM_SLICE_H
@@ -26,7 +26,7 @@ WH_REFUSE_PACKING(slice);
 
 /* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are
  * ignored. */
-struct wh_command {
+typedef struct {
     int64_t utime; /* simulated time, us: seq times the slice's length */
     int64_t seq;   /* 1 for the first slice */
     size_t gripper_count, axis_count;
@@ -36,7 +36,7 @@ struct wh_command {
     wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin, or that get a new end */
     wh_scan_order_t scan;                         /* of the edge sensors */
     wh_latch_order_t latch;                       /* of the beams at doors */
-};
+} wh_command_t;
 
 /* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone. Pass
  * the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
