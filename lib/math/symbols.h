@@ -251,6 +251,7 @@
 #define wh_world_gripper_body WH_SYMBOL_RENAMED(wh_world_gripper_body)
 #define wh_world_held_body WH_SYMBOL_RENAMED(wh_world_held_body)
 #define wh_world_init WH_SYMBOL_RENAMED(wh_world_init)
+#define wh_world_is_known WH_SYMBOL_RENAMED(wh_world_is_known)
 #define wh_world_item_of_wafer WH_SYMBOL_RENAMED(wh_world_item_of_wafer)
 #define wh_world_judge WH_SYMBOL_RENAMED(wh_world_judge)
 #define wh_world_list_near WH_SYMBOL_RENAMED(wh_world_list_near)
