@@ -184,6 +184,7 @@
 #define wh_sensor_point WH_SYMBOL_RENAMED(wh_sensor_point)
 #define wh_sensor_read WH_SYMBOL_RENAMED(wh_sensor_read)
 #define wh_sensor_validate WH_SYMBOL_RENAMED(wh_sensor_validate)
+#define wh_simulator_describe WH_SYMBOL_RENAMED(wh_simulator_describe)
 #define wh_simulator_hash WH_SYMBOL_RENAMED(wh_simulator_hash)
 #define wh_simulator_init WH_SYMBOL_RENAMED(wh_simulator_init)
 #define wh_simulator_load WH_SYMBOL_RENAMED(wh_simulator_load)
