@@ -173,7 +173,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
     static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 28);
+    lua_createtable(L, 0, 30);
     wh_lua_set_number(L, "pitch", place->pitch);
     wh_lua_set_number(L, "stroke", station->stroke);
     wh_lua_set_number(L, "offset", station->offset);
@@ -195,6 +195,8 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
     wh_lua_set_boolean(L, "centre", station->centre);
+    wh_lua_set_number(L, "radius", layout->wafer_diameter / 2);
+    wh_lua_set_number(L, "notch", layout->notch);
     wh_lua_set_integer(L, "beams", wh_layout_beams_at(layout, index).count);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
@@ -212,7 +214,7 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
-/* { path, slice, sampled, homed, tolerance, home: the robot's axes, corrections: the largest ones by the
+/* { path, slice, sampled, homed, seat, tolerance, home: the robot's axes, corrections: the largest ones by the
  * field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other angles
  * in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
@@ -221,6 +223,7 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
     wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
     wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
     wh_lua_set_boolean(L, "homed", layout->homed);
+    wh_lua_set_boolean(L, "seat", layout->grasp.seat);
     wh_lua_push_tolerance(L, &layout->grasp.tolerance);
     lua_setfield(L, -2, "tolerance");
     lua_createtable(L, 0, (int)layout->station_count);

@@ -247,5 +247,24 @@ static int centre(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_centring_functions[] = {
-    {"arm_beams", arm_beams}, {"disarm_beams", disarm_beams}, {"centre", centre}, {NULL, NULL}};
+/* native.beam(station): { x, y } in base, mm: where the station's first beam is, at the height of slot 1, as
+ * motion control believes; and as `station` the station's pose, likewise. */
+static int push_beam(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
+    luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
+    const wh_beam_t beam = believed(mcs->layout, order.first);
+    lua_createtable(L, 0, 3);
+    wh_lua_set_number(L, "x", beam.x);
+    wh_lua_set_number(L, "y", beam.y);
+    wh_lua_push_pose(L, &mcs->layout->places[station].base_from_station);
+    lua_setfield(L, -2, "station");
+    return 1;
+}
+
+const luaL_Reg wh_mcs_centring_functions[] = {{"beam", push_beam},
+                                              {"arm_beams", arm_beams},
+                                              {"disarm_beams", disarm_beams},
+                                              {"centre", centre},
+                                              {NULL, NULL}};

@@ -8,6 +8,7 @@
 #ifndef WH_MCS_MCS_H
 #define WH_MCS_MCS_H
 
+#include "../align/teaching.h"
 #include "../layout/collision.h"
 #include "../record/recorder.h"
 #include "../script/sandbox.h"
@@ -164,6 +165,13 @@ typedef struct {
     wh_centres_t centres;
 } wh_mcs_centring_t;
 
+/* What a teaching has measured so far. */
+#define WH_MCS_LESSONS 64
+typedef struct {
+    wh_teach_measurement_t lessons[WH_MCS_LESSONS];
+    size_t count;
+} wh_mcs_teaching_t;
+
 /* How many commands of a prompt UNDO takes back at most. */
 #define WH_MCS_UNDONE 50
 
@@ -193,6 +201,7 @@ struct wh_mcs {
     wh_mcs_edge_t edge;
     wh_mcs_pass_t pass;
     wh_mcs_centring_t centring;
+    wh_mcs_teaching_t teaching;
 
     wh_rehearsal_t rehearsal;
     wh_vacuum_watch_t watch;     /* of the running segment */

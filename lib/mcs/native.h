@@ -76,6 +76,7 @@ extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_survey_functions[];
+extern const luaL_Reg wh_mcs_teaching_functions[];
 
 /* Pushes what looks at the stations of a layout for a survey, see lua/mcs/init.lua. */
 void wh_mcs_push_survey(lua_State *L);

@@ -80,6 +80,7 @@ return function(native, patterns, lookup)
   end
 
   commands.centring = centring.last
+  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then

@@ -318,6 +318,50 @@ static void centring_goes_with_what_else_a_put_does(void **state) {
         "expect(good, 'all of it')\n");
 }
 
+/* Stations off by 0.25 mm and 0.2 degrees, a beam that nobody knows the place of to 0.5 mm, latches that are late by 10 us more or
+ * less than believed. The script compares with what is true. */
+static void stations_are_taught_by_a_beam(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    for (int lesson = 0; lesson < 40 / WH_TEST_SHARE; ++lesson) {
+        static const char *const fields[] = {"x", "y", "z", "yaw"};
+        char texts[4][60];
+        const char *errors[4];
+        for (size_t i = 0; i < 4; ++i) {
+            const double most = i == 3 ? 0.2 : 0.25;
+            (void)snprintf(texts[i], sizeof texts[i], "A.%s=%.4f", fields[i], wh_test_uniform(-most, most));
+            errors[i] = texts[i];
+        }
+        const wh_script_run_options_t options = {.script = "lua/examples/14_teach.lua",
+                                                 .limits = {.print_to = stderr},
+                                                 .errors = errors,
+                                                 .error_count = 4};
+        if (wh_script_run(&run, &options) != WH_RUN_MET) {
+            fail_msg("%s %s %s %s: %s", texts[0], texts[1], texts[2], texts[3],
+                     run.record.failure ? run.record.failure : run.message);
+        }
+        wh_script_run_close(&run);
+    }
+}
+
+static void what_cannot_be_taught_is_said(void **state) {
+    (void)state;
+    assert_texts(
+        DOORS "wafers = { { name = 'W', station = 'A', slot = 1 } } }\n",
+        "cell 'cell.lua' local good = true\n"
+        "local function fails(name, ...)\n"
+        "  local ok, problem = pcall(teach, ...)\n"
+        "  if ok or problem.name ~= name then good = false print(name, ok, problem and problem.message) "
+        "end\n"
+        "end\n"
+        "fails('BAD_ARGUMENT', 'C') fails('BAD_ARGUMENT', 'A', { by = 'touch' })\n"
+        "fails('NO_SUCH_STATION', 'Z') fails('BAD_ARGUMENT', 'A', { with = 'beam' })\n"
+        "fails('WAFER_MISSING', 'B') get('A', 1) fails('WAFER_ON_GRIPPER', 'A')\n"
+        "put('A', 1) fault { kind = 'wafer_shifted', wafer = 'W', dz = -2 } fails('WAFER_MISSING', "
+        "'A')\n"
+        "expect(good, 'all of it')\n");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
@@ -332,6 +376,8 @@ int main(void) {
         cmocka_unit_test_teardown(centring_is_as_near_as_it_says, close_run),
         cmocka_unit_test_teardown(a_notch_in_a_beams_way_does_no_harm, close_run),
         cmocka_unit_test_teardown(centring_goes_with_what_else_a_put_does, close_run),
+        cmocka_unit_test(stations_are_taught_by_a_beam),
+        cmocka_unit_test_teardown(what_cannot_be_taught_is_said, close_run),
         cmocka_unit_test_teardown(a_put_leaves_the_wafer_on_its_support, close_run),
         cmocka_unit_test_teardown(the_record_is_paid_for_from_the_budget, close_run),
     };
