@@ -91,8 +91,8 @@ typedef struct {
     double x, y, z, turn_deg;
 } wh_corrections_t;
 
-/* A beam of light at a station's door, as motion control believes in it, and how it truly is. In the station's
- * frame, upright. */
+/* A beam of light at a station's door, as motion control believes in it, and how it truly is. In the
+ * station's frame, upright. */
 typedef struct {
     int32_t station;
     double x, y, low, high;     /* mm; from `low` to `high` over the station's z = 0 */
@@ -123,8 +123,8 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
-    /* The beams at stations' doors, those of a station one after another, with their electronics as they truly
-     * are, and by gripper the blades that break them. */
+    /* The beams at stations' doors, those of a station one after another, with their electronics as they
+     * truly are, and by gripper the blades that break them. */
     wh_layout_beam_t beams[WH_BEAMS];
     wh_door_beam_t doors[WH_BEAMS];
     size_t beam_count;
@@ -200,8 +200,8 @@ wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
 void wh_layout_place_beam(wh_layout_t *layout, size_t b);
 
 /* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
- * sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The path is left out.
- * Cost: linear. */
+ * sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The path is
+ * left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* The name of a part of the collision world, wafers included; null if there is no such part. */

@@ -1,4 +1,4 @@
-/* The beams of light at the doors of a layout's stations, and the blades that break them beside the wafers. */
+/* The beams of light at the doors of a layout's stations, and the blades that break them beside wafers. */
 #include <math.h>
 #include <stdio.h>
 

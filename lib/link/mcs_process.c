@@ -256,7 +256,8 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* States have samples of an edge scan and latches of beams, and a free run takes several from one exchange to the next. */
+/* States have samples of an edge scan and latches of beams, and a free run takes several from one exchange
+ * to the next. */
 static void hear_state(void *user, const wh_state_t *state) {
     const wh_mcs_process_t *control = user;
     if (control->mcs) {

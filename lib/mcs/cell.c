@@ -214,9 +214,9 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
-/* { path, slice, sampled, homed, seat, tolerance, home: the robot's axes, corrections: the largest ones by the
- * field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other angles
- * in rad, times in s. */
+/* { path, slice, sampled, homed, seat, tolerance, home: the robot's axes, corrections: the largest ones by
+ * the field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other
+ * angles in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);

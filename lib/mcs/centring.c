@@ -16,7 +16,7 @@
 /* Two places of a wafer that are as near to each other are one, mm. */
 #define AGREE 0.02
 
-/* ------------------------------------------------------------------------------------------- what is heard */
+/* ------------------------------------------------------------------------------------------ what is heard */
 
 static bool is_of(const wh_mcs_pass_t *pass, const wh_latches_t *latches) {
     return pass->armed_seq > 0 && latches->number > pass->before && latches->first == pass->order.first &&
@@ -107,7 +107,7 @@ static void find_crossings(const wh_mcs_t *mcs, wh_mcs_centring_t *centring) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------- the estimate */
+/* ------------------------------------------------------------------------------------------- the estimate */
 
 static double field_or(lua_State *L, const char *name, double fallback) {
     lua_getfield(L, 1, name);

@@ -1,5 +1,5 @@
-/* Teaching by a beam: what a blade that carried a wafer through a station's beam tells of where the station is,
- * and the beam. lua/mcs/teaching.lua moves the arm. */
+/* Teaching by a beam: what a blade that carried a wafer through a station's beam tells of where the station
+ * is, and the beam. lua/mcs/teaching.lua moves the arm. */
 #include "../align/teaching.h"
 
 #include <math.h>

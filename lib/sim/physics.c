@@ -79,8 +79,8 @@ static bool is_sampled(const wh_scan_t *scan) {
     return good;
 }
 
-/* The magnitude of a scan's turn and of a latch's part, as bits, which have the order of numbers: a processor without doubles needs
- * no function for them here. */
+/* The magnitude of a scan's turn and of a latch's part, as bits, which have the order of numbers: a processor
+ * without doubles needs no function for them here. */
 #define TURN_MOST UINT64_C(0x40c3880000000000)     /* 1e4 */
 #define PART_MOST UINT64_C(0x3ff0000000000000)     /* 1 */
 #define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* beyond are those that are no number */
@@ -134,20 +134,26 @@ static bool are_latches(const wh_latch_t latches[], int32_t count, const wh_latc
 }
 
 /* Before the first order all is zero. */
+static bool are_untouched(const wh_latches_t *latches) {
+    return !latches->armed && (latches->first | latches->count) == 0 && latches->slice == 0 &&
+           (latches->crossings | latches->lost | latches->broken) == 0 &&
+           (latches->waiting_count | latches->latch_count) == 0;
+}
+
+static bool are_beams(const wh_latches_t *latches) {
+    return is_between(latches->first, 0, WH_BEAMS - 1) &&
+           is_between(latches->count, 1, WH_BEAMS - latches->first) && latches->slice >= 0 &&
+           latches->broken >> (uint32_t)(latches->first + latches->count) == 0;
+}
+
 static wh_status_t check_latches(const wh_latches_t *latches) {
-    const bool none = !latches->armed && (latches->first | latches->count) == 0 && latches->slice == 0 &&
-                      (latches->crossings | latches->lost | latches->broken) == 0 &&
-                      (latches->waiting_count | latches->latch_count) == 0;
-    if (latches->number == 0) {
-        return none ? WH_OK : WH_STATUS_OUT_OF_RANGE;
-    }
-    const bool good = is_between(latches->first, 0, WH_BEAMS - 1) &&
-                      is_between(latches->count, 1, WH_BEAMS - latches->first) && latches->slice >= 0 &&
-                      latches->broken >> (uint32_t)(latches->first + latches->count) == 0 &&
-                      is_between(latches->waiting_count, 0, latches->armed ? WH_LATCHES : 0) &&
-                      is_between(latches->latch_count, 0, WH_LATCHES) &&
-                      are_latches(latches->waiting, latches->waiting_count, latches, true) &&
-                      are_latches(latches->latches, latches->latch_count, latches, false);
+    const bool good = latches->number == 0
+                          ? are_untouched(latches)
+                          : are_beams(latches) &&
+                                is_between(latches->waiting_count, 0, latches->armed ? WH_LATCHES : 0) &&
+                                is_between(latches->latch_count, 0, WH_LATCHES) &&
+                                are_latches(latches->waiting, latches->waiting_count, latches, true) &&
+                                are_latches(latches->latches, latches->latch_count, latches, false);
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
@@ -279,6 +285,11 @@ static uint64_t hash_latches(uint64_t hash, const wh_latches_t *all) {
     return hash;
 }
 
+static uint64_t hash_sensing(uint64_t hash, const wh_physics_state_t *state) {
+    hash = state->scan.number > 0 ? hash_scan(hash, &state->scan) : hash;
+    return state->latches.number > 0 ? hash_latches(hash, &state->latches) : hash;
+}
+
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
     const size_t gripper_count = table->storage.gripper_count;
     uint64_t hash = wh_grasp_hash(table);
@@ -297,6 +308,5 @@ uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t
             hash = hash_slot(hash, i, &state->faults.slots[i]);
         }
     }
-    hash = state->scan.number > 0 ? hash_scan(hash, &state->scan) : hash;
-    return state->latches.number > 0 ? hash_latches(hash, &state->latches) : hash;
+    return hash_sensing(hash, state);
 }

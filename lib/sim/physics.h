@@ -84,9 +84,10 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *     and so many samples;
  *   - once beams have been armed: 5, number, armed, first, count, crossings, lost, broken, waiting_count,
  *     latch_count, slice, and of so many latches twice the beam plus the edge, slice and the part's bits.
- * So a run with ideal vacuum, without pads, faults, scans and beams, has the table's hash. Nothing is checked;
- * grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10
- * for each with positions, 45 for each slot in use, up to 73 for a scan, and 11 for beams with three for each latch.
+ * So a run with ideal vacuum, without pads, faults, scans and beams, has the table's hash. Nothing is
+ * checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with
+ * vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, and 11 for beams with
+ * three for each latch.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);

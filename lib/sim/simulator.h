@@ -85,7 +85,8 @@ wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latchi
     WH_SYMBOL(wh_simulator_set_latching);
 
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
- * the releases, vacuum, holding, edge sensors and beams follow, and `state` is filled in. Returns state->status.
+ * the releases, vacuum, holding, edge sensors and beams follow, and `state` is filled in. Returns
+ * state->status.
  *
  * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper lets
  * go of it in the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).

@@ -38,8 +38,8 @@ typedef struct {
     wh_latch_order_t latch;                       /* of the beams at doors */
 } wh_command_t;
 
-/* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone. Pass
- * the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
+/* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone.
+ * Pass the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
  * wh_machine_update. */
 void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
     WH_SYMBOL(wh_command_from_track);

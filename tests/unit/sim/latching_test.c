@@ -638,6 +638,36 @@ static void expect_unsound(const wh_physics_state_t *physics) {
     assert_int_equal(wh_physics_state_validate(physics, 1, 1), WH_STATUS_OUT_OF_RANGE);
 }
 
+/* Of a state with one latch to come. */
+static void no_other_latches_are_sound(const wh_physics_state_t *sound) {
+    assert_int_equal(wh_physics_state_validate(sound, 1, 1), WH_OK);
+    wh_physics_state_t broken = *sound;
+    broken.latches.waiting[0].slice = broken.latches.slice;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting[0].part = (double)NAN;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting[0].beam = 2;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting_count = WH_LATCHES + 1;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.latch_count = 1; /* of no slice */
+    memset(&broken.latches.latches[0], 0, sizeof broken.latches.latches[0]);
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.broken = 4;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.count = WH_BEAMS + 1;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.number = 0;
+    expect_unsound(&broken);
+}
+
 /* With latches that are on their way. */
 static void a_saved_pass_goes_on_bit_for_bit(void **state) {
     (void)state;
@@ -672,35 +702,8 @@ static void a_saved_pass_goes_on_bit_for_bit(void **state) {
     beams[0].jitter = 2e-4;
     assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_STATUS_OTHER_SNAPSHOT);
     beams[0].jitter = 1e-4;
-    /* nor latches that no simulator has */
     assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_OK);
-    const wh_physics_state_t sound = twin.simulator.physics;
-    assert_int_equal(wh_physics_state_validate(&sound, 1, 1), WH_OK);
-    wh_physics_state_t broken = sound;
-    broken.latches.waiting[0].slice = broken.latches.slice;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.waiting[0].part = (double)NAN;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.waiting[0].beam = 2;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.waiting_count = WH_LATCHES + 1;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.latch_count = 1; /* of no slice */
-    memset(&broken.latches.latches[0], 0, sizeof broken.latches.latches[0]);
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.broken = 4;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.count = WH_BEAMS + 1;
-    expect_unsound(&broken);
-    broken = sound;
-    broken.latches.number = 0;
-    expect_unsound(&broken);
+    no_other_latches_are_sound(&twin.simulator.physics);
 }
 
 int main(void) {
