@@ -102,7 +102,7 @@ return function(native, lookup)
         name:sub(2)) .. still)
     elseif result.error == errors.CENTRE_NOT_SURE.number then
       local text = #result.candidates > 0 and "the crossings fit two places of the wafer: "
-        .. describe(result.candidates) or "no place of the wafer fits the crossings"
+        .. describe(result.candidates) or "no place of the wafer fits the crossings: if true diameters vary, wafer.spread of the layout says so"
       native.fail("CENTRE_NOT_SURE", text .. still)
     end
     local text = "%d crossings of %d beams, %d latches missed"

@@ -318,6 +318,31 @@ static void centring_goes_with_what_else_a_put_does(void **state) {
         "expect(good, 'all of it')\n");
 }
 
+/* Wafers of other diameters: told with a spread, refused without. A blade that reaches before its wafer hides one crossing. */
+static void true_diameters_are_found_if_they_may_vary(void **state) {
+    (void)state;
+    static const char *const spreads[] = {"wafer = { spread = 0.1 },", ""};
+    static const char *const shapes[] = {"", "shapes = { blade = { length = 170 } },"};
+    for (unsigned bits = 0; bits < 4; ++bits) {
+        char layout[2000], script[1000];
+        (void)snprintf(layout, sizeof layout,
+                       DOORS "%s %s wafers = { { name = 'W', station = 'A', slot = 1, dx = 1.5, "
+                             "dy = -0.8, rpy = { 0, 0, 90 }, rim = { diameter = 300.2 } } } }\n",
+                       spreads[bits % 2], shapes[bits / 2]);
+        (void)snprintf(
+            script, sizeof script,
+            "cell 'cell.lua' get('A', 1) local ok, problem = pcall(put, 'B', 1, { centre = true })\n"
+            "local c, good = centring(), not ok and problem.name == 'CENTRE_NOT_SURE'\n"
+            "if ok then local x, y = offset('W', 'B', 1)\n"
+            "  good = math.abs(x) < 0.02 and math.abs(y) < 0.02 and math.abs(c.radius - 150.1) < 0.005 and "
+            "c.used == %d end\n"
+            "expect(good and ok == %s, tostring(ok) .. ' ' .. c.used)\n",
+            bits / 2 ? 3 : 4, bits % 2 ? "false" : "true");
+        assert_texts(layout, script);
+        wh_script_run_close(&run);
+    }
+}
+
 /* Stations off by 0.25 mm and 0.2 degrees, a beam that nobody knows the place of to 0.5 mm, latches that are late by 10 us more or
  * less than believed. The script compares with what is true. */
 static void stations_are_taught_by_a_beam(void **state) {
@@ -376,6 +401,7 @@ int main(void) {
         cmocka_unit_test_teardown(centring_is_as_near_as_it_says, close_run),
         cmocka_unit_test_teardown(a_notch_in_a_beams_way_does_no_harm, close_run),
         cmocka_unit_test_teardown(centring_goes_with_what_else_a_put_does, close_run),
+        cmocka_unit_test(true_diameters_are_found_if_they_may_vary),
         cmocka_unit_test(stations_are_taught_by_a_beam),
         cmocka_unit_test_teardown(what_cannot_be_taught_is_said, close_run),
         cmocka_unit_test_teardown(a_put_leaves_the_wafer_on_its_support, close_run),
