@@ -89,6 +89,8 @@ const wh_reader_field_t wh_layout_robot_fields[] = {
     {"r", "waferhand.straight_axis", "the way out", false},
     {"z", "waferhand.straight_axis", "the height", false},
     {"yaw", "waferhand.turning_axis", "the turn of the wrist", false},
+    {"transit", NUMBER,
+     "mm: blades and wafers stay within this circle about theta's axis while the robot turns", false},
     END};
 
 const wh_reader_field_t wh_layout_turning_axis_fields[] = {

@@ -151,6 +151,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
+    wh_track_take_ways(&mcs->track);
     set_up_look_ahead(L, mcs, layout, real);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
