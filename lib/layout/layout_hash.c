@@ -131,5 +131,10 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         const wh_scanning_t scanning = wh_layout_scanning(layout);
         hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
     }
+    if (layout->beam_count > 0) {
+        const wh_latching_t latching = wh_layout_latching(layout);
+        hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
+                                hash_text(hash, "beams"));
+    }
     return hash;
 }

@@ -52,6 +52,16 @@ static void place_scanners(wh_trial_cell_t *trial_cell) {
     }
 }
 
+/* Beams go with their station, too. */
+static void place_beams(wh_trial_cell_t *trial_cell) {
+    wh_layout_t *layout = &trial_cell->layout;
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        wh_layout_place_beam(layout, b);
+        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.seed);
+        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.trial);
+    }
+}
+
 /* To the last bit. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
@@ -94,6 +104,7 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
     trial_cell->layout.cell.stations = places;
     place_stations(trial_cell, layout, places);
     place_scanners(trial_cell);
+    place_beams(trial_cell);
     place_wafers(trial_cell, layout, places, start);
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);

@@ -350,6 +350,72 @@ static void sensors_and_rims_are_in_the_hash_once_there_is_a_sensor(void **state
     assert_true(without != usual && usual != noisy && usual != chipped && noisy != chipped);
 }
 
+#define DOOR(beams)                                                                                          \
+    "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10, beams = { " beams " } } }, "
+
+static void beams_at_a_door_are_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        GRIPPERS DOOR("{ y = 60 }, { y = -110, x = -160, low = -5, high = 40, delay_on = 5e-5, delay_off = "
+                      "8e-5, jitter = 3e-6, seed = 4, dx = 0.5, dy = -0.25, late = 1e-5 }"));
+    assert_int_equal(layout->beam_count, 2);
+    const wh_layout_beam_t *usual = &layout->beams[0];
+    const double usual_numbers[] = {usual->x,         usual->low,  usual->high,
+                                    usual->dx,        usual->dy,   usual->delay_on,
+                                    usual->delay_off, usual->late, layout->doors[0].jitter};
+    const double wanted_usual[] = {-150, -30, 50, 0, 0, 0, 0, 0, 0};
+    const wh_door_beam_t *door = &layout->doors[1];
+    const double numbers[] = {door->beam.x,   door->beam.y,      door->beam.z,   door->beam.ez,
+                              door->beam.low, door->beam.high,   door->delay_on, door->delay_off,
+                              door->jitter,   (double)door->seed};
+    const double wanted[] = {540.5, -110.25, 900, 1, -5, 40, 6e-5, 9e-5, 3e-6, 4};
+    for (size_t i = 0; i < sizeof wanted_usual / sizeof wanted_usual[0]; ++i) {
+        assert_near(usual_numbers[i], wanted_usual[i], 1e-12);
+    }
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; ++i) {
+        assert_near(numbers[i], wanted[i], 1e-12);
+    }
+    assert_int_equal(layout->doors[0].seed, 1);
+    assert_int_equal(layout->blades[0].count, 12);
+    assert_near(layout->nominal_rim->radius, 150, 0);
+    assert_int_equal(wh_layout_beams_at(layout, 0).count, 2);
+    assert_false(layout->stations[0].centre);
+}
+
+static void beams_are_in_the_hash_once_there_are_some(void **state) {
+    (void)state;
+    const uint64_t none = wh_layout_hash(read_sound(GRIPPERS DOOR("")));
+    const uint64_t plain = wh_layout_hash(
+        read_sound(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10 } }, "));
+    const uint64_t two = wh_layout_hash(read_sound(GRIPPERS DOOR("{ y = 60 }, { y = -110 }")));
+    const uint64_t late = wh_layout_hash(read_sound(GRIPPERS DOOR("{ y = 60 }, { y = -110, late = 1e-6 }")));
+    assert_true(none == plain);
+    assert_true(none != two && two != late);
+}
+
+static void what_is_wrong_with_beams_is_named(void **state) {
+    (void)state;
+#define CENTRED(fields) "stations = { A = { at = { 700, 0, 900 }, centre = true, " fields " } }, "
+    static const char *const rows[][2] = {
+        {GRIPPERS DOOR("{ }"), "stations.A.beams[1].y: nothing"},
+        {GRIPPERS DOOR("{ y = 149 }"), "stations.A.beams[1].y: 149 (expected a number from -148 to 148)"},
+        {GRIPPERS DOOR("{ y = 60, z = 3 }"), "stations.A.beams[1].z: 3 (expected one of the fields x"},
+        {GRIPPERS DOOR("{ y = 85 }, { y = -85 }"),
+         "stations.A.beams[2].y: -85 (expected a distance from the way that differs by 5 mm or more"},
+        {GRIPPERS DOOR("{ y = 60, low = 10, high = 5 }"), "beams[1].high: 5 (expected a number from 11"},
+        {GRIPPERS DOOR("{ y = 60, delay_on = 0.02 }"), "beams[1].delay_on: 0.02 (expected a number from 0"},
+        {GRIPPERS DOOR("{ y = 60, jitter = 0.1 }"), "beams[1].jitter: 0.1 (expected a number from 0"},
+        {GRIPPERS CENTRED(""), "stations.A.centre: true (expected false, or two beams"},
+        {GRIPPERS CENTRED("beams = { { y = 60 } }"), "stations.A.centre: true (expected false, or two"},
+        {GRIPPERS CENTRED("beams = { { y = 60, x = -100 }, { y = -110 } }"),
+         "stations.A.beams[1].x: -100 (expected from -157.523 to -142.477 mm, where all of a wafer passes"},
+        {GRIPPERS DOOR("{ y = 60 }") "wafer = { diameter = 700, thickness = 1 }", "beams see wafers from 20"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        expect_refused(rows[i][0], rows[i][1]);
+    }
+}
+
 static void wafers_lie_where_the_slots_frame_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -489,6 +555,10 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(the_usual_rim_is_that_of_the_layouts_wafer, open_sandbox,
                                         close_sandbox),
+        cmocka_unit_test_setup_teardown(beams_at_a_door_are_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(beams_are_in_the_hash_once_there_are_some, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_beams_is_named, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(sensors_and_rims_are_in_the_hash_once_there_is_a_sensor, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
