@@ -26,7 +26,8 @@ static const char base[] =
     "   { kind = 'wafer_doubled', wafer = 'W1', onto = 'W2' }, { kind = 'wafer_crossed', wafer = 'W1' },"
     "   { kind = 'wafer_shifted', wafer = 'W1' }, { kind = 'wafer_tilted', wafer = 'W1', rpy = { 1, 0, 0 } } "
     "},"
-    " study = { placement = {}, teaching = {}, timing = {}, rim = {}, wafers = { W1 = {} }, rims = { W1 = {} },"
+    " study = { placement = {}, teaching = {}, timing = {}, rim = {}, wafers = { W1 = {} }, rims = { W1 = {} "
+    "},"
     "   stations = { A = {} }, grippers = { EE = {} } } }\n";
 
 /* The fault tables follow one another in the list as the base's faults do. */
