@@ -408,6 +408,41 @@ static void robots_are_the_best_fit_by_differences(void **state) {
     }
 }
 
+/* Headings are measured better than the touches tell the scale of yaw, which a short tool does not: no
+ * contradiction. A scale that is told and that the headings contradict is one. */
+static void headings_and_scales_go_together(void **state) {
+    (void)state;
+    int near = 0;
+    int all = 0;
+    for (int round = 0; round < ROBOTS / 2; ++round) {
+        const size_t count = 30 + wh_test_below(60);
+        const double precision = wh_test_decades(1e-4, 1e-2) * DEG;
+        double truth[NUMBERS];
+        wh_geometry_estimate_t found;
+        random_robot(truth);
+        truth[WH_GEOMETRY_TOOL_X] = wh_test_uniform(20, 200);
+        for (int k = WH_GEOMETRY_SCALE; k < NUMBERS; ++k) {
+            truth[k] = wh_test_uniform(0.99, 1.01);
+        }
+        touch_points(truth, count, wh_test_decades(5e-3, 0.05), 15);
+        for (size_t i = 0; i < count; ++i) {
+            touches[i].heading = headed(truth, touches[i].axes) + noise(precision);
+        }
+        const wh_status_t status = wh_geometry_estimate(touches, count, true, &found);
+        if (status != WH_OK) {
+            fail_msg("%s", found.reason);
+        }
+        assert_near(off_by(&found, truth, WH_GEOMETRY_ZERO + 3), 0, WRONG);
+        near += fabs(off_by(&found, truth, WH_GEOMETRY_ZERO + 3)) < 2 ? 1 : 0;
+        ++all;
+        for (size_t i = 0; i < count; ++i) {
+            touches[i].heading -= 0.1 * touches[i].axes[WH_AXIS_YAW];
+        }
+        assert_int_equal(wh_geometry_estimate(touches, count, true, &found), WH_STATUS_NO_FIT);
+    }
+    assert_true(near > 0.88 * all);
+}
+
 /* What a fit to touches with some axes varied must tell, and must not; what it tells is right. */
 static void judge_varied(const wh_geometry_estimate_t *found, const double *truth, unsigned varied) {
     const bool reaches = (varied & 3) != 0;
@@ -502,6 +537,7 @@ int main(void) {
         cmocka_unit_test(robots_lie_within_their_deviations),
         cmocka_unit_test(robots_are_the_best_fit_by_differences),
         cmocka_unit_test(robots_are_right_or_not_determined),
+        cmocka_unit_test(headings_and_scales_go_together),
         cmocka_unit_test(robots_of_another_kind_are_refused),
     };
     (void)wh_test_seed();
