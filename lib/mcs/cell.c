@@ -48,9 +48,11 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
         return layout;
     }
     wh_trial_cell_t *trial_cell = lua_memory(L, sizeof *trial_cell);
-    wh_trial_cell_fill(trial_cell, layout, mcs->trial,
-                       lua_memory(L, layout->station_count * sizeof *layout->places),
-                       lua_memory(L, layout->wafer_count * sizeof *layout->start));
+    const wh_trial_room_t room = {lua_memory(L, layout->station_count * sizeof *room.places),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.start),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.rims),
+                                  lua_memory(L, layout->wafer_count * sizeof(const wh_rim_t *))};
+    wh_trial_cell_fill(trial_cell, layout, mcs->trial, &room);
     if (layout->collision) {
         wh_layout_read_trial_world(L, &trial_cell->layout);
     }
