@@ -25,6 +25,7 @@
 #define wh_box_empty WH_SYMBOL_RENAMED(wh_box_empty)
 #define wh_box_grown WH_SYMBOL_RENAMED(wh_box_grown)
 #define wh_box_overlap WH_SYMBOL_RENAMED(wh_box_overlap)
+#define wh_calibration_solve WH_SYMBOL_RENAMED(wh_calibration_solve)
 #define wh_carry_update WH_SYMBOL_RENAMED(wh_carry_update)
 #define wh_cbrt WH_SYMBOL_RENAMED(wh_cbrt)
 #define wh_cell_judge WH_SYMBOL_RENAMED(wh_cell_judge)
