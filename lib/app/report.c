@@ -26,6 +26,7 @@ static const wh_option_t options[] = {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
+    {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -90,6 +91,7 @@ static const char *find_foreign(const wh_run_arguments_t *run) {
     return run->budget > 0         ? "--budget"
            : run->memory_mib > 0   ? "--memory"
            : run->run.limits.trust ? "--trust"
+           : run->errors.count > 0 ? "--error"
                                    : NULL;
 }
 

@@ -269,6 +269,10 @@ static int set_study(lua_State *L) {
         lua_pushfstring(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
         return lua_error(L);
     }
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) != LUA_TNIL) {
+        lua_pushliteral(L, "study: given twice (expected one study a script)");
+        return lua_error(L);
+    }
     lua_settop(L, 1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &study_key);
     return 0;

@@ -202,6 +202,10 @@ static void print_causes(const table_t *table) {
     }
     free(told);
     wh_print_titled(&table->frame, "Which error costs most: correlations, all together 95 % sure", grid);
+    if (table->tally->met == table->tally->trials || table->tally->met == 0) {
+        fprintf(table->frame.out, "%s of the trials failed, so nothing tells what failing goes with\n",
+                table->tally->met == 0 ? "all" : "none");
+    }
     if (count > MOST_CAUSES) {
         fprintf(table->frame.out, "and %zu more, which --json tells\n", count - MOST_CAUSES);
     }
