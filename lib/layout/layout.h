@@ -114,6 +114,7 @@ typedef struct {
     int64_t slice_us;
     wh_physics_t physics;         /* vacuum, pads, faults at the start */
     wh_machine_t machine;         /* machine.gripper_count is the number of grippers */
+    wh_real_t transit;            /* mm, see transit.h; 0: the arm turns as it stands */
     bool homed;                   /* false: commands that rely on the arm's position need a HOME first */
     wh_corrections_t corrections; /* the largest ones that a command may ask for */
     wh_layout_gripper_t grippers[WH_GRIPPERS];

@@ -93,6 +93,8 @@ const wh_reader_field_t wh_layout_robot_fields[] = {
     {"r", "waferhand.straight_axis", "the way out", false},
     {"z", "waferhand.straight_axis", "the height", false},
     {"yaw", "waferhand.turning_axis", "the turn of the wrist", false},
+    {"transit", NUMBER,
+     "mm: blades and wafers stay within this circle about theta's axis while the robot turns", false},
     END};
 
 const wh_reader_field_t wh_layout_turning_axis_fields[] = {
@@ -397,7 +399,9 @@ const wh_reader_field_t wh_layout_study_fields[] = {
     {"placement", "waferhand.placement", "of every wafer in its slot", false},
     {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
     {"timing", "waferhand.timing", "of valves and vacuum", false},
+    {"rim", "waferhand.rim_width", "of every wafer's rim, which edge sensors see", false},
     {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
+    {"rims", "table<string, waferhand.rim_width>", "of one wafer's rim alone, by the wafer's name", false},
     {"stations", "table<string, waferhand.teaching>", "of one station alone, by name", false},
     {"grippers", "table<string, waferhand.valve>", "of one gripper's valve alone, by name", false},
     END};
@@ -411,6 +415,21 @@ const wh_reader_field_t wh_layout_timing_fields[] = {
     END};
 const wh_reader_field_t wh_layout_valve_fields[] = {
     {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
+const wh_reader_field_t wh_layout_rim_width_fields[] = {
+    {"diameter", NUMBER, "mm, of the true diameter", false},
+    {"notch_depth", NUMBER, "mm", false},
+    {"notch_angle", NUMBER, "degrees, between the notch's flanks", false},
+    {"notch_bottom", NUMBER, "mm, of the radius of its bottom", false},
+    {"notch_corner", NUMBER, "mm, of the radii of its corners", false},
+    {"flat", NUMBER, "mm, of the primary flat's length", false},
+    {"second_flat", NUMBER, "mm, of the secondary flat's length", false},
+    {"chip_depth", NUMBER, "mm, of a chip more, somewhere", false},
+    {"chip_width", NUMBER, "mm, of that chip along the rim", false},
+    {"bow", NUMBER, "mm", false},
+    {"saddle", NUMBER, "mm, high in some direction", false},
+    {"glass", NUMBER, "part of the light that comes through", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};
 
 /* --------------------------------------------------------------------------------------------- the list */
 
@@ -462,4 +481,5 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"teaching", "Widths of errors of a station's place.", wh_layout_teaching_fields},
     {"timing", "Widths of errors of times.", wh_layout_timing_fields},
     {"valve", "The width of a valve's delay.", wh_layout_valve_fields},
+    {"rim_width", "Widths of errors of a wafer's rim.", wh_layout_rim_width_fields},
     {NULL, NULL, NULL}};

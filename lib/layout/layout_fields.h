@@ -56,5 +56,6 @@ extern const wh_reader_field_t wh_layout_placement_fields[];
 extern const wh_reader_field_t wh_layout_teaching_fields[];
 extern const wh_reader_field_t wh_layout_timing_fields[];
 extern const wh_reader_field_t wh_layout_valve_fields[];
+extern const wh_reader_field_t wh_layout_rim_width_fields[];
 
 #endif

@@ -37,6 +37,9 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         hash = hash_limits(hash, &machine->robot.limits[axis]);
     }
     hash = hash_limits(hash, &machine->chuck_limits);
+    if (layout->transit > 0) {
+        hash = wh_hash_real(hash_text(hash, "transit"), layout->transit);
+    }
     hash = wh_hash_word(hash, machine->axis_count);
     hash = wh_hash_word(hash, machine->gripper_count);
     for (size_t g = 0; g < machine->gripper_count; ++g) {

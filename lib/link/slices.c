@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "../math/hash.h"
+
 #define SIGN (UINT64_C(1) << 63)
 /* No time of a run is near to what 64 bits hold. */
 #define FARTHEST (INT64_C(1) << 62)
@@ -144,7 +146,7 @@ static uint64_t predict(prediction_t *prediction) {
         prediction->guesses[order] = prediction->last;
         /* Which of many bits a sum that is no number has, differs from machine to machine. */
         if (guess == guess) {
-            memcpy(&prediction->guesses[order], &guess, sizeof guess);
+            prediction->guesses[order] = wh_double_bits(guess);
         }
         if (order < prediction->seen && prediction->scores[order] < prediction->scores[best]) {
             best = order;

@@ -48,9 +48,11 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
         return layout;
     }
     wh_trial_cell_t *trial_cell = lua_memory(L, sizeof *trial_cell);
-    wh_trial_cell_fill(trial_cell, layout, mcs->trial,
-                       lua_memory(L, layout->station_count * sizeof *layout->places),
-                       lua_memory(L, layout->wafer_count * sizeof *layout->start));
+    const wh_trial_room_t room = {lua_memory(L, layout->station_count * sizeof *room.places),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.start),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.rims),
+                                  lua_memory(L, layout->wafer_count * sizeof(const wh_rim_t *))};
+    wh_trial_cell_fill(trial_cell, layout, mcs->trial, &room);
     if (layout->collision) {
         wh_layout_read_trial_world(L, &trial_cell->layout);
     }
@@ -153,6 +155,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
+    wh_track_take_ways(&mcs->track);
     set_up_look_ahead(L, mcs, layout, real);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
@@ -264,6 +267,10 @@ static int set_study(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (mcs->layout) {
         lua_pushfstring(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
+        return lua_error(L);
+    }
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) != LUA_TNIL) {
+        lua_pushliteral(L, "study: given twice (expected one study a script)");
         return lua_error(L);
     }
     lua_settop(L, 1);

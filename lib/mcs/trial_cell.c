@@ -89,23 +89,35 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
     }
 }
 
+/* Only edge sensors see them. */
+static void place_rims(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_room_t *room) {
+    for (size_t w = 0; layout->scanner_count > 0 && w < layout->wafer_count; ++w) {
+        double drawn[WH_RIM_DRAWS];
+        room->rims[w] = *layout->rims[w];
+        wh_errors_draw_rim(layout->errors, &trial_cell->trial, w, &room->rims[w], drawn);
+        room->rim_of[w] = wh_rim_draw_apply(drawn, &room->rims[w]) ? &room->rims[w] : layout->rims[w];
+    }
+    trial_cell->layout.rims = layout->scanner_count > 0 ? room->rim_of : layout->rims;
+}
+
 static int64_t lag_of(const wh_trial_cell_t *trial_cell, wh_real_t seconds) {
     const double slices = ceil((double)seconds * 1e6 / (double)trial_cell->layout.slice_us);
     return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
 }
 
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
-                        wh_station_t *places, wh_wafer_t *start) {
+                        const wh_trial_room_t *room) {
     trial_cell->trial = *trial;
     trial_cell->layout = *layout;
     trial_cell->chucks_moved = false;
-    trial_cell->layout.places = places;
-    trial_cell->layout.start = start;
-    trial_cell->layout.cell.stations = places;
-    place_stations(trial_cell, layout, places);
+    trial_cell->layout.places = room->places;
+    trial_cell->layout.start = room->start;
+    trial_cell->layout.cell.stations = room->places;
+    place_stations(trial_cell, layout, room->places);
     place_scanners(trial_cell);
     place_beams(trial_cell);
-    place_wafers(trial_cell, layout, places, start);
+    place_wafers(trial_cell, layout, room->places, room->start);
+    place_rims(trial_cell, layout, room);
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);
     *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;

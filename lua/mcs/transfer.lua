@@ -58,8 +58,13 @@ return function(native, patterns, lookup, arm, targets, centring)
     return text == "-0.000" and "0.000" or text
   end
 
-  -- Why the chuck did not take what the running command let go: that wafer still lies there.
-  local function explain_lost(chuck)
+  -- Why the chuck did not take the wafer: it was not let go, or what the running command let go still lies there.
+  local function explain_lost(gripper, chuck)
+    local kept = native.held(gripper)
+    if kept then
+      local text = "%s still holds %s: its valve or vacuum did not let go of it when %s was to take it"
+      return text:format(name_of(gripper), kept, name_of(chuck))
+    end
     local wafer, dx, dy, dz, reasons = native.let_go(chuck)
     if not wafer then
       return explain(chuck)
@@ -100,7 +105,7 @@ return function(native, patterns, lookup, arm, targets, centring)
     if became == "uncentred" then
       centring.fail(target)
     elseif became == "lost" then
-      native.fail("WAFER_LOST", explain_lost(target.chuck))
+      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck))
     elseif became == "loose" then
       fail_late(target, target.chuck)
     end
