@@ -18,6 +18,10 @@
  * offset into each wh_rim_scan_t. Lengths in mm, times in s, angles in rad, in the chuck's frame, which at turn
  * 0 is the station's: a way that was made at another turn is to be turned back by that. No heap, no state;
  * the same bits on every machine.
+ *
+ * Bytes of stack on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12 (tests/verify/footprint):
+ *                                             M7 -O2    -Os  M4F -O2    -Os
+ *     stack of wh_calibration_solve              0      0       0      0
  */
 #ifndef WH_ALIGN_CALIBRATION_H
 #define WH_ALIGN_CALIBRATION_H

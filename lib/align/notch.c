@@ -37,9 +37,11 @@
 #define BESIDE 0.8
 /* Samples of a notch through which light falls, at most. */
 #define LIGHT 4
-/* Steps; after so many of them it stands which samples are flanks, and their weights. */
-#define STEPS 25
-#define CHOICES 12
+/* Steps, and the last one's length, mm; after so many of them it stands which samples are flanks, and their
+ * weights, even if they come and go. */
+#define STEPS 32
+#define STILL 1e-11
+#define CHOICES 20
 
 /* Fitted values: the axis, from the circle's centre to the apex, half of the opening. */
 typedef struct {
@@ -198,10 +200,11 @@ static bool fit(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
         if (!step(search, dent, &choice, i < 2 && cuts[i] > last ? cuts[i] : last, vee)) {
             return false;
         }
+        if (i > 2 && vee->step < STILL) {
+            return true;
+        }
         if (i < CHOICES) {
             choice = *vee;
-        } else if (vee->step < 1e-9) {
-            return true;
         }
     }
     return false;

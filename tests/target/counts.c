@@ -1,4 +1,4 @@
-/* How many instructions the check and a step take, on a Cortex-M under emulation: `-icount shift=6` makes each instruction
+/* How many instructions the check, a step and the estimate of a scan take, on a Cortex-M under emulation: `-icount shift=6` makes each instruction
  * last 64 ns, and SysTick counts 25 MHz. Prints "NAME COUNT" for each case; the count repeats exactly.
  *
  * The worst case of a step is looked for in 20,000 random steps beside the ones that are built on purpose. */
@@ -164,6 +164,29 @@ static void count_worst(const char *name, wh_check_t check) {
     printf("step %s worst %u\n", name, (unsigned)worst);
 }
 
+#if defined(__ARM_FP) && (__ARM_FP & 8) != 0
+/* Where double is the processor's own. */
+static void count_estimate(void) {
+    static wh_rim_point_t points[3600];
+    static wh_rim_ray_t rays[3600];
+    const wh_placement_t placement = {3, -4, 0.7};
+    const wh_align_limits_t limits = wh_align_limits_default();
+    const wh_rim_t rim = wh_rim_nominal(150);
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_align_result_t result = {.verdict = WH_STATUS_BAD_SCAN};
+    sensor.noise = 0.005;
+    for (uint32_t i = 0; i < 3600; ++i) {
+        const wh_glance_t glance = {wh_sensor_angle(&sensor, i), 6, {1, 2}, i};
+        points[i] = wh_sensor_point(&sensor, NULL, &glance, wh_sensor_read(&sensor, &rim, &placement, &glance));
+    }
+    const wh_rim_scan_t scan = {points, 3600, 0, sensor.pixel};
+    start();
+    const wh_status_t status = wh_align_estimate(&scan, &sensor, &rim, &limits, rays, &result);
+    const uint32_t count = stop();
+    printf("estimate 3600 %u%s\n", (unsigned)count, status == WH_OK && result.verdict == WH_OK ? "" : " WRONG");
+}
+#endif
+
 int main(void) {
     start();
     overhead = stop();
@@ -179,6 +202,9 @@ int main(void) {
     count_check("too_tilted", &tilted, false);
     count_check("accepted", &near, true);
     count_measure();
+#if defined(__ARM_FP) && (__ARM_FP & 8) != 0
+    count_estimate();
+#endif
     count_idle("sampled", WH_CHECK_SAMPLED);
     count_idle("swept", WH_CHECK_SWEPT);
     count_between("sampled", WH_CHECK_SAMPLED);
