@@ -6,6 +6,7 @@
 
 #include <waferhand.h>
 
+#include "bench/scan.h"
 #include "support/random.h"
 
 enum { WAFERS = 25, GRIPPERS = 2, STEPS = 20000 };
@@ -167,23 +168,12 @@ static void count_worst(const char *name, wh_check_t check) {
 #if defined(__ARM_FP) && (__ARM_FP & 8) != 0
 /* Where double is the processor's own. */
 static void count_estimate(void) {
-    static wh_rim_point_t points[3600];
-    static wh_rim_ray_t rays[3600];
-    const wh_placement_t placement = {3, -4, 0.7};
-    const wh_align_limits_t limits = wh_align_limits_default();
-    const wh_rim_t rim = wh_rim_nominal(150);
-    wh_sensor_t sensor = wh_sensor_nominal(150);
-    wh_align_result_t result = {.verdict = WH_STATUS_BAD_SCAN};
-    sensor.noise = 0.005;
-    for (uint32_t i = 0; i < 3600; ++i) {
-        const wh_glance_t glance = {wh_sensor_angle(&sensor, i), 6, {1, 2}, i};
-        points[i] = wh_sensor_point(&sensor, NULL, &glance, wh_sensor_read(&sensor, &rim, &placement, &glance));
-    }
-    const wh_rim_scan_t scan = {points, 3600, 0, sensor.pixel};
+    static bench_scan_t made;
+    bench_scan_make(&made);
     start();
-    const wh_status_t status = wh_align_estimate(&scan, &sensor, &rim, &limits, rays, &result);
+    const wh_status_t verdict = bench_scan_estimate(&made);
     const uint32_t count = stop();
-    printf("estimate 3600 %u%s\n", (unsigned)count, status == WH_OK && result.verdict == WH_OK ? "" : " WRONG");
+    printf("estimate 3600 %u%s\n", (unsigned)count, verdict == WH_OK ? "" : " WRONG");
 }
 #endif
 
