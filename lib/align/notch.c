@@ -465,6 +465,22 @@ static tally_t judge_all(const vee_search_t *search, const wh_dents_t *dents) {
     return tally;
 }
 
+/* What the dents say together. */
+static wh_status_t conclude(const vee_search_t *search, const wh_dents_t *dents, const tally_t *tally) {
+    if (tally->counts[IS_NOTCH] > 1) {
+        return WH_STATUS_TWO_NOTCHES;
+    }
+    if (tally->counts[IS_NOTCH] == 1) {
+        /* What may be a chipped notch is a chip if the notch cannot be one. */
+        const bool is_sharp = search->of.circle->scatter <= SHARP &&
+                              tally->first.depth >= search->nominal->depth - SHARP_SHALLOWER;
+        const bool is_one = tally->counts[IS_DOUBTFUL] == 0 || is_sharp;
+        return is_one && dents->whole ? WH_OK : WH_STATUS_NOTCH_NOT_SURE;
+    }
+    const bool may_be = tally->deep > 0 || !dents->whole || !wh_scanned_is_whole(&search->of);
+    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
+}
+
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch) {
     const double deepest = glass ? nominal->depth + DEEPER + CUT * circle->scatter : circle->radius;
@@ -473,16 +489,9 @@ wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, c
     search.spacing = wh_scanned_spacing(&search.of);
     const wh_dents_t dents = wh_dents_find(&search.of);
     const tally_t tally = judge_all(&search, &dents);
-    if (tally.counts[IS_NOTCH] > 1) {
-        return WH_STATUS_TWO_NOTCHES;
-    }
-    /* What may be a chipped notch is a chip if the notch cannot be one. */
-    const bool is_sharp = circle->scatter <= SHARP && tally.first.depth >= nominal->depth - SHARP_SHALLOWER;
-    const bool is_one = tally.counts[IS_DOUBTFUL] == 0 || is_sharp;
-    if (tally.counts[IS_NOTCH] == 1 && is_one && dents.whole) {
+    const wh_status_t status = conclude(&search, &dents, &tally);
+    if (status == WH_OK) {
         *notch = tally.first;
-        return WH_OK;
     }
-    const bool may_be = tally.deep > 0 || !dents.whole || !wh_scanned_is_whole(&search.of);
-    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
+    return status;
 }
