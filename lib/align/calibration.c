@@ -64,7 +64,7 @@ static bool tells_all(const task_t *task) {
         const double faster = fabs(scan->speed - first->speed);
         speed = faster > speed ? faster : speed;
     }
-    return way >= WH_CALIBRATION_WAY * WH_CALIBRATION_WAY && speed >= WH_CALIBRATION_SPEED;
+    return sqrt(way) >= WH_CALIBRATION_WAY && speed >= WH_CALIBRATION_SPEED;
 }
 
 /* All but the scans themselves. */
@@ -188,6 +188,7 @@ static wh_status_t step(task_t *task, wh_calibration_t *now, wh_normal_t *normal
 static wh_status_t solve(task_t *task, wh_calibration_t *found) {
     wh_normal_t normal;
     double moved = 1;
+    wh_normal_begin(&normal, UNKNOWNS);
     for (int i = 0; i < STEPS && moved > STILL; ++i) {
         const wh_status_t status = step(task, found, &normal, &moved);
         if (status != WH_OK) {
@@ -198,7 +199,7 @@ static wh_status_t solve(task_t *task, wh_calibration_t *found) {
     found->sd_gain = sqrt(normal.matrix[3][3]);
     found->sd_latency = sqrt(normal.matrix[4][4]);
     found->sd_zero = sqrt(normal.matrix[5][5]);
-    const double limit = wh_mismatch_limit((double)(3 * task->count - UNKNOWNS), WH_MISMATCH_NEVER);
+    const double limit = wh_mismatch_limit((double)(3 * task->count - UNKNOWNS));
     return moved <= IN_TURN && found->mismatch <= limit ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
 }
 

@@ -61,7 +61,7 @@ typedef struct {
  * WH_STATUS_OUT_OF_RANGE for a number; WH_STATUS_TOO_FEW_SAMPLES for fewer scans than WH_CALIBRATION_LEAST, or
  * for what wh_circle_fit says so, as WH_STATUS_BAD_SCAN is; WH_STATUS_CENTRE_NOT_SURE for a scan that tells no
  * circle, for ways or speeds that do not differ, for an error out of the range of wh_sensor_error_t, and for
- * scans that contradict each other as chance does three times in a million. *bad, which may be
+ * scans that contradict each other as chance does once in a million. *bad, which may be
  * null, is the scan, or WH_NONE if it is none alone. Cost: wh_circle_fit five times a scan. */
 wh_status_t wh_calibration_solve(const wh_sensor_t *sensor, double radius, double sd_way,
                                  const wh_calibration_scan_t *scans, size_t count, wh_rim_point_t *points,

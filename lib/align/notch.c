@@ -19,10 +19,11 @@
 #define DEEPER 0.4
 #define OPENING_OFF (2.2 * WH_ALIGN_PI / 180)
 /* The bottom's radius is the nominal one, give or take this, mm. If the squares of flanks and bottom are so
- * many times noise's, that is no chance any more; if they are as seldom as so many deviations, a chip. */
+ * many times noise's, that is no chance any more; if they are this part of what chance does once in a million
+ * times (now once in ten thousand), it is a chip. */
 #define BOTTOM_SD 0.08
 #define CHANCE 1.5
-#define CHIPPED 3.7
+#define CHIPPED 0.8
 /* With samples so good, mm, no chip's curved sides pass for flanks, if it is as deep as a notch but for
  * this. */
 #define SHARP 0.008
@@ -244,15 +245,15 @@ static against_arc_t hold_against_arc(const vee_search_t *search, const vee_t *v
         return against;
     }
     /* Towards the centre of the arc, and the ray along that. */
-    const double in = 0 - from_centre / distance;
-    const double aside = 0 - across / distance;
+    const double in = -from_centre / distance;
+    const double aside = -across / distance;
     const double slope = in * (ray->cosine * vee->axis_x + ray->sine * vee->axis_y) +
                          aside * (ray->sine * vee->axis_x - ray->cosine * vee->axis_y);
     const double opens = radius * vee->cosine / (vee->sine * vee->sine);
     against.residual = (radius - distance) / slope;
     against.by[0] = aside * centre / slope;
     against.by[1] = in / slope;
-    against.by[2] = 0 - in * opens / slope;
+    against.by[2] = -in * opens / slope;
     against.by[3] = (in / vee->sine - 1) / slope;
     return against;
 }
@@ -306,7 +307,7 @@ static bool has_bottom(const vee_search_t *search, const wh_dent_t *dent, vee_t 
     const double spare = (double)(count - 2);
     const double times = squares / (sigma * sigma * spare);
     vee->inflation = times > CHANCE ? times : 1;
-    return times * spare <= wh_mismatch_limit(spare, CHIPPED);
+    return times * spare <= CHIPPED * wh_mismatch_limit(spare);
 }
 
 /* ------------------------------------------------------------------------------------ is it the notch */
