@@ -52,7 +52,7 @@ static bool watch(void *user, const wh_event_t events[], size_t count) {
 
 /* True if the station is where the layout has it, to the last bit. */
 static bool stands_as_taught(const wh_worker_t *worker, int32_t station) {
-    const wh_pose_t *real = &worker->places[station].base_from_station;
+    const wh_pose_t *real = &worker->room.places[station].base_from_station;
     const wh_pose_t *taught = &worker->study->layout->places[station].base_from_station;
     return wh_hash_pose(WH_HASH_START, real) == wh_hash_pose(WH_HASH_START, taught);
 }
