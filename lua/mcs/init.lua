@@ -122,8 +122,9 @@ return function(native)
   end
 
   local function define()
-    local targets = native.module("mcs/targets.lua")(native, lookup)
-    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
+    local align = native.module("mcs/align.lua")(native, nil, lookup, nil)
+    local targets = native.module("mcs/targets.lua")(native, lookup, align)
+    return native.module("mcs/definitions.lua")(native, lookup, targets, align, words)()
   end
 
   return open_prompt, survey, define

@@ -20,6 +20,9 @@ return function(native, errors)
   lookup.correction_fields = { "dx", "dy", "dz", "turn" }
   lookup.phases = { "extended", "up" }
 
+  -- If a GET makes good what ALIGN has found.
+  lookup.correct = { values = { true, false } }
+
   -- The fields of MOVE and LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
