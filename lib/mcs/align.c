@@ -40,9 +40,11 @@ static void make_points(const wh_mcs_edge_t *edge, const wh_sensor_t *sensor, si
     }
 }
 
-/* What the wafer should be; without marks if these are not to be looked for. */
-static wh_rim_t expected_rim(const wh_rim_t *nominal, bool with_marks) {
+/* What the wafer should be; without marks if these are not to be looked for. `glass`: the light that comes
+ * through it. */
+static wh_rim_t expected_rim(const wh_rim_t *nominal, bool with_marks, double glass) {
     wh_rim_t rim = *nominal;
+    rim.transmission = glass;
     if (!with_marks) {
         rim.notch.depth = 0;
         memset(rim.flats, 0, sizeof rim.flats);
@@ -93,7 +95,7 @@ static void push_sights(lua_State *L, const sights_t *sights) {
     wh_lua_set_integer(L, "missed", sights->missed);
 }
 
-/* native.estimate_edge(with marks): what the last scan says of its wafer, all in the chuck's frame, mm and rad:
+/* native.estimate_edge(with marks, glass): what the last scan says of its wafer, all in the chuck's frame, mm and rad:
  * `verdict`, the name of a status; the numbers of samples, by what they see; the `limits`; with a circle its
  * centre, `x` and `y`; with a verdict of OK and a mark the `mark` and its `direction`. */
 static int estimate_edge(lua_State *L) {
@@ -102,7 +104,7 @@ static int estimate_edge(lua_State *L) {
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     luaL_argcheck(L, edge->samples && scanner, 1, "there was no scan");
     const size_t count = (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
-    const wh_rim_t nominal = expected_rim(mcs->layout->nominal_rim, lua_toboolean(L, 1) != 0);
+    const wh_rim_t nominal = expected_rim(mcs->layout->nominal_rim, lua_toboolean(L, 1) != 0, luaL_checknumber(L, 2));
     const wh_align_limits_t limits = wh_align_limits_default();
     wh_rim_point_t *points = lua_newuserdatauv(L, count * sizeof *points, 0);
     wh_rim_ray_t *rays = lua_newuserdatauv(L, count * sizeof *rays, 0);

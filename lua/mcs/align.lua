@@ -182,8 +182,8 @@ return function(native, patterns, lookup, arm)
   end
 
   -- What the last scan says, or an error that says why it says nothing.
-  local function estimate(station, with_mark)
-    local seen = native.estimate_edge(with_mark)
+  local function estimate(station, own)
+    local seen = native.estimate_edge(own.mark ~= "none", own.glass or 0)
     if seen.verdict ~= "OK" then
       local reason = reasons[seen.verdict]
       native.fail(seen.verdict, reason and reason(seen, station) or nil)
@@ -192,15 +192,6 @@ return function(native, patterns, lookup, arm)
   end
 
   ------------------------------------------------------------------------------------------------- what is asked
-
-  local modes = { "robot", "stage", "pins" }
-  local marks = { "own", "none" }
-
-  -- What ALIGN may say: as in lookup.parameters.
-  align.fields = {
-    angle = { -360, 360, "degrees" }, mode = { values = modes }, mark = { values = marks },
-    correct = lookup.correct,
-  }
 
   local MISSING = {
     stage = 'mode: "stage" (expected "robot": a layout cannot say yet that the chuck of %s is on an XY stage)',
@@ -213,9 +204,9 @@ return function(native, patterns, lookup, arm)
     end
     local own = {}
     for name, value in pairs(options or {}) do
-      local kind = align.fields[name]
+      local kind = lookup.align_fields[name]
       if not kind then
-        lookup.refuse_field(name, value, lookup.names(align.fields))
+        lookup.refuse_field(name, value, lookup.names(lookup.align_fields))
       end
       own[name] = lookup.value(name, value, kind)
     end
@@ -302,17 +293,17 @@ return function(native, patterns, lookup, arm)
     local own = check_options(station, options)
     check_arm(station)
     check_wafer(station)
-    local with_mark, begin, before = own.mark ~= "none", native.utime(), turn_of(station)
+    local begin, before = native.utime(), turn_of(station)
     found[station.name] = nil
     scan(station, 1, "WAFER_LOST")
-    local first = estimate(station, with_mark)
+    local first = estimate(station, own)
     local by = first.mark and wrapped(math.rad(own.angle or 0) - first.direction - before) or 0
     if own.correct ~= false then
       check_correction(rotated(first, before + by))
     end
     turn_to(station, before + by + way_of(station), "WAFER_LOST")
     scan(station, -1, "WAFER_LOST")
-    local second, now = estimate(station, with_mark), turn_of(station)
+    local second, now = estimate(station, own), turn_of(station)
     compare(first, second, station)
     if own.correct ~= false then
       check_correction(rotated(second, now))
@@ -326,7 +317,7 @@ return function(native, patterns, lookup, arm)
   -- align("P", { angle = 90 }): see lua/README.md.
   function align.align(station, options)
     local angle = type(options) == "table" and options.angle or ""
-    local rest = lookup.fields_text(options, { "mode", "mark", "correct" })
+    local rest = lookup.fields_text(options, { "mode", "mark", "glass", "correct" })
     return arm.move(lookup.command("ALIGN", station, angle, rest), align_wafer, station, options)
   end
 

@@ -8,7 +8,7 @@ local ipairs, pairs, select, table, wh = ipairs, pairs, select, table, wh
 -- What stands for all other fields of a table: so a typo has a type that no value fits.
 local UNKNOWN = "waferhand.no_such_field"
 
-return function(native, lookup, targets, align, words)
+return function(native, lookup, targets, words)
   local lines = {}
 
   local function add(text, ...)
@@ -100,7 +100,7 @@ return function(native, lookup, targets, align, words)
     add_options("get_options", "What GET may say for itself.", own.get, common[1], common[2])
     add_options("put_options", "What PUT may say for itself.", own.put, common[1], common[2])
     add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.swap, common[1], common[2])
-    add_options("align_options", "What ALIGN may say for itself.", align.fields)
+    add_options("align_options", "What ALIGN may say for itself.", lookup.align_fields)
     add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
     add("")

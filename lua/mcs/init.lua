@@ -122,9 +122,8 @@ return function(native)
   end
 
   local function define()
-    local align = native.module("mcs/align.lua")(native, nil, lookup, nil)
-    local targets = native.module("mcs/targets.lua")(native, lookup, align)
-    return native.module("mcs/definitions.lua")(native, lookup, targets, align, words)()
+    local targets = native.module("mcs/targets.lua")(native, lookup)
+    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
   end
 
   return open_prompt, survey, define
