@@ -148,6 +148,7 @@ return function(native, patterns, lookup, arm, targets, align)
       for _, name in ipairs(lookup.correction_fields) do
         fields[#fields + 1] = prefix .. name
       end
+      fields[#fields + 1] = prefix .. "correct"
       fields[#fields + 1] = prefix .. "stop"
     end
     return lookup.command(word, station, slot, lookup.fields_text(options, fields))
