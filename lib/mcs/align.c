@@ -104,7 +104,8 @@ static int estimate_edge(lua_State *L) {
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     luaL_argcheck(L, edge->samples && scanner, 1, "there was no scan");
     const size_t count = (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
-    const wh_rim_t nominal = expected_rim(mcs->layout->nominal_rim, lua_toboolean(L, 1) != 0, luaL_checknumber(L, 2));
+    const wh_rim_t nominal =
+        expected_rim(mcs->layout->nominal_rim, lua_toboolean(L, 1) != 0, luaL_checknumber(L, 2));
     const wh_align_limits_t limits = wh_align_limits_default();
     wh_rim_point_t *points = lua_newuserdatauv(L, count * sizeof *points, 0);
     wh_rim_ray_t *rays = lua_newuserdatauv(L, count * sizeof *rays, 0);
@@ -116,8 +117,7 @@ static int estimate_edge(lua_State *L) {
     wh_sandbox_charge(L, STEPS_PER_SAMPLE * (uint64_t)count);
     make_points(edge, &scanner->sensor, count, points, &sights);
     const wh_rim_scan_t scan = {points, count, 0, scanner->sensor.pixel};
-    const wh_status_t status =
-        wh_align_estimate(&scan, &scanner->sensor, &nominal, &limits, rays, &result);
+    const wh_status_t status = wh_align_estimate(&scan, &scanner->sensor, &nominal, &limits, rays, &result);
     lua_createtable(L, 0, 16);
     wh_lua_set_text(L, "verdict", wh_status_name(status == WH_OK ? result.verdict : status));
     push_sights(L, &sights);

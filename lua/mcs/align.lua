@@ -198,7 +198,7 @@ return function(native, patterns, lookup, arm)
     pins = 'mode: "pins" (expected "robot": a layout cannot say yet that pins beside the chuck of %s lift a wafer)',
   }
 
-  local function check_options(station, options)
+  local function read_options(options)
     if options ~= nil and type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
@@ -210,13 +210,17 @@ return function(native, patterns, lookup, arm)
       end
       own[name] = lookup.value(name, value, kind)
     end
-    if MISSING[own.mode] then
-      native.fail("BAD_ARGUMENT", MISSING[own.mode]:format(station.name))
-    elseif own.mark == "none" and own.angle then
+    if own.mark == "none" and own.angle then
       local text = 'angle: %.10g (expected none: with mark = "none" nothing is turned)'
       native.fail("BAD_ARGUMENT", text:format(own.angle))
     end
     return own
+  end
+
+  local function check_mode(station, mode)
+    if MISSING[mode] then
+      native.fail("BAD_ARGUMENT", MISSING[mode]:format(station.name))
+    end
   end
 
   local function check_wafer(station)
@@ -289,8 +293,9 @@ return function(native, patterns, lookup, arm)
   -- The chuck turns to where the second scan, clockwise, ends with the mark at its angle; without a mark, with
   -- the wafer as it was. So the chuck ends within half a turn of where it began.
   local function align_wafer(name, options)
+    local own = read_options(options)
     local station = with_sensor(align.prealigner(name))
-    local own = check_options(station, options)
+    check_mode(station, own.mode)
     check_arm(station)
     check_wafer(station)
     local begin, before = native.utime(), turn_of(station)

@@ -459,9 +459,15 @@ static void a_get_goes_to_where_align_found_the_wafer(void **state) {
 
 static void what_align_found_turns_with_the_chuck(void **state) {
     (void)state;
-    static const char *const kept[] = {"WAIT 1",      "HOME",           "READY P 1",
-                                       "MAP A",       "GET A 2|PUT A 2", "GET P 1|UNDO",
-                                       "VALVE PA 1|UNDO", "ROTATE P 90|ROTATE P -90", "EDGE_SCAN P|ROTATE P -0.2"};
+    static const char *const kept[] = {"WAIT 1",
+                                       "HOME",
+                                       "READY P 1",
+                                       "MAP A",
+                                       "GET A 2|PUT A 2",
+                                       "GET P 1|UNDO",
+                                       "VALVE PA 1|UNDO",
+                                       "ROTATE P 90|ROTATE P -90",
+                                       "EDGE_SCAN P|ROTATE P -0.2"};
     for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i) {
         execute_all("RESTORE aligned");
         execute_all(kept[i]);
@@ -516,9 +522,10 @@ static void a_swap_takes_where_align_found_the_wafer(void **state) {
 static void an_align_that_cannot_be(void **state) {
     (void)state;
     const int64_t slice = session.mcs.track.slice;
-    static const char *const bad[] = {"PUT P 1 correct=false", "SWAP P 1 correct=false", "READY P 1 correct=false",
-                                      "ALIGN P 361",           "ALIGN P mode=pins",      "ALIGN P mark=flat",
-                                      "ALIGN P glass=1",       "ALIGN P correct=0",      "ALIGN P stop=up"};
+    static const char *const bad[] = {
+        "PUT P 1 correct=false", "SWAP P 1 correct=false", "READY P 1 correct=false",
+        "ALIGN P 361",           "ALIGN P mode=pins",      "ALIGN P mark=flat",
+        "ALIGN P glass=1",       "ALIGN P correct=0",      "ALIGN P stop=up"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
         assert_answer(bad[i], "ERROR 48 BAD_ARGUMENT: ");
     }
@@ -532,7 +539,8 @@ static void an_align_that_cannot_be(void **state) {
     assert_answer("ALIGN P", "ERROR 65 IN_PHASE: ");
     assert_answer("EDGE_SCAN P", "ERROR 65 IN_PHASE: ");
     assert_answer("STOP", "OK");
-    assert_answer("ALIGN P", "ERROR 52 STOPPED: a command was stopped before its end; the arm stands in P slot 1");
+    assert_answer("ALIGN P",
+                  "ERROR 52 STOPPED: a command was stopped before its end; the arm stands in P slot 1");
     assert_answer("RECOVER", "OK");
     assert_answer("ALIGN P", "OK mark=notch ");
 }
