@@ -34,6 +34,8 @@
 #include "motion/move.h"
 #include "motion/robot.h"
 #include "motion/line.h"
+#include "motion/chain.h"
+#include "motion/chain_line.h"
 #include "motion/machine.h"
 #include "motion/track.h"
 
