@@ -11,4 +11,4 @@ expect(math.abs(found.notch - 37) < 0.01 and math.abs(found.after_notch - 90) < 
 expect(math.abs(found.correction - found.eccentricity) < 0.001, "it still is as far off the axis")
 get("P", 1)   put("A", 1)
 expect_offset("W01", "A", 1, 0, 0, 0.001)
-expect(math.abs(measure("A/1", "W01").turn - 90) < 0.01, "its notch points to 90 degrees in A")
+expect(math.abs(measure("A/1", "W01").heading - 90) < 0.01, "its notch points to 90 degrees in A")

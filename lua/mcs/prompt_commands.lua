@@ -225,7 +225,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local found = queries.measure(arguments[1], arguments[2])
     return tokens.pairs {
       { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
-      { "angle_deg", found.angle }, { "turn_deg", found.turn },
+      { "angle_deg", found.angle }, { "turn_deg", found.turn }, { "heading_deg", found.heading },
     }
   end
 
