@@ -46,6 +46,7 @@
 #include "align/circle.h"
 #include "align/marks.h"
 #include "align/align.h"
+#include "align/calibration.h"
 #include "align/centring.h"
 #include "align/beam.h"
 #include "align/teaching.h"

@@ -272,6 +272,41 @@ static bool scan(int32_t samples) {
     return good && (samples < 3600 || result.verdict == WH_OK);
 }
 
+/* A known wafer in two places, the chuck turning either way: what the sensor is off by. False if they do not tell. */
+static bool calibrate(void) {
+    static wh_rim_point_t points[5][180];
+    static wh_rim_ray_t rays[180];
+    const wh_rim_t rim = wh_rim_nominal(150);
+    const wh_trial_t trial = {20240229, 7};
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_calibration_scan_t scans[4];
+    wh_calibration_t found = {{0, 0, 0, 0}, 0, 0, 0, 0, 0, 0, 0};
+    sensor.samples = 180;
+    sensor.noise = 0.005;
+    sensor.error.offset = 0.0625;
+    sensor.error.gain = -0.0005;
+    sensor.error.latency = 0.00001;
+    for (uint32_t k = 0; k < 4; ++k) {
+        const double speed = k % 2 == 0 ? 6 : -6;
+        const wh_placement_t placement = {k < 2 ? -7 : 5, k < 2 ? 2 : -3, 0.5};
+        for (uint32_t i = 0; i < 180; ++i) {
+            const wh_glance_t glance = {wh_sensor_angle(&sensor, speed > 0 ? i : 179 - i), speed, trial,
+                                        180 * k + i};
+            points[k][i] =
+                wh_sensor_point(&sensor, NULL, &glance, wh_sensor_read(&sensor, &rim, &placement, &glance));
+        }
+        const wh_calibration_scan_t one = {points[k], 180, speed, k < 2 ? 0 : 12, k < 2 ? 0 : -5};
+        scans[k] = one;
+    }
+    const wh_status_t status = wh_calibration_solve(&sensor, 150, 0, scans, 4, points[4], rays, &found, NULL);
+    add_double(found.error.offset);
+    add_double(found.error.zero);
+    add_double(found.error.gain);
+    add_double(found.error.latency);
+    add_double(found.sd_gain);
+    return status == WH_OK && fabs(found.error.offset - 0.0625) < 0.05;
+}
+
 /* A wafer on a gripper goes through two beams; when, and the centre that this tells. False if it tells none. */
 static bool pass_beams(void) {
     const double across[2] = {60, -110};
@@ -324,7 +359,7 @@ static bool scans(void) {
     for (int wafer = 0; wafer < 10; ++wafer) {
         good = scan(wafer == 0 ? 3600 : 180) && good;
     }
-    return good;
+    return calibrate() && good;
 }
 
 /* A robot of each kind with all that it may have. */
