@@ -22,3 +22,4 @@ for slot, wafer in ipairs(wafers) do
   expect(math.sqrt(dx * dx + dy * dy) <= 0.05, wafer .. " lies in the middle, to 0.05 mm")
   expect(math.abs(notch) <= 0.1, wafer .. " points to 0 degrees, to 0.1")
 end
+print("")
