@@ -15,8 +15,12 @@ return function(native, patterns, lookup, arm)
   -- Two scans of one wafer say the same to six standard deviations of what passes for sure: mm and rad.
   local SAME_CENTRE, SAME_DIRECTION = 0.02, math.rad(0.07)
 
-  -- By station: where the wafer's centre is in its chuck's frame, as the last ALIGN there found it; nothing
-  -- once something else may have moved the wafer on the chuck, or off it.
+  -- How well a blade is in line with a chuck's frame, as they were taught: rad.
+  local AS_TAUGHT = math.rad(0.03)
+
+  -- By station: where the wafer's centre and its mark are in its chuck's frame, as the last ALIGN there found
+  -- them, and if a GET makes that good; nothing once something else may have moved the wafer on the chuck, or off
+  -- it.
   local found = {}
 
   local function wrapped(angle)
@@ -312,8 +316,9 @@ return function(native, patterns, lookup, arm)
     compare(first, second, station)
     if own.correct ~= false then
       check_correction(rotated(second, now))
-      found[station.name] = { x = second.x, y = second.y }
     end
+    found[station.name] = { x = second.x, y = second.y, direction = second.direction, sd = second.sd_direction,
+                            corrects = own.correct ~= false }
     local answer = describe(first, second, before, now)
     answer.seconds = (native.utime() - begin) / 1e6
     return answer
@@ -337,7 +342,8 @@ return function(native, patterns, lookup, arm)
   -- now; nil if nothing was found there, or if the command's options say that it goes its own way.
   function align.correction(name, options, prefix)
     local own, at = type(options) == "table" and options or {}, found[name]
-    if not at or own[prefix .. "correct"] == false or own[prefix .. "dx"] ~= nil or own[prefix .. "dy"] ~= nil then
+    local is_own = own[prefix .. "correct"] == false or own[prefix .. "dx"] ~= nil or own[prefix .. "dy"] ~= nil
+    if not at or not at.corrects or is_own then
       return nil
     end
     local station = native.layout.stations[name]
@@ -346,6 +352,16 @@ return function(native, patterns, lookup, arm)
     end
     local dx, dy = rotated(at, turn_of(station))
     return { dx = rounded(dx), dy = rounded(dy) }
+  end
+
+  -- In which direction of its frame a gripper that takes the wafer of this target has its notch, and how sure that
+  -- is; nothing if no notch was found there.
+  function align.notch(target)
+    local at = found[target.station]
+    if at and at.direction then
+      local turn = turn_of(native.layout.stations[target.station]) - math.rad(target.turn)
+      return wrapped(at.direction + turn), math.sqrt(at.sd * at.sd + AS_TAUGHT * AS_TAUGHT)
+    end
   end
 
   -- The wafer is taken from the station, another one comes, or its chuck lets it go.

@@ -4,10 +4,11 @@
 local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 
 return function(native, patterns, lookup)
-  local arm = native.module("mcs/arm.lua")(native, lookup)
+  local centring = native.module("mcs/centring.lua")(native, lookup)
+  local arm = native.module("mcs/arm.lua")(native, lookup, centring)
   local align = native.module("mcs/align.lua")(native, patterns, lookup, arm)
   local targets = native.module("mcs/targets.lua")(native, lookup, align)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align)
+  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring)
 
   ----------------------------------------------------------------------------------------------- single moves
 
@@ -29,6 +30,9 @@ return function(native, patterns, lookup)
   end
 
   commands.edge_scan, commands.align = align.edge_scan, align.align
+
+  commands.centring = centring.last
+  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then

@@ -7,6 +7,7 @@ study {
 }
 cell "../layouts/lot.lua"
 
+print("")
 print("wafer    before: dx      dy   notch   after: dx      dy    notch  seconds")
 for slot, wafer in ipairs(wafers) do
   get("A", slot)   put("P", 1)
