@@ -195,8 +195,8 @@ return function(native, lookup, centring)
   end
 
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
-  -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads, whatever its sensor says; a
-  -- controller would look.
+  -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
+  -- whatever its sensor says; a controller would look.
   local function perform(request, target)
     if request.centre then
       return centring.answer(request.centre)
