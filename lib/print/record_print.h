@@ -41,7 +41,8 @@
  *                 dr_proj_xy_norm (mm), n1_proj_n2, margins { projz, projxy, planar }, failed (a list of
  *                 "projz", "projxy", "planar"), measured_utime (us, null without a layout); and by kind:
  *                 from (handed_over: the gripper that let go), holder (contested), other (slot_occupied:
- *                 the wafer that lies there), height (released_unsupported, mm), status and message
+ *                 the wafer that lies there), height (released_unsupported, mm; and if it is for its tilt value and
+ *                 limit, degrees), status and message
  *                 (bad_input, whose measured values are null)
  *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
  *                 none): the smallest gaps of a run whose collisions were checked
