@@ -511,38 +511,49 @@ double tukey(double off, double scatter) {
     return std::fabs(part) < 1 ? 1 - part * part : 0; /* the root of the weight */
 }
 
-/* How far direction (rad) and size (mm; the opening's rad) are from Eigen's; -1 if the samples are not the same. */
-double notch_off(const Scan &scan, const wh_align_result_t &result) {
-    const wh_circle_t &circle = result.circle;
-    const wh_notch_t &notch = result.notch;
+/* The least squares with the weights that a V, which is x, gives to the samples of the notch; how many count. */
+Eigen::VectorXd after(const Eigen::VectorXd &x, const Scan &scan, const wh_circle_t &circle, size_t &used) {
     const double bottom = wh_rim_nominal(150).notch.bottom;
-    const auto below = [&](double half) { return bottom * (1 / std::sin(half) - 1); };
+    const double full = circle.radius - x(1) - bottom * (1 / std::sin(x(2)) - 1);
     Lines lines;
     lines.vee = true;
     lines.half = (90 / 2. + 0.75) * rad;
     lines.part = circle.scatter / (0.75 * rad);
-    Eigen::VectorXd x(3);
-    x << notch.direction, circle.radius - notch.depth - below(notch.opening / 2), notch.opening / 2;
-    for (const size_t i : dent_at(scan, circle, notch.direction)) {
+    for (const size_t i : dent_at(scan, circle, x(0))) {
         Lines::Sample sample = lines.sample(scan, circle, i);
         const Eigen::Vector2d rim = sample.from + sample.radius * sample.along;
         sample.side = rim.y() * std::cos(x(0)) - rim.x() * std::sin(x(0)) < 0 ? -1 : 1;
         const double off = lines.off(x, sample);
         const double depth = off - scan.rays[i].residual;
         sample.root = tukey(off, circle.scatter);
-        if (depth >= 0.08 * notch.depth && depth <= 0.7 * notch.depth && sample.root > 0) {
+        if (depth >= 0.08 * full && depth <= 0.7 * full && sample.root > 0) {
             lines.taken.push_back(sample);
         }
     }
-    if (lines.taken.size() != notch.used) {
-        return -1;
-    }
+    used = lines.taken.size();
     Eigen::VectorXd start = x;
     start(0) += 1e-4;
     start(1) += 0.02;
     start(2) -= 0.01;
-    const Eigen::VectorXd found = lines.minimum(start);
-    return (found - x).cwiseAbs().maxCoeff();
+    return lines.minimum(start);
+}
+
+/* How far direction (rad), apex (mm) and opening (rad) are from Eigen's; -1 if there is no such V, since the samples that
+ * count come and go. */
+double notch_off(const Scan &scan, const wh_align_result_t &result) {
+    const wh_notch_t &notch = result.notch;
+    const double half = notch.opening / 2;
+    const double below = wh_rim_nominal(150).notch.bottom * (1 / std::sin(half) - 1);
+    Eigen::VectorXd x(3);
+    x << notch.direction, result.circle.radius - notch.depth - below, half;
+    size_t used = 0;
+    const Eigen::VectorXd found = after(x, scan, result.circle, used);
+    const double off = (found - x).cwiseAbs().maxCoeff();
+    if (off > 1e-9 && (after(found, scan, result.circle, used) - found).cwiseAbs().maxCoeff() > 1e-9) {
+        return -1;
+    }
+    assert_int_equal(used, notch.used);
+    return off;
 }
 
 double flat_off(const Scan &scan, const wh_circle_t &circle, const wh_flat_t &flat) {
@@ -591,7 +602,7 @@ void the_marks_are_eigens(void **) {
             largest[vee] = std::max(largest[vee], off);
         }
     }
-    std::printf("off Eigen's by at most %.2e mm or rad in %d notches (%d have other samples), %.2e in %d "
+    std::printf("off Eigen's by at most %.2e mm or rad in %d notches (%d have none), %.2e in %d "
                 "flats (%d)\n",
                 largest[1], compared[1], others[1], largest[0], compared[0], others[0]);
     for (int kind = 0; kind < 2; ++kind) {
