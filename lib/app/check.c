@@ -18,14 +18,8 @@
 
 typedef struct {
     wh_log_arguments_t log; /* its path is the first operand */
-    wh_option_list_t paths, parameters;
+    wh_option_list_t paths;
 } arguments_t;
-
-static const wh_option_t options[] = {{"set", 0, "NAME=VALUE",
-                                       "Hand the checks a parameter, params.NAME: a number if VALUE is one, "
-                                       "true, false or text",
-                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, parameters)},
-                                      {0}};
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
@@ -35,8 +29,7 @@ static void check(const void *given, struct argp_state *state) {
     }
 }
 
-static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check}, {wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {{wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "check",
@@ -46,7 +39,8 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "file",
     .operand_variable = offsetof(arguments_t, paths),
-    .operands = 2};
+    .operands = 2,
+    .check = check};
 
 /* What the checks see of the run. */
 typedef struct {
@@ -352,8 +346,8 @@ static const char events_text[] =
 
 static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox_result_t *result) {
     const wh_sandbox_limits_t limits = {0};
-    checked->sandbox =
-        wh_sandbox_new_with(&limits, arguments->parameters.items, arguments->parameters.count, result);
+    checked->sandbox = wh_sandbox_new_with(&limits, arguments->log.parameters.items,
+                                           arguments->log.parameters.count, result);
     if (!checked->sandbox) {
         return false;
     }
@@ -394,7 +388,7 @@ static int play(const arguments_t *arguments, checked_t *checked) {
         fprintf(stderr, "%s\n", result.message);
         return WH_EXIT_USAGE;
     }
-    if (wh_sandbox_find_unread(checked->sandbox, unread)) {
+    if (wh_sandbox_find_unread(checked->sandbox, unread) && !wh_log_arguments_are_set_read(&checked->run)) {
         fprintf(stderr, "%s: %s\n", checked->path, unread);
         return WH_EXIT_USAGE;
     }
@@ -435,6 +429,6 @@ int wh_app_check(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = arguments.paths.count == 2 ? check_log(&arguments) : WH_EXIT_USAGE;
     wh_option_list_free(&arguments.paths);
-    wh_option_list_free(&arguments.parameters);
+    wh_option_list_free(&arguments.log.parameters);
     return status;
 }

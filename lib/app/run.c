@@ -151,6 +151,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
                                         .expected = told.expected,
                                         .cycle = told.cycle,
                                         .edge = told.edge,
+                                        .centring = told.centring,
                                         .finished = told.finished,
                                         .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};

@@ -33,9 +33,9 @@
  *   commands:     line, text, error (0: none), begin_s, end_s, split (of the command); message where there
  *                 is one
  *   wafers:       name, holder (or null), station, slot, dx, dy, dz (mm), tilt_deg (all six null when it
- *                 lies in no slot), notch_deg (where its notch points, about the station's z from its x; in
- *                 no slot about base's; null without a notch), position [3] (mm), rotation [3][3]
- *                 (row by row)
+ *                 lies in no slot), notch_deg (where its notch points, by its own rim if it has one, about
+ *                 the station's z from its x; in no slot about base's; null without a notch), position [3]
+ *                 (mm), rotation [3][3] (row by row)
  *   events:       utime (us), kind, wafer, gripper (names or null), dr_proj_z, dr_proj_xy [3],
  *                 dr_proj_xy_norm (mm), n1_proj_n2, margins { projz, projxy, planar }, failed (a list of
  *                 "projz", "projxy", "planar"), measured_utime (us, null without a layout); and by kind:

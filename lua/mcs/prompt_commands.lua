@@ -47,6 +47,8 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
     phase = function() return lookup.phases end,
+    mode = function() return lookup.align_fields.mode.values end,
+    mark = function() return lookup.align_fields.mark.values end,
     name = function() return {} end, save = states.names,
   }
 
@@ -66,11 +68,16 @@ return function(native, commands, queries, lookup, tokens, states, keep)
         options[prefix .. name] = "number"
       end
       options[prefix .. "stop"] = "phase"
+      options[prefix .. "centre"] = "switch"
     end
     return options
   end
 
-  local transfer_options, swap_options = carrying_options(""), carrying_options("get_", "put_")
+  local get_options, put_options = carrying_options(""), carrying_options("")
+  local swap_options = carrying_options("get_", "put_")
+  get_options.correct, swap_options.get_correct = "switch", "switch"
+
+  local align_options = { mode = "mode", mark = "mark", glass = "number", correct = "switch" }
 
   local function fields(list)
     local options = {}
@@ -131,9 +138,13 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   local function put(arguments, options)
-    local held = held_wafers()
+    local held, before = held_wafers(), commands.centring()
     return carried(function()
-      return { { "wafer", held[effector_for(arguments, options)] } }
+      local list, seen = { { "wafer", held[effector_for(arguments, options)] } }, commands.centring()
+      if seen and seen ~= before then
+        list[2], list[3], list[4] = { "dx", seen.dx }, { "dy", seen.dy }, { "sd", seen.sd }
+      end
+      return list
     end, commands.put, arguments[1], arguments[2], options)
   end
 
@@ -158,6 +169,48 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local codes
     local time = timed(function() codes = commands.map(arguments[1], options) end)
     return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
+  end
+
+  -- How many samples there are, and of those that came the least and the most; the samples themselves are
+  -- published.
+  local function edge_scan(arguments)
+    local scan, least, most
+    local time = timed(function() scan = commands.edge_scan(arguments[1]) end)
+    for _, sample in ipairs(scan.samples) do
+      if sample >= 0 then
+        least = math.min(least or sample, sample)
+        most = math.max(most or sample, sample)
+      end
+    end
+    return tokens.pairs { { "count", scan.count }, { "first", scan.first }, { "missed", scan.missed },
+      { "least", least }, { "most", most }, time }
+  end
+
+  -- The fields of an answer in order, and as they are called in it.
+  local ALIGNED = {
+    { "mark", "mark" }, { "eccentricity", "eccentricity" }, { "direction", "direction_deg" }, { "dx", "dx" },
+    { "dy", "dy" }, { "notch", "notch_deg" }, { "turn", "turn_deg" }, { "correction", "correction" },
+    { "correction_angle", "correction_angle_deg" }, { "after_dx", "after_dx" }, { "after_dy", "after_dy" },
+    { "after_notch", "after_notch_deg" }, { "radius", "radius" }, { "sd_centre", "sd_centre" },
+    { "sd_notch", "sd_notch_deg" }, { "seconds", "seconds" },
+  }
+
+  local function align(arguments, options)
+    local list = {}
+    options.angle = arguments[2]
+    local found = commands.align(arguments[1], options)
+    for _, field in ipairs(ALIGNED) do
+      list[#list + 1] = found[field[1]] and { field[2], found[field[1]] }
+    end
+    return tokens.pairs(list)
+  end
+
+  local function teach(arguments)
+    local taught
+    local time = timed(function() taught = commands.teach(arguments[1]) end)
+    return tokens.pairs {
+      { "x", taught.at[1] }, { "y", taught.at[2] }, { "z", taught.at[3] }, { "yaw_deg", taught.rpy[3] }, time,
+    }
   end
 
   local function offset_text(dx, dy, dz, tilt)
@@ -185,7 +238,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local found = queries.measure(arguments[1], arguments[2])
     return tokens.pairs {
       { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
-      { "angle_deg", found.angle }, { "turn_deg", found.turn },
+      { "angle_deg", found.angle }, { "turn_deg", found.turn }, { "heading_deg", found.heading },
     }
   end
 
@@ -367,9 +420,9 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   prompt_commands.commands = {
-    GET = { takes = { "station", "slot" }, options = transfer_options, run = get,
+    GET = { takes = { "station", "slot" }, options = get_options, run = get,
             does = "takes the wafer there" },
-    PUT = { takes = { "station", "slot" }, options = transfer_options, run = put,
+    PUT = { takes = { "station", "slot" }, options = put_options, run = put,
             does = "sets the wafer down there" },
     CONTINUE = { takes = {}, run = continue,
                  does = "goes on with what is held, to its next stop or its end" },
@@ -379,6 +432,8 @@ return function(native, commands, queries, lookup, tokens, states, keep)
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
+    TEACH = { takes = { "station" }, run = teach,
+              does = "finds out where the station truly is, by its beam and the wafer in slot 1" },
     HOME = { takes = {}, run = moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },
     RECOVER = { takes = {}, run = moving(commands.recover),
@@ -396,6 +451,11 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     VERSION = { takes = {}, run = version, keeps = true, does = "the program's version" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
                does = "turns a prealigner's chuck by so much" },
+    EDGE_SCAN = { takes = { "station" }, run = edge_scan,
+                  does = "turns a prealigner's chuck once round while its edge sensor looks at the wafer" },
+    ALIGN = { takes = { "station", "degrees" }, optional = true, options = align_options, run = align,
+              does = "turns a prealigner's wafer until its notch points there, to 0 without degrees; "
+                .. "the next GET makes good how it lies" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
               does = "0 opens it (vacuum on), 1 closes it" },
     MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true,

@@ -2,9 +2,9 @@
 -- which only goes there; MAP, which only looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, pcall, select, type = ipairs, pcall, select, type
+local ipairs, pairs, pcall, select, type = ipairs, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets)
+return function(native, patterns, lookup, arm, targets, align, centring)
   local transfer = {}
 
   local slot_map = native.module("mcs/slot_map.lua")(native)
@@ -58,8 +58,13 @@ return function(native, patterns, lookup, arm, targets)
     return text == "-0.000" and "0.000" or text
   end
 
-  -- Why the chuck did not take what the running command let go: that wafer still lies there.
-  local function explain_lost(chuck)
+  -- Why the chuck did not take the wafer: it was not let go, or what the running command let go still lies there.
+  local function explain_lost(gripper, chuck)
+    local kept = native.held(gripper)
+    if kept then
+      local text = "%s still holds %s: its valve or vacuum did not let go of it when %s was to take it"
+      return text:format(name_of(gripper), kept, name_of(chuck))
+    end
     local wafer, dx, dy, dz, reasons = native.let_go(chuck)
     if not wafer then
       return explain(chuck)
@@ -97,8 +102,10 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local function judge_put(target, became)
-    if became == "lost" then
-      native.fail("WAFER_LOST", explain_lost(target.chuck))
+    if became == "uncentred" then
+      centring.fail(target)
+    elseif became == "lost" then
+      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck))
     elseif became == "loose" then
       fail_late(target, target.chuck)
     end
@@ -117,11 +124,34 @@ return function(native, patterns, lookup, arm, targets)
     kind.check_gripper(target)
     kind.check_slot(target)
     local plan = arm.rehearse(kind.pattern, target, true)
+    local notch, deviation
+    if word == "get" then
+      notch, deviation = align.notch(target)
+    end
     slot_map.forget(target)
+    align.forget(target.station)
     arm.drive(plan, function(became)
       kind.judge(target, became)
       kind.note(target)
+      centring.know_notch(target.gripper, notch, deviation)
     end)
+    return target.centred
+  end
+
+  -- The options with what an ALIGN has found for the GET, which they do not say themselves.
+  local function with_found(station, options, prefix)
+    local found = align.correction(station, options, prefix)
+    if not found then
+      return options
+    end
+    local all = {}
+    for name, value in pairs(type(options) == "table" and options or {}) do
+      all[name] = value
+    end
+    for name, value in pairs(found) do
+      all[prefix .. name] = value
+    end
+    return all
   end
 
   -- The command as the record has it: with its corrections, and where it stops.
@@ -131,17 +161,19 @@ return function(native, patterns, lookup, arm, targets)
       for _, name in ipairs(lookup.correction_fields) do
         fields[#fields + 1] = prefix .. name
       end
+      fields[#fields + 1] = prefix .. "correct"
       fields[#fields + 1] = prefix .. "stop"
     end
     return lookup.command(word, station, slot, lookup.fields_text(options, fields))
   end
 
   function transfer.get(station, slot, options)
-    arm.move(text_of("GET", station, slot, options, ""), carry, "get", station, slot, options)
+    local text = text_of("GET", station, slot, with_found(station, options, ""), "")
+    arm.move(text, carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
-    arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
+    return arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------- SWAP
@@ -180,23 +212,31 @@ return function(native, patterns, lookup, arm, targets)
     end
     local empty, loaded = choose_grippers()
     local give = targets.at("put", station, slot, options, loaded, "put_")
+    if give.centre then
+      native.fail("BAD_ARGUMENT", "put_centre: true (expected false: the beams would see both wafers of a SWAP)")
+    end
     take.gripper = empty
     local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
     check_empty(take)
     slot_map.check_get(take)
     local plan = arm.rehearse(patterns.swap, target, true)
+    local notch, deviation = align.notch(take)
     slot_map.forget(take)
+    align.forget(take.station)
     arm.drive(plan, function(became)
       judge_get(take, became)
       judge_put(give, became)
       slot_map.note_put(give)
+      centring.know_notch(take.gripper, notch, deviation)
+      centring.know_notch(give.gripper)
     end)
   end
 
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
-    arm.move(text_of("SWAP", station, slot, options, "get_", "put_"), swap, station, slot, options)
+    local text = text_of("SWAP", station, slot, with_found(station, options, "get_"), "get_", "put_")
+    arm.move(text, swap, station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------ READY

@@ -238,7 +238,7 @@ static void each_kind_has_its_words(void **state) {
         {WH_EVENT_SLOT_OCCUPIED, "slot occupied: wafer 2, gripper 1: wafer 3 lies in that slot"},
         {WH_EVENT_PLACED_OFF_CENTRE,
          "placed off centre: wafer 2, gripper 1: 0.750 mm beside the centre (limit 0.5 mm)"},
-        {WH_EVENT_PLACED_ASKEW, "placed askew: wafer 2, gripper 1: tilted by 42.972 deg"},
+        {WH_EVENT_PLACED_ASKEW, "placed askew: wafer 2, gripper 1: tilted by 42.972 deg (limit 28.6479 deg)"},
         {WH_EVENT_SETTLED, "settled: wafer 2, gripper 1: 0.750 mm lower"},
         {WH_EVENT_HIT, "hit: wafer 2, gripper 1: part 4 and part 5 touch at 1.000, -2.000, 0.125 mm"},
         {WH_EVENT_UNDECIDED,
