@@ -1,41 +1,28 @@
 /* What the cell says of a release, and how the wafer then comes to lie. */
-#include "../math/trig.h"
 #include "station.h"
 
 /* A wafer that is nearer to its slot's plane than this, mm, lies on it. */
 #define SUPPORT_TOUCH WH_REAL(1e-3)
 
-/* What is below a wafer: the nearest slot's plane, or base's floor. Less than projz below a plane the wafer is
- * on it. */
-typedef struct {
-    wh_real_t height;
-    wh_real_t tilt; /* against that slot, if the wafer would lie in it but for that; else 0 */
-} support_t;
-
-static support_t find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {
-    support_t support = {base_from_wafer->r.z, 0};
+/* Finds what is below a wafer, the nearest slot's plane or base's floor, and how far; less than projz below a
+ * plane the wafer is on it. A wafer that is in no slot, though it is no farther than half a pitch above that
+ * plane, is so for its tilt. */
+static void find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_event_t *said) {
     bool found = false;
+    said->height = base_from_wafer->r.z;
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         for (int32_t slot = 1; slot <= station->slots; ++slot) {
             const wh_place_t place = wh_station_measure(station, slot, base_from_wafer);
             const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
             if (aside < cell->tolerance.projxy && place.dz > -cell->tolerance.projz &&
-                (!found || place.dz < support.height)) {
-                support.height = place.dz;
-                support.tilt = place.dz < station->pitch / 2 ? place.tilt : 0;
+                (!found || place.dz < said->height)) {
+                said->height = place.dz;
+                said->value = place.dz < station->pitch / 2 ? place.tilt : 0;
                 found = true;
             }
         }
     }
-    return support;
-}
-
-/* The tilt that a wafer in a slot may have at most, rad. */
-static wh_real_t most_tilt(const wh_cell_t *cell) {
-    const wh_real_t planar = cell->tolerance.planar;
-    const wh_real_t square = 1 - planar * planar;
-    return wh_atan2(square > 0 ? wh_real_sqrt(square) : 0, planar);
 }
 
 /* True if a wafer lies in this very slot. A wafer that a blade holds over the slot only passes. */
@@ -72,12 +59,7 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
     const int32_t wafer = list->events[release].wafer;
     wh_event_t *said = append_as(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
     if (said != NULL) {
-        const support_t support = find_support(cell, &table->storage.wafers[wafer].base_from_wafer);
-        said->height = support.height;
-        if (support.tilt >= most_tilt(cell)) {
-            said->value = support.tilt;
-            said->limit = most_tilt(cell);
-        }
+        find_support(cell, &table->storage.wafers[wafer].base_from_wafer, said);
     }
 }
 

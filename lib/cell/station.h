@@ -79,8 +79,8 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
  * room:
  *   - WH_EVENT_RELEASED_UNSUPPORTED: the wafer lies in no slot. `height` is its height above the nearest slot
  *     below it within tolerance.projxy, or else above base's z = 0 (negative below it). Less than
- *     tolerance.projz below a slot it is on that slot, and its height negative. If it would lie there but for its
- *     tilt, `value` is that and `limit` the largest that a slot takes, rad; else both are 0;
+ *     tolerance.projz below a slot it is on that slot, and its height negative. If it would lie there but
+ *     for its tilt, `value` is that, rad; else 0;
  *   - WH_EVENT_SLOT_OCCUPIED: another wafer, free or held by the station's chuck, lies in the same slot.
  *     `other` is its index, the lowest;
  *   - WH_EVENT_PLACED_OFF_CENTRE, WH_EVENT_PLACED_ASKEW: the wafer lies in a slot beyond the cell's limits.

@@ -149,9 +149,8 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
         break;
     case WH_EVENT_RELEASED_UNSUPPORTED:
         (void)wh_json_set(object, "height %g", event->height);
-        if (event->limit > 0) {
-            (void)wh_json_set(object, "value %g limit %g", wh_deg_from_rad(event->value),
-                              wh_deg_from_rad(event->limit));
+        if (event->value > 0) {
+            (void)wh_json_set(object, "value %g", wh_deg_from_rad(event->value));
         }
         break;
     case WH_EVENT_BAD_INPUT:
