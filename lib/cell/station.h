@@ -12,7 +12,7 @@
  *     stack of wh_station_slot                  56     56       8     20
  *     stack of wh_station_measure              336    336     168    200
  *     stack of wh_cell_locate                  424    424     232    264
- *     stack of wh_cell_judge                   592    592     352    384
+ *     stack of wh_cell_judge                   576    576     344    376
  *     stack of wh_cell_settle                  616    616     352    384
  *     size of wh_station_t                     120             60
  *     size of wh_cell_t                         56             32
