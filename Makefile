@@ -72,7 +72,7 @@ bench: ## how fast, against peers in the same process: minutes. BENCH=step for o
 	@tests/bench/run $(if $(JSON),--json)
 
 check: ## format, warnings as errors, static analysis
-	$(NEED) run test check $(if $(CI),scripts)
+	$(NEED) run test check $(if $(CI),browser)
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
 	$(BUILD) B=build/check/clang CC=clang CXX=clang++ WERROR=1 tests
 	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check

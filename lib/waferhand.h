@@ -39,8 +39,19 @@
 
 #include "cell/station.h"
 
+#include "align/rim.h"
+#include "align/sensing.h"
+#include "align/circle.h"
+#include "align/marks.h"
+#include "align/align.h"
+#include "align/centring.h"
+#include "align/beam.h"
+#include "align/teaching.h"
+
+#include "sim/latching.h"
 #include "sim/event_text.h"
 #include "sim/faults.h"
+#include "sim/scanning.h"
 #include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"

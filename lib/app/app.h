@@ -30,11 +30,15 @@ int wh_app_sim(int argc, char **argv);
 int wh_app_report(int argc, char **argv);
 int wh_app_layout(int argc, char **argv);
 int wh_app_study(int argc, char **argv);
+int wh_app_budget(int argc, char **argv);
+int wh_app_sweep(int argc, char **argv);
 int wh_app_test(int argc, char **argv);
 int wh_app_diff(int argc, char **argv);
 int wh_app_events(int argc, char **argv);
 int wh_app_csv(int argc, char **argv);
 int wh_app_check(int argc, char **argv);
 int wh_app_estimate(int argc, char **argv);
+int wh_app_definitions(int argc, char **argv);
+int wh_app_new(int argc, char **argv);
 
 #endif

@@ -1,11 +1,11 @@
-/* waferhand estimate frame|limits FILE */
+/* waferhand estimate frame|limits|robot FILE */
 #include "../print/estimate_print.h"
 #include "../text/options.h"
 #include "app.h"
 
 typedef struct {
     const char *path;
-    bool json, delay;
+    bool json, delay, scales;
 } arguments_t;
 
 #define ABOUT                                                                                                \
@@ -15,7 +15,10 @@ typedef struct {
     "frame: where stations stand, from points touched there. Columns: station, touched_x, touched_y, "       \
     "touched_z (mm in base), x, y, z (mm on the station).\n"                                                 \
     "limits: speed, acceleration and jerk of axes, from the times of moves. Columns: axis (theta, r, z, "    \
-    "yaw or chuck), from, to (mm or degrees), seconds."
+    "yaw or chuck), from, to (mm or degrees), seconds.\n"                                                    \
+    "robot: where a robot stands, its axes' zeros and its tool, from points that it touched. Columns: "      \
+    "theta, r, z, yaw (as its controller tells them), touched_x, touched_y, touched_z (mm), and perhaps "    \
+    "heading (of the tool, degrees)."
 
 #define JSON                                                                                                 \
     {                                                                                                        \
@@ -29,32 +32,48 @@ typedef struct {
             .variable = offsetof(arguments_t, delay)                                                         \
     }
 
+#define SCALES                                                                                               \
+    {                                                                                                        \
+        "scales", 0, NULL, "Of a robot: also fit what its axes' positions are to be multiplied by",          \
+            WH_OPTION_FLAG, .variable = offsetof(arguments_t, scales)                                        \
+    }
+
 static const wh_option_t frame_options[] = {JSON, {0}};
 static const wh_option_t limits_options[] = {JSON, DELAY, {0}};
+static const wh_option_t robot_options[] = {JSON, SCALES, {0}};
+static const wh_option_t all_options[] = {JSON, DELAY, SCALES, {0}};
 static const wh_option_table_t frame_tables[] = {{frame_options, 0, NULL, NULL}, {0}};
 static const wh_option_table_t limits_tables[] = {{limits_options, 0, NULL, NULL}, {0}};
+static const wh_option_table_t robot_tables[] = {{robot_options, 0, NULL, NULL}, {0}};
+static const wh_option_table_t all_tables[] = {{all_options, 0, NULL, NULL}, {0}};
 
 /* --------------------------------------------------------------------------------------- what is fitted */
 
-static int conclude(const wh_csv_t *csv, wh_status_t status) {
+static int refuse(const wh_csv_t *csv, wh_status_t status) {
     fprintf(stderr, "%s: error %d %s\n", csv->message, (int)status, wh_status_name(status));
     return WH_EXIT_USAGE;
+}
+
+/* The exit status of what was printed, and told or not. */
+static int conclude(int printed, bool told) {
+    if (!wh_app_is_printed(printed)) {
+        return WH_EXIT_USAGE;
+    }
+    return told ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
 static int fit_frames(const arguments_t *arguments) {
     wh_point_table_t table = {.count = 0};
     const wh_style_t style = wh_style_of(stdout);
     const wh_status_t status = wh_point_table_open(&table, arguments->path);
-    int ends = WH_EXIT_USAGE;
+    int ends;
     if (status != WH_OK) {
-        ends = conclude(&table.csv, status);
+        ends = refuse(&table.csv, status);
     } else {
         const bool told = wh_point_table_estimate(&table);
-        const int printed = arguments->json ? wh_frames_print_json(&table, stdout)
-                                            : wh_frames_print_table(&table, stdout, &style);
-        if (wh_app_is_printed(printed)) {
-            ends = told ? WH_EXIT_MET : WH_EXIT_FAILED;
-        }
+        ends = conclude(arguments->json ? wh_frames_print_json(&table, stdout)
+                                        : wh_frames_print_table(&table, stdout, &style),
+                        told);
     }
     wh_point_table_close(&table);
     return ends;
@@ -64,18 +83,33 @@ static int fit_limits(const arguments_t *arguments) {
     wh_move_table_t table = {.csv = {.path = NULL}};
     const wh_style_t style = wh_style_of(stdout);
     const wh_status_t status = wh_move_table_open(&table, arguments->path);
-    int ends = WH_EXIT_USAGE;
+    int ends;
     if (status != WH_OK) {
-        ends = conclude(&table.csv, status);
+        ends = refuse(&table.csv, status);
     } else {
         const bool told = wh_move_table_estimate(&table, arguments->delay);
-        const int printed = arguments->json ? wh_limits_print_json(&table, stdout)
-                                            : wh_limits_print_table(&table, stdout, &style);
-        if (wh_app_is_printed(printed)) {
-            ends = told ? WH_EXIT_MET : WH_EXIT_FAILED;
-        }
+        ends = conclude(arguments->json ? wh_limits_print_json(&table, stdout)
+                                        : wh_limits_print_table(&table, stdout, &style),
+                        told);
     }
     wh_move_table_close(&table);
+    return ends;
+}
+
+static int fit_robot(const arguments_t *arguments) {
+    wh_touch_table_t table = {.csv = {.path = NULL}};
+    const wh_style_t style = wh_style_of(stdout);
+    const wh_status_t status = wh_touch_table_open(&table, arguments->path);
+    int ends;
+    if (status != WH_OK) {
+        ends = refuse(&table.csv, status);
+    } else {
+        const bool told = wh_touch_table_estimate(&table, arguments->scales);
+        ends = conclude(arguments->json ? wh_geometry_print_json(&table, stdout)
+                                        : wh_geometry_print_table(&table, stdout, &style),
+                        told);
+    }
+    wh_touch_table_close(&table);
     return ends;
 }
 
@@ -83,8 +117,15 @@ static int fit_limits(const arguments_t *arguments) {
 
 static void refuse_kind(const void *filled, struct argp_state *state) {
     const arguments_t *arguments = filled;
-    argp_error(state, "%s: no such estimate (expected frame or limits)", arguments->path);
+    argp_error(state, "%s: no such estimate (expected frame, limits or robot)", arguments->path);
 }
+
+/* The line of an estimate whose name is known. */
+#define LINE(KIND, TABLES)                                                                                   \
+    {                                                                                                        \
+        .name = "estimate " KIND, .synopsis = "FILE", .about = ABOUT "\v" WH_HELP_EXIT, .tables = (TABLES),  \
+        .operand = "table", .operand_variable = offsetof(arguments_t, path)                                  \
+    }
 
 /* The first is for what names none: it ends the program. */
 static const struct {
@@ -94,29 +135,16 @@ static const struct {
 } kinds[] = {
     {NULL,
      {.name = "estimate",
-      .synopsis = "frame|limits FILE",
+      .synopsis = "frame|limits|robot FILE",
       .about = ABOUT "\v" WH_HELP_EXIT,
-      .tables = limits_tables,
-      .operand = "estimate: frame or limits",
+      .tables = all_tables,
+      .operand = "estimate: frame, limits or robot",
       .operand_variable = offsetof(arguments_t, path),
       .check = refuse_kind},
      NULL},
-    {"frame",
-     {.name = "estimate frame",
-      .synopsis = "FILE",
-      .about = ABOUT "\v" WH_HELP_EXIT,
-      .tables = frame_tables,
-      .operand = "table",
-      .operand_variable = offsetof(arguments_t, path)},
-     fit_frames},
-    {"limits",
-     {.name = "estimate limits",
-      .synopsis = "FILE",
-      .about = ABOUT "\v" WH_HELP_EXIT,
-      .tables = limits_tables,
-      .operand = "table",
-      .operand_variable = offsetof(arguments_t, path)},
-     fit_limits},
+    {"frame", LINE("frame", frame_tables), fit_frames},
+    {"limits", LINE("limits", limits_tables), fit_limits},
+    {"robot", LINE("robot", robot_tables), fit_robot},
 };
 
 /* Takes the first word that is no option out of the arguments if it names an estimate; returns which. */

@@ -8,6 +8,7 @@
 #include "apart.h"
 #include "app.h"
 #include "layout_arguments.h"
+#include "watch.h"
 
 /* -------------------------------------------------------------------------------------- what sim has, too */
 
@@ -44,15 +45,16 @@ void wh_layout_arguments_free(wh_layout_arguments_t *arguments) {
 typedef struct {
     wh_layout_arguments_t layout;
     const char *svg;
-    bool json;
+    bool json, watch;
 } arguments_t;
 
-static const wh_option_t options[] = {{"json", 0, NULL, "Print one JSON object instead of tables",
-                                       WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
-                                      {"svg", 0, "FILE",
-                                       "Also draw the cell into FILE, from above and from the side",
-                                       WH_OPTION_TEXT, .variable = offsetof(arguments_t, svg)},
-                                      {0}};
+static const wh_option_t options[] = {
+    {"json", 0, NULL, "Print one JSON object instead of tables", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, json)},
+    {"svg", 0, "FILE", "Also draw the cell into FILE, from above and from the side", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, svg)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
+    {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL}, {0}};
@@ -112,11 +114,17 @@ static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     return status;
 }
 
+static int act(void *user) {
+    arguments_t *arguments = user;
+    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
+    return layout ? look_at(arguments, layout) : WH_EXIT_USAGE;
+}
+
 int wh_app_layout(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
-    const wh_layout_t *layout = wh_layout_arguments_load(&arguments.layout);
-    const int status = layout ? look_at(&arguments, layout) : WH_EXIT_USAGE;
+    const wh_watch_options_t watch = {act, &arguments, &arguments.svg, 1};
+    const int status = arguments.watch ? wh_watch(&watch) : act(&arguments);
     wh_layout_arguments_free(&arguments.layout);
     return status;
 }

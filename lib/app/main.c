@@ -19,12 +19,16 @@ static const struct {
     {"report", "make a page of a run: the cell in motion, plots, tables", wh_app_report},
     {"layout", "list, check and draw a cell", wh_app_layout},
     {"study", "play a script many times, each time a little off", wh_app_study},
+    {"budget", "tell how far stations may be off, and which one allows least", wh_app_budget},
+    {"sweep", "run a script for each value of a parameter", wh_app_sweep},
     {"test", "play many scripts and tell which ended well", wh_app_test},
     {"diff", "compare two recordings, or two results", wh_app_diff},
     {"events", "print a recording's events, a line of JSON each", wh_app_events},
     {"csv", "print a recording's slices as a table", wh_app_csv},
     {"check", "hold a recording against what a Lua file expects of it", wh_app_check},
-    {"estimate", "fit frames and limits of a layout to measurements", wh_app_estimate},
+    {"estimate", "fit frames, limits and robots to measurements", wh_app_estimate},
+    {"new", "make a cell to start from: a layout and a script", wh_app_new},
+    {"definitions", "print what layouts and scripts may say, for editors", wh_app_definitions},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])
@@ -34,7 +38,7 @@ static void print_help(FILE *out) {
           "Run, test and judge wafer handling robots before any robot moves.\n\nCommands:\n",
           out);
     for (size_t i = 0; i < SUBCOMMANDS; ++i) {
-        fprintf(out, "  %-8s %s\n", subcommands[i].name, subcommands[i].purpose);
+        fprintf(out, "  %-11s %s\n", subcommands[i].name, subcommands[i].purpose);
     }
     fputs("\n  waferhand COMMAND --help    tells the options of a command\n"
           "  waferhand --version         prints the version\n\n" WH_HELP_EXIT "\n",

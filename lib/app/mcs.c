@@ -42,13 +42,13 @@ static const wh_option_t options[] = {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_record_options, offsetof(arguments_t, link.record), NULL, wh_record_arguments_check},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
 /* True if an output is wanted that only a script's run has. */
 static bool wants_run(const wh_run_arguments_t *run) {
-    return run->json || run->gantt || run->margins || run->segments_path || wh_run_files_wanted(&run->files);
+    return run->json || wh_run_table_wanted(run) || run->segments_path || wh_run_files_wanted(&run->files);
 }
 
 static void check(const void *given, struct argp_state *state) {
@@ -64,9 +64,9 @@ static void check(const void *given, struct argp_state *state) {
                    (unsigned long long)arguments->most_missed);
     }
     if (arguments->layout && wants_run(&arguments->run)) {
-        argp_error(
-            state,
-            "--json, --gantt, --margins, --segments, --report, --gltf, --data and --svg go with a script");
+        argp_error(state,
+                   "--json, --gantt, --cycle, --margins, --segments, --report, --gltf, --data and --svg "
+                   "go with a script");
     }
 }
 

@@ -5,11 +5,13 @@
 #include "../log/log_run.h"
 #include "app.h"
 #include "run_arguments.h"
+#include "watch.h"
 
 typedef struct {
     wh_run_arguments_t run; /* run.run.script is RUN, whatever it is */
     const char *layout;
     uint64_t number; /* 0: the last */
+    bool watch;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -18,11 +20,12 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout)},
     {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
      .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -31,9 +34,9 @@ static void check(const void *given, struct argp_state *state) {
     if (!arguments->run.run.script) {
         argp_error(state, "of which run?");
     }
-    if (arguments->run.gantt || arguments->run.margins) {
-        argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)",
-                   arguments->run.gantt ? "--gantt" : "--margins");
+    const char *table = wh_run_table_wanted(&arguments->run);
+    if (table) {
+        argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)", table);
     }
     if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.segments_path &&
         !arguments->run.json) {
@@ -126,9 +129,20 @@ static int report_log(const arguments_t *arguments) {
                 arguments->run.segments_path, arguments->run.run.script);
         return WH_EXIT_USAGE;
     }
+    if (arguments->watch) {
+        fprintf(stderr, "--watch goes with a script: %s is a log, which nobody edits\n",
+                arguments->run.run.script);
+        return WH_EXIT_USAGE;
+    }
     const bool written = write_log(arguments, &run);
     wh_log_run_close(&run);
     return written ? WH_EXIT_MET : WH_EXIT_USAGE;
+}
+
+static int play(void *user) {
+    wh_run_arguments_t *run = user;
+    const int status = wh_run_and_print(run);
+    return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
 }
 
 static int report_script(arguments_t *arguments, bool is_text) {
@@ -142,8 +156,7 @@ static int report_script(arguments_t *arguments, bool is_text) {
                 arguments->layout ? "--layout" : "--run");
         return WH_EXIT_USAGE;
     }
-    const int status = wh_run_and_print(&arguments->run);
-    return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
+    return arguments->watch ? wh_run_watch(&arguments->run, play, &arguments->run) : play(&arguments->run);
 }
 
 /* Reads how the run begins: a log begins with LCM's sync word or is compressed, and a script is text. */
@@ -153,8 +166,13 @@ static int report(arguments_t *arguments) {
     const char *fault = NULL; /* which a script's reader tells */
     FILE *file = wh_log_file(arguments->run.run.script, &fault);
     const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
+    const bool is_empty = file && size == 0 && feof(file);
     if (file) {
         (void)fclose(file);
+    }
+    if (is_empty) {
+        fprintf(stderr, "%s: empty (expected an LCM event log or a script)\n", arguments->run.run.script);
+        return WH_EXIT_USAGE;
     }
     const bool is_log =
         wh_log_is_packed(begin, size) || (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);

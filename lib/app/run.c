@@ -3,12 +3,14 @@
 #include "app.h"
 #include "connection.h"
 #include "run_arguments.h"
+#include "watch.h"
 
 typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
+    wh_option_list_t errors;
     const char *url;
-    bool lcm;
+    bool lcm, watch;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -16,19 +18,60 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
+    {"error", 0, "NAME.FIELD=VALUE",
+     "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's "
+     "dx, "
+     "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, errors)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
+
+/* What is before the last equals sign. */
+static size_t name_length(const char *error) {
+    const char *equals = strrchr(error, '=');
+    return equals ? (size_t)(equals - error) : strlen(error);
+}
+
+static bool is_of_one(const char *error, const char *other) {
+    const size_t length = name_length(error);
+    return length == name_length(other) && strncmp(error, other, length) == 0;
+}
+
+/* The errors are in the simulator of this process, and in nothing that is published or written of a run. */
+static void check_errors(const arguments_t *arguments, struct argp_state *state) {
+    const wh_option_list_t *errors = &arguments->errors;
+    const char *other = arguments->lcm                 ? "--lcm"
+                        : arguments->record.slices     ? "--record"
+                        : arguments->record.all        ? "--record-all"
+                        : arguments->run.segments_path ? "--segments"
+                                                       : NULL;
+    if (errors->count > 0 && other) {
+        argp_error(state, "--error does not go with %s, which tells of the cell as its layout says", other);
+    }
+    for (size_t i = 1; i < errors->count; ++i) {
+        for (size_t j = 0; j < i; ++j) {
+            if (is_of_one(errors->items[i], errors->items[j])) {
+                argp_error(state, "--error %s: given twice", errors->items[i]);
+            }
+        }
+    }
+}
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->url && !arguments->lcm) {
         argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
     }
+    check_errors(arguments, state);
+    if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
+        argp_error(state, "--watch goes neither with --lcm nor with a recording");
+    }
 }
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -132,6 +175,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
                                         .watch = told.watch,
                                         .expected = told.expected,
                                         .cycle = told.cycle,
+                                        .edge = told.edge,
                                         .finished = told.finished,
                                         .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
@@ -164,16 +208,24 @@ static int run_published(arguments_t *arguments) {
     return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
 }
 
+static int play(void *user) {
+    arguments_t *arguments = user;
+    const bool published = arguments->lcm || arguments->run.record;
+    if (!wh_run_files_are_apart(&arguments->run, NULL)) {
+        return WH_EXIT_USAGE;
+    }
+    return published ? run_published(arguments) : wh_run_and_print(&arguments->run);
+}
+
 int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.run.errors = arguments.errors.items;
+    arguments.run.run.error_count = arguments.errors.count;
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
-    const bool published = arguments.lcm || arguments.run.record;
-    int status = WH_EXIT_USAGE;
-    if (wh_run_files_are_apart(&arguments.run, NULL)) {
-        status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
-    }
+    const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);
+    wh_option_list_free(&arguments.errors);
     return status;
 }

@@ -6,23 +6,37 @@
 #include <unistd.h>
 
 #include "../link/outputs.h"
-#include "../print/record_print.h"
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/array.h"
+#include "../text/output.h"
 #include "../text/style.h"
 #include "../view/scene.h"
 #include "apart.h"
 #include "app.h"
 #include "segments.h"
+#include "watch.h"
+
+/* Seconds: what --from and --to take. */
+#define SOONEST 1e-6
+#define LATEST 1e9
 
 const wh_option_t wh_run_options[] = {
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, json)},
     {"gantt", 0, NULL, "Also print who was busy when, and what each command's time went into", WH_OPTION_FLAG,
-     .variable = offsetof(wh_run_arguments_t, gantt)},
+     .variable = offsetof(wh_run_arguments_t, sections.gantt)},
+    {"from", 0, "S", "With --gantt: from this time of the run on, in simulated seconds", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, sections.from_s), 0, LATEST, "a number from 0 to 1e+09"},
+    {"to", 0, "S", "With --gantt: up to this time", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, sections.to_s), SOONEST, LATEST,
+     "a number from 1e-06 to 1e+09"},
+    {"cycle", 0, NULL,
+     "Also print the first steady cycle by itself: how long it takes, what is in it, its wafers per hour; or "
+     "why there is none",
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, sections.cycle)},
     {"margins", 0, NULL, "Also print how near the axes come to the ends of their travel at each station",
-     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, margins)},
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, sections.margins)},
     {"segments", 0, "FILE",
      "Write the run as C source that a firmware test plays; its names begin with FILE's, in which all but "
      "ASCII "
@@ -52,6 +66,25 @@ const wh_option_t wh_run_files_options[] = {
      WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, plots)},
     {0}};
 
+void wh_run_arguments_check(const void *filled, struct argp_state *state) {
+    const wh_run_arguments_t *arguments = filled;
+    const wh_record_sections_t *sections = &arguments->sections;
+    const bool is_window = sections->from_s > 0 || sections->to_s > 0;
+    if (is_window && (!sections->gantt || arguments->json)) {
+        argp_error(state, "%s: %g (goes with --gantt%s)", sections->from_s > 0 ? "--from" : "--to",
+                   sections->from_s > 0 ? sections->from_s : sections->to_s,
+                   arguments->json ? ", not with --json, which has all times" : "");
+    }
+    if (sections->to_s > 0 && sections->to_s <= sections->from_s) {
+        argp_error(state, "--to: %g (expected a time after --from, %g)", sections->to_s, sections->from_s);
+    }
+}
+
+const char *wh_run_table_wanted(const wh_run_arguments_t *arguments) {
+    const wh_record_sections_t *sections = &arguments->sections;
+    return sections->gantt ? "--gantt" : sections->cycle ? "--cycle" : sections->margins ? "--margins" : NULL;
+}
+
 bool wh_run_files_wanted(const wh_run_files_t *files) {
     return files->page || files->scene || files->document || files->plots;
 }
@@ -75,37 +108,21 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------ command */
 
-/* Writes a word so that a shell reads it back unchanged. */
-static void write_word(FILE *out, const char *word) {
-    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
-    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (const char *c = word; *c; ++c) {
-        if (*c == '\'') {
-            fputs("'\\''", out);
-        } else {
-            fputc((unsigned char)*c, out);
-        }
-    }
-    fputc('\'', out);
-}
-
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
- * a log. */
-static char *make_command(const wh_run_arguments_t *arguments, bool is_log) {
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     const wh_script_run_options_t *run = &arguments->run;
     const char *command = arguments->command ? arguments->command : "run";
     char *text = NULL;
     size_t size = 0;
     FILE *out = wh_memory_need(open_memstream(&text, &size));
     fprintf(out, "waferhand %s ", is_log ? "replay" : command);
-    write_word(out, run->script);
+    wh_output_word(out, run->script);
     for (size_t i = 0; i < run->parameter_count && !is_log; ++i) {
         fputs(" --set ", out);
-        write_word(out, run->parameters[i]);
+        wh_output_word(out, run->parameters[i]);
+    }
+    for (size_t i = 0; i < run->error_count; ++i) {
+        fputs(" --error ", out);
+        wh_output_word(out, run->errors[i]);
     }
     (void)fclose(out);
     return text;
@@ -122,7 +139,8 @@ typedef struct {
 
 static bool write_page(void *user, FILE *out) {
     content_t *content = user;
-    return wh_page_write(out, content->document->title, content->text, content->size, content->message);
+    return wh_page_write(out, WH_PAGE_REPORT, content->document->title, content->text, content->size,
+                         content->message);
 }
 
 static bool write_scene(void *user, FILE *out) {
@@ -171,7 +189,7 @@ bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t
         return true;
     }
     FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
-    char *command = make_command(arguments, strcmp(document->source, "log") == 0);
+    char *command = wh_run_command(arguments, strcmp(document->source, "log") == 0);
     whole.title = arguments->run.script;
     whole.reproduce = command;
     whole.parameters = arguments->run.parameters;
@@ -201,9 +219,7 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
         return 0;
     }
     const wh_style_t style = wh_style_of(stdout);
-    const unsigned sections =
-        (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
-    return wh_record_print_table(record, stdout, &style, sections);
+    return wh_record_print_table(record, stdout, &style, &arguments->sections);
 }
 
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
@@ -224,11 +240,21 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
+/* False, and says so, for a run that would not be the same when it is played again. */
+static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
+    if (!arguments->segments_path || !mcs->unplayed) {
+        return true;
+    }
+    fprintf(stderr, "--segments: %s: not written (expected a script without %s)\n", arguments->segments_path,
+            mcs->unplayed);
+    return false;
+}
+
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {&run->mcs, arguments->segments_path};
-    return wh_run_files_are_apart(arguments, layout) &&
+    return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
            wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }
@@ -308,4 +334,11 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;
+}
+
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
+    const char *const outputs[] = {arguments->files.page, arguments->files.scene, arguments->files.document,
+                                   arguments->files.plots, arguments->segments_path};
+    const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
+    return wh_watch(&options);
 }

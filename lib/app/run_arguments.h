@@ -5,6 +5,7 @@
 
 #include "../link/recording.h"
 #include "../mcs/script_run.h"
+#include "../print/record_print.h"
 #include "../report/document.h"
 #include "../text/options.h"
 
@@ -30,14 +31,21 @@ typedef struct {
     const char *record_option;    /* that gave `record` */
     wh_recording_t *recording; /* that goes into `record`: a run that it does not keep has failed; or null */
     const uint64_t *unwritten; /* how often `outputs` was not written: the same; null: nobody counts */
-    bool json, gantt, margins;
-    bool quiet;          /* print no tables, and nothing at all without `json` */
-    const char *command; /* the subcommand that plays it again; null: run */
+    bool json;
+    wh_record_sections_t sections; /* of the tables */
+    bool quiet;                    /* print no tables, and nothing at all without `json` */
+    const char *command;           /* the subcommand that plays it again; null: run */
     wh_run_files_t files;
 } wh_run_arguments_t;
 
 /* All options but those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
+
+/* A wh_option_table_t's check of them. */
+void wh_run_arguments_check(const void *filled, struct argp_state *state);
+
+/* The option of a table that is wanted; null: none is. */
+const char *wh_run_table_wanted(const wh_run_arguments_t *arguments);
 
 /* Hands what was parsed on to `run`. */
 void wh_run_arguments_take(wh_run_arguments_t *arguments);
@@ -51,8 +59,15 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
  * does not take it. */
 int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
 
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
+
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
+
+/* wh_watch of a run that `act` makes of `user`. */
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user);
 
 /* Writes those that are wanted, if any is, from a document that has source, record, signals and notes; the
  * rest is made of the arguments. Each file is there whole or as it was. False, with a line on standard error,

@@ -1,6 +1,11 @@
 /* waferhand study SCRIPT */
+#include <stdlib.h>
+
 #include "../print/study_print.h"
+#include "../report/page.h"
+#include "../report/study_document.h"
 #include "../study/study_play.h"
+#include "../text/array.h"
 #include "apart.h"
 #include "app.h"
 #include "run_arguments.h"
@@ -17,7 +22,7 @@
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
     uint64_t trials, seed, trial, threads, worst;
-    const char *state;
+    const char *state, *csv;
     double require;
 } arguments_t;
 
@@ -38,6 +43,9 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, require), 0, 1, "a number from 0 to 1"},
     {"worst", 0, "K", "Tell the K worst trials (default 10)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, worst), 0, WH_STUDY_WORST, "a number from 0 to 100"},
+    {"csv", 0, "FILE",
+     "Write a line for each trial into FILE: if it was ok, where the wafers end up, and what was drawn",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, csv)},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"set", 0, "NAME=VALUE",
@@ -51,7 +59,8 @@ static const wh_option_t options[] = {
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
-    {wh_run_files_options, offsetof(arguments_t, run.files), "Of the one trial that --trial plays:", NULL},
+    {wh_run_files_options, offsetof(arguments_t, run.files),
+     "Of the one trial that --trial plays, and --report of a whole study:", NULL},
     {0}};
 
 /* Refuses what only many trials can have. */
@@ -60,6 +69,8 @@ static void check_one(const arguments_t *arguments, struct argp_state *state) {
                          : arguments->state             ? "--state"
                          : arguments->require >= 0      ? "--require"
                          : arguments->worst != NO_WORST ? "--worst"
+                         : arguments->csv               ? "--csv"
+                         : arguments->threads > 0       ? "--threads"
                                                         : NULL;
     if (option) {
         argp_error(state, "%s does not go with --trial, which plays one trial alone", option);
@@ -71,7 +82,8 @@ static void check(const void *given, struct argp_state *state) {
     if (arguments->trial != NO_TRIAL) {
         check_one(arguments, state);
     }
-    if (wh_run_files_wanted(&arguments->run.files) && arguments->trial == NO_TRIAL) {
+    const wh_run_files_t *files = &arguments->run.files;
+    if ((files->scene || files->document || files->plots) && arguments->trial == NO_TRIAL) {
         argp_error(state, "a report of which trial? (expected --trial)");
     }
 }
@@ -91,12 +103,50 @@ static const wh_command_line_t command_line = {
 
 /* ---------------------------------------------------------------------------------------------- the study */
 
-static int print(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
-    const wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
+static bool write_csv(void *user, FILE *out) {
+    return wh_study_print_csv(user, out) == 0;
+}
+
+typedef struct {
+    const arguments_t *arguments;
+    const wh_study_result_t *result;
+    char message[WH_PAGE_MESSAGE_BYTES];
+} page_t;
+
+static bool write_page(void *user, FILE *out) {
+    page_t *page = user;
+    wh_study_result_t result = *page->result;
+    wh_run_arguments_t run = page->arguments->run;
+    char command[60];
+    char *text = NULL;
+    size_t size = 0;
+    result.worst = WH_STUDY_WORST;
+    (void)snprintf(command, sizeof command, "study --seed %llu", (unsigned long long)result.study->seed);
+    run.command = command;
+    char *again = wh_run_command(&run, false);
+    const wh_study_document_t document = {result.study, result.tally, wh_study_to_json(&result), again};
+    FILE *memory = wh_memory_need(open_memstream(&text, &size));
+    const bool made = wh_study_document_write(&document, memory) == 0;
+    if (fclose(memory) != 0 || !made) {
+        wh_memory_out();
+    }
+    const bool written = wh_page_write(out, WH_PAGE_STUDY, run.run.script, text, size, page->message);
+    free(again);
+    json_decref(document.result);
+    free(text);
+    return written;
+}
+
+/* What cannot be written leaves the rest as it is: the trials may have taken long. */
+static int hand_on(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
+    wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
     const wh_style_t style = wh_style_of(stdout);
+    page_t page = {.arguments = arguments, .result = &result};
+    const bool drawn = wh_file_write("--report", arguments->run.files.page, write_page, &page, page.message);
+    const bool written = wh_file_write("--csv", arguments->csv, write_csv, &result, NULL) && drawn;
     const int status = arguments->run.json ? wh_study_print_json(&result, stdout)
                                            : wh_study_print_table(&result, stdout, &style);
-    if (!wh_app_is_printed(status)) {
+    if (!wh_app_is_printed(status) || !written) {
         return WH_EXIT_USAGE;
     }
     return wh_study_is_kept(&result) ? WH_EXIT_MET : WH_EXIT_FAILED;
@@ -111,10 +161,17 @@ static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_
     const wh_study_end_t end = wh_study_play(study, &wanted, ranks, &progress);
     int status = statuses[end];
     if (end == WH_STUDY_DONE) {
-        status = print(arguments, study, &progress.tally);
+        status = hand_on(arguments, study, &progress.tally);
         wh_progress_free(&progress);
     }
     return status;
+}
+
+/* Before the trials are played: no output is the script, the layout, or what they read. */
+static bool are_free(const arguments_t *arguments) {
+    return (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
+           (!arguments->csv || wh_file_is_free("--csv", arguments->csv)) &&
+           (!arguments->run.files.page || wh_file_is_free("--report", arguments->run.files.page));
 }
 
 /* Scripts print into /dev/null: the output of many trials would be mixed. */
@@ -127,10 +184,12 @@ static int study_all(const arguments_t *arguments) {
         perror("/dev/null");
         return status;
     }
-    study = (wh_study_t){.run = arguments->run.run, .trials = arguments->trials, .seed = arguments->seed};
+    study = (wh_study_t){.run = arguments->run.run,
+                         .trials = arguments->trials,
+                         .seed = arguments->seed,
+                         .lines = arguments->csv ? arguments->trials : 0};
     study.run.limits.print_to = nowhere;
-    if (wh_study_open(&study) && (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
-        wh_ranks_open(&ranks)) {
+    if (wh_study_open(&study) && are_free(arguments) && wh_ranks_open(&ranks)) {
         status = play(arguments, &study, &ranks);
         wh_ranks_close(&ranks, status == WH_EXIT_USAGE ? status : 0);
     }
@@ -160,11 +219,14 @@ int wh_app_study(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     fill_in(&arguments);
     wh_run_arguments_take(&arguments.run);
+    const bool all = arguments.trial == NO_TRIAL;
     const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false},
-                                     {"--state", arguments.state, true}};
+                                     {"--state", arguments.state, true},
+                                     {"--csv", arguments.csv, true},
+                                     {"--report", all ? arguments.run.files.page : NULL, true}};
     int status = WH_EXIT_USAGE;
-    if (wh_files_are_apart(named, 2, true)) {
-        status = arguments.trial != NO_TRIAL ? play_one(&arguments) : study_all(&arguments);
+    if (wh_files_are_apart(named, 4, true)) {
+        status = all ? study_all(&arguments) : play_one(&arguments);
     }
     wh_run_arguments_free(&arguments.run);
     return status;

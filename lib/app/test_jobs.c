@@ -44,46 +44,6 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
-/* The first expectation that was not met. False if there is none. */
-static bool find_unmet(const wh_record_t *record, told_t *told) {
-    for (size_t i = 0; i < record->expectation_count; ++i) {
-        const wh_expectation_record_t *expectation = &record->expectations[i];
-        if (!expectation->ok) {
-            const char *text = expectation->text ? expectation->text : "not met";
-            if (expectation->line > 0) {
-                (void)snprintf(told->reason, sizeof told->reason, "line %d: %.1000s", expectation->line,
-                               text);
-            } else {
-                (void)snprintf(told->reason, sizeof told->reason, "%.1000s", text);
-            }
-            return true;
-        }
-    }
-    return false;
-}
-
-/* The first complaint of the cell. False if there is none. */
-static bool find_complaint(const wh_record_t *record, told_t *told) {
-    for (size_t i = 0; i < record->event_count; ++i) {
-        const wh_event_t *event = &record->events[i].event;
-        const char *name = wh_record_wafer_name(record, event->wafer);
-        if (wh_record_is_complaint(event->kind)) {
-            (void)snprintf(told->reason, sizeof told->reason, "the cell complained: %s%s%s",
-                           wh_event_name(event->kind), name ? ": " : "", name ? name : "");
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Why a run failed: the error, else the first expectation, else the first complaint. */
-static void find_reason(const wh_record_t *record, told_t *told) {
-    if (record->failure || (!find_unmet(record, told) && !find_complaint(record, told))) {
-        (void)snprintf(told->reason, sizeof told->reason, "%.1000s",
-                       record->failure ? record->failure : "failed");
-    }
-}
-
 static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, bool was_found, told_t *told) {
     const wh_record_t *record = &run->record;
     if (outcome == WH_RUN_BAD_INPUT) {
@@ -91,7 +51,7 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, b
         (void)snprintf(told->reason, sizeof told->reason, "%.1023s", run->message);
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
-        find_reason(record, told);
+        wh_record_reason(record, told->reason, sizeof told->reason);
     } else if (record->slices == 0 && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it moves nothing and expects nothing");

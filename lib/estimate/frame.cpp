@@ -2,13 +2,14 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "reason_internal.hpp"
 
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using wh_estimate::tell;
 
 struct moments_t {
     Vector3d touched, known; // centres
@@ -69,8 +70,9 @@ double measure_residuals(const wh_frame_point_t *points, size_t count, wh_frame_
     return squares;
 }
 
-/* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from the centre, by
- * w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin moves with the centre, and with w. */
+/* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from
+ * the centre, by w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin
+ * moves with the centre, and with w. */
 void fill_in(const moments_t &moments, const Matrix3d &R, double variance, size_t count,
              wh_frame_estimate_t *estimate) {
     const Matrix3d spread = R * moments.spread * R.transpose();
@@ -96,12 +98,7 @@ void fill_in(const moments_t &moments, const Matrix3d &R, double variance, size_
     }
 }
 
-__attribute__((format(printf, 3, 4))) wh_status_t refuse(wh_frame_estimate_t *estimate, wh_status_t status,
-                                                         const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    (void)std::vsnprintf(estimate->reason, sizeof estimate->reason, format, arguments);
-    va_end(arguments);
+wh_status_t refuse(wh_frame_estimate_t *estimate, wh_status_t status) {
     estimate->status = status;
     return status;
 }
@@ -127,11 +124,12 @@ wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_f
     }
     *estimate = wh_frame_estimate_t();
     if (count < WH_FRAME_POINTS) {
-        return refuse(estimate, WH_STATUS_TOO_FEW_POINTS, "%zu of at least %d points", count,
-                      WH_FRAME_POINTS);
+        tell(estimate->reason, "%zu of at least %d points", count, WH_FRAME_POINTS);
+        return refuse(estimate, WH_STATUS_TOO_FEW_POINTS);
     }
     if (!is_finite(points, count)) {
-        return refuse(estimate, WH_STATUS_NO_FIT, "a number is not finite");
+        tell(estimate->reason, "a number is not finite");
+        return refuse(estimate, WH_STATUS_NO_FIT);
     }
     const moments_t moments = moments_of(points, count);
     const Vector3d widths = // rms distances from the centre, by direction, the largest first
@@ -141,28 +139,28 @@ wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_f
     store(R, moments.touched - R * moments.known, &estimate->base_from_station);
     const double squares = measure_residuals(points, count, estimate);
     if (widths(1) <= WH_FRAME_SPREAD_PART * widths(0)) {
-        return refuse(
-            estimate, WH_STATUS_NOT_DETERMINED,
-            "the points lie on a line (%.3g mm beside it, rms): touch one more that lies off it, far out",
-            widths(1));
+        tell(estimate->reason,
+             "the points lie on a line (%.3g mm beside it, rms): touch one more that lies off it, far out",
+             widths(1));
+        return refuse(estimate, WH_STATUS_NOT_DETERMINED);
     }
     if (estimate->rms > WH_FRAME_MISFIT * widths.norm()) {
-        return refuse(
-            estimate, WH_STATUS_NO_FIT,
-            "the touched points lie to one another in another way than on the station: %.3g mm rms, "
-            "the most at point %zu; are two mixed up, or is a unit wrong?",
-            estimate->rms, estimate->largest_index + 1);
+        tell(estimate->reason,
+             "the touched points lie to one another in another way than on the station: %.3g mm rms, "
+             "the most at point %zu; are two mixed up, or is a unit wrong?",
+             estimate->rms, estimate->largest_index + 1);
+        return refuse(estimate, WH_STATUS_NO_FIT);
     }
     if (widths(1) < WH_FRAME_SPREAD_RMS * estimate->rms) {
-        return refuse(
-            estimate, WH_STATUS_NOT_DETERMINED,
-            "the points lie within %.3g mm of a line (rms), where the residuals are %.3g mm: touch one "
-            "more that lies off it, far out",
-            widths(1), estimate->rms);
+        tell(estimate->reason,
+             "the points lie within %.3g mm of a line (rms), where the residuals are %.3g mm: touch one "
+             "more that lies off it, far out",
+             widths(1), estimate->rms);
+        return refuse(estimate, WH_STATUS_NOT_DETERMINED);
     }
     if (std::hypot(R(0, 0), R(1, 0)) < 1e-3) {
-        return refuse(estimate, WH_STATUS_NOT_DETERMINED,
-                      "the station's x points up or down: rpy is not unique");
+        tell(estimate->reason, "the station's x points up or down: rpy is not unique");
+        return refuse(estimate, WH_STATUS_NOT_DETERMINED);
     }
     fill_in(moments, R, squares / static_cast<double>(3 * count - 6), count, estimate);
     return estimate->status;

@@ -1,12 +1,11 @@
 #include "limits.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 
 #include "../motion/profile.h"
 #include "limits_internal.hpp"
+#include "reason_internal.hpp"
 
 namespace {
 
@@ -15,7 +14,7 @@ using namespace wh_estimate;
 constexpr double needed_variances = 25;
 constexpr double largest_sd = 0.05;
 
-/* ---------------------------------------------------------------------------------------------- which limits */
+/* ------------------------------------------------------------------------------------------- which limits */
 
 /* Fits of each set of limits to the moves that are used, and the deviation of one time. */
 struct fits_t {
@@ -121,15 +120,7 @@ void fill_in(const data_t &data, const fits_t &fits, wh_limits_estimate_t *estim
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ what is wrong */
-
-__attribute__((format(printf, 2, 3))) void tell(wh_limits_estimate_t *estimate, const char *format, ...) {
-    const size_t length = std::strlen(estimate->reason);
-    va_list arguments;
-    va_start(arguments, format);
-    (void)std::vsnprintf(estimate->reason + length, sizeof estimate->reason - length, format, arguments);
-    va_end(arguments);
-}
+/* ------------------------------------------------------------------------------------------ what is wrong */
 
 /* The moves' indices, the shortest first. */
 void sort_used(const data_t &data, size_t *order) {
@@ -146,7 +137,8 @@ void sort_used(const data_t &data, size_t *order) {
     });
 }
 
-/* True if the residuals of neighbours in distance are alike, as they are where the times follow another law. */
+/* True if the residuals of neighbours in distance are alike, as they are where the times follow another
+ * law. */
 bool is_of_another_law(const data_t &data, const fits_t &fits, const size_t *order) {
     const model_t &all = fits.of[all_limits];
     double products = 0;
@@ -185,12 +177,12 @@ wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order,
                   wh_limits_estimate_t *estimate) {
     const double delay = find_delay(data, fits);
     if (delay != 0) {
-        tell(estimate, "each time seems to have %.3g s that are not of its profile: fit the delay as well",
-             delay);
+        tell(estimate->reason,
+             "each time seems to have %.3g s that are not of its profile: fit the delay as well", delay);
         return WH_STATUS_NO_FIT;
     }
     if (is_of_another_law(data, fits, order)) {
-        tell(estimate,
+        tell(estimate->reason,
              "the times depend on the distance in another way than a jerk-limited profile's: residuals of "
              "%.3g s rms that go with the distance",
              estimate->rms);
@@ -199,7 +191,7 @@ wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order,
     return WH_OK;
 }
 
-/* ------------------------------------------------------------------------------------------- which are missing */
+/* -------------------------------------------------------------------------------------- which are missing */
 
 /* The shortest distance at which the speed is reached; what rises and falls takes but for the cruise. */
 double reaching_distance(const wh_limits_estimate_t &estimate) {
@@ -210,14 +202,15 @@ double reaching_distance(const wh_limits_estimate_t &estimate) {
 
 void tell_missing_of_acceleration(wh_limits_estimate_t *estimate, bool has_speed, bool has_jerk) {
     if (has_speed && !has_jerk) {
-        tell(estimate, "acceleration: moves too short to reach the speed, below %.4g; ",
+        tell(estimate->reason, "acceleration: moves too short to reach the speed, below %.4g; ",
              reaching_distance(*estimate));
     } else if (has_speed) {
-        tell(estimate,
+        tell(estimate->reason,
              "acceleration: no move reaches it before the speed, so any from %.4g on gives these times; ",
              estimate->at_least[WH_LIMIT_ACCELERATION]);
     } else {
-        tell(estimate, "acceleration: moves of other lengths, longer than %.4g first; ", estimate->longest);
+        tell(estimate->reason, "acceleration: moves of other lengths, longer than %.4g first; ",
+             estimate->longest);
     }
 }
 
@@ -226,35 +219,35 @@ void tell_missing(wh_limits_estimate_t *estimate) {
     const bool has_speed = values[WH_LIMIT_SPEED].is_determined;
     const bool has_jerk = values[WH_LIMIT_JERK].is_determined;
     if (!has_speed) {
-        tell(estimate, "speed: moves that reach it, longer than %.4g; ", estimate->longest);
+        tell(estimate->reason, "speed: moves that reach it, longer than %.4g; ", estimate->longest);
     }
     if (!values[WH_LIMIT_ACCELERATION].is_determined) {
         tell_missing_of_acceleration(estimate, has_speed, has_jerk);
     }
     if (!has_jerk) {
-        tell(estimate, "jerk: short moves, below %.4g; ", estimate->shortest);
+        tell(estimate->reason, "jerk: short moves, below %.4g; ", estimate->shortest);
     }
     const size_t length = std::strlen(estimate->reason);
     estimate->reason[length >= 2 ? length - 2 : 0] = '\0';
 }
 
-/* ------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 wh_status_t check(const wh_timed_move_t *moves, size_t count, wh_limits_estimate_t *estimate) {
     if (count > WH_LIMITS_MOST_MOVES) {
-        tell(estimate, "%zu moves, of at most %d", count, WH_LIMITS_MOST_MOVES);
+        tell(estimate->reason, "%zu moves, of at most %d", count, WH_LIMITS_MOST_MOVES);
         return WH_STATUS_BAD_CAPACITY;
     }
     for (size_t i = 0; i < count; ++i) {
         const double d = moves[i].distance;
         const double s = moves[i].seconds;
         if (!(d > 0 && d < 1e9 && s > 0 && s < 1e9)) {
-            tell(estimate, "move %zu: a distance and a time above 0 are expected", i + 1);
+            tell(estimate->reason, "move %zu: a distance and a time above 0 are expected", i + 1);
             return WH_STATUS_OUT_OF_RANGE;
         }
     }
     if (count < WH_LIMITS_MOVES) {
-        tell(estimate, "%zu of at least %d moves", count, WH_LIMITS_MOVES);
+        tell(estimate->reason, "%zu of at least %d moves", count, WH_LIMITS_MOVES);
         return WH_STATUS_TOO_FEW_POINTS;
     }
     return WH_OK;
@@ -265,13 +258,13 @@ wh_status_t fit(data_t &data, fits_t &fits, wh_limits_estimate_t *estimate) {
     estimate->used = fits.used;
     estimate->set_aside = data.count - fits.used;
     if (static_cast<double>(estimate->set_aside) > WH_LIMITS_ASIDE * static_cast<double>(data.count)) {
-        tell(estimate, "%zu of %zu times agree with no profile that the others agree with",
+        tell(estimate->reason, "%zu of %zu times agree with no profile that the others agree with",
              estimate->set_aside, data.count);
         return WH_STATUS_NO_FIT;
     }
     if (fits.used < WH_LIMITS_MOVES) {
-        tell(estimate, "%zu of at least %d moves, %zu more were set aside", fits.used, WH_LIMITS_MOVES,
-             estimate->set_aside);
+        tell(estimate->reason, "%zu of at least %d moves, %zu more were set aside", fits.used,
+             WH_LIMITS_MOVES, estimate->set_aside);
         return WH_STATUS_TOO_FEW_POINTS;
     }
     return WH_OK;

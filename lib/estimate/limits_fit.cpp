@@ -27,7 +27,7 @@ static double quantile(data_t &data, size_t count, double part) {
     return data.sizes[place];
 }
 
-/* --------------------------------------------------------------------------------------------------- descent */
+/* ------------------------------------------------------------------------------------------------ descent */
 
 limit_rows_t rows_of(const data_t &data, const model_t &model, double later) {
     constexpr double step = 1e-6;
@@ -51,7 +51,7 @@ limit_rows_t rows_of(const data_t &data, const model_t &model, double later) {
     return rows;
 }
 
-static double squares_of(const data_t &data, const model_t &model) {
+double squares_of(const data_t &data, const model_t &model) {
     double squares = 0;
     for (size_t i = 0; i < data.count; ++i) {
         if (data.weights[i] > 0) {
@@ -62,35 +62,13 @@ static double squares_of(const data_t &data, const model_t &model) {
     return squares;
 }
 
-static model_t stepped(const model_t &from, const limit_rows_t::vector_t &step) {
+model_t stepped(const model_t &from, const limit_rows_t::vector_t &step) {
     model_t to = from;
     for (int k = 0; k < parameter_count; ++k) {
         const double most = k == WH_LIMIT_DELAY ? HUGE_VAL : 1;
         to.p[k] += from.is_free[k] ? std::clamp(step(k), -most, most) : 0;
     }
     return to;
-}
-
-void descend(const data_t &data, model_t *model, int rounds) {
-    double damping = 1e-3;
-    model->squares = squares_of(data, *model);
-    for (int round = 0; round < rounds; ++round) {
-        const limit_rows_t rows = rows_of(data, *model);
-        model_t next = *model;
-        for (bool is_better = false; !is_better; damping *= is_better ? 0.1 : 10) {
-            if (damping > 1e6) {
-                return;
-            }
-            next = stepped(*model, rows.step(damping));
-            next.squares = squares_of(data, next);
-            is_better = next.squares < model->squares;
-        }
-        const bool is_done = next.squares > model->squares * (1 - 1e-12);
-        *model = next;
-        if (is_done) {
-            return;
-        }
-    }
 }
 
 double peak_of(const data_t &data, const model_t &model, int limit) {
@@ -106,7 +84,7 @@ double peak_of(const data_t &data, const model_t &model, int limit) {
     return most;
 }
 
-/* ---------------------------------------------------------------------------------------------------- starts */
+/* ------------------------------------------------------------------------------------------------- starts */
 
 constexpr double factors[] = {1.02, 1.2, 1.6, 2.5, 5, 12, 40};
 constexpr int factor_count = sizeof factors / sizeof factors[0];
@@ -161,7 +139,7 @@ void fit_set(const data_t &data, unsigned set, model_t *best) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- robust */
+/* ------------------------------------------------------------------------------------------------- robust */
 
 /* The standard deviation of the residuals by their median. */
 static double deviation_of(data_t &data, const model_t &model) {

@@ -39,8 +39,9 @@ double rest_of(const data_t &data, const model_t &model, size_t i);
 /* The equations of a step, towards the times, or towards what all of them would be if they were `later`. */
 limit_rows_t rows_of(const data_t &data, const model_t &model, double later = 0);
 
-/* Levenberg and Marquardt's, with the weights as they are. */
-void descend(const data_t &data, model_t *model, int rounds);
+/* The sum of weighted squares, and a model with a step added: for the descent. */
+double squares_of(const data_t &data, const model_t &model);
+model_t stepped(const model_t &from, const limit_rows_t::vector_t &step);
 
 /* The largest speed, acceleration or jerk in the moves that are used. */
 double peak_of(const data_t &data, const model_t &model, int limit);
@@ -48,8 +49,8 @@ double peak_of(const data_t &data, const model_t &model, int limit);
 /* The best fit, with the weights as they are, that has only the limits of a set. */
 void fit_set(const data_t &data, unsigned set, model_t *best);
 
-/* Sets scales, and which moves are used: those that agree with the model of all limits that most agree with. Returns
- * their number; `sd` is the deviation of one time. */
+/* Sets scales, and which moves are used: those that agree with the model of all limits that most agree
+ * with. Returns their number; `sd` is the deviation of one time. */
 size_t fit_agreed(data_t &data, model_t *all, double *sd);
 
 } // namespace wh_estimate

@@ -1,5 +1,6 @@
-/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any number of them
- * takes the same memory and no precision is lost by squaring. The triangle's singular values are those of all rows. */
+/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any
+ * number of them takes the same memory and no precision is lost by squaring. The triangle's singular
+ * values are those of all rows. */
 #ifndef WH_ESTIMATE_ROWS_INTERNAL_HPP
 #define WH_ESTIMATE_ROWS_INTERNAL_HPP
 
@@ -34,8 +35,8 @@ template <int N> class rows_t {
         }
     }
 
-    /* To be called once after the last row. Columns are brought to one length first: parameters have different
-     * units. */
+    /* To be called once after the last row. Columns are brought to one length first: parameters have
+     * different units. */
     void solve() {
         for (int k = 0; k < N; ++k) {
             const double length = triangle_.col(k).norm();
@@ -51,7 +52,8 @@ template <int N> class rows_t {
         shares_ = svd.matrixU().transpose() * rests_;
     }
 
-    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen directions. */
+    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen
+     * directions. */
     vector_t step(double damping) const {
         vector_t along = vector_t::Zero();
         for (int k = 0; k < N; ++k) {
@@ -62,7 +64,8 @@ template <int N> class rows_t {
         return (directions_ * along).cwiseQuotient(lengths_);
     }
 
-    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not tell it. */
+    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not
+     * tell it. */
     double deviation(int parameter) const {
         double square = 0;
         for (int k = 0; k < N; ++k) {
@@ -74,6 +77,35 @@ template <int N> class rows_t {
             }
         }
         return std::sqrt(square) / lengths_(parameter);
+    }
+
+    /* What a row takes of each seen direction, by that one's deviation: products of two rows' are the
+     * covariances of what the fit says of them, where rows have a deviation of 1. Unseen directions are
+     * left out. */
+    vector_t pull(const vector_t &row) const {
+        vector_t along = directions_.transpose() * row.cwiseQuotient(lengths_);
+        for (int k = 0; k < N; ++k) {
+            along(k) = is_seen(k) ? along(k) / sigmas_(k) : 0;
+        }
+        return along;
+    }
+
+    /* A row's parts in the directions that the rows do not tell. */
+    vector_t unseen_part(const vector_t &row) const {
+        vector_t beside = directions_.transpose() * row.cwiseQuotient(lengths_);
+        for (int k = 0; k < N; ++k) {
+            beside(k) = is_seen(k) ? 0 : beside(k);
+        }
+        return beside;
+    }
+
+    /* How many directions the rows tell. */
+    int rank() const {
+        int count = 0;
+        for (int k = 0; k < N; ++k) {
+            count += is_seen(k) ? 1 : 0;
+        }
+        return count;
     }
 
   private:
@@ -94,6 +126,30 @@ template <int N> class rows_t {
     vector_t sigmas_ = vector_t::Zero();
     vector_t shares_ = vector_t::Zero();
 };
+
+/* Levenberg and Marquardt's descent, with the weights as they are: `data` and `model` have rows_of,
+ * squares_of and stepped beside them, and the model its squares. */
+template <typename Data, typename Model> void descend(const Data &data, Model *model, int rounds) {
+    double damping = 1e-3;
+    model->squares = squares_of(data, *model);
+    for (int round = 0; round < rounds; ++round) {
+        const auto rows = rows_of(data, *model);
+        Model next = *model;
+        for (bool is_better = false; !is_better; damping *= is_better ? 0.1 : 10) {
+            if (damping > 1e6) {
+                return;
+            }
+            next = stepped(*model, rows.step(damping));
+            next.squares = squares_of(data, next);
+            is_better = next.squares < model->squares;
+        }
+        const bool is_done = next.squares > model->squares * (1 - 1e-12);
+        *model = next;
+        if (is_done) {
+            return;
+        }
+    }
+}
 
 } // namespace wh_estimate
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../math/trig.h"
 #include "../text/array.h"
 
 /* Of places and distances; beyond, a double has no 1e-9 mm left. */
@@ -89,7 +90,7 @@ void wh_point_table_close(wh_point_table_t *table) {
     }
     free(table->stations);
     table->stations = NULL;
-    table->count = 0;
+    table->count = table->capacity = 0;
     wh_csv_close(&table->csv);
 }
 
@@ -170,5 +171,62 @@ void wh_move_table_close(wh_move_table_t *table) {
         free(table->axes[axis].lines);
         table->axes[axis] = (wh_axis_moves_t){.count = 0};
     }
+    wh_csv_close(&table->csv);
+}
+
+/* ------------------------------------------------------------------------------------------------ touches */
+
+enum { THERE_X = WH_ROBOT_AXES, THERE_Y, THERE_Z, HEADING, TOUCH_COLUMNS };
+
+static const wh_csv_column_t touch_columns[TOUCH_COLUMNS] = {
+    [WH_AXIS_THETA] = {"theta", -LARGEST, LARGEST, false, false},
+    [WH_AXIS_R] = {"r", -LARGEST, LARGEST, false, false},
+    [WH_AXIS_Z] = {"z", -LARGEST, LARGEST, false, false},
+    [WH_AXIS_YAW] = {"yaw", -LARGEST, LARGEST, false, false},
+    [THERE_X] = {"touched_x", -LARGEST, LARGEST, false, false},
+    [THERE_Y] = {"touched_y", -LARGEST, LARGEST, false, false},
+    [THERE_Z] = {"touched_z", -LARGEST, LARGEST, false, false},
+    [HEADING] = {"heading", -LARGEST, LARGEST, false, true},
+};
+
+static bool add_touch(wh_touch_table_t *table) {
+    const double *n = table->csv.numbers;
+    const size_t i = table->count;
+    if (i == WH_GEOMETRY_MOST_TOUCHES) {
+        return wh_csv_refuse(&table->csv, WH_AXIS_THETA, "at most 1000 touches in a table");
+    }
+    table->touches = wh_array_grow(table->touches, i, &table->capacity, sizeof *table->touches);
+    table->lines = wh_array_grow(table->lines, i, &table->line_capacity, sizeof *table->lines);
+    wh_touch_t *touch = &table->touches[i];
+    *touch = (wh_touch_t){.touched = {n[THERE_X], n[THERE_Y], n[THERE_Z]}};
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        touch->axes[axis] = wh_table_axis_turns(axis) ? wh_rad_from_deg(n[axis]) : n[axis];
+    }
+    touch->heading = wh_rad_from_deg(n[HEADING]);
+    table->lines[i] = table->csv.line;
+    ++table->count;
+    return true;
+}
+
+wh_status_t wh_touch_table_open(wh_touch_table_t *table, const char *path) {
+    bool good = wh_csv_open(&table->csv, path, touch_columns, TOUCH_COLUMNS);
+    while (good && wh_csv_read(&table->csv)) {
+        good = add_touch(table);
+    }
+    return conclude(&table->csv, table->count > 0);
+}
+
+bool wh_touch_table_estimate(wh_touch_table_t *table, bool with_scales) {
+    const wh_status_t status =
+        wh_geometry_estimate(table->touches, table->count, with_scales, &table->estimate);
+    return status == WH_OK && table->estimate.reason[0] == '\0';
+}
+
+void wh_touch_table_close(wh_touch_table_t *table) {
+    free(table->touches);
+    free(table->lines);
+    table->touches = NULL;
+    table->lines = NULL;
+    table->count = table->capacity = table->line_capacity = 0;
     wh_csv_close(&table->csv);
 }

@@ -1,5 +1,5 @@
-/* Tables of measurements, read from files of comma-separated values: points touched at stations, and
- * timed moves of axes.
+/* Tables of measurements, read from files of comma-separated values: points touched at stations, timed
+ * moves of axes, and a robot's touches.
  *
  * What is not understood is refused with file, line, column, value and what was expected (text/csv.h).
  * Host code: ends the program if out of memory. */
@@ -9,6 +9,7 @@
 #include "../motion/robot.h"
 #include "../text/csv.h"
 #include "frame.h"
+#include "geometry.h"
 #include "limits.h"
 
 /* ------------------------------------------------------------------------------------------------- points */
@@ -69,6 +70,28 @@ wh_status_t wh_move_table_open(wh_move_table_t *table, const char *path);
 bool wh_move_table_estimate(wh_move_table_t *table, bool with_delay);
 
 void wh_move_table_close(wh_move_table_t *table);
+
+/* ------------------------------------------------------------------------------------------------ touches */
+
+/* The touches of a robot, in the order of the file. Zero it to begin with. */
+typedef struct {
+    wh_csv_t csv;
+    wh_touch_t *touches;
+    size_t *lines; /* of the file, one a touch */
+    size_t count, capacity, line_capacity;
+    wh_geometry_estimate_t estimate; /* written by wh_touch_table_estimate */
+} wh_touch_table_t;
+
+/* Reads a table with the columns theta, r, z, yaw (the axes as the controller tells them, degrees and mm),
+ * touched_x, touched_y, touched_z (mm, where the touched point is known to be) and perhaps heading (degrees;
+ * of the tool, from x towards y; in the lines where it was measured). WH_STATUS_BAD_TABLE if it is refused:
+ * then csv.message says why. To be closed either way. */
+wh_status_t wh_touch_table_open(wh_touch_table_t *table, const char *path);
+
+/* Fits the geometry, and the axes' scales if asked to. True if all is determined. */
+bool wh_touch_table_estimate(wh_touch_table_t *table, bool with_scales);
+
+void wh_touch_table_close(wh_touch_table_t *table);
 
 /* An axis's name in tables and layouts, and if it turns. */
 const char *wh_table_axis_name(size_t axis);

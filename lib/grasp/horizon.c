@@ -1,5 +1,7 @@
 #include "horizon_internal.h"
 
+#include <string.h>
+
 /* The longest distance that a word holds, in units. */
 #define LONGEST 536870912
 
@@ -72,6 +74,6 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
 
 void wh_horizon_reset(wh_grasp_t *table) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        wh_horizon_words(table, g)[3] = 0;
+        memset(wh_horizon_words(table, g), 0, WH_HORIZON_WORDS * sizeof(uint32_t));
     }
 }

@@ -10,19 +10,12 @@
 
 static const char *const shapes[] = {"normal", "uniform", NULL};
 
-/* The largest widths: mm, degrees, s. */
-#define MOST_MM 100
-#define MOST_DEG 45
-#define MOST_S 1
-
 static wh_shape_t read_shape(wh_reader_t *reader, wh_shape_t fallback) {
     return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
 }
 
-#define PLACEMENT "dx dy dz tilt turn shape"
 static const char *const placement_names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
 
-#define TEACHING "x y z roll pitch yaw shape"
 static const char *const teaching_names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
 
 /* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
@@ -30,7 +23,8 @@ static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spre
     for (size_t i = 0; names[i]; ++i) {
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = read_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, names[i], spread->width, 0, i < 3 ? MOST_MM : MOST_DEG);
+        spread->width = wh_reader_number(reader, names[i], spread->width, 0,
+                                         i < 3 ? WH_ERRORS_MOST_MM : WH_ERRORS_MOST_DEG);
     }
 }
 
@@ -40,7 +34,7 @@ static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spre
 #define MOST_DEVIATIONS 8.6
 
 static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread_t *valve) {
-    valve->width = wh_reader_number(reader, "valve", valve->width, 0, MOST_S);
+    valve->width = wh_reader_number(reader, "valve", valve->width, 0, WH_ERRORS_MOST_S);
     const double most = (valve->shape == WH_SHAPE_NORMAL ? MOST_DEVIATIONS : 1) * valve->width;
     if (most * 1e6 / (double)layout->slice_us > WH_STUDY_LAG_SLICES) {
         lua_pushnumber(reader->L, valve->width);
@@ -52,7 +46,7 @@ static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread
 
 static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_errors_t *errors) {
     errors->vacuum.shape = read_shape(reader, errors->vacuum.shape);
-    errors->vacuum.width = wh_reader_number(reader, "vacuum", 0, 0, MOST_S);
+    errors->vacuum.width = wh_reader_number(reader, "vacuum", 0, 0, WH_ERRORS_MOST_S);
     errors->valves[0].shape = errors->vacuum.shape;
     read_valve(reader, layout, &errors->valves[0]);
     for (size_t g = 1; g < layout->machine.gripper_count; ++g) {
@@ -65,8 +59,8 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
 /* A table whose keys are names of the layout's wafers, stations or grippers. */
 typedef struct {
     const char *field, *what;
-    const char *known; /* the fields of each of its tables */
-    const void *items; /* each begins with its name */
+    const wh_reader_field_t *known; /* the fields of each of its tables */
+    const void *items;              /* each begins with its name */
     size_t size, count;
     wh_layout_find_t *find;
     void (*read)(wh_reader_t *reader, wh_layout_t *layout, size_t index);
@@ -132,13 +126,13 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
     }
     wh_spreads_t teaching = placement;
     layout->errors->vacuum.shape = shape;
-    wh_reader_open_section(reader, "placement", PLACEMENT);
+    wh_reader_open_section(reader, "placement", wh_layout_placement_fields);
     read_spreads(reader, placement_names, &placement);
     wh_reader_leave(reader);
-    wh_reader_open_section(reader, "teaching", TEACHING);
+    wh_reader_open_section(reader, "teaching", wh_layout_teaching_fields);
     read_spreads(reader, teaching_names, &teaching);
     wh_reader_leave(reader);
-    wh_reader_open_section(reader, "timing", "valve vacuum shape");
+    wh_reader_open_section(reader, "timing", wh_layout_timing_fields);
     read_timing(reader, layout, layout->errors);
     wh_reader_leave(reader);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -151,13 +145,13 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     const section_t sections[] = {
-        {"wafers", "wafer", PLACEMENT, layout->wafers, sizeof *layout->wafers, layout->wafer_count,
-         wh_layout_find_wafer, read_wafer},
-        {"stations", "station", TEACHING, layout->stations, sizeof *layout->stations, layout->station_count,
-         wh_layout_find_station, read_station},
-        {"grippers", "gripper", "valve shape", layout->grippers, sizeof layout->grippers[0],
+        {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers,
+         layout->wafer_count, wh_layout_find_wafer, read_wafer},
+        {"stations", "station", wh_layout_teaching_fields, layout->stations, sizeof *layout->stations,
+         layout->station_count, wh_layout_find_station, read_station},
+        {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
-    if (!wh_reader_open(reader, "study", "shape placement teaching timing wafers stations grippers")) {
+    if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {
         return;
     }
     wh_errors_t *errors = wh_layout_memory(reader->L, 1, sizeof *errors);
@@ -203,21 +197,28 @@ static wh_displacement_t draw_components(const wh_spreads_t *spreads, const comp
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer) {
     static const component_t components[] = {{0, 0x100}, {1, 0x101}, {2, 0x102},
                                              {3, 0x103}, {3, 0x1FF}, {4, 0x104}};
+    if (errors->given) {
+        return errors->given->wafers[wafer];
+    }
     return draw_components(&errors->wafers[wafer], components, trial, wafer);
 }
 
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station) {
     static const component_t components[] = {{0, 0x200}, {1, 0x201}, {2, 0x202},
                                              {3, 0x203}, {4, 0x204}, {5, 0x205}};
+    if (errors->given) {
+        return errors->given->stations[station];
+    }
     return draw_components(&errors->stations[station], components, trial, station);
 }
 
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper) {
-    return wh_real_abs(draw(&errors->valves[gripper], trial, 0x300, gripper));
+    return errors->given ? errors->given->valves[gripper]
+                         : wh_real_abs(draw(&errors->valves[gripper], trial, 0x300, gripper));
 }
 
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial) {
-    return wh_real_abs(draw(&errors->vacuum, trial, 0x400, 0));
+    return errors->given ? errors->given->vacuum : wh_real_abs(draw(&errors->vacuum, trial, 0x400, 0));
 }
 
 bool wh_displacement_is_any(const wh_displacement_t *displacement) {
@@ -226,4 +227,15 @@ bool wh_displacement_is_any(const wh_displacement_t *displacement) {
     return wh_real_abs(moved->x) + wh_real_abs(moved->y) + wh_real_abs(moved->z) + wh_real_abs(turn[0]) +
                wh_real_abs(turn[1]) + wh_real_abs(turn[2]) >
            0;
+}
+
+const char *wh_errors_teaching_name(size_t axis) {
+    return teaching_names[axis];
+}
+
+wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis) {
+    wh_real_t *const parts[WH_SPREADS] = {&displacement->moved.x, &displacement->moved.y,
+                                          &displacement->moved.z, &displacement->turn[0],
+                                          &displacement->turn[1], &displacement->turn[2]};
+    return parts[axis];
 }

@@ -29,19 +29,26 @@ typedef struct {
     wh_spread_t of[WH_SPREADS];
 } wh_spreads_t;
 
-/* One entry for each wafer, station and gripper of a layout. A delay is the magnitude of the draw: never
- * early. */
-typedef struct {
-    wh_spreads_t *wafers, *stations;
-    wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
-    wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
-} wh_errors_t;
-
-/* What a trial drew. */
+/* Where a wafer lies or a station stands, beside its place. */
 typedef struct {
     wh_vec3_t moved;   /* mm */
     wh_real_t turn[3]; /* about x, y, z; deg */
 } wh_displacement_t;
+
+/* Errors that are given, not drawn: for each wafer, station and gripper of a layout. */
+typedef struct {
+    wh_displacement_t *wafers, *stations;
+    wh_real_t valves[WH_GRIPPERS], vacuum; /* s, at least 0 */
+} wh_given_t;
+
+/* One entry for each wafer, station and gripper of a layout. A delay is the magnitude of the draw: never
+ * early. */
+typedef struct {
+    const wh_given_t *given; /* what each trial then draws, whatever the widths; null: it goes by them */
+    wh_spreads_t *wafers, *stations;
+    wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
+    wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
+} wh_errors_t;
 
 /* Each draw depends on seed, trial, field and index alone. Cost: about 70 ns for each width that is not 0. */
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer);
@@ -51,5 +58,15 @@ wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *tri
 
 /* True if any of it is not 0. */
 bool wh_displacement_is_any(const wh_displacement_t *displacement);
+
+/* What a station's displacement is made of: x, y, z (mm), roll, pitch, yaw (deg); `axis` from 0 to
+ * WH_SPREADS - 1. The name is a constant text. */
+const char *wh_errors_teaching_name(size_t axis);
+wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis);
+
+/* The largest width that is drawn, and the largest error that is given: mm, degrees, s. */
+#define WH_ERRORS_MOST_MM 100
+#define WH_ERRORS_MOST_DEG 45
+#define WH_ERRORS_MOST_S 1
 
 #endif

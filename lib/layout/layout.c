@@ -79,7 +79,7 @@ static void refuse_inches(wh_reader_t *reader) {
 /* The notch shows people and prealigners how the wafer is turned. For the checks the wafer stays a disc. */
 static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
     layout->notch_depth = layout->wafer_diameter < LEAST_NOTCHED ? 0 : 1;
-    if (wh_reader_open(reader, "notch", "at depth")) {
+    if (wh_reader_open(reader, "notch", wh_layout_notch_fields)) {
         layout->notch = wh_rad_from_deg(wh_reader_number(reader, "at", 0, -360, 360));
         layout->notch_depth = wh_reader_number(reader, "depth", 1, 0, layout->wafer_diameter / 4);
         wh_reader_leave(reader);
@@ -87,7 +87,7 @@ static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
-    wh_reader_open_section(reader, "wafer", "diameter thickness notch");
+    wh_reader_open_section(reader, "wafer", wh_layout_wafer_size_fields);
     refuse_inches(reader);
     layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 25, 1000);
     layout->wafer_thickness =
@@ -99,7 +99,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     static const char *const names[WH_TOLERANCE_LIMITS] = {"projz", "projxy", "planar"};
     wh_tolerance_t *tolerance = &layout->grasp.tolerance;
-    (void)wh_reader_open(reader, "tolerance", "projz projxy planar");
+    (void)wh_reader_open(reader, "tolerance", wh_layout_tolerance_fields);
     for (size_t i = 0; i < WH_TOLERANCE_LIMITS; ++i) {
         layout->tolerance_default[i] = !wh_reader_has(reader, names[i]);
     }
@@ -133,7 +133,7 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
     layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
-    wh_reader_open_section(reader, "near", "projz projxy");
+    wh_reader_open_section(reader, "near", wh_layout_near_fields);
     layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);
     layout->grasp.near_projxy = wh_reader_number(reader, "projxy", layout->grasp.near_projxy, 1e-9, 1e6);
     wh_reader_leave(reader);
@@ -153,14 +153,14 @@ static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
 /* How a released wafer comes to lie, and the limits above which its place is reported. */
 static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     cell->settle = wh_reader_boolean(reader, "settle", false);
-    wh_reader_open_section(reader, "placing", "off_centre askew");
+    wh_reader_open_section(reader, "placing", wh_layout_placing_fields);
     cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
     cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
     wh_reader_leave(reader);
 }
 
 static void read_corrections(wh_reader_t *reader, wh_corrections_t *corrections) {
-    wh_reader_open_section(reader, "corrections", "x y z turn");
+    wh_reader_open_section(reader, "corrections", wh_layout_corrections_fields);
     corrections->x = wh_reader_number(reader, "x", 5, 0, 1000);
     corrections->y = wh_reader_number(reader, "y", 5, 0, 1000);
     corrections->z = wh_reader_number(reader, "z", 2.5, 0, 1000);
@@ -194,10 +194,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");
     }
-    wh_reader_refuse_unknown(&reader,
-                             "wafer tolerance near check slice seat settle placing collision "
-                             "look_ahead robot homed chuck grippers stations wafers shapes obstacles "
-                             "clearance vacuum pads faults study corrections");
+    wh_reader_refuse_unknown(&reader, wh_layout_top_fields);
     read_checks(&reader, layout);
     wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);
@@ -205,6 +202,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_grippers(&reader, layout);
     wh_layout_read_effectors(&reader, layout);
     wh_layout_read_wafers(&reader, layout);
+    wh_layout_read_sensing(&reader, layout);
     wh_layout_read_shapes(&reader, layout);
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);

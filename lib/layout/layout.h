@@ -112,9 +112,15 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
-    wh_cell_t cell;    /* the places, with the tolerance and how wafers are set down */
-    bool collision;    /* check for contact in each slice */
-    bool look_ahead;   /* and before each command that moves */
+    /* The edge sensors, and by wafer the rims that they see: without sensors these mean nothing. Wafers of
+     * which the layout says nothing have the nominal one. */
+    wh_scanner_t scanners[WH_GRIPPERS];
+    size_t scanner_count;
+    const wh_rim_t *nominal_rim;
+    const wh_rim_t *const *rims;
+    wh_cell_t cell;  /* the places, with the tolerance and how wafers are set down */
+    bool collision;  /* check for contact in each slice */
+    bool look_ahead; /* and before each command that moves */
     wh_shapes_t shapes;
     wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
@@ -157,8 +163,15 @@ void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layou
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults,
- * machine, and the names and places of stations, grippers and wafers. The path is left out. Cost: linear. */
+/* The edge sensors as a simulator takes them: a view of the layout. */
+wh_scanning_t wh_layout_scanning(const wh_layout_t *layout);
+
+/* The edge sensor at a gripper's chuck; null if it has none. */
+const wh_scanner_t *wh_layout_scanner(const wh_layout_t *layout, int32_t gripper);
+
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
+ * sensors and rims, machine, and the names and places of stations, grippers and wafers. The path is left out.
+ * Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* The name of a part of the collision world, wafers included; null if there is no such part. */

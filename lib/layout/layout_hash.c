@@ -123,5 +123,10 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     for (size_t i = 0; i < layout->physics.fault_count; ++i) {
         hash = hash_fault(hash, &layout->physics.faults[i]);
     }
-    return hash_placing(hash, &layout->cell);
+    hash = hash_placing(hash, &layout->cell);
+    if (layout->scanner_count > 0) {
+        const wh_scanning_t scanning = wh_layout_scanning(layout);
+        hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
+    }
+    return hash;
 }

@@ -4,6 +4,7 @@
 
 #include "../script/reader.h"
 #include "layout.h"
+#include "layout_fields.h"
 
 /* Zeroed memory for `count` items that lives as long as the Lua state. */
 void *wh_layout_memory(lua_State *L, size_t count, size_t size);
@@ -35,6 +36,7 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);

@@ -43,7 +43,8 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
     const wh_real_t reach = turns ? WH_REAL(1e6) : WH_REAL(1e5);
     wh_travel_t *travel = &robot->travel[axis];
-    wh_reader_open_section(reader, name, "min max home speed acceleration jerk");
+    wh_reader_open_section(reader, name,
+                           turns ? wh_layout_turning_axis_fields : wh_layout_straight_axis_fields);
     travel->min = read_quantity(reader, "min", turns, travel->min, axis == WH_AXIS_R ? 0 : -reach, reach);
     travel->max = read_quantity(reader, "max", turns, travel->max, to_layout(turns, travel->min), reach);
     robot->home[axis] = read_quantity(reader, "home", turns, robot->home[axis], to_layout(turns, travel->min),
@@ -56,7 +57,7 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
 static void read_robot(wh_reader_t *reader, wh_robot_t *robot) {
     static const char *const kinds[] = {"TRZY", NULL};
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    wh_reader_open_section(reader, "robot", "kind theta r z yaw");
+    wh_reader_open_section(reader, "robot", wh_layout_robot_fields);
     wh_reader_choice(reader, "kind", 0, kinds);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         read_axis(reader, robot, axis, names[axis]);
@@ -74,7 +75,7 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
     read_robot(reader, &machine->robot);
     layout->homed = wh_reader_boolean(reader, "homed", true);
-    wh_reader_open_section(reader, "chuck", "speed acceleration jerk");
+    wh_reader_open_section(reader, "chuck", wh_layout_chuck_fields);
     read_axis_limits(reader, true, &machine->chuck_limits);
     wh_reader_leave(reader);
 }
@@ -147,7 +148,7 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
     const size_t g = layout->machine.gripper_count;
     wh_layout_gripper_t *gripper = &layout->grippers[g];
     char valve[WH_NAME_SIZE];
-    wh_reader_refuse_unknown(reader, "name on valve at rpy");
+    wh_reader_refuse_unknown(reader, wh_layout_gripper_fields);
     wh_reader_text(reader, "name", NULL, gripper->name, sizeof gripper->name);
     snprintf(valve, sizeof valve, "%.40s.valve", gripper->name);
     wh_reader_text(reader, "valve", valve, gripper->valve, sizeof gripper->valve);

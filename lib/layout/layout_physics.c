@@ -23,7 +23,7 @@ static void read_levels(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 }
 
 static void read_vacuum_table(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
-    (void)wh_reader_open(reader, "vacuum", "model build vent idle sensor_on sensor_off release");
+    (void)wh_reader_open(reader, "vacuum", wh_layout_vacuum_fields);
     *vacuum = model_of(wh_reader_choice(reader, "model", 1, models));
     vacuum->build = wh_reader_number(reader, "build", vacuum->build, 0, 3600);
     vacuum->vent = wh_reader_number(reader, "vent", vacuum->vent, 0, 3600);
@@ -46,7 +46,7 @@ static void read_vacuum(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 
 static void read_pads(wh_reader_t *reader, const wh_layout_t *layout, wh_pads_t *pads) {
     const wh_real_t mass = wh_wafer_mass(layout->wafer_diameter, layout->wafer_thickness);
-    if (!wh_reader_open(reader, "pads", "friction force mass gravity")) {
+    if (!wh_reader_open(reader, "pads", wh_layout_pads_fields)) {
         return;
     }
     pads->friction = wh_reader_number(reader, "friction", WH_REAL(NAN), 0, 100);
@@ -67,23 +67,6 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* The longest time of a fault, s. */
 #define LONGEST 1e6
-
-/* The fields of each kind. */
-static const char *const fields[WH_FAULT_KINDS] = {
-    [WH_FAULT_NO_VACUUM] = "kind after lasting gripper",
-    [WH_FAULT_SLOW_VACUUM] = "kind after lasting gripper value",
-    [WH_FAULT_SENSOR_ON] = "kind after lasting gripper",
-    [WH_FAULT_SENSOR_OFF] = "kind after lasting gripper",
-    [WH_FAULT_LEAK] = "kind after lasting gripper value",
-    [WH_FAULT_VALVE_STUCK] = "kind after lasting gripper",
-    [WH_FAULT_AXIS_STOPPED] = "kind after lasting gripper",
-    [WH_FAULT_COMMAND_LOST] = "kind after lasting",
-    [WH_FAULT_WAFER_MISSING] = "kind after lasting wafer",
-    [WH_FAULT_WAFER_DOUBLED] = "kind after lasting wafer onto",
-    [WH_FAULT_WAFER_CROSSED] = "kind after lasting wafer value",
-    [WH_FAULT_WAFER_SHIFTED] = "kind after lasting wafer dx dy dz",
-    [WH_FAULT_WAFER_TILTED] = "kind after lasting wafer rpy",
-};
 
 static wh_fault_kind_t read_kind(wh_reader_t *reader) {
     const char *names[WH_FAULT_KINDS + 1] = {NULL};
@@ -173,7 +156,7 @@ static void read_times(wh_reader_t *reader, const wh_layout_t *layout, int64_t f
 
 wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first) {
     wh_fault_t fault = wh_fault_make(read_kind(reader), WH_NONE, 0, first, WH_FAULT_FOREVER);
-    wh_reader_refuse_unknown(reader, fields[fault.kind]);
+    wh_reader_refuse_unknown(reader, wh_layout_fault_fields[fault.kind]);
     read_target(reader, layout, &fault);
     fault.value = read_value(reader, fault.kind);
     fault.offset = read_offset(reader, layout, &fault);

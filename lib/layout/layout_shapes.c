@@ -33,7 +33,7 @@ static void add_obstacles(wh_part_list_t *list, const obstacles_t *obstacles, bo
  * its caps. */
 static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *convex) {
     wh_reader_enter(reader, field);
-    wh_reader_refuse_unknown(reader, "radius height");
+    wh_reader_refuse_unknown(reader, wh_layout_round_fields);
     convex->half.x = wh_reader_number(reader, "radius", WH_REAL(NAN), WH_CONVEX_THINNEST, 1e4);
     convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN),
                                       convex->kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
@@ -134,7 +134,7 @@ static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t
     static const wh_vec3_t level = {0, 0, 0};
     char fallback[WH_NAME_SIZE];
     wh_convex_t *convex = &obstacle->part.convex;
-    wh_reader_refuse_unknown(reader, "name on at rpy box cylinder capsule mesh unit");
+    wh_reader_refuse_unknown(reader, wh_layout_obstacle_fields);
     snprintf(fallback, sizeof fallback, "obstacle %zu", index + 1);
     wh_reader_text(reader, "name", fallback, obstacle->name, WH_NAME_SIZE);
     read_mount(reader, layout, &obstacle->part);
@@ -169,7 +169,7 @@ static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, obsta
 }
 
 static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
-    wh_reader_open_section(reader, "blade", "thickness half_width finger length palm");
+    wh_reader_open_section(reader, "blade", wh_layout_blade_fields);
     blade->thickness = wh_reader_number(reader, "thickness", blade->thickness, 0.1, 50);
     blade->half_width = wh_reader_number(reader, "half_width", blade->half_width, 1, 500);
     blade->finger = wh_reader_number(
@@ -181,7 +181,7 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
 }
 
 static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
-    wh_reader_open_section(reader, "arm", "reach link right_handed");
+    wh_reader_open_section(reader, "arm", wh_layout_arm_fields);
     arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
     arm->link = wh_reader_number(reader, "link", arm->link, 10, 5000);
     arm->right_handed = wh_reader_boolean(reader, "right_handed", arm->right_handed);
@@ -189,7 +189,7 @@ static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
 }
 
 static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
-    wh_reader_open_section(reader, "ledge", "inner outer thickness length");
+    wh_reader_open_section(reader, "ledge", wh_layout_ledge_fields);
     ledge->outer = wh_reader_number(reader, "outer", ledge->outer, 1, 2000);
     ledge->inner =
         wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
@@ -200,7 +200,7 @@ static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
 }
 
 static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
-    wh_reader_open_section(reader, "foup", "room wall floor roof");
+    wh_reader_open_section(reader, "foup", wh_layout_foup_fields);
     shell->room = wh_reader_number(reader, "room", shell->room, 0.1, 500);
     shell->wall = wh_reader_number(reader, "wall", shell->wall, 0.1, 100);
     shell->floor = wh_reader_number(reader, "floor", shell->floor, 1, 500);
@@ -209,7 +209,7 @@ static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
 }
 
 static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
-    wh_reader_open_section(reader, "chuck", "radius height body");
+    wh_reader_open_section(reader, "chuck", wh_layout_spindle_fields);
     chuck->radius = wh_reader_number(reader, "radius", chuck->radius, 1, 500);
     chuck->height = wh_reader_number(reader, "height", chuck->height, 1, 200);
     chuck->body = wh_reader_number(reader, "body", chuck->body, 1, 1000);
@@ -221,7 +221,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     wh_shapes_t *shapes = &layout->shapes;
     *shapes = wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, travel[WH_AXIS_R].max,
                                 travel[WH_AXIS_Z].min);
-    wh_reader_open_section(reader, "shapes", "blade arm ledge foup chuck");
+    wh_reader_open_section(reader, "shapes", wh_layout_shapes_fields);
     read_blade(reader, &shapes->blade);
     read_arm(reader, &shapes->arm);
     read_ledge(reader, &shapes->ledge);
@@ -233,13 +233,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
 /* --------------------------------------------------------------------------------------------- clearances */
 
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
-    char known[256] = "";
-    size_t length = 0;
-    for (int kind = 0; kind < WH_CLEARANCES && length < sizeof known; ++kind) {
-        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", kind > 0 ? " " : "",
-                                   wh_clearance_name((wh_clearance_kind_t)kind));
-    }
-    wh_reader_open_section(reader, "clearance", known);
+    wh_reader_open_section(reader, "clearance", wh_layout_clearance_fields);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
         const char *name = wh_clearance_name((wh_clearance_kind_t)kind);
         layout->world.limits[kind] = wh_reader_number(reader, name, 0, 0, WH_CLEARANCE_RANGE);

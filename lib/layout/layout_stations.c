@@ -10,11 +10,6 @@
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
-#define STATION_FIELDS                                                                                       \
-    "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
-    "release "                                                                                               \
-    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover counts"
-
 /* A default for wafers up to 150 mm, up to 200 mm, and larger ones. */
 static double by_size(const wh_layout_t *layout, double small, double middle, double large) {
     return layout->wafer_diameter <= 150 ? small : layout->wafer_diameter <= 200 ? middle : large;
@@ -168,7 +163,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     static const char *const kinds[] = {"slots", "prealigner", "foup", NULL};
     wh_layout_station_t *station = &layout->stations[index];
     wh_reader_enter(reader, station->name);
-    wh_reader_refuse_unknown(reader, STATION_FIELDS);
+    wh_reader_refuse_unknown(reader, wh_layout_station_fields);
     const int kind = wh_reader_choice(reader, "kind", 0, kinds);
     station->prealigner = kind == 1;
     station->foup = kind == 2;
@@ -259,7 +254,7 @@ static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     char fallback[WH_NAME_SIZE];
     wh_layout_wafer_t *wafer = &layout->wafers[w];
-    wh_reader_refuse_unknown(reader, "name station slot dx dy dz rpy");
+    wh_reader_refuse_unknown(reader, wh_layout_wafer_fields);
     snprintf(fallback, sizeof fallback, "Wafer %zu", w + 1);
     wh_reader_text(reader, "name", fallback, wafer->name, sizeof wafer->name);
     wafer->station = wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,

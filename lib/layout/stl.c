@@ -372,6 +372,7 @@ static FILE *open_regular(stl_t *stl) {
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size) {
     stl_t stl = {.path = path, .message = message, .message_size = size};
+    wh_output_note_input(path);
     FILE *file = open_regular(&stl);
     if (file == NULL) {
         return false;

@@ -37,6 +37,80 @@ static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
     }
 }
 
+static void put_sensor(const wh_scanner_t *scanner, double hidden[2][WH_SENSOR_ARCS],
+                       waferhand_edge_sensor *out) {
+    const wh_sensor_t *sensor = &scanner->sensor;
+    *out = (waferhand_edge_sensor){.gripper = scanner->gripper,
+                                   .seed = (int64_t)scanner->seed,
+                                   .direction = sensor->direction,
+                                   .middle = sensor->middle,
+                                   .length = sensor->length,
+                                   .pixel = sensor->pixel,
+                                   .samples = sensor->samples,
+                                   .encoder = sensor->encoder,
+                                   .noise = sensor->noise,
+                                   .tilt = sensor->tilt,
+                                   .offset = sensor->error.offset,
+                                   .zero = sensor->error.zero,
+                                   .gain = sensor->error.gain,
+                                   .latency = sensor->error.latency,
+                                   .hidden_count = sensor->hidden_count,
+                                   .hidden_from = hidden[0],
+                                   .hidden_width = hidden[1]};
+    for (int32_t i = 0; i < sensor->hidden_count; ++i) {
+        hidden[0][i] = sensor->hidden[i].from;
+        hidden[1][i] = sensor->hidden[i].width;
+    }
+}
+
+static void put_rim(const wh_rim_t *rim, int32_t wafer, double chips[3][WH_RIM_CHIPS], waferhand_rim *out) {
+    *out = (waferhand_rim){.wafer = wafer,
+                           .radius = rim->radius,
+                           .notch_direction = rim->notch.direction,
+                           .notch_depth = rim->notch.depth,
+                           .notch_opening = rim->notch.opening,
+                           .notch_bottom = rim->notch.bottom,
+                           .notch_corner = rim->notch.corner,
+                           .bow = rim->bow,
+                           .saddle = rim->saddle,
+                           .saddle_direction = rim->saddle_direction,
+                           .transmission = rim->transmission,
+                           .chip_count = rim->chip_count,
+                           .chip_direction = chips[0],
+                           .chip_width = chips[1],
+                           .chip_depth = chips[2]};
+    for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
+        out->flat_direction[i] = rim->flats[i].direction;
+        out->flat_length[i] = rim->flats[i].length;
+    }
+    for (int32_t i = 0; i < rim->chip_count; ++i) {
+        chips[0][i] = rim->chips[i].direction;
+        chips[1][i] = rim->chips[i].width;
+        chips[2][i] = rim->chips[i].depth;
+    }
+}
+
+static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
+    message->sensors = room->sensors;
+    message->rims = room->rims;
+    if (layout->scanner_count == 0) {
+        return;
+    }
+    for (size_t i = 0; i < layout->scanner_count; ++i) {
+        put_sensor(&layout->scanners[i], room->hidden[i], &room->sensors[i]);
+    }
+    message->sensor_count = (int32_t)layout->scanner_count;
+    put_rim(layout->nominal_rim, WH_NONE, room->chips[0], &room->rims[0]);
+    message->rim_count = 1;
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        if (layout->rims[w] != layout->nominal_rim) {
+            const int32_t i = message->rim_count++;
+            put_rim(layout->rims[w], (int32_t)w, room->chips[i], &room->rims[i]);
+        }
+    }
+}
+
 static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
     message->vacuum_build = physics->vacuum.build;
     message->vacuum_vent = physics->vacuum.vent;
@@ -77,6 +151,7 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->wafer_count = (int32_t)layout->wafer_count;
     put_physics(&layout->physics, message);
     put_lists(layout, room);
+    put_scanning(layout, room);
     return true;
 }
 
@@ -166,6 +241,86 @@ static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     return wh_physics_validate(physics, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
+static wh_scanner_t take_sensor(const waferhand_edge_sensor *in, const wh_layout_t *layout) {
+    wh_scanner_t scanner = {.gripper = in->gripper,
+                            .seed = (uint64_t)in->seed,
+                            .sensor = {.direction = in->direction,
+                                       .middle = in->middle,
+                                       .length = in->length,
+                                       .pixel = in->pixel,
+                                       .samples = in->samples,
+                                       .encoder = in->encoder,
+                                       .noise = in->noise,
+                                       .tilt = in->tilt,
+                                       .error = {in->offset, in->zero, in->gain, in->latency},
+                                       .hidden_count = in->hidden_count}};
+    for (int32_t i = 0; i < in->hidden_count; ++i) {
+        scanner.sensor.hidden[i] = (wh_arc_t){in->hidden_from[i], in->hidden_width[i]};
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        if (layout->places[s].chuck == in->gripper) {
+            scanner.base_from_station = layout->places[s].base_from_station;
+        }
+    }
+    return scanner;
+}
+
+static void take_rim(const waferhand_rim *in, wh_rim_t *rim) {
+    *rim = (wh_rim_t){.radius = in->radius,
+                      .notch = {in->notch_direction, in->notch_depth, in->notch_opening, in->notch_bottom,
+                                in->notch_corner},
+                      .chip_count = in->chip_count,
+                      .bow = in->bow,
+                      .saddle = in->saddle,
+                      .saddle_direction = in->saddle_direction,
+                      .transmission = in->transmission};
+    for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
+        rim->flats[i] = (wh_flat_shape_t){in->flat_direction[i], in->flat_length[i]};
+    }
+    for (int32_t i = 0; i < in->chip_count; ++i) {
+        rim->chips[i] = (wh_chip_t){in->chip_direction[i], in->chip_width[i], in->chip_depth[i]};
+    }
+}
+
+/* Each wafer's rim, as the message names it; false if it names another wafer than it may. */
+static bool take_rims(const waferhand_cell *cell, wh_layout_t *layout, const wh_rim_t **by_wafer,
+                      wh_rim_t *rims) {
+    int32_t before = WH_NONE;
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        by_wafer[w] = rims;
+    }
+    for (int32_t i = 0; i < cell->rim_count; ++i) {
+        const int32_t wafer = cell->rims[i].wafer;
+        take_rim(&cell->rims[i], &rims[i]);
+        if (i == 0 ? wafer != WH_NONE : wafer <= before || wafer >= cell->wafer_count) {
+            return false;
+        }
+        if (i > 0) {
+            by_wafer[wafer] = &rims[i];
+        }
+        before = wafer;
+    }
+    return true;
+}
+
+static bool take_scanning(const waferhand_cell *cell, wh_layout_t *layout) {
+    if (cell->sensor_count == 0) {
+        return cell->rim_count == 0;
+    }
+    wh_rim_t *rims = wh_array_new((size_t)cell->rim_count + 1, sizeof *rims);
+    const wh_rim_t **by_wafer = wh_array_new(layout->wafer_count, sizeof *by_wafer);
+    layout->nominal_rim = rims;
+    layout->rims = by_wafer;
+    layout->scanner_count = (size_t)cell->sensor_count;
+    for (int32_t i = 0; i < cell->sensor_count; ++i) {
+        layout->scanners[i] = take_sensor(&cell->sensors[i], layout);
+    }
+    const wh_scanning_t scanning = wh_layout_scanning(layout);
+    return cell->rim_count > 0 && take_rims(cell, layout, by_wafer, rims) &&
+           wh_rim_validate(rims, NULL) == WH_OK &&
+           wh_scanning_validate(&scanning, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+}
+
 static wh_layout_t *make_layout(const waferhand_cell *cell) {
     wh_layout_t *layout = wh_array_new(1, sizeof *layout);
     layout->machine.gripper_count = (size_t)cell->gripper_count;
@@ -182,7 +337,7 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = make_layout(cell);
     if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_lists(cell, layout) ||
-        !take_physics(cell, layout)) {
+        !take_physics(cell, layout) || !take_scanning(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }
@@ -199,5 +354,7 @@ void wh_link_layout_free(wh_layout_t *layout) {
     free(layout->places);
     free(layout->wafers);
     free(layout->start);
+    free(wh_link_borrowed((const char *)(const void *)layout->rims));
+    free(wh_link_borrowed((const char *)layout->nominal_rim));
     free(layout);
 }

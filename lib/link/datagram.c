@@ -15,10 +15,13 @@
 #define FAULT_SLOT 328
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
-#define STATE_FIXED (STATE_COUNTS + 4 * 4 + 2 * 8 + 4)
+#define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
+#define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 2 * 8 + 3 * 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
+#define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
+#define RIM_FIXED (4 + 14 * 8)
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
 
@@ -120,8 +123,10 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t grippers = take_count(&walk, WH_GRIPPERS);
     const size_t events = take_count(&walk, WH_LINK_EVENTS);
     const size_t faults = take_count(&walk, WH_FAULTS);
-    skip(&walk, STATE_FIXED - STATE_COUNTS - 4 * 4);
-    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT + CHECK);
+    const size_t samples = take_count(&walk, WH_SCAN_SLICE);
+    skip(&walk, STATE_FIXED - STATE_COUNTS - 5 * 4);
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT);
+    skip(&walk, samples * 4 + CHECK);
     return ends(&walk) && is_intact(data, size) &&
            waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }
@@ -154,6 +159,15 @@ static void skip_texts(walk_t *walk, size_t count) {
     }
 }
 
+/* `count` entries, each of so many bytes, then a count of up to `most`, then so many doubles for each of
+ * these. */
+static void skip_entries(walk_t *walk, size_t count, size_t fixed, int32_t most, size_t doubles) {
+    for (size_t i = 0; i < count && walk->good; ++i) {
+        skip(walk, fixed);
+        skip(walk, take_count(walk, most) * doubles * 8);
+    }
+}
+
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message) {
     walk_t walk = {data, size, 0, true};
     skip(&walk, FINGERPRINT + HEADER);
@@ -163,6 +177,8 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     const size_t stations = take_count(&walk, WH_LAYOUT_STATIONS);
     const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
     const size_t faults = take_count(&walk, WH_FAULTS);
+    const size_t sensors = take_count(&walk, WH_GRIPPERS);
+    const size_t rims = take_count(&walk, WH_LINK_RIMS);
     skip_texts(&walk, 2 * grippers);
     for (size_t i = 0; i < stations && walk.good; ++i) {
         skip_text(&walk);
@@ -170,7 +186,16 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     }
     skip_texts(&walk, wafers);
     skip(&walk, wafers * WAFER + faults * FAULT);
+    skip_entries(&walk, sensors, SENSOR_FIXED, WH_SENSOR_ARCS, 2);
+    skip_entries(&walk, rims, RIM_FIXED, WH_RIM_CHIPS, 3);
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message) {
+    walk_t walk = {data, size, 0, true};
+    skip(&walk, EDGE_SCAN_FIXED);
+    skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * 4);
+    return ends(&walk) && waferhand_edge_scan_decode(data, 0, (int)size, message) == (int)size;
 }
 
 /* --------------------------------------------------------------------------------------------- recordings */

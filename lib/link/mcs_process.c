@@ -92,6 +92,45 @@ static void cycle(void *user, const wh_mcs_t *mcs) {
     tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
 }
 
+/* One part of a scan that has ended, from sample `begin` on. */
+static void tell_part(wh_mcs_process_t *control, waferhand_edge_scan *message, const wh_mcs_edge_t *edge,
+                      int32_t begin) {
+    const int32_t left = edge->taken - begin;
+    message->part = begin / WH_LINK_SAMPLES + 1;
+    message->begin = begin;
+    message->sample_count = left < WH_LINK_SAMPLES ? left : WH_LINK_SAMPLES;
+    message->samples = &edge->samples[begin];
+    const int size = waferhand_edge_scan_encode(control->encoded, 0, (int)sizeof control->encoded, message);
+    if (size > 0) {
+        (void)wh_node_publish(control->node, WH_CHANNEL_EDGE_SCAN, control->encoded, (size_t)size);
+    }
+}
+
+static void tell_edge(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = user;
+    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_sensor_t *sensor = &wh_layout_scanner(mcs->layout, edge->order.gripper)->sensor;
+    const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
+    waferhand_edge_scan message = {.utime = edge->seq * mcs->layout->slice_us,
+                                   .seq = edge->seq,
+                                   .run = now.run,
+                                   .layout_hash = now.layout_hash,
+                                   .number = (int32_t)edge->number,
+                                   .gripper = edge->order.gripper,
+                                   .count = edge->order.count,
+                                   .first = edge->order.first,
+                                   .taken = edge->taken,
+                                   .missed = edge->missed,
+                                   .turn_samples = sensor->samples,
+                                   .pixels = wh_sensor_pixels(sensor),
+                                   .pixel = sensor->pixel,
+                                   .inner = sensor->middle - sensor->length / 2,
+                                   .parts = edge->taken > 0 ? (edge->taken - 1) / WH_LINK_SAMPLES + 1 : 1};
+    for (int32_t i = 0; i < message.parts; ++i) {
+        tell_part(control, &message, edge, i * WH_LINK_SAMPLES);
+    }
+}
+
 static void finished(void *user, const wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
     const wh_record_t *record = mcs->recorder.record;
@@ -183,6 +222,28 @@ static int64_t reached(void *user) {
     return wh_protocol_client_reached(&control->client);
 }
 
+typedef char saves_fit[sizeof(waferhand_command) + WH_LINK_DATAGRAM <= WH_MCS_SAVED_BYTES ? 1 : -1];
+
+static size_t save(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]) {
+    wh_mcs_process_t *control = user;
+    return wh_protocol_client_save(&control->client, bytes);
+}
+
+/* Another run begins: the one before is over. */
+static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_state_t *state) {
+    wh_mcs_process_t *control = user;
+    control->utime = control->client.command.utime;
+    control->seq = control->client.command.seq;
+    control->identity = control->client.identity;
+    const wh_status_t status = wh_protocol_client_restore(&control->client, bytes, size, state);
+    if (status == WH_OK) {
+        control->connected = false; /* so it is told of the run before */
+        tell_over(control);
+        control->connected = true;
+    }
+    return status;
+}
+
 static bool is_heard(void *user) {
     const wh_mcs_process_t *control = user;
     return control->client.has_state;
@@ -234,6 +295,14 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
+/* An edge scan has samples in each state, and a free run takes several from one exchange to the next. */
+static void hear_state(void *user, const wh_state_t *state) {
+    const wh_mcs_process_t *control = user;
+    if (control->mcs) {
+        wh_mcs_hear(control->mcs, state);
+    }
+}
+
 /* All that comes on our own channel is our own, but for another motion control's. */
 static void on_mcs(void *user, const void *data, size_t size) {
     wh_mcs_process_t *control = user;
@@ -254,6 +323,7 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
     control->node = node;
     control->options = *options;
     control->options.tick = tell_progress;
+    control->options.taken = hear_state;
     control->options.user = control;
     return wh_node_subscribe(node, WH_CHANNEL_REQUEST, wh_mcs_process_on_request, control) &&
            wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control) &&
@@ -267,9 +337,12 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .await = await,
                                .reached = reached,
                                .is_heard = is_heard,
+                               .save = save,
+                               .restore = restore,
                                .explain = explain,
                                .expected = expected,
                                .cycle = cycle,
+                               .edge = tell_edge,
                                .finished = finished,
                                .user = control};
 }

@@ -67,8 +67,8 @@ typedef struct {
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_mcs_process_t;
 
-/* Subscribes to requests. The options are the client's; `tick` and `user` are set here. False when LCM has no
- * room. */
+/* Subscribes to requests. The options are the client's; `tick`, `taken` and `user` are set here. False when
+ * LCM has no room. */
 bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
                          const wh_protocol_client_options_t *options);
 

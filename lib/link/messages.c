@@ -106,6 +106,10 @@ void wh_link_command_to_message(const wh_command_t *command, const wh_link_ident
         message->fault_index[i] = command->faults[i].index;
         wh_link_put_fault(&command->faults[i].fault, &message->faults[i]);
     }
+    message->scan_order = (int32_t)command->scan.kind;
+    message->scan_gripper = command->scan.gripper;
+    message->scan_count = command->scan.count;
+    message->scan_first = command->scan.first;
 }
 
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command) {
@@ -124,6 +128,8 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
         command->grippers[g].valve = message->valve[g];
     }
     memcpy(command->axes, message->axis_position, sizeof command->axes);
+    command->scan = (wh_scan_order_t){(wh_scan_order_kind_t)message->scan_order, message->scan_gripper,
+                                      message->scan_count, message->scan_first};
     command->fault_count = (size_t)message->fault_count;
     for (size_t i = 0; i < command->fault_count; ++i) {
         command->faults[i].index = message->fault_index[i];
@@ -198,8 +204,22 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
     }
 }
 
+static void put_scan(const wh_scan_t *scan, wh_link_state_t *room) {
+    waferhand_state *message = &room->message;
+    message->scan_number = (int32_t)scan->number;
+    message->scan_armed = scan->armed ? 1 : 0;
+    message->scan_gripper = scan->gripper;
+    message->scan_count = scan->count;
+    message->scan_first = scan->first;
+    message->scan_taken = scan->taken;
+    message->scan_turn = scan->turn;
+    message->sample_count = scan->sample_count;
+    memcpy(room->samples, scan->samples, sizeof room->samples);
+}
+
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *room) {
+    static const wh_scan_t none;
     waferhand_state *message = &room->message;
     message->utime = state->utime;
     message->seq = state->seq;
@@ -217,7 +237,9 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->grippers = room->grippers;
     message->events = room->events;
     message->faults = room->faults;
+    message->samples = room->samples;
     message->check = 0;
+    put_scan(state->physics ? &state->physics->scan : &none, room);
     put_arrays(state, room);
 }
 
@@ -272,6 +294,21 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     }
 }
 
+static void take_scan(const waferhand_state *message, wh_scan_t *scan) {
+    memset(scan, 0, sizeof *scan);
+    scan->number = (uint32_t)message->scan_number;
+    scan->armed = message->scan_armed != 0;
+    scan->gripper = message->scan_gripper;
+    scan->count = message->scan_count;
+    scan->first = message->scan_first;
+    scan->taken = message->scan_taken;
+    scan->turn = message->scan_turn;
+    scan->sample_count = message->sample_count;
+    for (int32_t i = 0; i < message->sample_count; ++i) {
+        scan->samples[i] = message->samples[i];
+    }
+}
+
 /* True if `other` is what this kind of event has there. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
@@ -322,6 +359,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
         take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);
         sound = event_fits(&message->events[e], message) && sound;
     }
+    take_scan(message, &arrays->physics.scan);
     wh_faults_clear(&arrays->physics.faults);
     arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {

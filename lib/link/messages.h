@@ -4,6 +4,7 @@
 
 #include <waferhand_cell.h>
 #include <waferhand_command.h>
+#include <waferhand_edge_scan.h>
 #include <waferhand_mcs.h>
 #include <waferhand_proximity.h>
 #include <waferhand_request.h>
@@ -21,14 +22,19 @@
 #define WH_CHANNEL_MCS "WAFERHAND_MCS"
 #define WH_CHANNEL_REQUEST "WAFERHAND_REQUEST"
 #define WH_CHANNEL_CELL "WAFERHAND_CELL"
+#define WH_CHANNEL_EDGE_SCAN "WAFERHAND_EDGE_SCAN"
 
 /* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
 #define WH_LINK_EVENTS WH_SLICE_EVENTS
+/* One for each wafer, and one for those that have none of their own. */
+#define WH_LINK_RIMS (WH_LINK_WAFERS + 1)
 /* Parts of a collision world, with which an event's must do. */
 #define WH_LINK_PARTS (1 << 20)
 /* LCM sends what is longer in fragments, which get lost one by one. */
 #define WH_LINK_DATAGRAM 65499
+/* The most samples of a part of a whole scan. */
+#define WH_LINK_SAMPLES 16000
 
 /* More slices than any run has: 285 years of 1 ms, and sums of times stay exact. */
 #define WH_LINK_SLICES (INT64_C(1) << 53)
@@ -71,6 +77,7 @@ typedef struct {
     waferhand_gripper_state grippers[WH_GRIPPERS];
     waferhand_event events[WH_LINK_EVENTS];
     waferhand_fault_slot faults[WH_FAULTS];
+    int32_t samples[WH_SCAN_SLICE];
 } wh_link_state_t;
 
 /* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
@@ -81,6 +88,10 @@ typedef struct {
     char *wafer_names[WH_LINK_WAFERS];
     waferhand_wafer_state wafers[WH_LINK_WAFERS];
     waferhand_fault faults[WH_FAULTS];
+    waferhand_edge_sensor sensors[WH_GRIPPERS];
+    double hidden[WH_GRIPPERS][2][WH_SENSOR_ARCS];
+    waferhand_rim rims[WH_LINK_RIMS];
+    double chips[WH_LINK_RIMS][3][WH_RIM_CHIPS];
 } wh_link_cell_t;
 
 /* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
@@ -148,6 +159,7 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
 bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
+bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message);
 
 /* The number of a request that cannot be decoded, if it has a request's fingerprint and is long enough to
  * carry one; else 0. */

@@ -66,8 +66,12 @@ static void restore_simulator(wh_protocol_client_t *client) {
     if (!asked || !client->has_state) {
         return;
     }
-    ++client->counters.restored;
-    if (!client->senders.shared &&
+    if (client->restores_most > 0 && client->restores++ == client->restores_most) {
+        client->refusal = WH_STATUS_NOT_RESTORED;
+        return;
+    }
+    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* asked for by us: no news */
+    if (client->restores_most == 0 && !client->senders.shared &&
         (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
         client->restored_us = now;
         wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
@@ -105,7 +109,8 @@ static bool take_over(wh_protocol_client_t *client, const waferhand_state *messa
 
 static void take(wh_protocol_client_t *client, const waferhand_state *message, const wh_state_t *state,
                  const void *data, size_t size) {
-    if (!client->has_state || state->seq != client->state.seq) {
+    const bool is_new = !client->has_state || state->seq != client->state.seq;
+    if (is_new) {
         const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
         const size_t count = state->event_count < room ? state->event_count : room;
         memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
@@ -117,6 +122,9 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->arrays.physics = *state->physics;
     client->state.physics = &client->arrays.physics;
     client->has_state = true;
+    if (is_new && client->options.taken) {
+        client->options.taken(client->options.user, &client->state);
+    }
     client->missed = message->missed;
     client->hash = (uint64_t)message->hash;
     memcpy(client->restore, data, size);
@@ -161,8 +169,7 @@ static void take_message(wh_protocol_client_t *client, const waferhand_state *me
     }
 }
 
-static void on_state(void *user, const void *data, size_t size) {
-    wh_protocol_client_t *client = user;
+void wh_protocol_client_hear(wh_protocol_client_t *client, const void *data, size_t size) {
     waferhand_state message;
     if (!wh_link_decode_state(data, size, &message)) {
         ++client->counters.malformed;
@@ -170,6 +177,10 @@ static void on_state(void *user, const void *data, size_t size) {
     }
     take_message(client, &message, data, size);
     (void)waferhand_state_decode_cleanup(&message);
+}
+
+static void on_state(void *user, const void *data, size_t size) {
+    wh_protocol_client_hear(user, data, size);
 }
 
 /* ------------------------------------------------------------------------------------------------ waiting */

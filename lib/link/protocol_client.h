@@ -36,6 +36,9 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* not zero: send nothing more; may be null */
     bool (*interrupted)(void);         /* a signal came that is to end a wait for silence; may be null */
     void (*tick)(void *user);          /* called once a second of a long motion; may be null */
+    /* Called for each state that is taken for the first time, also for those between two exchanges of a free
+     * run; may be null. */
+    void (*taken)(void *user, const wh_state_t *state);
     void *user;
 } wh_protocol_client_options_t;
 
@@ -60,6 +63,8 @@ typedef struct {
     int64_t asked_us; /* when the first command went out that nothing was heard since; 0: no answer is owed */
     int64_t start_us, last_tick_us, restored_us;
     bool silent;
+    int restores_most,
+        restores;         /* so often the state is sent back to one that asks; 0: as often as it asks */
     bool timed_out;       /* an exchange waited longer than it may, and nothing was heard since */
     wh_senders_t senders; /* of states: simulators */
     wh_protocol_client_counters_t counters;
@@ -88,6 +93,20 @@ int64_t wh_protocol_client_reached(const wh_protocol_client_t *client);
 /* The next exchange waits for its state, in a free run, too: to be called before the last slice of a motion,
  * if what comes next is decided by its state. */
 void wh_protocol_client_await(wh_protocol_client_t *client);
+
+/* What the run is after the last slice, as bytes for wh_protocol_client_restore: a command, and the state as
+ * it came, of at most sizeof(waferhand_command) + WH_LINK_DATAGRAM bytes. Waits a little for that state;
+ * returns how many bytes, 0 if it does not come. */
+size_t wh_protocol_client_save(wh_protocol_client_t *client, uint8_t bytes[]);
+
+/* Begins another run that goes on from there: the simulator gets the state sent back, as one does that was
+ * started anew. `state` becomes that, without events; before a first slice it stays. If the simulator takes
+ * it not, WH_STATUS_NOT_RESTORED, or as an exchange; then the run is the one before. */
+wh_status_t wh_protocol_client_restore(wh_protocol_client_t *client, const uint8_t bytes[], size_t size,
+                                       wh_state_t *state);
+
+/* Hears a datagram with a state: what the channel brings, or what is to be taken for it. */
+void wh_protocol_client_hear(wh_protocol_client_t *client, const void *data, size_t size);
 
 /* Forgets the run and begins another one, of a layout that may be another. Counters stay. */
 void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout);

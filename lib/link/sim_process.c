@@ -156,6 +156,17 @@ static void on_mcs(void *user, const void *data, size_t size) {
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
+/* Subscribed only so that the record holds whole scans. */
+static void on_edge_scan(void *user, const void *data, size_t size) {
+    wh_sim_process_t *simulation = user;
+    waferhand_edge_scan message;
+    if (!wh_link_decode_edge_scan(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_EDGE_SCAN, size);
+        return;
+    }
+    (void)waferhand_edge_scan_decode_cleanup(&message);
+}
+
 /* Subscribed only so that the record holds requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
@@ -181,6 +192,7 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
     const bool heard = !listens || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
+                                    wh_node_subscribe(node, WH_CHANNEL_EDGE_SCAN, on_edge_scan, simulation) &&
                                     wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
     if (!heard) {
         return WH_STATUS_NO_NETWORK;

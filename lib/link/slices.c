@@ -300,7 +300,9 @@ static bool is_plain(const waferhand_command *command) {
                          grippers * sizeof *command->gripper_rotation) &&
                  is_zero(command->valve + command->gripper_count, grippers * sizeof *command->valve) &&
                  is_zero(command->axis_position + command->axis_count, axes * sizeof(double)) &&
-                 command->fault_count == 0 && is_zero(command->fault_index, sizeof command->fault_index);
+                 (command->scan_order | command->scan_gripper | command->scan_count) == 0 &&
+                 command->scan_first == 0 && command->fault_count == 0 &&
+                 is_zero(command->fault_index, sizeof command->fault_index);
     for (size_t i = 0; plain && i < WH_COMMAND_FAULTS; ++i) {
         plain = is_no_fault(&command->faults[i]);
     }

@@ -403,7 +403,28 @@ static bool choose_layout(wh_log_run_t *run, FILE *file) {
     return !run->options.layout.path || run->cell.is_whole || refuse(run, "--layout: %s", run->cell.note);
 }
 
+static bool refuse_version(wh_log_run_t *run, int32_t version) {
+    return refuse(run, "a recording of version %d (expected 1 or %d)", (int)version, WH_RECORDING_VERSION);
+}
+
+/* The version that the log says it has: with another one its messages are unknown, too. */
+static int32_t read_version(wh_log_run_t *run, FILE *file) {
+    waferhand_recording message;
+    int32_t version = WH_RECORDING_VERSION;
+    wh_log_open(&run->log, file);
+    if (wh_log_next_event(&run->log) && strcmp(run->log.channel, WH_CHANNEL_RECORDING) == 0 &&
+        wh_link_decode_recording(run->log.data, run->log.size, &message)) {
+        version = message.version;
+        (void)waferhand_recording_decode_cleanup(&message);
+    }
+    return version;
+}
+
 static bool read_runs(wh_log_run_t *run, FILE *file) {
+    const int32_t version = read_version(run, file);
+    if (version != WH_RECORDING_VERSION) {
+        return refuse_version(run, version);
+    }
     if (!choose(run, file) || !choose_layout(run, file)) {
         return false;
     }
@@ -412,8 +433,7 @@ static bool read_runs(wh_log_run_t *run, FILE *file) {
     }
     follow(run, file);
     if (wh_reading_is_unknown(&run->replay)) {
-        return refuse(run, "a recording of version %d (expected 1 or %d)", (int)run->replay.recording.version,
-                      WH_RECORDING_VERSION);
+        return refuse_version(run, run->replay.recording.version);
     }
     return run->signals.layout ||
            refuse(run, "no sound slice of this run in it, in %" PRIu64 " events", run->reading.events);

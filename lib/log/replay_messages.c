@@ -268,14 +268,45 @@ static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
     }
 }
 
+/* What its last slice's state tells of the scan, the samples of that slice included. */
+static bool is_scan_of(const waferhand_edge_scan *message, const wh_scan_t *scan) {
+    const int32_t end = message->begin + message->sample_count;
+    bool same = message->number == (int32_t)scan->number && message->gripper == scan->gripper &&
+                message->count == scan->count && message->first == scan->first &&
+                message->taken == scan->taken && end <= message->taken;
+    for (int32_t i = 0; same && end == message->taken && i < scan->sample_count && i < message->sample_count;
+         ++i) {
+        same = message->samples[message->sample_count - 1 - i] == scan->samples[scan->sample_count - 1 - i];
+    }
+    return same;
+}
+
+/* It follows from its slices' states. */
+static void on_edge_scan(wh_replay_t *replay, const void *data, size_t size) {
+    const wh_protocol_server_t *server = &replay->server;
+    waferhand_edge_scan message;
+    if (!wh_link_decode_edge_scan(data, size, &message)) {
+        wh_replay_lose(replay, WH_REPLAY_GARBAGE);
+        return;
+    }
+    if (is_wanted(replay, message.run)) {
+        ++replay->messages;
+        if (replay->is_synchronous && server->identity.run == message.run && server->seq == message.seq &&
+            message.missed == 0 && !is_scan_of(&message, &server->simulator.physics.scan)) {
+            wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
+        }
+    }
+    (void)waferhand_edge_scan_decode_cleanup(&message);
+}
+
 /* ---------------------------------------------------------------------------------------------- the whole */
 
 /* True if a datagram begins with the fingerprint of one of our messages. */
 static bool is_ours(const void *data, size_t size) {
-    const int64_t fingerprints[] = {__waferhand_command_get_hash(), __waferhand_state_get_hash(),
-                                    __waferhand_cell_get_hash(),    __waferhand_proximity_get_hash(),
-                                    __waferhand_mcs_get_hash(),     __waferhand_request_get_hash(),
-                                    __waferhand_slices_get_hash(),  __waferhand_recording_get_hash()};
+    const int64_t fingerprints[] = {
+        __waferhand_command_get_hash(),   __waferhand_state_get_hash(),     __waferhand_cell_get_hash(),
+        __waferhand_proximity_get_hash(), __waferhand_mcs_get_hash(),       __waferhand_request_get_hash(),
+        __waferhand_slices_get_hash(),    __waferhand_recording_get_hash(), __waferhand_edge_scan_get_hash()};
     uint64_t first = 0;
     bool ours = false;
     memcpy(&first, data, size < sizeof first ? 0 : sizeof first);
@@ -293,7 +324,7 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
                     {WH_CHANNEL_STATE, on_state},         {WH_CHANNEL_MCS, on_mcs},
                     {WH_CHANNEL_RESTORE, on_restore},     {WH_CHANNEL_REQUEST, on_request},
                     {WH_CHANNEL_PROXIMITY, on_proximity}, {WH_CHANNEL_SLICES, on_slices},
-                    {WH_CHANNEL_RECORDING, on_recording}};
+                    {WH_CHANNEL_RECORDING, on_recording}, {WH_CHANNEL_EDGE_SCAN, on_edge_scan}};
     const bool ours = strncmp(channel, WH_LINK_OURS, strlen(WH_LINK_OURS)) == 0;
     ++replay->events;
     if (ours && replay->recording.closed != WH_RECORDING_BEGINS) {

@@ -35,8 +35,15 @@ static const field_t head_fields[] = {{"utime", AT(state, utime), INT64},
                                       {"wafers", AT(state, wafer_count), INT32},
                                       {"grippers", AT(state, gripper_count), INT32},
                                       {"faults", AT(state, fault_count), INT32},
+                                      {"samples of the edge sensor", AT(state, sample_count), INT32},
                                       {"missed slices", AT(state, missed), INT64},
                                       {0}};
+
+static const field_t scan_fields[] = {
+    {"number", AT(state, scan_number), INT32},      {"goes on", AT(state, scan_armed), INT8},
+    {"gripper", AT(state, scan_gripper), INT32},    {"count", AT(state, scan_count), INT32},
+    {"first sample", AT(state, scan_first), INT64}, {"samples taken", AT(state, scan_taken), INT32},
+    {"turn", AT(state, scan_turn), REAL},           {0}};
 
 static const field_t tail_fields[] = {
     {"sensors", AT(state, sensors), INT32}, {"hash", AT(state, hash), INT64}, {0}};
@@ -218,6 +225,22 @@ static bool faults_differ(const waferhand_state *recorded, const waferhand_state
     return false;
 }
 
+static bool scans_differ(const waferhand_state *recorded, const waferhand_state *replayed,
+                         wh_replay_difference_t *difference) {
+    static const field_t sample[] = {{"dark pixels", 0, INT32}, {0}};
+    if (differ(scan_fields, "edge scan", recorded, replayed, difference)) {
+        return true;
+    }
+    for (int32_t i = 0; i < recorded->sample_count; ++i) {
+        char of[40];
+        (void)snprintf(of, sizeof of, "edge scan, sample %d", (int)i + 1);
+        if (differ(sample, of, &recorded->samples[i], &replayed->samples[i], difference)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
  * `difference` then says where; else it is unchanged. */
 static bool states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
@@ -239,6 +262,7 @@ static bool states_differ(const wh_layout_t *layout, const waferhand_state *reco
         }
     }
     return events_differ(recorded, replayed, difference) || faults_differ(recorded, replayed, difference) ||
+           scans_differ(recorded, replayed, difference) ||
            differ(tail_fields, "", recorded, replayed, difference);
 }
 

@@ -17,7 +17,7 @@ typedef enum WH_FOUR_BYTES {
 
 /* The catalogue's text for a status that a function of the library returns: a constant string in English
  * without a full stop, never null. For any other number "unknown status": a firmware links none of the texts
- * of what a whole controller answers, 40 and more. Cost: linear in the catalogue. */
+ * of what a whole controller answers, 40 to 69 and from 80 on. Cost: linear in the catalogue. */
 const char *wh_status_text(wh_status_t status) WH_SYMBOL(wh_status_text);
 
 /* The catalogue's name for any status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */

@@ -2,6 +2,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "../layout/given.h"
 #include "../script/wh_module_values.h"
 #include "../text/output.h"
 #include "native.h"
@@ -76,8 +77,10 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
     if (bytes > 0) {
         memcpy(storage.wafers, real->start, bytes);
     }
-    const wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
-    return status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
+    const wh_scanning_t scanning = wh_layout_scanning(real);
+    wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
+    status = status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
+    return status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
 }
 
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
@@ -130,6 +133,9 @@ static void set_up_listeners(wh_mcs_t *mcs) {
     mcs->recorder.layout = mcs->layout;
     mcs->recorder.cell = &mcs->real->cell;
     wh_mcs_listen(mcs, hear_record, &mcs->recorder);
+    if (mcs->layout->scanner_count > 0) {
+        wh_mcs_listen(mcs, wh_mcs_hear_edge, mcs);
+    }
     if (mcs->decisions) {
         wh_mcs_listen(mcs, hear_decisions, mcs->decisions);
     }
@@ -165,7 +171,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
     static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 25);
+    lua_createtable(L, 0, 26);
     wh_lua_set_number(L, "pitch", place->pitch);
     wh_lua_set_number(L, "stroke", station->stroke);
     wh_lua_set_number(L, "offset", station->offset);
@@ -188,6 +194,11 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_boolean(L, "check_map", station->check_map);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
+    const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
+    if (scanner) {
+        wh_mcs_push_edge_sensor(L, scanner);
+        lua_setfield(L, -2, "sensor");
+    }
 }
 
 static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
@@ -292,6 +303,10 @@ static int set_up_cell(lua_State *L) {
         wh_layout_read_own_study(L, mcs->script, layout);
     }
     lua_pop(L, 1);
+    if (mcs->error_count > 0) {
+        wh_layout_give_errors(L, layout, mcs->errors, mcs->error_count);
+    }
+    layout->collision = layout->collision && !mcs->without_collisions;
     wh_mcs_set_up(L, mcs, layout);
     return 1;
 }

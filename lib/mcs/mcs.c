@@ -163,17 +163,21 @@ static const luaL_Reg module_functions[] = {{"module", load_module},
                                             {"outside", strip_place},
                                             {NULL, NULL}};
 
-/* Registry keys of what lua/mcs/init.lua returned: one opens the prompt, the other a survey. */
+/* Registry keys of what lua/mcs/init.lua returned: what opens the prompt, what opens a survey, what makes
+ * definitions. */
 static char prompt_key;
 static char survey_key;
+static char definitions_key;
 
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {
-        module_functions,          wh_mcs_cell_functions,  wh_mcs_command_functions, wh_mcs_fault_functions,
-        wh_mcs_describe_functions, wh_mcs_plan_functions,  wh_mcs_play_functions,    wh_mcs_query_functions,
-        wh_mcs_scan_functions,     wh_mcs_survey_functions};
+        module_functions,        wh_mcs_cell_functions,       wh_mcs_command_functions,
+        wh_mcs_fault_functions,  wh_mcs_describe_functions,   wh_mcs_plan_functions,
+        wh_mcs_play_functions,   wh_mcs_query_functions,      wh_mcs_scan_functions,
+        wh_mcs_survey_functions, wh_mcs_definition_functions, wh_mcs_saved_functions,
+        wh_mcs_edge_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -184,7 +188,8 @@ static int open_words(lua_State *L) {
         lua_pushlightuserdata(L, mcs);
         luaL_setfuncs(L, groups[i], 1);
     }
-    lua_call(L, 1, 2);
+    lua_call(L, 1, 3);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &definitions_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &survey_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &prompt_key);
     return 0;
@@ -197,6 +202,10 @@ void wh_mcs_push_prompt(lua_State *L) {
 
 void wh_mcs_push_survey(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &survey_key);
+}
+
+void wh_mcs_push_definitions(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &definitions_key);
 }
 
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
@@ -269,5 +278,6 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     mcs->segments = NULL;
     mcs->kept_faults = NULL;
     mcs->segment_count = 0;
+    wh_mcs_free_edge(&mcs->edge);
     wh_rehearsal_free(&mcs->rehearsal);
 }

@@ -18,6 +18,9 @@
 
 typedef struct wh_mcs wh_mcs_t;
 
+/* Room for what a partner saves. */
+#define WH_MCS_SAVED_BYTES ((size_t)1 << 17)
+
 /* Who else takes part in a run; each function may be null. */
 typedef struct {
     /* Called once, after the cell was set up and found in reach and before the first slice: returns the link
@@ -39,9 +42,17 @@ typedef struct {
     /* Why the link answered a slice with this error, for its message: true until the next call. Null: the
      * error says it all. */
     const char *(*explain)(void *user, wh_status_t status);
+    /* What the link's other side is after the last slice, as bytes: how many, 0 if that is not known. Null:
+     * such a link cannot tell. Not during an exchange. */
+    size_t (*save)(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]);
+    /* Makes the link's other side that again, and `state` its answer, without events. With anything but WH_OK
+     * it is as it was. */
+    wh_status_t (*restore)(void *user, const uint8_t bytes[], size_t size, wh_state_t *state);
     /* The last expectation of the record was added, or its last cycle. */
     void (*expected)(void *user, const wh_mcs_t *mcs);
     void (*cycle)(void *user, const wh_mcs_t *mcs);
+    /* The scan in mcs->edge has ended. */
+    void (*edge)(void *user, const wh_mcs_t *mcs);
     /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
      * prompt. */
     void (*finished)(void *user, const wh_mcs_t *mcs);
@@ -60,9 +71,9 @@ typedef struct {
     void *user;
 } wh_mcs_listener_t;
 
-/* Who hears of slices: decisions, recorder, what STATUS tells and a collision check beside a simulator
- * elsewhere, the run's listener. */
-#define WH_MCS_LISTENERS 5
+/* Who hears of slices: decisions, recorder, the collected scan, what STATUS tells and a collision check
+ * beside a simulator elsewhere, the run's listener. */
+#define WH_MCS_LISTENERS 6
 
 /* How many lines of a script are told that led to a command within functions. */
 #define WH_MCS_CALLERS 4
@@ -108,8 +119,23 @@ typedef struct {
     char phase[WH_MCS_PHASE_BYTES];  /* "extended" or "up" */
 } wh_mcs_held_t;
 
-/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`, `is_file`,
- * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
+/* A scan of a wafer's edge, as the states have brought it. */
+typedef struct {
+    wh_scan_order_t order;
+    int64_t seq;             /* of the last state that was heard */
+    uint32_t number, before; /* of the last scan that was heard of, now and when this one was armed */
+    int32_t *samples;        /* as many as were ordered; null: none was */
+    int32_t taken;           /* so many are there */
+    int32_t missed;          /* of these, for no state brought them: WH_NONE */
+    bool armed;              /* more are to come */
+} wh_mcs_edge_t;
+
+/* How many commands of a prompt UNDO takes back at most. */
+#define WH_MCS_UNDONE 50
+
+/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `errors`, `error_count`,
+ * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed` and `rehearsal.look_ahead`,
+ * which may be set between opening and the cell.
  * Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
@@ -129,6 +155,8 @@ struct wh_mcs {
     wh_state_t state;                /* the answer to it */
     wh_mcs_seen_t seen;              /* over a caller's link: the last slice that a state has come for */
     wh_mcs_sent_t sent[WH_MCS_SENT]; /* and the last ones that were sent, by seq % WH_MCS_SENT */
+
+    wh_mcs_edge_t edge;
 
     wh_rehearsal_t rehearsal;
     wh_vacuum_watch_t watch;     /* of the running segment */
@@ -156,11 +184,16 @@ struct wh_mcs {
     bool keep_segments;        /* collect what is played, for --segments */
     wh_kept_segment_t *segments;
     size_t segment_count, segment_capacity;
+    const char
+        *unplayed; /* what it has commanded that segments do not tell, a constant text; null: nothing */
     wh_played_fault_t *kept_faults;
     size_t kept_fault_count, kept_fault_capacity;
 
     wh_local_cell_t local;
-    const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: as its layout says */
+    const wh_trial_t *trial;   /* of a study, whose errors the cell then has; null: as its layout says */
+    const char *const *errors; /* in a trial: what it has in place of what it would draw, if there are any */
+    size_t error_count;
+    bool without_collisions; /* nobody looks for them, whatever the layout says */
 };
 
 /* Opens the operator's words in a sandbox for one run of `script`. `mcs` and `record` must outlive the
@@ -171,6 +204,9 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
 /* Leaves on the stack of L, within a protected call, what executes a typed line and what
  * completes one: two functions, see lua/mcs/prompt.lua and lua/mcs/completion.lua. */
 void wh_mcs_push_prompt(lua_State *L);
+
+/* A state that the link has taken, in the order in which they come; those of exchanges need not be told. */
+void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state);
 
 /* A STOP, from within the link's exchange or between two commands: the running command ends with
  * WH_STATUS_STOPPED after this slice, the next one before its first. A script can catch that error. */

@@ -47,18 +47,33 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
     return 20 * (uint64_t)slices;
 }
 
+/* Hears of each slice for what `edge` collects; `user` is the wh_mcs_t. */
+void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state);
+
+void wh_mcs_free_edge(wh_mcs_edge_t *edge);
+
+/* Pushes what motion control knows of an edge sensor: { samples: in a turn, pixels: of the line, pixel,
+ * middle and length, mm }. Its errors are for a calibration to find. */
+void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner);
+
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
+extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
+extern const luaL_Reg wh_mcs_edge_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
+extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_survey_functions[];
 
 /* Pushes what looks at the stations of a layout for a survey, see lua/mcs/init.lua. */
 void wh_mcs_push_survey(lua_State *L);
+
+/* Pushes what makes definitions, see lua/mcs/definitions.lua. */
+void wh_mcs_push_definitions(lua_State *L);
 
 #endif

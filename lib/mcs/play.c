@@ -34,6 +34,7 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
         mcs->listeners[i].hear(mcs->listeners[i].user, &mcs->command, &mcs->state);
     }
     mcs->command.fault_count = 0;
+    mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_KEEP};
     return status;
 }
 

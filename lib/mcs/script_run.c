@@ -87,6 +87,9 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_ru
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
 }
 
+/* With errors that are given every trial is the same. */
+static const wh_trial_t any_trial = {0, 0};
+
 wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_options_t *options) {
     wh_sandbox_result_t result;
     memset(run, 0, sizeof *run);
@@ -105,7 +108,10 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.limits_missed = options->limits_missed;
     run->mcs.most_missed = options->most_missed;
     run->mcs.partners = options->partners;
-    run->mcs.trial = options->trial;
+    run->mcs.trial = options->error_count > 0 && !options->trial ? &any_trial : options->trial;
+    run->mcs.errors = options->errors;
+    run->mcs.error_count = options->error_count;
+    run->mcs.without_collisions = options->without_collisions;
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);

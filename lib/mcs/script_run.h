@@ -14,8 +14,12 @@ typedef struct {
     bool keep_segments;         /* run->mcs.segments then holds what was played */
     bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
-    bool unread_parameters;    /* are no fault: a trial may end before it reads them */
-    const wh_trial_t *trial;   /* of a study: the cell has its errors, if layout or script says which */
+    bool unread_parameters;  /* are no fault: a trial may end before it reads them */
+    const wh_trial_t *trial; /* of a study: the cell has its errors, if layout or script says which */
+    /* Errors that the cell has, by name, as wh_layout_give_errors takes them: then it draws none. */
+    const char *const *errors;
+    size_t error_count;
+    bool without_collisions;   /* nobody looks for them, whatever the layout says */
     wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
 } wh_script_run_options_t;
 

@@ -19,7 +19,7 @@ static void place_station(wh_pose_t *base_from_station, const wh_displacement_t 
     base_from_station->r = wh_vec3_add(&base_from_station->r, &drawn->moved);
 }
 
-/* A chuck goes with its station. */
+/* A chuck goes with its station, and so does its edge sensor, whose noise is the trial's own. */
 static void place_chucks(wh_trial_cell_t *trial_cell, int32_t station, const wh_displacement_t *drawn) {
     wh_machine_t *machine = &trial_cell->layout.machine;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
@@ -38,6 +38,17 @@ static void place_stations(wh_trial_cell_t *trial_cell, const wh_layout_t *layou
             place_station(&places[s].base_from_station, &drawn);
             place_chucks(trial_cell, (int32_t)s, &drawn);
         }
+    }
+}
+
+static void place_scanners(wh_trial_cell_t *trial_cell) {
+    wh_layout_t *layout = &trial_cell->layout;
+    for (size_t i = 0; i < layout->scanner_count; ++i) {
+        wh_scanner_t *scanner = &layout->scanners[i];
+        const int32_t station = layout->grippers[scanner->gripper].station;
+        scanner->base_from_station = layout->places[station].base_from_station;
+        scanner->seed = wh_hash_word(scanner->seed, trial_cell->trial.seed);
+        scanner->seed = wh_hash_word(scanner->seed, trial_cell->trial.trial);
     }
 }
 
@@ -82,6 +93,7 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
     trial_cell->layout.start = start;
     trial_cell->layout.cell.stations = places;
     place_stations(trial_cell, layout, places);
+    place_scanners(trial_cell);
     place_wafers(trial_cell, layout, places, start);
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);

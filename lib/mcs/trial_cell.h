@@ -1,7 +1,8 @@
 /* A trial's cell: what a layout describes, with the errors that the trial has drawn.
  *
  * Motion control goes by the layout, the simulator by this cell: stations, with the wafers in them, stand
- * beside where they were taught, wafers lie beside their places, valves and vacuum act late.
+ * beside where they were taught, wafers lie beside their places, valves and vacuum act late; each trial has
+ * noise of its own in its edge sensors.
  */
 #ifndef WH_MCS_TRIAL_CELL_H
 #define WH_MCS_TRIAL_CELL_H

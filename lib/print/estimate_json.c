@@ -124,3 +124,76 @@ int wh_limits_print_json(const wh_move_table_t *table, FILE *out) {
     (void)fclose(text);
     return print(table->csv.path, ok, "axes", wh_json_list(axis, table, WH_TABLE_AXES), lua, out);
 }
+
+/* ----------------------------------------------------------------------------------------------- geometry */
+
+/* The lines of what was set aside: touches, or headings of touches. */
+static json_t *lines_aside(const wh_touch_table_t *table, bool of_headings) {
+    json_t *lines = json_array();
+    for (size_t i = 0; i < table->count; ++i) {
+        const wh_touch_t *touch = &table->touches[i];
+        if (of_headings ? touch->is_heading_set_aside : touch->is_set_aside) {
+            wh_json_append(lines, json_integer((json_int_t)table->lines[i]));
+        }
+    }
+    return lines;
+}
+
+static json_t *touch(const void *subject, size_t i) {
+    const wh_touch_table_t *table = subject;
+    const wh_geometry_estimate_t *found = &table->estimate;
+    const wh_vec3_t off = wh_geometry_residual(found, &table->touches[i]);
+    json_t *object = wh_json_set(json_object(), "line %lld dx %g dy %g dz %g", (long long)table->lines[i],
+                                 off.x, off.y, off.z);
+    if (found->is_base_determined) {
+        wh_json_put(object, "in_base",
+                    wh_json_vector(wh_geometry_in_base(found, &table->touches[i].touched)));
+    }
+    return object;
+}
+
+static void put_geometry(json_t *object, const wh_touch_table_t *table) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    for (int k = 0; k < (found->has_scales ? WH_GEOMETRY_PARAMETERS : WH_GEOMETRY_SCALE); ++k) {
+        double unit;
+        const wh_estimate_value_t *value = &found->values[k];
+        (void)wh_geometry_unit(k, &unit);
+        wh_json_put(object, wh_geometry_name(k),
+                    wh_json_set(json_object(), "value %g sd %g",
+                                value->is_determined ? value->value * unit : HUGE_VAL,
+                                value->is_determined ? value->sd * unit : HUGE_VAL));
+    }
+    if (found->is_base_determined) {
+        json_t *base = json_object();
+        (void)wh_json_add(base, "at rpy", wh_json_vector(found->points_from_base.r),
+                          numbers(found->base_rpy, 3, wh_deg_from_rad(1)), NULL);
+        wh_json_put(object, "base", base);
+    }
+    (void)wh_json_set(object, "rms %g largest %g largest_line %lld headings %lld heading_rms %g", found->rms,
+                      found->largest, (long long)table->lines[found->largest_index],
+                      (long long)found->headings,
+                      found->headings > 0 ? wh_deg_from_rad(found->heading_rms) : HUGE_VAL);
+    wh_json_put(object, "residuals", wh_json_list(touch, table, table->count));
+}
+
+int wh_geometry_print_json(const wh_touch_table_t *table, FILE *out) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    char *lua = NULL;
+    size_t size = 0;
+    const bool ok = found->status == WH_OK && found->reason[0] == '\0';
+    json_t *root =
+        wh_json_set(json_object(), "format %d file %s ok %i error %d status %s reason %s touches %lld",
+                    FORMAT, table->csv.path, ok, (int)found->status, wh_status_name(found->status),
+                    found->reason[0] != '\0' ? found->reason : NULL, (long long)table->count);
+    (void)wh_json_add(root, "set_aside_lines set_aside_headings", lines_aside(table, false),
+                      lines_aside(table, true), NULL);
+    if (found->status == WH_OK) {
+        put_geometry(root, table);
+    }
+    FILE *text = wh_memory_need(open_memstream(&lua, &size));
+    wh_geometry_print_lua(table, text);
+    (void)fclose(text);
+    (void)wh_json_set(root, "lua %s", lua);
+    free(lua);
+    return wh_json_print(root, out);
+}

@@ -130,3 +130,109 @@ void wh_limits_print_lua(const wh_move_table_t *table, FILE *out) {
         put_axis(table, WH_ROBOT_AXES, out);
     }
 }
+
+/* ----------------------------------------------------------------------------------------------- geometry */
+
+const char *wh_geometry_unit(int number, double *factor) {
+    const bool is_tilt = number == WH_GEOMETRY_TILT_X || number == WH_GEOMETRY_TILT_Y;
+    const int axis = number - WH_GEOMETRY_ZERO;
+    const bool is_zero = axis >= 0 && axis < WH_ROBOT_AXES;
+    *factor = 1;
+    if (number >= WH_GEOMETRY_SCALE) {
+        return "";
+    }
+    if (is_tilt || (is_zero && wh_table_axis_turns((size_t)axis))) {
+        *factor = wh_deg_from_rad(1);
+        return "deg";
+    }
+    return "mm";
+}
+
+static void put_comment(bool has_at, bool has_rpy, FILE *out) {
+    if (!has_at) {
+        fputs(has_rpy ? " -- at is not determined" : " -- at is not determined, rpy neither", out);
+    } else if (!has_rpy) {
+        fputs(" -- rpy is not determined", out);
+    }
+}
+
+/* The fields of the gripper; a comment where one is not determined. */
+static void put_tool(const wh_geometry_estimate_t *found, FILE *out) {
+    const wh_estimate_value_t *x = &found->values[WH_GEOMETRY_TOOL_X];
+    const wh_estimate_value_t *y = &found->values[WH_GEOMETRY_TOOL_Y];
+    const wh_estimate_value_t *yaw = &found->values[WH_GEOMETRY_ZERO + WH_AXIS_YAW];
+    const bool has_at = x->is_determined && y->is_determined;
+    const double deg = wh_deg_from_rad(1);
+    fputs("grippers = {\n  { ", out);
+    if (has_at) {
+        fputs("at = ", out);
+        put_list(out, (const double[]){x->value, y->value, 0}, (const double[]){x->sd, y->sd, 10});
+        fputs(yaw->is_determined ? ", " : " ", out);
+    }
+    if (yaw->is_determined) {
+        fputs("rpy = ", out);
+        put_list(out, (const double[]){0, 0, yaw->value * deg}, (const double[]){10, 10, yaw->sd * deg});
+        fputc(' ', out);
+    }
+    fputs("},", out);
+    put_comment(has_at, yaw->is_determined, out);
+    fputs("\n},\n", out);
+}
+
+static void put_base(const wh_geometry_estimate_t *found, FILE *out) {
+    const wh_estimate_value_t *values = found->values;
+    const wh_vec3_t *r = &found->points_from_base.r;
+    const double deg = wh_deg_from_rad(1);
+    double rpy[3];
+    for (int i = 0; i < 3; ++i) {
+        rpy[i] = found->base_rpy[i] * deg;
+    }
+    if (!found->is_base_determined) {
+        fputs("-- base is not determined\n", out);
+        return;
+    }
+    fputs(
+        "-- A layout's robot stands at the origin of base, level. Of base, the touched points' frame says:\n"
+        "-- base = { at = ",
+        out);
+    put_list(out, (const double[]){r->x, r->y, r->z},
+             (const double[]){values[WH_GEOMETRY_X].sd, values[WH_GEOMETRY_Y].sd,
+                              values[WH_GEOMETRY_ZERO + WH_AXIS_Z].sd});
+    fputs(", rpy = ", out);
+    put_list(out, rpy,
+             (const double[]){values[WH_GEOMETRY_TILT_X].sd * deg, values[WH_GEOMETRY_TILT_Y].sd * deg,
+                              values[WH_GEOMETRY_ZERO + WH_AXIS_THETA].sd * deg});
+    fputs(" }\n-- What is known in that frame goes into base before it is a station's at and rpy.\n", out);
+}
+
+/* How a layout's axes go with the controller's. */
+static void put_axes(const wh_geometry_estimate_t *found, FILE *out) {
+    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        const wh_estimate_value_t *scale = &found->values[WH_GEOMETRY_SCALE + axis];
+        const wh_estimate_value_t *zero = &found->values[WH_GEOMETRY_ZERO + axis];
+        const bool has_zero = axis == WH_AXIS_R && zero->is_determined;
+        if (scale->is_determined || has_zero) {
+            fprintf(out, "-- A layout's %s is the controller's", wh_table_axis_name((size_t)axis));
+            if (scale->is_determined) {
+                fputs(" * ", out);
+                put_number(out, scale->value, scale->sd);
+            }
+            if (has_zero) {
+                fputs(zero->value < 0 ? " - " : " + ", out);
+                put_number(out, fabs(zero->value), zero->sd);
+            }
+            fputc('\n', out);
+        }
+    }
+}
+
+void wh_geometry_print_lua(const wh_touch_table_t *table, FILE *out) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    if (found->status != WH_OK) {
+        fputs("-- the robot's geometry is not determined\n", out);
+        return;
+    }
+    put_tool(found, out);
+    put_base(found, out);
+    put_axes(found, out);
+}

@@ -14,11 +14,20 @@ int wh_frames_print_table(const wh_point_table_t *table, FILE *out, const wh_sty
 int wh_frames_print_json(const wh_point_table_t *table, FILE *out);
 int wh_limits_print_table(const wh_move_table_t *table, FILE *out, const wh_style_t *style);
 int wh_limits_print_json(const wh_move_table_t *table, FILE *out);
+int wh_geometry_print_table(const wh_touch_table_t *table, FILE *out, const wh_style_t *style);
+int wh_geometry_print_json(const wh_touch_table_t *table, FILE *out);
 
 /* The fields of a layout, in Lua: what is determined, with as many digits as its standard deviation
  * leaves. What is not is a comment. */
 void wh_frames_print_lua(const wh_point_table_t *table, FILE *out);
 void wh_limits_print_lua(const wh_move_table_t *table, FILE *out);
+
+/* Of a robot that is where its tool sits; and in comments what a layout has no field for: where its base
+ * is in the frame of the touched points, and how its r goes with the controller's. */
+void wh_geometry_print_lua(const wh_touch_table_t *table, FILE *out);
+
+/* The unit of a number of a geometry, and the factor from mm or rad to it. */
+const char *wh_geometry_unit(int number, double *factor);
 
 /* How a limit is named in layouts, and its unit; of WH_LIMIT_SPEED to WH_LIMIT_DELAY. */
 const char *wh_limit_name(int limit);

@@ -20,9 +20,11 @@ static void say(const wh_printer_t *printer, const char *name, wh_status_t statu
     fputc('\n', printer->out);
 }
 
-static void print_heading(const wh_printer_t *printer, const char *path, size_t count, const char *what) {
+/* `what` is one, `many` are any other number. */
+static void print_heading(const wh_printer_t *printer, const char *path, size_t count, const char *what,
+                          const char *many) {
     wh_style_put(printer->out, path);
-    fprintf(printer->out, ": %zu %s%s\n", count, what, count == 1 ? "" : "s");
+    fprintf(printer->out, ": %zu %s\n", count, count == 1 ? what : many);
 }
 
 static int finish(FILE *out) {
@@ -98,7 +100,7 @@ int wh_frames_print_table(const wh_point_table_t *table, FILE *out, const wh_sty
     for (size_t s = 0; s < table->count; ++s) {
         points += table->stations[s].count;
     }
-    print_heading(&printer, table->csv.path, points, "point");
+    print_heading(&printer, table->csv.path, points, "point", "points");
     print_frames(&printer, table);
     print_fits(&printer, table);
     print_points(&printer, table);
@@ -156,20 +158,34 @@ static void print_moves(const wh_printer_t *printer, const wh_move_table_t *tabl
     wh_print_titled(printer, "Moves", grid);
 }
 
+/* Names a line that was set aside, the first with a text before it. Returns how many are named. */
+static size_t name_line(const wh_printer_t *printer, const char *name, size_t line, size_t named) {
+    if (named == NAMED_LINES) {
+        return named;
+    }
+    if (named == 0) {
+        fprintf(printer->out, "%s, set aside: lines ", name);
+    }
+    fprintf(printer->out, "%s%zu", named == 0 ? "" : ", ", line);
+    return named + 1;
+}
+
+static void end_lines(const wh_printer_t *printer, size_t all, size_t named) {
+    if (all > named) {
+        fprintf(printer->out, " and %zu more", all - named);
+    }
+    fputs(named > 0 ? "\n" : "", printer->out);
+}
+
 /* Which lines were set aside. */
 static void print_aside(const wh_printer_t *printer, const wh_axis_moves_t *moves, const char *name) {
     size_t named = 0;
-    for (size_t i = 0; i < moves->count && named < NAMED_LINES; ++i) {
+    for (size_t i = 0; i < moves->count; ++i) {
         if (moves->moves[i].is_set_aside) {
-            fprintf(printer->out, "%s%s%zu", named == 0 ? name : "",
-                    named == 0 ? ", set aside: lines " : ", ", moves->lines[i]);
-            ++named;
+            named = name_line(printer, name, moves->lines[i], named);
         }
     }
-    if (moves->estimate.set_aside > named) {
-        fprintf(printer->out, " and %zu more", moves->estimate.set_aside - named);
-    }
-    fputs(named > 0 ? "\n" : "", printer->out);
+    end_lines(printer, moves->estimate.set_aside, named);
 }
 
 static void print_remarks(const wh_printer_t *printer, const wh_move_table_t *table) {
@@ -193,11 +209,106 @@ int wh_limits_print_table(const wh_move_table_t *table, FILE *out, const wh_styl
     for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
         count += table->axes[axis].count;
     }
-    print_heading(&printer, table->csv.path, count, "move");
+    print_heading(&printer, table->csv.path, count, "move", "moves");
     print_limits(&printer, table);
     print_moves(&printer, table);
     print_remarks(&printer, table);
     wh_print_title(&printer, "For a layout");
     wh_limits_print_lua(table, out);
+    return finish(out);
+}
+
+/* ----------------------------------------------------------------------------------------------- geometry */
+
+static void print_numbers(const wh_printer_t *printer, const wh_geometry_estimate_t *found) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "number;estimate{4,6};sd{4,6}");
+    for (int k = 0; k < (found->has_scales ? WH_GEOMETRY_PARAMETERS : WH_GEOMETRY_SCALE); ++k) {
+        const wh_estimate_value_t *value = &found->values[k];
+        double unit;
+        char name[40];
+        const char *of = wh_geometry_unit(k, &unit);
+        (void)snprintf(name, sizeof name, "%s%s%s", wh_geometry_name(k), of[0] != '\0' ? " " : "", of);
+        wh_grid_named_row(grid, name);
+        if (value->is_determined) {
+            wh_grid_numbers(grid, 1, (const double[]){value->value * unit, value->sd * unit}, 2);
+        } else {
+            wh_grid_text(grid, 1, WH_INK_WARN, "not determined");
+        }
+    }
+    wh_print_titled(printer, "Robot, in the touched points' frame", grid);
+}
+
+static void print_fit(const wh_printer_t *printer, const wh_touch_table_t *table) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 0,
+                    "touches{0};set aside{0};rms mm{4};largest mm{4};in line{0};headings{0};rms deg{4}");
+    wh_grid_row(grid);
+    wh_grid_numbers(grid, 0,
+                    (const double[]){(double)found->used, (double)found->set_aside, found->rms,
+                                     found->largest, (double)table->lines[found->largest_index],
+                                     (double)found->headings},
+                    6);
+    if (found->headings > 0) {
+        wh_grid_number(grid, 6, WH_INK_PLAIN, wh_deg_from_rad(found->heading_rms));
+    }
+    wh_print_titled(printer, "Residuals", grid);
+}
+
+static void print_touches(const wh_printer_t *printer, const wh_touch_table_t *table) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 1,
+                    "line{0};dx mm{4};dy mm{4};dz mm{4};x in base mm{3};y in base mm{3};z in base mm{3}");
+    for (size_t i = 0; i < table->count; ++i) {
+        const wh_vec3_t off = wh_geometry_residual(found, &table->touches[i]);
+        wh_grid_row(grid);
+        wh_grid_number(grid, 0, WH_INK_PLAIN, (double)table->lines[i]);
+        wh_grid_numbers(grid, 1, (const double[]){off.x, off.y, off.z}, 3);
+        if (found->is_base_determined) {
+            const wh_vec3_t there = wh_geometry_in_base(found, &table->touches[i].touched);
+            wh_grid_numbers(grid, 4, (const double[]){there.x, there.y, there.z}, 3);
+        }
+    }
+    wh_print_titled(printer, "Points touched, less where the robot has them; and where a layout has them",
+                    grid);
+}
+
+static void print_touches_aside(const wh_printer_t *printer, const wh_touch_table_t *table) {
+    const wh_geometry_estimate_t *found = &table->estimate;
+    size_t touches = 0;
+    size_t headings = 0;
+    if (found->set_aside > 0 || found->headings_aside > 0 || found->reason[0] != '\0') {
+        fputc('\n', printer->out);
+    }
+    for (size_t i = 0; i < table->count; ++i) {
+        if (table->touches[i].is_set_aside) {
+            touches = name_line(printer, "robot", table->lines[i], touches);
+        }
+    }
+    end_lines(printer, found->set_aside, touches);
+    for (size_t i = 0; i < table->count; ++i) {
+        if (table->touches[i].is_heading_set_aside) {
+            headings = name_line(printer, "headings", table->lines[i], headings);
+        }
+    }
+    end_lines(printer, found->headings_aside, headings);
+}
+
+int wh_geometry_print_table(const wh_touch_table_t *table, FILE *out, const wh_style_t *style) {
+    const wh_printer_t printer = {NULL, style, out};
+    const wh_geometry_estimate_t *found = &table->estimate;
+    print_heading(&printer, table->csv.path, table->count, "touch", "touches");
+    if (found->status == WH_OK) {
+        print_numbers(&printer, found);
+        print_fit(&printer, table);
+        print_touches(&printer, table);
+    }
+    print_touches_aside(&printer, table);
+    if (found->reason[0] != '\0') {
+        say(&printer, "robot", found->status, found->reason);
+    }
+    wh_print_title(&printer, "For a layout");
+    wh_geometry_print_lua(table, out);
     return finish(out);
 }

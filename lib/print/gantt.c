@@ -1,4 +1,5 @@
-/* The Gantt table: the commands, then who was busy when, time along the line. */
+/* The Gantt table of a run or of a part of it: the commands, then who was busy when, time along the line. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +30,7 @@ typedef struct {
 typedef struct {
     const wh_printer_t *printer;
     size_t label_columns, columns;
-    int64_t slices; /* from the first column to the last: the run's, above 0 */
+    int64_t begin, end; /* slices: before the first column and in the last one; `end` is later */
     cell_t *cells;
 } gantt_t;
 
@@ -52,27 +53,29 @@ static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interv
 /* --------------------------------------------------------------------------------------------------- rows */
 
 /* A row as wide as the terminal leaves beside labels of so many columns. */
-static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
+static gantt_t open_gantt(const wh_printer_t *printer, const wh_print_window_t *window,
+                          size_t label_columns) {
     const size_t width = printer->style->width;
     const size_t room = width > label_columns + LEAST_COLUMNS + 2 ? width - label_columns - 2 : LEAST_COLUMNS;
     const size_t columns = width == 0 ? PIPED_COLUMNS : room < MOST_COLUMNS ? room : MOST_COLUMNS;
-    const gantt_t gantt = {printer, label_columns, columns, printer->record->slices,
-                           wh_array_new(columns, sizeof *gantt.cells)};
+    const gantt_t gantt = {printer,       label_columns, columns,
+                           window->begin, window->end,   wh_array_new(columns, sizeof *gantt.cells)};
     return gantt;
 }
 
-/* The column in which a slice ends. */
+/* The column in which a slice ends; the first one if that is before it. */
 static size_t column_of(const gantt_t *gantt, int64_t slice) {
-    const double share = (double)slice / (double)gantt->slices;
+    const double share =
+        slice < gantt->begin ? 0 : (double)(slice - gantt->begin) / (double)(gantt->end - gantt->begin);
     const size_t column = (size_t)(share * (double)gantt->columns);
     return column < gantt->columns ? column : gantt->columns - 1;
 }
 
 /* How much of a column's time lies within an interval, in columns. */
 static double overlap(const gantt_t *gantt, size_t column, const wh_busy_span_t *interval) {
-    const double slices = (double)gantt->slices / (double)gantt->columns;
-    const double begin = (double)interval->begin / slices;
-    const double end = (double)interval->end / slices;
+    const double slices = (double)(gantt->end - gantt->begin) / (double)gantt->columns;
+    const double begin = (double)(interval->begin - gantt->begin) / slices;
+    const double end = (double)(interval->end - gantt->begin) / slices;
     const double from = begin > (double)column ? begin : (double)column;
     const double to = end < (double)column + 1 ? end : (double)column + 1;
     return to > from ? to - from : 0;
@@ -108,9 +111,10 @@ static void write_over(gantt_t *gantt, size_t first, size_t last, const char *te
 static void print_row(gantt_t *gantt, const char *label) {
     FILE *out = gantt->printer->out;
     char *printable = wh_style_printable(label);
-    fprintf(out, "%s%*s", printable, (int)(gantt->label_columns - wh_style_columns(printable) + 2), "");
+    fputs(printable, out);
+    /* Not yet printed: none at the line's end. */
+    size_t blanks = gantt->label_columns - wh_style_columns(printable) + 2;
     free(printable);
-    size_t blanks = 0; /* not yet printed: none at the line's end */
     for (size_t i = 0; i < gantt->columns;) {
         const cell_t *cell = &gantt->cells[i];
         const char *shown = cell->text ? cell->text : cell->mark;
@@ -144,12 +148,13 @@ static double round_step(double least) {
 }
 
 static void print_scale(gantt_t *gantt) {
-    const double seconds = wh_throughput_seconds(gantt->printer->record, gantt->slices);
+    const double from = wh_throughput_seconds(gantt->printer->record, gantt->begin);
+    const double seconds = wh_throughput_seconds(gantt->printer->record, gantt->end - gantt->begin);
     const double step = round_step(seconds * TICK_COLUMNS / (double)gantt->columns);
-    for (int i = 0; i * step <= seconds; ++i) {
+    for (int64_t i = (int64_t)ceil(from / step); (double)i * step <= from + seconds; ++i) {
         char text[WH_PRINT_NUMBER_SIZE];
-        const size_t column = (size_t)(i * step / seconds * (double)gantt->columns);
-        snprintf(text, sizeof text, "%.10g", i * step);
+        const size_t column = (size_t)(((double)i * step - from) / seconds * (double)gantt->columns);
+        snprintf(text, sizeof text, "%.10g", (double)i * step);
         write_over(gantt, column,
                    column + TICK_COLUMNS < gantt->columns ? column + TICK_COLUMNS : gantt->columns, text);
     }
@@ -158,19 +163,32 @@ static void print_scale(gantt_t *gantt) {
 
 /* ------------------------------------------------------------------------------------ commands and cycles */
 
-static int64_t slice_at(const wh_record_t *record, double seconds) {
-    if (!(seconds > 0 && seconds < record->simulated_s)) {
+int64_t wh_print_slice_at(const wh_printer_t *printer, double seconds) {
+    const wh_record_t *record = printer->record;
+    if (!record->layout || !(seconds > 0 && seconds < record->simulated_s)) {
         return seconds > 0 ? record->slices : 0;
     }
     return (int64_t)(seconds * 1e6 / (double)record->layout->slice_us + 0.5);
 }
 
+bool wh_print_is_within(const wh_printer_t *printer, const wh_print_window_t *window,
+                        const wh_command_record_t *command) {
+    return window->is_whole || (wh_print_slice_at(printer, command->begin_s) < window->end &&
+                                wh_print_slice_at(printer, command->end_s) > window->begin);
+}
+
 /* A bar where it begins, and its text behind the bar if there is room up to its end. */
 static void draw_span(gantt_t *gantt, int64_t begin, int64_t end, const char *text) {
+    if (begin >= gantt->end || end <= gantt->begin) {
+        return;
+    }
     const size_t first = column_of(gantt, begin);
-    const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
-    gantt->cells[first].mark = gantt->printer->style->utf8 ? "│" : "|";
-    write_over(gantt, first + 1, last, text);
+    const size_t last = end < gantt->end ? column_of(gantt, end) : gantt->columns;
+    const bool has_bar = begin >= gantt->begin;
+    if (has_bar) {
+        gantt->cells[first].mark = gantt->printer->style->utf8 ? "│" : "|";
+    }
+    write_over(gantt, first + (has_bar ? 1 : 0), last, text);
 }
 
 static void print_commands(gantt_t *gantt) {
@@ -178,8 +196,8 @@ static void print_commands(gantt_t *gantt) {
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         if (command->end_s > command->begin_s) {
-            draw_span(gantt, slice_at(record, command->begin_s), slice_at(record, command->end_s),
-                      command->text ? command->text : "");
+            draw_span(gantt, wh_print_slice_at(gantt->printer, command->begin_s),
+                      wh_print_slice_at(gantt->printer, command->end_s), command->text ? command->text : "");
         }
     }
     print_row(gantt, "command");
@@ -224,7 +242,8 @@ static void print_resource(gantt_t *gantt, size_t resource) {
     char label[LABEL_SIZE] = "";
     for (size_t i = 0; i < activity->interval_count; ++i) {
         const wh_busy_span_t *interval = &activity->intervals[i];
-        if (wh_activity_resource(interval) == resource) {
+        const bool is_shown = interval->begin < gantt->end && interval->end > gantt->begin;
+        if (is_shown && wh_activity_resource(interval) == resource) {
             label_of(gantt->printer, interval, label);
             draw(gantt, interval);
         }
@@ -259,12 +278,12 @@ static void print_legend(const wh_printer_t *printer) {
     fprintf(printer->out, "%so vacuum on\n", before);
 }
 
-void wh_print_gantt(const wh_printer_t *printer) {
+void wh_print_gantt(const wh_printer_t *printer, const wh_print_window_t *window) {
     if (!printer->record->layout || printer->record->slices == 0) {
         return;
     }
     wh_print_title(printer, "Gantt");
-    gantt_t gantt = open_gantt(printer, widest_label(printer));
+    gantt_t gantt = open_gantt(printer, window, widest_label(printer));
     print_scale(&gantt);
     print_cycles(&gantt);
     print_commands(&gantt);

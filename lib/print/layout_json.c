@@ -38,6 +38,15 @@ static json_t *gripper(const void *subject, size_t i) {
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
+static json_t *sensor(const wh_sensor_t *from) {
+    return wh_json_set(json_object(),
+                       "samples %d pixel %g length %g at %g encoder %d noise %g tilt %g offset %g zero %g "
+                       "gain %g latency %g hidden %d",
+                       from->samples, from->pixel, from->length, wh_deg_from_rad(from->direction),
+                       from->encoder, from->noise, wh_deg_from_rad(from->tilt), from->error.offset,
+                       from->error.zero, from->error.gain, from->error.latency, from->hidden_count);
+}
+
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
@@ -60,6 +69,8 @@ static json_t *station(const void *subject, size_t i) {
         entry->has_beside ? entry->beside : HUGE_VAL, entry->has_before ? entry->before : HUGE_VAL,
         entry->has_lifted ? entry->lifted : HUGE_VAL);
     wh_json_put(object, "room", room);
+    const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
+    (void)json_object_set_new(object, "sensor", scanner ? sensor(&scanner->sensor) : json_null());
     return object;
 }
 

@@ -64,7 +64,8 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
     const char *kind = station->foup ? "foup" : "slots";
     wh_grid_named_row(grid, station->name);
-    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s", station->prealigner ? "prealigner" : kind,
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s", station->prealigner ? "prealigner" : kind,
+                 wh_layout_scanner(listing->layout, place->chuck) ? ", edge sensor" : "",
                  station->taught ? "" : ", not taught");
     const double values[] = {r->x,
                              r->y,

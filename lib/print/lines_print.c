@@ -5,6 +5,7 @@
 
 #include "../log/slice_fields.h"
 #include "../text/json.h"
+#include "print_internal.h"
 #include "record_print.h"
 
 int wh_event_print_line(const wh_record_t *record, size_t i, FILE *out) {
@@ -14,8 +15,7 @@ int wh_event_print_line(const wh_record_t *record, size_t i, FILE *out) {
     return status == 0 && fputc('\n', out) != EOF ? 0 : -1;
 }
 
-/* A text, in quotes if it has a character that would end it. */
-static void put_text(const char *text, FILE *out) {
+void wh_print_csv_text(const char *text, FILE *out) {
     if (text[strcspn(text, ",\"\r\n")] == '\0') {
         fputs(text, out);
         return;
@@ -28,7 +28,7 @@ static void put_text(const char *text, FILE *out) {
     fputc('"', out);
 }
 
-static void put_number(double value, FILE *out) {
+void wh_print_csv_number(double value, FILE *out) {
     char digits[WH_JSON_DIGITS];
     if (isfinite(value)) {
         wh_json_digits(value, digits);
@@ -42,7 +42,7 @@ void wh_slices_csv_head(const wh_layout_t *layout, FILE *out) {
     for (size_t i = 0; i < wh_slice_field_count(layout); ++i) {
         (void)wh_slice_field_name(layout, i, name);
         fputc(',', out);
-        put_text(name, out);
+        wh_print_csv_text(name, out);
     }
     fputc('\n', out);
 }
@@ -50,15 +50,15 @@ void wh_slices_csv_head(const wh_layout_t *layout, FILE *out) {
 void wh_slices_csv_row(const wh_layout_t *layout, int64_t slice, const double values[], FILE *out) {
     char name[WH_SLICE_FIELD_NAME];
     fprintf(out, "%lld,", (long long)slice);
-    put_number((double)(slice * layout->slice_us) / 1e6, out);
+    wh_print_csv_number((double)(slice * layout->slice_us) / 1e6, out);
     for (size_t i = 0; i < wh_slice_field_count(layout); ++i) {
         const wh_slice_field_t kind = wh_slice_field_name(layout, i, name);
         const char *word = wh_slice_field_word(layout, kind, values[i]);
         fputc(',', out);
         if (word) {
-            put_text(word, out);
+            wh_print_csv_text(word, out);
         } else {
-            put_number(values[i], out);
+            wh_print_csv_number(values[i], out);
         }
     }
     fputc('\n', out);

@@ -13,13 +13,27 @@ typedef struct {
     FILE *out;
 } wh_printer_t;
 
+/* What is shown of a run: slices from the end of `begin` to the end of `end`, which is later. */
+typedef struct {
+    int64_t begin, end;
+    bool is_whole; /* the run */
+} wh_print_window_t;
+
+/* The slice with the end of which so many seconds have passed; the run's last one beyond its end. */
+int64_t wh_print_slice_at(const wh_printer_t *printer, double seconds);
+
+/* True if any of a command lies within. */
+bool wh_print_is_within(const wh_printer_t *printer, const wh_print_window_t *window,
+                        const wh_command_record_t *command);
+
 /* The parts, each with the blank line before it. */
 void wh_print_commands(const wh_printer_t *printer);
 void wh_print_errors(const wh_printer_t *printer);
 void wh_print_handovers(const wh_printer_t *printer);
 void wh_print_clearances(const wh_printer_t *printer);
-void wh_print_gantt(const wh_printer_t *printer);
-void wh_print_times(const wh_printer_t *printer);
+void wh_print_gantt(const wh_printer_t *printer, const wh_print_window_t *window);
+void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window);
+void wh_print_cycle(const wh_printer_t *printer);
 void wh_print_margins(const wh_printer_t *printer);
 
 /* Wafers per hour, or why there is no such figure, without a line feed. True if there is one. */
@@ -65,5 +79,10 @@ void wh_print_counted(FILE *out, int64_t count, const char *one, const char *man
 
 /* True if an event is a complaint of the cell. */
 bool wh_print_is_complaint(wh_event_kind_t kind);
+
+/* A cell of a table as of RFC 4180: a text, in quotes if it has a character that would end it; a number with
+ * the digits that read back as the same double, nothing for NaN and infinities. */
+void wh_print_csv_text(const char *text, FILE *out);
+void wh_print_csv_number(double value, FILE *out);
 
 #endif

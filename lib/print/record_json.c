@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
-#include "../record/throughput.h"
+#include "../record/steady.h"
 #include "../sim/faults.h"
 #include "../text/json.h"
 
@@ -242,6 +242,23 @@ json_t *wh_throughput_to_json(const wh_record_t *record) {
     return object;
 }
 
+static json_t *steady_cycle(const wh_record_t *record) {
+    static const char *const fields =
+        "wafers_per_hour %g reason %s found %i begin_s %g end_s %g wafers %lld times %lld cycle %lld "
+        "first_command %lld commands %lld";
+    const wh_steady_cycle_t steady = wh_steady_cycle(record);
+    if (steady.found != WH_STEADY_FOUND) {
+        return wh_json_set(json_object(), fields, HUGE_VAL, wh_steady_reason(steady.found), false, HUGE_VAL,
+                           HUGE_VAL, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE, WH_JSON_NONE);
+    }
+    return wh_json_set(json_object(), fields,
+                       steady.figure == WH_FIGURE_GIVEN ? steady.wafers_per_hour : HUGE_VAL,
+                       wh_throughput_reason(steady.figure), true, wh_throughput_seconds(record, steady.begin),
+                       wh_throughput_seconds(record, steady.end), (json_int_t)steady.wafers,
+                       (json_int_t)steady.times, steady.mark > 0 ? (json_int_t)steady.mark : WH_JSON_NONE,
+                       (json_int_t)steady.first, (json_int_t)steady.count);
+}
+
 /* ------------------------------------------------------------------------------------------------- cycles */
 
 static json_t *cycle(const wh_record_t *record, size_t i, size_t wafers) {
@@ -353,6 +370,7 @@ static void put_head(const wh_record_t *record, json_t *root) {
                       (json_int_t)record->slices, (json_int_t)record->missed, record->simulated_s,
                       record->wall_s, (unsigned long long)record->hash);
     wh_json_put(root, "throughput", wh_throughput_to_json(record));
+    wh_json_put(root, "steady_cycle", steady_cycle(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));
 }
 

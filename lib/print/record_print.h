@@ -20,6 +20,11 @@
  *                 wafers, seconds, first_cycle, last_cycle (of the marked cycles that count, from 1; null:
  *                 the whole run counts), puts (all of the run), counting (the names of the stations that
  *                 count) }: see record/throughput.h
+ *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
+ *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
+ *                 a row), cycle (which of the marked ones it is, from 1; null: none is), first_command (its
+ *                 index, from 0), commands (how many) }, all null but reason and found where there is none:
+ *                 see record/steady.h
  *   split:        { motion_s, of it loaded_s and empty_s, vacuum_s, handover_s (valves switching),
  *                 waiting_s }: what the run's time went into; motion, vacuum, handover and waiting add up
  *                 to simulated_s
@@ -64,17 +69,22 @@
 #include "../record/record.h"
 #include "../text/style.h"
 
-/* Sections that are printed when asked for, before the expectations. */
-enum {
+/* Sections that are printed when asked for, before the expectations. Zero it to begin with. */
+typedef struct {
     /* Who was busy when, time along the line, as wide as the terminal; what each command's time went into. */
-    WH_TABLE_GANTT = 1,
+    bool gantt;
+    double from_s, to_s; /* of the run, in this section: all that lies between; to_s 0: up to the end */
+    /* The same of the first steady cycle alone, with how long it takes and its wafers per hour; or why there
+     * is none (record/steady.h). */
+    bool cycle;
     /* How near the axes come to the ends of their travel at each station. */
-    WH_TABLE_MARGINS = 2
-};
+    bool margins;
+} wh_record_sections_t;
 
-/* With these sections, added up. 0, or -1 if writing failed (then what is printed may be incomplete). `style`
- * is usually wh_style_of(out). Cost: linear in the record. */
-int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style, unsigned sections);
+/* With these sections; null: with none. 0, or -1 if writing failed (then what is printed may be incomplete).
+ * `style` is usually wh_style_of(out). Cost: linear in the record. */
+int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style,
+                          const wh_record_sections_t *sections);
 
 /* 0, or -1 if writing failed. Any LC_NUMERIC gives the same bytes. Cost: linear in the record, all of it in
  * memory once more. */

@@ -361,9 +361,29 @@ static void print_summary(const wh_printer_t *printer) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- window */
+
+static void print_window(const wh_printer_t *printer, const wh_record_sections_t *wanted) {
+    const wh_record_t *record = printer->record;
+    const bool is_whole = !(wanted->from_s > 0) && !(wanted->to_s > 0);
+    const int64_t end = wanted->to_s > 0 ? wh_print_slice_at(printer, wanted->to_s) : record->slices;
+    const wh_print_window_t window = {wh_print_slice_at(printer, wanted->from_s), end, is_whole};
+    if (window.end <= window.begin && !is_whole) {
+        wh_print_title(printer, "Gantt");
+        fprintf(printer->out, "nothing: no slice of the run, which took %.3f s, lies there\n",
+                record->simulated_s);
+        return;
+    }
+    wh_print_gantt(printer, &window);
+    wh_print_times(printer, &window);
+}
+
 /* ---------------------------------------------------------------------------------------------------- all */
 
-int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style, unsigned sections) {
+int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style,
+                          const wh_record_sections_t *sections) {
+    static const wh_record_sections_t none = {0};
+    const wh_record_sections_t *wanted = sections ? sections : &none;
     const wh_printer_t printer = {record, style, out};
     print_heading(&printer);
     wh_print_commands(&printer);
@@ -372,11 +392,13 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     print_complaints(&printer);
     wh_print_clearances(&printer);
     print_wafers(&printer);
-    if (sections & WH_TABLE_GANTT) {
-        wh_print_gantt(&printer);
-        wh_print_times(&printer);
+    if (wanted->gantt) {
+        print_window(&printer, wanted);
     }
-    if (sections & WH_TABLE_MARGINS) {
+    if (wanted->cycle) {
+        wh_print_cycle(&printer);
+    }
+    if (wanted->margins) {
         wh_print_margins(&printer);
     }
     print_expectations(&printer);

@@ -3,6 +3,7 @@
 
 #include "../text/json.h"
 #include "record_print.h"
+#include "study_causes.h"
 #include "study_print.h"
 
 static void put_rate(json_t *object, uint64_t hits, uint64_t trials) {
@@ -169,7 +170,7 @@ static void put_head(const wh_study_result_t *result, json_t *root) {
     wh_json_put(root, "run_without_errors", run_without_errors(result));
 }
 
-int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
+json_t *wh_study_to_json(const wh_study_result_t *result) {
     json_t *root = json_object();
     const size_t worst =
         result->worst < result->tally->worst_count ? result->worst : result->tally->worst_count;
@@ -178,7 +179,13 @@ int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
     wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
     wh_json_put(root, "events", wh_json_list(event, result, WH_EVENT_KINDS));
     wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
+    wh_json_put(root, "drawn", wh_causes_to_json(result));
     wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
+    return root;
+}
+
+int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
+    json_t *root = wh_study_to_json(result);
     const int status = wh_json_print(root, out);
     json_decref(root);
     return status;

@@ -17,6 +17,11 @@
  *                 elsewhere (trials that leave it anywhere else; the figures are of the others), count, and
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
+ *   drawn:        the errors that are drawn, the one that goes with failing most strongly first: kind
+ *                 (wafer, station, gripper, vacuum), of (a name; null: of all), what, unit, width, failing:
+ *                 { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }. Each is
+ *                 { r, low, high }, a correlation with its interval (study/relations.h), or null: not
+ *                 determined
  *   worst:        trial, ok, off (of the wafer farthest off; null: one is elsewhere), drawn: { wafers,
  *                 stations, valves, vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz,
  *                 tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
@@ -27,6 +32,8 @@
  */
 #ifndef WH_PRINT_STUDY_PRINT_H
 #define WH_PRINT_STUDY_PRINT_H
+
+#include <jansson.h>
 
 #include "../study/tally.h"
 #include "../text/style.h"
@@ -44,6 +51,16 @@ bool wh_study_is_kept(const wh_study_result_t *result);
 /* 0, or -1 if writing failed. */
 int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_style_t *style);
 int wh_study_print_json(const wh_study_result_t *result, FILE *out);
+
+/* The object that wh_study_print_json prints. */
+json_t *wh_study_to_json(const wh_study_result_t *result);
+
+/* Each trial as a line of CSV, as of RFC 4180 but that lines end with a line feed; of a tally that has the
+ * lines of all. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations were
+ * missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off mm; of
+ * each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the trial drew,
+ * of each error whose width is not 0. Numbers read back as the same double. 0, or -1 if writing failed. */
+int wh_study_print_csv(const wh_study_result_t *result, FILE *out);
 
 /* An expectation's text without what was found instead. Writes at most `size` bytes. */
 void wh_study_expected(const char *text, char *expected, size_t size);

@@ -4,6 +4,7 @@
 
 #include "../math/trig.h"
 #include "print_internal.h"
+#include "study_causes.h"
 #include "study_print.h"
 
 /* The parts of the run's result that are of use here take its frame. */
@@ -152,6 +153,60 @@ static void print_wafers(const table_t *table) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- causes */
+
+/* So many of the drawn errors are told. */
+#define MOST_CAUSES 8
+
+static void put_correlation(wh_grid_t *grid, size_t column, const wh_correlation_t *found) {
+    char r[WH_GRID_NUMBER_SIZE];
+    char low[WH_GRID_NUMBER_SIZE];
+    char high[WH_GRID_NUMBER_SIZE];
+    if (!found->determined) {
+        wh_grid_text(grid, column, WH_INK_DIM, "not determined");
+        return;
+    }
+    const bool is_sure = found->low > 0 || found->high < 0;
+    wh_grid_format(r, sizeof r, found->r, 2);
+    wh_grid_format(low, sizeof low, found->low, 2);
+    wh_grid_format(high, sizeof high, found->high, 2);
+    wh_grid_text(grid, column, is_sure ? WH_INK_PLAIN : WH_INK_DIM, "%s (%s to %s)", r, low, high);
+}
+
+static void add_cause(const table_t *table, wh_grid_t *grid, const wh_cause_told_t *told) {
+    static const char *const quantities[] = {"dX", "dY", "dz", "tilt", "off"};
+    const wh_study_t *study = table->study->study;
+    char name[WH_CAUSE_NAME];
+    wh_cause_name(told->cause, study->layout, name);
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
+    put_correlation(grid, 1, &told->by_size);
+    if (told->cause->kind == WH_CAUSE_WAFER || told->cause->kind == WH_CAUSE_STATION) {
+        put_correlation(grid, 2, &told->by_value);
+    }
+    put_correlation(grid, 3, &told->end);
+    if (told->end.determined) {
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%s %s",
+                     study->layout->wafers[study->wafers[told->wafer].wafer].name,
+                     quantities[told->quantity]);
+    }
+}
+
+static void print_causes(const table_t *table) {
+    const size_t count = table->study->study->cause_count;
+    wh_cause_told_t *told = wh_causes_told(table->study);
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1,
+                                  "drawn;failing with its size;with its value;strongest at the end;of");
+    for (size_t i = 0; i < count && i < MOST_CAUSES; ++i) {
+        add_cause(table, grid, &told[i]);
+    }
+    free(told);
+    wh_print_titled(&table->frame, "Which error costs most: correlations, all together 95 % sure", grid);
+    if (count > MOST_CAUSES) {
+        fprintf(table->frame.out, "and %zu more, which --json tells\n", count - MOST_CAUSES);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- worst */
 
 static void print_worst(const table_t *table) {
@@ -237,6 +292,7 @@ int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_st
     print_errors(&table);
     print_events(&table);
     print_wafers(&table);
+    print_causes(&table);
     print_worst(&table);
     print_summary(&table);
     return ferror(out) ? -1 : 0;

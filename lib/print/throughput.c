@@ -1,5 +1,5 @@
 /* What a customer asks of a layout: wafers per hour, what the time goes into, reach. */
-#include "../record/throughput.h"
+#include "../record/steady.h"
 
 #include <math.h>
 #include <string.h>
@@ -72,33 +72,28 @@ static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *
     wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
 }
 
-/* How much of a command's text names what it does and where: GET A of GET A 1, WAIT of WAIT 2. A name with
- * blanks stands in quotes. */
-static size_t kind_length(const char *text) {
-    const size_t verb = strcspn(text, " ");
-    const char *where = text + verb + strspn(text + verb, " ");
-    if (*where == '\0' || strchr("+-.0123456789", *where)) {
-        return verb;
-    }
-    const char *end = *where == '"' ? strchr(where + 1, '"') : NULL;
-    return (size_t)(where - text) + (end ? (size_t)(end - where) + 1 : strcspn(where, " "));
-}
-
 static bool is_of_kind(const wh_command_record_t *command, const char *kind, size_t length) {
-    return command->text && kind_length(command->text) == length && memcmp(command->text, kind, length) == 0;
+    return command->text && wh_steady_kind_length(command->text) == length &&
+           memcmp(command->text, kind, length) == 0;
 }
 
-/* Commands of one kind together, from the first of them on. */
-static void add_total(const wh_printer_t *printer, wh_grid_t *grid, size_t first) {
+/* The commands that are shown, `count` from `first` on, and how long they took together. */
+typedef struct {
+    size_t first, count;
+    double seconds;
+} shown_t;
+
+/* Commands of one kind together, from command `first` on, which is the first of them. */
+static void add_total(const wh_printer_t *printer, wh_grid_t *grid, const shown_t *shown, size_t first) {
     enum { KIND, COUNT, MEAN, LEAST, MOST, SHARE };
     const wh_record_t *record = printer->record;
     const char *kind = record->commands[first].text;
-    const size_t length = kind_length(kind);
+    const size_t length = wh_steady_kind_length(kind);
     double sum = 0;
     double least = HUGE_VAL;
     double most = 0;
     size_t count = 0;
-    for (size_t i = first; i < record->command_count; ++i) {
+    for (size_t i = first; i < shown->first + shown->count; ++i) {
         if (is_of_kind(&record->commands[i], kind, length)) {
             const double seconds = record->commands[i].end_s - record->commands[i].begin_s;
             sum += seconds;
@@ -110,15 +105,15 @@ static void add_total(const wh_printer_t *printer, wh_grid_t *grid, size_t first
     wh_grid_row(grid);
     wh_grid_text(grid, KIND, WH_INK_PLAIN, "%.*s", (int)length, kind);
     wh_grid_number(grid, COUNT, WH_INK_PLAIN, (double)count);
-    const double values[] = {sum / (double)count, least, most, 100 * sum / record->simulated_s};
+    const double values[] = {sum / (double)count, least, most, 100 * sum / shown->seconds};
     wh_grid_numbers(grid, MEAN, values, sizeof values / sizeof *values);
 }
 
-/* True if no command before this one is of its kind. */
-static bool is_first_of_kind(const wh_record_t *record, size_t command) {
+/* True if no command from `first` on and before this one is of its kind. */
+static bool is_first_of_kind(const wh_record_t *record, size_t first, size_t command) {
     const char *kind = record->commands[command].text;
-    const size_t length = kind ? kind_length(kind) : 0;
-    for (size_t i = 0; i < command && kind; ++i) {
+    const size_t length = kind ? wh_steady_kind_length(kind) : 0;
+    for (size_t i = first; i < command && kind; ++i) {
         if (is_of_kind(&record->commands[i], kind, length)) {
             return false;
         }
@@ -127,28 +122,53 @@ static bool is_first_of_kind(const wh_record_t *record, size_t command) {
 }
 
 /* What a long run's rows above do not show at a glance. */
-static void print_totals(const wh_printer_t *printer) {
+static void print_totals(const wh_printer_t *printer, const shown_t *shown, const char *of) {
     const wh_record_t *record = printer->record;
+    char title[100];
     wh_grid_t *grid =
         wh_grid_new(printer->style, 1, "command;count{0};mean s{3};least s{3};most s{3};share %{1}");
-    for (size_t i = 0; i < record->command_count; ++i) {
-        if (is_first_of_kind(record, i)) {
-            add_total(printer, grid, i);
+    for (size_t i = shown->first; i < shown->first + shown->count; ++i) {
+        if (is_first_of_kind(record, shown->first, i)) {
+            add_total(printer, grid, shown, i);
         }
     }
-    wh_print_titled(printer, "Totals: commands of one kind at one station, and their share of the run", grid);
+    (void)snprintf(title, sizeof title, "Totals: commands of one kind at one station, and their share of %s",
+                   of);
+    wh_print_titled(printer, title, grid);
 }
 
-void wh_print_times(const wh_printer_t *printer) {
+/* Of a window whole commands are shown, also those that it cuts. */
+static shown_t choose(const wh_printer_t *printer, const wh_print_window_t *window) {
+    const wh_record_t *record = printer->record;
+    shown_t shown = {0, 0, 0};
+    while (shown.first < record->command_count &&
+           !wh_print_is_within(printer, window, &record->commands[shown.first])) {
+        ++shown.first;
+    }
+    size_t i = shown.first;
+    for (; i < record->command_count && wh_print_is_within(printer, window, &record->commands[i]); ++i) {
+        shown.seconds += record->commands[i].end_s - record->commands[i].begin_s;
+    }
+    shown.count = i - shown.first;
+    shown.seconds = window->is_whole ? record->simulated_s : shown.seconds;
+    return shown;
+}
+
+void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window) {
     const wh_record_t *record = printer->record;
     if (!record->layout || record->slices == 0) {
         return;
     }
+    const shown_t shown = choose(printer, window);
+    int64_t shares[WH_SHARES] = {0};
     wh_grid_t *grid = wh_grid_new(printer->style, 2,
                                   "line{0};command;s{3,6};with wafer{3,6};without{3,6};vacuum{3,6};"
                                   "valves{3,6};waiting{3,6}");
-    for (size_t i = 0; i < record->command_count; ++i) {
+    for (size_t i = shown.first; i < shown.first + shown.count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
+        for (size_t share = 0; share < WH_SHARES; ++share) {
+            shares[share] += command->shares[share];
+        }
         wh_grid_row(grid);
         if (command->line > 0) {
             wh_grid_number(grid, LINE, WH_INK_DIM, command->line);
@@ -156,10 +176,10 @@ void wh_print_times(const wh_printer_t *printer) {
         add_times(printer, grid, command->text ? command->text : "", command->shares);
     }
     wh_grid_row(grid);
-    add_times(printer, grid, "all", record->activity.shares);
+    add_times(printer, grid, "all", window->is_whole ? record->activity.shares : shares);
     wh_print_titled(
         printer, "Time: motion with and without a wafer, standing still for vacuum, valves, waiting", grid);
-    print_totals(printer);
+    print_totals(printer, &shown, window->is_whole ? "the run" : "those that are shown");
 }
 
 /* -------------------------------------------------------------------------------------------------- reach */

@@ -1,5 +1,6 @@
 #include "record.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,6 +71,43 @@ bool wh_record_is_complaint(wh_event_kind_t kind) {
 
 bool wh_record_is_contact(wh_event_kind_t kind) {
     return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
+}
+
+/* The first expectation that was not met. False if there is none. */
+static bool find_unmet(const wh_record_t *record, char *reason, size_t size) {
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        const wh_expectation_record_t *expectation = &record->expectations[i];
+        const char *text = expectation->text ? expectation->text : "not met";
+        if (!expectation->ok && expectation->line > 0) {
+            (void)snprintf(reason, size, "line %d: %.1000s", expectation->line, text);
+        } else if (!expectation->ok) {
+            (void)snprintf(reason, size, "%.1000s", text);
+        }
+        if (!expectation->ok) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The first complaint of the cell. False if there is none. */
+static bool find_complaint(const wh_record_t *record, char *reason, size_t size) {
+    for (size_t i = 0; i < record->event_count; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        const char *name = wh_record_wafer_name(record, event->wafer);
+        if (wh_record_is_complaint(event->kind)) {
+            (void)snprintf(reason, size, "the cell complained: %s%s%s", wh_event_name(event->kind),
+                           name ? ": " : "", name ? name : "");
+            return true;
+        }
+    }
+    return false;
+}
+
+void wh_record_reason(const wh_record_t *record, char *reason, size_t size) {
+    if (record->failure || (!find_unmet(record, reason, size) && !find_complaint(record, reason, size))) {
+        (void)snprintf(reason, size, "%.1000s", record->failure ? record->failure : "failed");
+    }
 }
 
 void wh_record_begin_reach(wh_record_t *record, size_t stations) {

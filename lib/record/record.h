@@ -119,6 +119,9 @@ bool wh_record_is_complaint(wh_event_kind_t kind);
 /* True if by this event two parts touched, or came or may have come too near: it names them and the place. */
 bool wh_record_is_contact(wh_event_kind_t kind);
 
+/* Why a run failed: the error, else the first expectation, else the first complaint. */
+void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
+
 /* True if all was well because there was nothing: the cell stood, and no command came. */
 bool wh_record_moved_nothing(const wh_record_t *record);
 

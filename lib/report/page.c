@@ -136,10 +136,10 @@ static size_t name_length(const char *text) {
     return length < NAME_BYTES && text[length] == '@' ? length : 0;
 }
 
-bool wh_page_write(FILE *out, const char *title, const char *document, size_t size,
+bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]) {
     const page_t page = {out, title, document, size, message};
-    const wh_embedded_t *template = find_ours("report.html.in");
+    const wh_embedded_t *template = find_ours(name);
     if (!template) {
         (void)snprintf(message, WH_PAGE_MESSAGE_BYTES, "the program was built without its page");
         return false;
@@ -147,14 +147,14 @@ bool wh_page_write(FILE *out, const char *title, const char *document, size_t si
     const char *from = (const char *)template->text;
     for (const char *at = strchr(from, '@'); at; at = strchr(at, '@')) {
         const size_t length = name_length(at + 1);
-        char name[NAME_BYTES];
+        char part[NAME_BYTES];
         if (length == 0) {
             ++at;
             continue;
         }
         fwrite(from, 1, (size_t)(at - from), out);
-        (void)snprintf(name, sizeof name, "%.*s", (int)length, at + 1);
-        if (!write_named(&page, name)) {
+        (void)snprintf(part, sizeof part, "%.*s", (int)length, at + 1);
+        if (!write_named(&page, part)) {
             return false;
         }
         from = at = at + length + 2;

@@ -1,12 +1,13 @@
-/* A report's page: one HTML file with everything in it that it needs, for it is read from disk, without a
- * network.
+/* A page, of a report or of a study: one HTML file with everything in it that it needs, for it is read from
+ * disk, without a network.
  *
- * The page is lib/report/page/report.html.in, built into the program. A name between two @ in it stands for a
- * file: another one of lib/report/page, or one of the JavaScript that others wrote (three.min.js,
- * OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css), read when the page is made from where
- * the distribution puts it: /usr/share/javascript, unless the program was built with another JAVASCRIPT= or
- * the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@ report/document.h's
- * object, packed (text/packed.h): an hour's is a seventh so.
+ * It is lib/report/page/report.html.in or study.html.in, built into the program. A name between two @ in it
+ * stands for a file: another one of lib/report/page, or one of the JavaScript that others wrote
+ * (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css), read when the page is
+ * made from where the distribution puts it: /usr/share/javascript, unless the program was built with another
+ * JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@
+ * report/document.h's object, or report/study_document.h's, packed (text/packed.h): an hour's is a seventh
+ * so.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H
@@ -17,9 +18,13 @@
 
 #define WH_PAGE_MESSAGE_BYTES 600
 
-/* Writes the page. `document` is text of `size` bytes, as wh_document_write makes it. False, and the reason
+#define WH_PAGE_REPORT "report.html.in"
+#define WH_PAGE_STUDY "study.html.in"
+
+/* Writes the page of this name. `document` is text of `size` bytes, as wh_document_write or
+ * wh_study_document_write makes it. False, and the reason
  * in `message`, when a file is missing; whether `out` took all is for its owner to ask. */
-bool wh_page_write(FILE *out, const char *title, const char *document, size_t size,
+bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]);
 
 #endif

@@ -101,17 +101,11 @@ void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *
 
 /* --------------------------------------------------------------------------------------------------- keys */
 
-static bool is_known(const char *name, size_t length, const char *known) {
-    if (length == 0 || length != strlen(name) || strchr(name, ' ')) {
-        return false;
+static bool is_known(const char *name, size_t length, const wh_reader_field_t *known) {
+    while (known->name && (strlen(known->name) != length || memcmp(known->name, name, length) != 0)) {
+        ++known;
     }
-    for (const char *at = strstr(known, name); at; at = strstr(at + 1, name)) {
-        const bool begins = at == known || at[-1] == ' ';
-        if (begins && (at[length] == ' ' || at[length] == '\0')) {
-            return true;
-        }
-    }
-    return false;
+    return known->name != NULL;
 }
 
 /* Names the key below the top of the stack, in brackets unless it is a text. */
@@ -127,20 +121,27 @@ static void name_key(lua_State *L, char *field, size_t size) {
     lua_pop(L, 1);
 }
 
-/* Says which known name is nearest to an unknown one. */
-static const char *describe_nearest(const char *name, const char *known, char text[WH_NEAREST_TEXT]) {
-    char copy[WANTED_SIZE];
-    const char *names[WANTED_SIZE / 2];
-    char *rest = NULL;
+/* The most fields that a table has. */
+#define MOST_FIELDS 64
+
+/* Refuses the value on top of the stack: its field is none of the known ones. */
+__attribute__((noreturn)) static void refuse_field(const wh_reader_t *reader, const char *field,
+                                                   const char *name, const wh_reader_field_t *known) {
+    const char *names[MOST_FIELDS];
+    char list[WANTED_SIZE] = "";
+    char meant[WH_NEAREST_TEXT] = "";
     size_t count = 0;
-    snprintf(copy, sizeof copy, "%s", known);
-    for (char *each = strtok_r(copy, " ", &rest); each; each = strtok_r(NULL, " ", &rest)) {
-        names[count++] = each;
+    for (; count < MOST_FIELDS && known[count].name; ++count) {
+        const size_t used = strlen(list);
+        names[count] = known[count].name;
+        snprintf(list + used, sizeof list - used, "%s%s", count > 0 ? " " : "", names[count]);
     }
-    return wh_text_did_you_mean(text, "; ", "", wh_text_nearest(name, names, count));
+    const char *nearest = name ? wh_text_nearest(name, names, count) : NULL;
+    wh_reader_fail(reader, field, "one of the fields %s%s", list,
+                   wh_text_did_you_mean(meant, "; ", "", nearest));
 }
 
-void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
+void wh_reader_refuse_unknown(wh_reader_t *reader, const wh_reader_field_t *known) {
     lua_State *L = reader->L;
     const char *first = NULL;
     size_t first_length = 0;
@@ -149,7 +150,7 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
         if (lua_type(L, -2) != LUA_TSTRING) {
             char field[80];
             name_key(L, field, sizeof field);
-            wh_reader_fail(reader, field, "one of the fields %s", known);
+            refuse_field(reader, field, NULL, known);
         }
         size_t length = 0;
         const char *name = lua_tolstring(L, -2, &length);
@@ -161,13 +162,11 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
     }
     if (first) {
         char field[80];
-        char nearest[WH_NEAREST_TEXT];
         lua_pushlstring(L, first, first_length);
         lua_pushvalue(L, -1);
         (void)lua_rawget(L, -3);
         name_key(L, field, sizeof field);
-        wh_reader_fail(reader, field, "one of the fields %s%s", known,
-                       describe_nearest(first, known, nearest));
+        refuse_field(reader, field, first, known);
     }
 }
 
@@ -259,7 +258,7 @@ bool wh_reader_enter(wh_reader_t *reader, const char *field) {
     return enter_top_unless_nil(reader, field);
 }
 
-bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known) {
+bool wh_reader_open(wh_reader_t *reader, const char *field, const wh_reader_field_t *known) {
     const bool there = wh_reader_enter(reader, field);
     if (there) {
         wh_reader_refuse_unknown(reader, known);
@@ -267,7 +266,7 @@ bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known) {
     return there;
 }
 
-void wh_reader_open_section(wh_reader_t *reader, const char *field, const char *known) {
+void wh_reader_open_section(wh_reader_t *reader, const char *field, const wh_reader_field_t *known) {
     if (wh_reader_push(reader, field) == LUA_TNIL) {
         lua_newtable(reader->L);
         lua_replace(reader->L, -2);

@@ -14,6 +14,15 @@
 
 #define WH_READER_DEPTH 8
 
+/* A field that tables of one kind may have. Readers refuse all others, and `waferhand definitions` writes
+ * them for editors: so both go by the same lists. */
+typedef struct {
+    const char *name; /* null ends a list */
+    const char *type; /* as the Lua language server writes types, such as number or "a"|"b" */
+    const char *text; /* what it is, with its unit */
+    bool required;
+} wh_reader_field_t;
+
 typedef struct {
     lua_State *L;
     const char *file;
@@ -34,9 +43,9 @@ void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *ex
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) __attribute__((noreturn, format(printf, 4, 5)));
 
-/* Refuses every field whose name is not in the space-separated list `known`. If there are several, the first
- * by name is reported. */
-void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known);
+/* Refuses every field whose name is not among the `known`. If there are several, the first by name is
+ * reported. */
+void wh_reader_refuse_unknown(wh_reader_t *reader, const wh_reader_field_t *known);
 
 /* The length of the list that is read. A list with names or gaps is refused: a loop from 1 would miss
  * entries. */
@@ -51,11 +60,11 @@ bool wh_reader_enter(wh_reader_t *reader, const char *field);
 bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 
 /* wh_reader_enter and then, if there is such a table, wh_reader_refuse_unknown. */
-bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known);
+bool wh_reader_open(wh_reader_t *reader, const char *field, const wh_reader_field_t *known);
 
 /* The same where all fields have defaults: without such a table an empty one is entered, so that all of them
  * are read as absent. */
-void wh_reader_open_section(wh_reader_t *reader, const char *field, const char *known);
+void wh_reader_open_section(wh_reader_t *reader, const char *field, const wh_reader_field_t *known);
 
 void wh_reader_leave(wh_reader_t *reader);
 

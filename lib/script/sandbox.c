@@ -116,6 +116,7 @@ static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SA
 /* Why a file is not read, or null. Checks it before Lua opens it: opening a device may move it. */
 static const char *file_fault(const char *path, size_t *size) {
     struct stat status;
+    wh_output_note_input(path);
     if (stat(path, &status) != 0) {
         return strerror(errno);
     }

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../text/output.h"
 #include "sandbox_internal.h"
 #include "wh_module_values.h"
 
@@ -157,6 +158,7 @@ static int require_module(lua_State *L) {
     wh_sandbox_charge(L, WH_SANDBOX_GRANULE);
     if (strlen(name) == length && is_module_name(name)) {
         const char *const path = push_module_path(L, name);
+        wh_output_note_input(path);
         if (access(path, F_OK) == 0) {
             return load_once(L, path);
         }

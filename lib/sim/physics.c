@@ -67,6 +67,58 @@ static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
+/* The largest number of a sample's pixels. */
+#define MOST_PIXELS 100000
+
+static bool is_sampled(const wh_scan_t *scan) {
+    bool good = scan->sample_count >= 0 && scan->sample_count <= WH_SCAN_SLICE;
+    for (int32_t i = 0; good && i < WH_SCAN_SLICE; ++i) {
+        const int32_t sample = scan->samples[i];
+        good = sample >= 0 && sample <= (i < scan->sample_count ? MOST_PIXELS : 0);
+    }
+    return good;
+}
+
+/* The magnitude of a scan's turn, as bits, which have the order of numbers: a processor without doubles needs
+ * no function for them here. */
+#define TURN_MOST UINT64_C(0x40c3880000000000)     /* 1e4 */
+#define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* beyond are those that are no number */
+
+static uint64_t bits_of_turn(const wh_scan_t *scan) {
+    uint64_t bits;
+    memcpy(&bits, &scan->turn, sizeof bits);
+    return bits;
+}
+
+static bool is_between(int64_t value, int64_t least, int64_t most) {
+    return value >= least && value <= most;
+}
+
+/* What was ordered; before the first order nothing. */
+static bool is_ordered(const wh_scan_t *scan, size_t gripper_count) {
+    const int32_t most = WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
+    const int64_t reach = (int64_t)WH_SCAN_REACH * WH_SENSOR_SAMPLES;
+    const bool none = (scan->gripper | scan->count) == 0 && scan->first == 0;
+    const bool some = wh_is_index(scan->gripper, gripper_count) && is_between(scan->count, -most, most) &&
+                      is_between(scan->first, -reach, reach);
+    return scan->number > 0 ? some : none;
+}
+
+static wh_status_t check_scan(const wh_scan_t *scan, size_t gripper_count) {
+    const uint64_t turn = bits_of_turn(scan) & (UINT64_MAX >> 1);
+    if (turn >= TURN_INFINITE) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    if (!is_ordered(scan, gripper_count) || !is_sampled(scan)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    const int32_t count = scan->count < 0 ? -scan->count : scan->count;
+    const bool goes_on = scan->taken < count && turn < TURN_MOST;
+    const bool good = is_between(scan->taken, scan->sample_count, count) &&
+                      (scan->armed ? goes_on : bits_of_turn(scan) == 0);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) {
     if (!state) {
@@ -81,7 +133,8 @@ wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gr
             return status;
         }
     }
-    return wh_faults_validate(&state->faults, gripper_count, wafer_count);
+    const wh_status_t status = check_scan(&state->scan, gripper_count);
+    return status == WH_OK ? wh_faults_validate(&state->faults, gripper_count, wafer_count) : status;
 }
 
 uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count) {
@@ -158,6 +211,16 @@ static uint64_t hash_slot(uint64_t hash, size_t i, const wh_fault_slot_t *slot) 
     return hash_pose(hash, &slot->placed);
 }
 
+static uint64_t hash_scan(uint64_t hash, const wh_scan_t *scan) {
+    const int32_t head[] = {4, (int32_t)scan->number, scan->armed ? 1 : 0, scan->gripper, scan->count};
+    hash = hash_ints(hash, head, 5);
+    hash = hash_word(hash, (uint64_t)scan->first);
+    hash = hash_word(hash, (uint64_t)(int64_t)scan->taken);
+    hash = hash_word(hash, bits_of_turn(scan));
+    hash = hash_word(hash, (uint64_t)(int64_t)scan->sample_count);
+    return hash_ints(hash, scan->samples, (size_t)scan->sample_count);
+}
+
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
     const size_t gripper_count = table->storage.gripper_count;
     uint64_t hash = wh_grasp_hash(table);
@@ -176,5 +239,5 @@ uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t
             hash = hash_slot(hash, i, &state->faults.slots[i]);
         }
     }
-    return hash;
+    return state->scan.number > 0 ? hash_scan(hash, &state->scan) : hash;
 }

@@ -6,17 +6,18 @@
  *     stack of wh_physics_default             2376   2376    1384   1408
  *     stack of wh_physics_validate              88    200      48    112
  *     stack of wh_physics_state_start          240    232     184    184
- *     stack of wh_physics_state_validate        92    216      60    136
+ *     stack of wh_physics_state_validate       128    236      80    144
  *     stack of wh_physics_state_sensors         16     20       8     24
- *     stack of wh_physics_state_hash           120    140     124    136
+ *     stack of wh_physics_state_hash           112    140     116    136
  *     size of wh_physics_t                    2272           1336
- *     size of wh_physics_state_t              5992           3336
+ *     size of wh_physics_state_t              6296           3640
  */
 #ifndef WH_SIM_PHYSICS_H
 #define WH_SIM_PHYSICS_H
 
 #include "../grasp/hold.h"
 #include "faults.h"
+#include "scanning.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(physics);
@@ -39,6 +40,7 @@ typedef struct {
     wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
     int32_t told[WH_GRIPPERS];     /* valves of the last command, before faults; no step depends on them */
     wh_faults_t faults;
+    wh_scan_t scan; /* of an edge sensor */
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
@@ -75,10 +77,12 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *     or at level 0 with the sensor off while it holds none;
  *   - for each gripper with positions known: 2, its index, known, before[0], before[1] and slips;
  *   - for each slot in use: 3, its index, phase, kind, target, other, value, offset, from, until, before,
- *     placed.
- * So a run with ideal vacuum, without pads and faults, has the table's hash. Nothing is checked; grippers
- * from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10 for
- * each with positions, and 45 for each slot in use.
+ *     placed;
+ *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count
+ *     and so many samples.
+ * So a run with ideal vacuum, without pads, faults and scans, has the table's hash. Nothing is checked;
+ * grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10
+ * for each with positions, 45 for each slot in use, and up to 73 for a scan.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);

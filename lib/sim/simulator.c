@@ -33,6 +33,8 @@ static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
     wh_physics_state_start(&simulator->physics, NULL);
     simulator->event_count = 0;
     simulator->observer = (wh_observer_t){NULL, NULL, NULL};
+    simulator->scanning = (wh_scanning_t){NULL, 0, NULL};
+    simulator->scans = NULL;
     simulator->mark = WH_SIMULATOR_MARK;
 }
 
@@ -282,6 +284,10 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
     if (command->gripper_count != storage->gripper_count) {
         return WH_STATUS_OUT_OF_RANGE;
     }
+    if (command->scan.kind != WH_SCAN_KEEP &&
+        (!simulator->scans || simulator->scans->check(&simulator->scanning, &command->scan) != WH_OK)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     if (command->fault_count == 0) {
         return WH_OK;
     }
@@ -292,14 +298,19 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
 }
 
 static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
-    const wh_status_t status = check_command(simulator, command);
+    wh_status_t status = check_command(simulator, command);
     if (status != WH_OK) {
         ++simulator->table.counters.refused;
         simulator->event_count = 0;
         return status;
     }
-    return is_direct(simulator, command) ? step_direct(simulator, command)
-                                         : step_with_faults(simulator, command);
+    status = is_direct(simulator, command) ? step_direct(simulator, command)
+                                           : step_with_faults(simulator, command);
+    if (status == WH_OK && simulator->scans) {
+        simulator->scans->step(&simulator->scanning, &simulator->table, simulator->slice_s, &command->scan,
+                               &simulator->physics.scan);
+    }
+    return status;
 }
 
 static void view_nothing(wh_state_t *state) {

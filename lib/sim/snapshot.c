@@ -109,7 +109,8 @@ static uint64_t describe(const wh_simulator_t *simulator) {
     hash = hash_physics(hash, simulator);
     hash = hash_cell(hash, &simulator->cell);
     hash = wh_hash_word(hash, (uint64_t)storage->wafer_count);
-    return wh_hash_word(hash, (uint64_t)storage->gripper_count);
+    hash = wh_hash_word(hash, (uint64_t)storage->gripper_count);
+    return simulator->scans ? simulator->scans->hash(&simulator->scanning, storage->wafer_count, hash) : hash;
 }
 
 /* ------------------------------------------------------------------------------------- one way in and out */
@@ -150,7 +151,7 @@ static void pass_time(stream_t *stream, int64_t *value) {
 }
 
 static void pass_bool(stream_t *stream, bool *value) {
-    uint64_t word = *value ? 1 : 0;
+    uint64_t word = stream->to && *value ? 1 : 0; /* what is read into may be no bool yet */
     pass_bytes(stream, &word, 1);
     stream->is_bad = stream->is_bad || word > 1;
     *value = word == 1;
@@ -258,6 +259,30 @@ static void pass_slot(stream_t *stream, wh_fault_slot_t *slot) {
     slot->phase = stream->is_bad ? WH_FAULT_FREE : (wh_fault_phase_t)phase;
 }
 
+static void pass_double(stream_t *stream, double *value) {
+    uint64_t bits;
+    memcpy(&bits, value, sizeof bits);
+    pass_bytes(stream, &bits, 8);
+    memcpy(value, &bits, sizeof bits);
+}
+
+/* 293 bytes. */
+static void pass_scan(stream_t *stream, wh_scan_t *scan) {
+    uint64_t number = scan->number;
+    pass_bytes(stream, &number, 4);
+    pass_bool(stream, &scan->armed);
+    pass_int(stream, &scan->gripper);
+    pass_int(stream, &scan->count);
+    pass_time(stream, &scan->first);
+    pass_int(stream, &scan->taken);
+    pass_double(stream, &scan->turn);
+    pass_int(stream, &scan->sample_count);
+    for (size_t i = 0; i < WH_SCAN_SLICE; ++i) {
+        pass_int(stream, &scan->samples[i]);
+    }
+    scan->number = (uint32_t)number;
+}
+
 /* --------------------------------------------------------------------------------------------------- ends */
 
 #define HEAD_SIZE 16 /* mark, version, number type, description */
@@ -352,6 +377,9 @@ static void save_physics(stream_t *stream, const wh_physics_state_t *physics, si
         share.told = physics->told[g];
         pass_share(stream, &share);
     }
+    wh_scan_t scan;
+    scan = physics->scan;
+    pass_scan(stream, &scan);
     uint64_t count = physics->faults.count;
     pass_bytes(stream, &count, 4);
     for (size_t i = 0; i < physics->faults.count; ++i) {
@@ -419,6 +447,7 @@ static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t g
         physics->carry[g] = share.carry;
         physics->told[g] = share.told;
     }
+    pass_scan(stream, &physics->scan);
 }
 
 /* False if there are not as many bytes as these slots take. */

@@ -11,6 +11,8 @@
 #include "../text/json.h"
 #include "../text/output.h"
 
+#define FORMAT 2
+
 /* -------------------------------------------------------------------------------------------- which study */
 
 static json_t *parameter(const void *subject, size_t i) {
@@ -20,14 +22,13 @@ static json_t *parameter(const void *subject, size_t i) {
 /* In the order in which a difference is told. */
 static json_t *identity_of(const wh_study_t *study) {
     const wh_script_run_options_t *run = &study->run;
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION,
-                     "script", wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
-                     wh_json_hash(study->seed), "trials", (json_int_t)study->trials, "parameters",
-                     wh_json_list(parameter, run, run->parameter_count), "script_text",
-                     wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
-                     "budget", (json_int_t)run->limits.instructions, "memory",
-                     (json_int_t)run->limits.memory_bytes, "run_without_errors",
-                     wh_json_hash(study->nominal.record.hash));
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION, "script",
+        wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
+        wh_json_hash(study->seed), "parameters", wh_json_list(parameter, run, run->parameter_count),
+        "script_text", wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
+        "budget", (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
+        "run_without_errors", wh_json_hash(study->nominal.record.hash));
 }
 
 /* True if it is this study's; else the message tells the first difference. */
@@ -193,79 +194,128 @@ static bool take_events(const json_t *list, wh_tally_t *tally) {
     return sound;
 }
 
-static json_t *put_tally(const wh_tally_t *tally) {
-    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "trials", (json_int_t)tally->trials,
-                     "met", (json_int_t)tally->met, "ended", (json_int_t)tally->ended, "whole",
-                     (json_int_t)tally->whole, "events", put_events(tally), "expectations",
-                     wh_json_list(put_row, &tally->expectations, tally->expectations.count), "errors",
-                     wh_json_list(put_row, &tally->errors, tally->errors.count), "wafers",
-                     wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
-                     wh_json_list(put_worst, tally, tally->worst_count));
+/* High and low halves. */
+static json_t *put_relation(const void *subject, size_t i) {
+    const wh_uint128_t number = (wh_uint128_t)*wh_relations_number(subject, i);
+    return json_pack("[I, I]", (json_int_t)(number >> 64), (json_int_t)(uint64_t)number);
 }
 
-static bool take_tally(const json_t *root, wh_tally_t *tally) {
+/* Without any trial there may be none. */
+static bool take_relations(const wh_study_t *study, const json_t *list, wh_tally_t *tally) {
+    wh_relations_t *relations = &tally->relations;
+    const size_t count = json_array_size(list);
+    if (count == 0 && tally->trials == 0) {
+        return json_is_array(list);
+    }
+    wh_relations_need(relations, study->cause_count,
+                      wh_relations_wafers(study->cause_count, study->wafer_count));
+    bool sound = json_is_array(list) && count == wh_relations_size(relations);
+    for (size_t i = 0; sound && i < count; ++i) {
+        json_int_t high, low;
+        sound = json_unpack(json_array_get(list, i), "[I, I]", &high, &low) == 0;
+        if (sound) {
+            *wh_relations_number(relations, i) =
+                (wh_int128_t)((wh_uint128_t)(uint64_t)high << 64 | (uint64_t)low);
+        }
+    }
+    return sound;
+}
+
+static json_t *put_lines(const wh_trial_lines_t *lines) {
+    char *text = wh_trial_lines_text(lines);
+    json_t *made = json_string(text);
+    free(text);
+    return made;
+}
+
+static json_t *put_tally(const wh_tally_t *tally) {
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "trials",
+                     (json_int_t)tally->trials, "met", (json_int_t)tally->met, "ended",
+                     (json_int_t)tally->ended, "whole", (json_int_t)tally->whole, "events", put_events(tally),
+                     "expectations", wh_json_list(put_row, &tally->expectations, tally->expectations.count),
+                     "errors", wh_json_list(put_row, &tally->errors, tally->errors.count), "wafers",
+                     wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
+                     wh_json_list(put_worst, tally, tally->worst_count), "relations",
+                     wh_json_list(put_relation, &tally->relations, wh_relations_size(&tally->relations)),
+                     "lines", put_lines(&tally->lines));
+}
+
+static bool take_counts(const json_t *root, wh_tally_t *tally) {
     return take_count(json_object_get(root, "trials"), &tally->trials) &&
            take_count(json_object_get(root, "met"), &tally->met) &&
            take_count(json_object_get(root, "ended"), &tally->ended) &&
-           take_count(json_object_get(root, "whole"), &tally->whole) &&
+           take_count(json_object_get(root, "whole"), &tally->whole);
+}
+
+static bool take_lines(const json_t *lines, wh_tally_t *tally) {
+    return json_is_string(lines) &&
+           wh_trial_lines_read(&tally->lines, json_string_value(lines), tally->wafer_count);
+}
+
+static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *tally) {
+    return take_counts(root, tally) && take_lines(json_object_get(root, "lines"), tally) &&
            take_events(json_object_get(root, "events"), tally) &&
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
-           take_worst(json_object_get(root, "worst"), tally);
+           take_worst(json_object_get(root, "worst"), tally) &&
+           take_relations(study, json_object_get(root, "relations"), tally);
 }
 
-/* ------------------------------------------------------------------------------------------------- blocks */
+/* ------------------------------------------------------------------------------------------------- trials */
 
-static json_t *put_blocks(const wh_progress_t *progress) {
-    json_t *list = json_array();
-    for (uint64_t block = 0; block < progress->block_count; ++block) {
-        const uint64_t first = block;
-        while (block < progress->block_count && wh_progress_has(progress, block)) {
-            ++block;
-        }
-        if (block > first) {
-            wh_json_append(list, json_pack("[I, I]", (json_int_t)first, (json_int_t)block - 1));
-        }
-    }
-    return list;
+static json_t *put_stretch(const void *subject, size_t i) {
+    const wh_stretch_t *stretch = &((const wh_stretches_t *)subject)->items[i];
+    return json_pack("[I, I]", (json_int_t)stretch->first, (json_int_t)(stretch->first + stretch->count - 1));
 }
 
-static bool take_stretch(const json_t *pair, wh_progress_t *progress) {
-    const json_int_t first = json_integer_value(json_array_get(pair, 0));
-    const json_int_t last = json_integer_value(json_array_get(pair, 1));
-    if (json_array_size(pair) != 2 || first < 0 || last < first || (uint64_t)last >= progress->block_count) {
+/* False, and the message says why, if they are not a study's, or if one of them is beyond this study. */
+static bool take_stretch(const wh_study_t *study, const json_t *pair, wh_stretches_t *done, char *message,
+                         size_t size) {
+    uint64_t first, last;
+    if (json_array_size(pair) != 2 || !take_count(json_array_get(pair, 0), &first) ||
+        !take_count(json_array_get(pair, 1), &last) || last < first) {
         return false;
     }
-    for (uint64_t block = (uint64_t)first; block <= (uint64_t)last; ++block) {
-        wh_progress_note(progress, block);
+    if (last >= study->trials) {
+        snprintf(message, size, "of a longer study: its trial %llu is done (expected at least %llu trials)",
+                 (unsigned long long)last, (unsigned long long)last + 1);
+        return false;
     }
-    return true;
+    const wh_stretch_t stretch = {first, last - first + 1};
+    return wh_stretches_add(done, stretch);
 }
 
-static uint64_t trials_of(const wh_study_t *study, const wh_progress_t *progress) {
-    uint64_t trials = 0;
-    for (uint64_t block = 0; block < progress->block_count; ++block) {
-        trials += wh_progress_has(progress, block) ? wh_study_block_trials(study, block) : 0;
+/* False, and the message says so, if trials are done whose lines are wanted and were not. */
+static bool has_lines(const wh_study_t *study, const wh_progress_t *progress, char *message, size_t size) {
+    const uint64_t wanted = wh_stretches_below(&progress->done, study->lines);
+    const uint64_t found = wh_trial_lines_below(&progress->tally.lines, study->lines);
+    if (found < wanted) {
+        snprintf(message, size,
+                 "has lines of %llu trials, and %llu are done (expected a file that a study "
+                 "with --csv wrote, or --csv without it)",
+                 (unsigned long long)found, (unsigned long long)wanted);
     }
-    return trials;
+    return found == wanted;
 }
 
-static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress) {
-    const json_t *blocks = json_object_get(root, "blocks");
-    bool sound = json_is_array(blocks);
-    for (size_t i = 0; sound && i < json_array_size(blocks); ++i) {
-        sound = take_stretch(json_array_get(blocks, i), progress);
+static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
+                          size_t size) {
+    const json_t *done = json_object_get(root, "done");
+    bool sound = json_is_array(done);
+    for (size_t i = 0; sound && i < json_array_size(done); ++i) {
+        sound = take_stretch(study, json_array_get(done, i), &progress->done, message, size);
     }
-    return sound && take_tally(json_object_get(root, "tally"), &progress->tally) &&
-           progress->tally.trials == trials_of(study, progress);
+    return sound && take_tally(study, json_object_get(root, "tally"), &progress->tally) &&
+           progress->tally.trials == progress->done.trials && has_lines(study, progress, message, size);
 }
 
 /* ----------------------------------------------------------------------------------------- there and back */
 
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
-    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", 1, "study", identity_of(study), "blocks",
-                             put_blocks(progress), "tally", put_tally(&progress->tally));
+    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", FORMAT, "study", identity_of(study), "done",
+                             wh_json_list(put_stretch, &progress->done, progress->done.count), "tally",
+                             put_tally(&progress->tally));
     char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(root);
     return text;
@@ -274,12 +324,12 @@ char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress)
 /* Releases the root. */
 static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress, char *message, size_t size) {
     snprintf(message, size, "damaged (expected a study's state)");
-    bool sound = json_integer_value(json_object_get(root, "format")) == 1 &&
+    bool sound = json_integer_value(json_object_get(root, "format")) == FORMAT &&
                  is_same(json_object_get(root, "study"), study, message, size);
     if (sound) {
         wh_progress_t taken;
         wh_progress_init(&taken, study);
-        sound = take_progress(study, root, &taken);
+        sound = take_progress(study, root, &taken, message, size);
         if (sound) {
             wh_progress_merge(progress, &taken);
         }
@@ -333,7 +383,7 @@ char *wh_checkpoint_default_path(const wh_study_t *study) {
     for (const char *c = text; *c; ++c) {
         hash = wh_hash_word(hash, (unsigned char)*c);
     }
-    hash = wh_hash_word(hash, 0);
+    hash = wh_hash_word(hash, study->trials);
     free(text);
     json_decref(identity);
     snprintf(name, sizeof name, "study-%016llx", (unsigned long long)hash);

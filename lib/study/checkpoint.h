@@ -1,8 +1,8 @@
 /* A study's progress as text: in a file, to go on from, and on its way to another rank.
  *
- * JSON. `study` says which study it is of: version, script, layout, parameters, seed, trials, and a hash of
- * each file's text and of the run without errors. `blocks` are the first and last of each stretch of finished
- * blocks; the rest is the tally.
+ * JSON. `study` says which study it is of: version, script, layout, parameters, seed, and a hash of each
+ * file's text and of the run without errors. How many trials there are to be is no part of it: a study can be
+ * extended. `done` has the first and the last trial of each stretch that is done; the rest is the tally.
  */
 #ifndef WH_STUDY_CHECKPOINT_H
 #define WH_STUDY_CHECKPOINT_H
@@ -13,7 +13,7 @@
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress);
 
 /* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of
- * another study: its seed is 2 (expected 1)" or "damaged". */
+ * another study: its seed is 2 (expected 1)", "of a longer study" or "damaged". */
 bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
                         char *message, size_t message_size);
 

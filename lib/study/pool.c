@@ -11,43 +11,18 @@
 /* A worker shows what it has done when it is idle, and every so many seconds. */
 #define SHOW_S 0.3
 
+/* At most so many trials are a turn. */
+#define MOST_TURN 4096
+
 struct wh_pool_worker {
     wh_pool_t *pool;
     pthread_t thread;
     bool started;
     wh_worker_t player;
-    wh_tally_t block;       /* of the running block */
-    wh_progress_t progress; /* of the blocks since it was last shown */
+    wh_progress_t progress; /* since it was last shown */
     double shown;
+    double cost_s; /* of a trial, as the last turn had it; 0: none yet */
 };
-
-/* ----------------------------------------------------------------------------------------------- progress */
-
-void wh_progress_init(wh_progress_t *progress, const wh_study_t *study) {
-    progress->block_count = wh_study_blocks(study);
-    progress->done = wh_array_new((size_t)progress->block_count / 8 + 1, 1);
-    wh_tally_init(&progress->tally, study->wafer_count);
-}
-
-void wh_progress_free(wh_progress_t *progress) {
-    free(progress->done);
-    wh_tally_free(&progress->tally);
-}
-
-bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
-    return (progress->done[block / 8] >> block % 8 & 1) != 0;
-}
-
-void wh_progress_note(wh_progress_t *progress, uint64_t block) {
-    progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
-}
-
-void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other) {
-    for (size_t i = 0; i <= (size_t)progress->block_count / 8; ++i) {
-        progress->done[i] |= other->done[i];
-    }
-    wh_tally_merge(&progress->tally, &other->tally);
-}
 
 /* ------------------------------------------------------------------------------------- asked from outside */
 
@@ -82,41 +57,57 @@ static void fail(wh_pool_worker_t *worker, uint64_t trial, const char *message) 
     wh_pool_stop(pool);
 }
 
-/* Plays a block. One that is not finished is not counted. */
-static void play_block(wh_pool_worker_t *worker, uint64_t block) {
-    wh_pool_t *pool = worker->pool;
-    const uint64_t trials = wh_study_block_trials(pool->study, block);
+/* Plays trials up to the first that is not usable, or until all is to stop. Returns how many. */
+static uint64_t play(wh_pool_worker_t *worker, wh_stretch_t turn) {
     char message[WH_SANDBOX_MESSAGE_BYTES] = "";
-    for (uint64_t i = 0; i < trials; ++i) {
-        const uint64_t trial = block * WH_STUDY_BLOCK + i;
-        if (is_stopped(pool)) {
-            return;
+    for (uint64_t i = 0; i < turn.count; ++i) {
+        if (is_stopped(worker->pool)) {
+            return i;
         }
-        if (!wh_worker_play(&worker->player, trial, &worker->block, message)) {
-            fail(worker, trial, message);
-            return;
+        if (!wh_worker_play(&worker->player, turn.first + i, &worker->progress.tally, message)) {
+            fail(worker, turn.first + i, message);
+            return i;
         }
     }
-    wh_tally_merge(&worker->progress.tally, &worker->block);
-    wh_tally_clear(&worker->block);
-    wh_progress_note(&worker->progress, block);
+    return turn.count;
 }
 
-/* The next block, or false when there will be none. */
-static bool next_block(wh_pool_worker_t *worker, uint64_t *block) {
+static void play_turn(wh_pool_worker_t *worker, wh_stretch_t turn) {
+    const double begin = wh_clock_seconds();
+    turn.count = play(worker, turn);
+    (void)wh_stretches_add(&worker->progress.done, turn);
+    if (turn.count > 0) {
+        worker->cost_s = (wh_clock_seconds() - begin) / (double)turn.count;
+    }
+}
+
+/* With the pool's lock held: how many trials to take. Before the first turn nobody knows what a trial costs.
+ * At the end turns become shorter, so that no worker is left with many while the others wait. */
+static uint64_t turn_length(wh_pool_worker_t *worker) {
+    wh_pool_t *pool = worker->pool;
+    const uint64_t share = pool->queue.trials / (2 * pool->worker_count) + 1;
+    if (worker->cost_s > 0) {
+        const double pace = WH_POOL_TURN_S / worker->cost_s;
+        pool->pace = pace < 1 ? 1 : pace > MOST_TURN ? MOST_TURN : (uint64_t)pace;
+    }
+    return pool->pace < share ? pool->pace : share;
+}
+
+/* The next trials, or false when there will be none. */
+static bool next_turn(wh_pool_worker_t *worker, wh_stretch_t *turn) {
     wh_pool_t *pool = worker->pool;
     pthread_mutex_lock(&pool->lock);
     --pool->working;
-    if (pool->from == pool->to || wh_clock_seconds() - worker->shown > SHOW_S) {
+    if (pool->queue.trials == 0 || wh_clock_seconds() - worker->shown > SHOW_S) {
         show(worker);
     }
     pthread_cond_broadcast(&pool->changed);
-    while (pool->from == pool->to && !pool->closed && !is_stopped(pool)) {
+    while (pool->queue.trials == 0 && !pool->closed && !is_stopped(pool)) {
         pthread_cond_wait(&pool->changed, &pool->lock);
     }
-    const bool any = pool->from < pool->to && !is_stopped(pool);
+    const bool any = pool->queue.trials > 0 && !is_stopped(pool);
     if (any) {
-        *block = pool->queue[pool->from++];
+        *turn = wh_stretches_take(&pool->queue, turn_length(worker));
         ++pool->working;
     } else {
         show(worker);
@@ -128,10 +119,10 @@ static bool next_block(wh_pool_worker_t *worker, uint64_t *block) {
 
 static void *work(void *argument) {
     wh_pool_worker_t *worker = argument;
-    uint64_t block = 0;
+    wh_stretch_t turn = {0, 0};
     worker->shown = wh_clock_seconds();
-    while (next_block(worker, &block)) {
-        play_block(worker, block);
+    while (next_turn(worker, &turn)) {
+        play_turn(worker, turn);
     }
     return NULL;
 }
@@ -140,7 +131,6 @@ static void *work(void *argument) {
 
 static bool start_worker(wh_pool_t *pool, wh_pool_worker_t *worker) {
     worker->pool = pool;
-    wh_tally_init(&worker->block, pool->study->wafer_count);
     wh_progress_init(&worker->progress, pool->study);
     wh_worker_open(&worker->player, pool->study);
     ++pool->working;
@@ -156,7 +146,7 @@ bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads) {
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->changed, NULL);
     wh_progress_init(&pool->progress, study);
-    pool->queue = wh_array_new((size_t)pool->progress.block_count, sizeof *pool->queue);
+    pool->pace = 1;
     pool->workers = wh_array_new(threads, sizeof *pool->workers);
     bool started = true;
     sigfillset(&all);
@@ -171,33 +161,29 @@ bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads) {
     return started;
 }
 
-void wh_pool_queue(wh_pool_t *pool, const uint64_t blocks[], size_t count, bool closed) {
+void wh_pool_queue(wh_pool_t *pool, const wh_stretch_t stretches[], size_t count, bool closed) {
     pthread_mutex_lock(&pool->lock);
-    if (pool->from == pool->to) {
-        pool->from = pool->to = 0;
+    for (size_t i = 0; i < count; ++i) {
+        (void)wh_stretches_add(&pool->queue, stretches[i]);
     }
-    memcpy(&pool->queue[pool->to], blocks, count * sizeof *blocks);
-    pool->to += count;
     pool->closed = closed;
     pthread_cond_broadcast(&pool->changed);
     pthread_mutex_unlock(&pool->lock);
 }
 
-size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most) {
+wh_stretch_t wh_pool_take(wh_pool_t *pool, uint64_t most) {
     pthread_mutex_lock(&pool->lock);
-    const size_t left = pool->to - pool->from;
-    const size_t count = most < left ? most : left;
-    memcpy(blocks, &pool->queue[pool->from], count * sizeof *blocks);
-    pool->from += count;
+    const wh_stretch_t taken = wh_stretches_take(&pool->queue, most);
     pthread_mutex_unlock(&pool->lock);
-    return count;
+    return taken;
 }
 
 wh_pool_news_t wh_pool_look(wh_pool_t *pool) {
     pthread_mutex_lock(&pool->lock);
-    const size_t queued = pool->to - pool->from;
+    const uint64_t queued = pool->queue.trials;
     const bool done = pool->working == 0 && (queued == 0 || is_stopped(pool));
-    const wh_pool_news_t news = {pool->progress.tally.trials, queued, pool->failed, pool->failed || done};
+    const wh_pool_news_t news = {pool->progress.tally.trials, queued, pool->pace, pool->failed,
+                                 pool->failed || done};
     pthread_mutex_unlock(&pool->lock);
     return news;
 }
@@ -224,10 +210,9 @@ void wh_pool_close(wh_pool_t *pool) {
             pthread_join(worker->thread, NULL);
         }
         wh_worker_close(&worker->player);
-        wh_tally_free(&worker->block);
         wh_progress_free(&worker->progress);
     }
-    free(pool->queue);
+    wh_stretches_free(&pool->queue);
     free(pool->workers);
     wh_progress_free(&pool->progress);
     pthread_cond_destroy(&pool->changed);

@@ -7,15 +7,16 @@
 #include <unistd.h>
 
 #include "../text/array.h"
+#include "../text/clock.h"
 #include "checkpoint.h"
 
 #define LIBRARY "waferhand_mpi.so"
 
-/* At most so many blocks are sent at a time. */
-#define MOST_BLOCKS 1024
+/* A rank tells what it has done every so many seconds. */
+#define TELL_S 1.0
 
 /* What a message to rank 0 begins with; then the progress, or why it failed. */
-enum { WANTS_MORE = 'M', HAS_ENDED = 'E', HAS_FAILED = 'F' };
+enum { WANTS_MORE = 'M', HAS_DONE = 'D', HAS_ENDED = 'E', HAS_FAILED = 'F' };
 
 /* A number of processes as mpirun tells it; 1 without mpirun. */
 static int number_of(const char *variable) {
@@ -92,12 +93,12 @@ static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t si
     return taken;
 }
 
-/* Sends fewer and fewer blocks, so that all ranks end at about the same time. */
-static bool send_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
-    uint64_t blocks[MOST_BLOCKS];
-    const size_t share = wh_pool_look(pool).queued / (4 * (size_t)ranks->size) + 1;
-    const size_t count = wh_pool_take(pool, blocks, share < MOST_BLOCKS ? share : MOST_BLOCKS);
-    return ranks->calls->send(to, blocks, count * sizeof blocks[0]) == 0;
+/* Sends fewer and fewer trials, so that all ranks end at about the same time; none at all means that there
+ * are no more. */
+static bool send_trials(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
+    const wh_pool_news_t news = wh_pool_look(pool);
+    const wh_stretch_t sent = wh_pool_take(pool, news.queued / (4 * (uint64_t)ranks->size) + news.pace);
+    return ranks->calls->send(to, &sent, sizeof sent) == 0;
 }
 
 static bool answer(wh_ranks_t *ranks, wh_pool_t *pool, int from, const char *text, size_t size) {
@@ -112,7 +113,7 @@ static bool answer(wh_ranks_t *ranks, wh_pool_t *pool, int from, const char *tex
         ++ranks->ended;
         return true;
     }
-    return send_blocks(ranks, pool, from);
+    return text[0] == HAS_DONE || send_trials(ranks, pool, from);
 }
 
 /* A message that has come, to be freed; null when there is none. `sound` becomes false when something is
@@ -167,44 +168,52 @@ static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     return told;
 }
 
-/* Queues the blocks that have come, if any have; none at all mean that there are no more. */
-static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
+/* What another rank knows. */
+typedef struct {
+    bool wanting, more;
+    uint64_t given; /* trials that came last */
+    double told;    /* when progress was told last */
+} helper_t;
+
+/* Queues the trials that have come, if any have; none at all mean that there are no more. */
+static bool take_trials(const wh_ranks_t *ranks, wh_pool_t *pool, helper_t *helper) {
     int from = 0;
     size_t size = 0;
     bool sound = true;
     char *text = take_message(ranks, &from, &size, &sound);
-    if (text && sound) {
-        uint64_t blocks[MOST_BLOCKS];
-        const size_t count = size / sizeof blocks[0] < MOST_BLOCKS ? size / sizeof blocks[0] : MOST_BLOCKS;
-        memcpy(blocks, text, count * sizeof blocks[0]);
-        *wanting = false;
-        *more = count > 0;
-        wh_pool_queue(pool, blocks, count, count == 0);
+    if (text && sound && size == sizeof(wh_stretch_t)) {
+        wh_stretch_t given;
+        memcpy(&given, text, sizeof given);
+        helper->wanting = false;
+        helper->more = given.count > 0;
+        helper->given = given.count;
+        wh_pool_queue(pool, &given, given.count > 0 ? 1 : 0, given.count == 0);
     }
     free(text);
     return sound;
 }
 
-/* Asks for more blocks before the queue is empty, and takes those that come. */
-static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
+/* Asks for more trials before the queue is empty, and takes those that come. */
+static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, helper_t *helper) {
     bool sound = true;
-    if (*more && !*wanting && wh_pool_look(pool).queued <= 2 * pool->worker_count) {
-        sound = tell_progress(ranks, pool, WANTS_MORE);
-        *wanting = true;
+    const bool wants = helper->more && !helper->wanting && wh_pool_look(pool).queued <= helper->given / 2;
+    if (wants || wh_clock_seconds() - helper->told > TELL_S) {
+        sound = tell_progress(ranks, pool, wants ? WANTS_MORE : HAS_DONE);
+        helper->wanting = helper->wanting || wants;
+        helper->told = wh_clock_seconds();
     }
-    if (sound && *wanting) {
-        sound = take_blocks(ranks, pool, wanting, more);
+    if (sound && helper->wanting) {
+        sound = take_trials(ranks, pool, helper);
     }
-    wh_pool_wait(pool, *wanting ? 2 : 20);
+    wh_pool_wait(pool, helper->wanting ? 2 : 20);
     return sound;
 }
 
 bool wh_ranks_help(wh_ranks_t *ranks, wh_pool_t *pool, bool (*interrupted)(void)) {
-    bool wanting = false;
-    bool more = true;
+    helper_t helper = {.more = true, .told = wh_clock_seconds()};
     bool sound = true;
-    while (sound && !interrupted() && (more || !wh_pool_look(pool).idle)) {
-        sound = !wh_pool_look(pool).failed && go_on(ranks, pool, &wanting, &more);
+    while (sound && !interrupted() && (helper.more || !wh_pool_look(pool).idle)) {
+        sound = !wh_pool_look(pool).failed && go_on(ranks, pool, &helper);
     }
     if (wh_pool_look(pool).failed) {
         tell(ranks, HAS_FAILED, pool->message);

@@ -1,4 +1,4 @@
-/* A study on several ranks: rank 0 hands out blocks and gathers what came of them. */
+/* A study on several ranks: rank 0 hands out trials and gathers what came of them. */
 #ifndef WH_STUDY_RANKS_H
 #define WH_STUDY_RANKS_H
 
@@ -20,7 +20,7 @@ int wh_ranks_here(void);
  * the part of the program that speaks MPI is missing or does not start. */
 bool wh_ranks_open(wh_ranks_t *ranks);
 
-/* Rank 0: takes what has come, adds it to the pool's progress, and sends blocks off its queue to who wants
+/* Rank 0: takes what has come, adds it to the pool's progress, and sends trials off its queue to who wants
  * some. False when a rank failed: the reason is on stderr. */
 bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool);
 

@@ -3,15 +3,19 @@
 #define WH_STUDY_STUDY_H
 
 #include "../mcs/script_run.h"
-
-/* Trials are shared out by so many, and kept by so many. */
-#define WH_STUDY_BLOCK 256
+#include "causes.h"
 
 /* The end is told of so many wafers: the first ones that the run without errors takes. */
 #define WH_STUDY_WAFERS 100
 
 /* So many of the worst trials are known. */
 #define WH_STUDY_WORST 100
+
+/* The lines of so many trials are kept, from trial 0 on; of many wafers fewer. */
+#define WH_STUDY_LINES 5000
+
+/* A line for each trial has at most so many wafers in all, and one more each: see `lines`. */
+#define WH_STUDY_MOST_LINES 10000000
 
 /* A wafer whose end is looked at, and where the run without errors leaves it. */
 typedef struct {
@@ -23,22 +27,23 @@ typedef struct {
 typedef struct {
     wh_script_run_options_t run; /* script, parameters, limits; without decisions and trial */
     uint64_t seed, trials;
+    bool draws_nothing;       /* errors are given: the layout need not say what is drawn */
     wh_script_run_t nominal;  /* the run without errors */
     wh_decisions_t decisions; /* of it */
     const wh_layout_t *layout;
     const char *whole; /* why each trial runs the script whole, or null: most replay the decisions */
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
     size_t wafer_count;
+    wh_cause_t *causes; /* what is drawn */
+    size_t cause_count;
+    uint64_t lines;                    /* a line is kept of each trial below this (study/lines.h) */
     uint64_t script_hash, layout_hash; /* of the files' text */
 } wh_study_t;
 
-/* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed and trials, and
- * close it either way. False, and the reason on stderr, when script, layout or study are not usable. */
+/* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed, trials and, if the
+ * line of each trial is wanted, `lines`, which is then `trials`; and close it either way. False, and the
+ * reason on stderr, when script, layout or study are not usable, or when nothing is checked. */
 bool wh_study_open(wh_study_t *study);
 void wh_study_close(wh_study_t *study);
-
-/* How many blocks the study has, and how many trials are in one. */
-uint64_t wh_study_blocks(const wh_study_t *study);
-uint64_t wh_study_block_trials(const wh_study_t *study, uint64_t block);
 
 #endif

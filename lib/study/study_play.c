@@ -1,6 +1,7 @@
 #include "study_play.h"
 
 #include <errno.h>
+#include <math.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -16,8 +17,9 @@
 #include "../text/style.h"
 #include "checkpoint.h"
 
-/* What is done is kept every so many seconds. */
+/* What is done is kept every so many seconds, or so seldom that keeping takes a 20th of the time. */
 #define KEEP_S 1.0
+#define KEEP_SHARE 20
 
 #define MOST_THREADS 1024
 
@@ -25,15 +27,6 @@
 #define CELLS 30
 
 /* ---------------------------------------------------------------------------------- what all trials share */
-
-uint64_t wh_study_blocks(const wh_study_t *study) {
-    return (study->trials + WH_STUDY_BLOCK - 1) / WH_STUDY_BLOCK;
-}
-
-uint64_t wh_study_block_trials(const wh_study_t *study, uint64_t block) {
-    const uint64_t left = study->trials - block * WH_STUDY_BLOCK;
-    return left < WH_STUDY_BLOCK ? left : WH_STUDY_BLOCK;
-}
 
 static bool refuse(const char *path, const char *text) {
     fprintf(stderr, "%s: %s\n", path, text);
@@ -73,6 +66,43 @@ static void choose_wafers(wh_study_t *study) {
     }
 }
 
+/* False, and standard error says so, if each trial's line is wanted and there would be too many. */
+static bool choose_lines(wh_study_t *study) {
+    const uint64_t each = study->wafer_count + 1;
+    if (study->lines > WH_STUDY_MOST_LINES / each) {
+        fprintf(stderr, "--csv: %llu trials (expected at most %llu, for a line has %zu wafer%s)\n",
+                (unsigned long long)study->trials, (unsigned long long)(WH_STUDY_MOST_LINES / each),
+                study->wafer_count, study->wafer_count == 1 ? "" : "s");
+        return false;
+    }
+    const uint64_t some = each > 10 ? UINT64_C(10) * WH_STUDY_LINES / each : WH_STUDY_LINES;
+    study->lines = study->lines > some ? study->lines : some;
+    return true;
+}
+
+/* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is looked at. */
+static bool checks_nothing(const wh_study_t *study) {
+    const wh_record_t *record = &study->nominal.record;
+    return record->ok && record->event_count == 0 && record->expectation_count == 0 &&
+           (record->slices == 0 || !study->layout->collision);
+}
+
+/* True if trials make sense; else standard error says why not. */
+static bool is_fit(const wh_study_t *study) {
+    if (!study->layout || !study->nominal.record.wafers) {
+        return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
+    }
+    if (!study->layout->errors && !study->draws_nothing) {
+        return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
+                                           "dx = 0.3 } }, here or in the script)");
+    }
+    if (checks_nothing(study)) {
+        return refuse(study->run.script, "takes no wafer and expects nothing, so that no trial could fail "
+                                         "(expected get, put or expect)");
+    }
+    return true;
+}
+
 bool wh_study_open(wh_study_t *study) {
     wh_script_run_options_t options = study->run;
     options.decisions = &study->decisions;
@@ -81,21 +111,22 @@ bool wh_study_open(wh_study_t *study) {
         return false;
     }
     study->layout = study->nominal.mcs.layout;
-    if (!study->layout || !study->nominal.record.wafers) {
-        return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
-    }
-    if (!study->layout->errors) {
-        return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
-                                           "dx = 0.3 } }, here or in the script)");
+    if (!is_fit(study)) {
+        return false;
     }
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
+    study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
+    if (!choose_lines(study)) {
+        return false;
+    }
     return hash_file(study->run.script, &study->script_hash) &&
            hash_file(study->layout->path, &study->layout_hash);
 }
 
 void wh_study_close(wh_study_t *study) {
     wh_decisions_free(&study->decisions);
+    free(study->causes);
     wh_script_run_close(&study->nominal);
 }
 
@@ -131,10 +162,11 @@ typedef struct {
     char *path; /* null: nowhere */
     bool named; /* by the user: then it stays, and not being able to write is a failure */
     double kept;
+    double pause; /* s until the next time */
 } keeper_t;
 
 static bool keep(keeper_t *keeper, wh_pool_t *pool) {
-    keeper->kept = wh_clock_seconds();
+    const double begin = keeper->kept = wh_clock_seconds();
     if (!keeper->path) {
         return true;
     }
@@ -149,6 +181,8 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
         keeper->path = NULL;
     }
     free(text);
+    keeper->kept = wh_clock_seconds();
+    keeper->pause = fmax(KEEP_S, KEEP_SHARE * (keeper->kept - begin));
     return saved || !keeper->named;
 }
 
@@ -156,6 +190,7 @@ static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_
     keeper->named = options->state != NULL;
     keeper->path = keeper->named ? wh_text_copy(options->state) : wh_checkpoint_default_path(pool->study);
     keeper->kept = wh_clock_seconds();
+    keeper->pause = KEEP_S;
     if (!keeper->path) {
         return true;
     }
@@ -211,10 +246,10 @@ static void bar_close(const bar_t *bar) {
 
 /* ------------------------------------------------------------------------------------------------ playing */
 
-static size_t count_threads(const wh_study_options_t *options) {
+size_t wh_study_threads(size_t wanted) {
     cpu_set_t processors;
-    if (options->threads > 0) {
-        return options->threads;
+    if (wanted > 0) {
+        return wanted;
     }
     if (sched_getaffinity(0, sizeof processors, &processors) != 0) {
         return 1;
@@ -224,17 +259,12 @@ static size_t count_threads(const wh_study_options_t *options) {
 }
 
 static void queue_rest(wh_pool_t *pool) {
-    uint64_t *blocks = wh_array_new((size_t)pool->progress.block_count, sizeof *blocks);
-    size_t count = 0;
+    wh_stretches_t rest = {0};
     pthread_mutex_lock(&pool->lock);
-    for (uint64_t block = 0; block < pool->progress.block_count; ++block) {
-        if (!wh_progress_has(&pool->progress, block)) {
-            blocks[count++] = block;
-        }
-    }
+    wh_stretches_rest(&rest, &pool->progress.done, pool->study->trials);
     pthread_mutex_unlock(&pool->lock);
-    wh_pool_queue(pool, blocks, count, true);
-    free(blocks);
+    wh_pool_queue(pool, rest.items, rest.count, true);
+    wh_stretches_free(&rest);
 }
 
 static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
@@ -244,7 +274,8 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
 /* Each 50 ms: what other ranks sent is taken, and what is done is kept. False if that failed. */
 static bool attend(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
     wh_pool_wait(pool, 50);
-    return wh_ranks_serve(ranks, pool) && (wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool));
+    return wh_ranks_serve(ranks, pool) &&
+           (wh_clock_seconds() - keeper->kept < keeper->pause || keep(keeper, pool));
 }
 
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
@@ -301,7 +332,7 @@ wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *
     wh_pool_t pool;
     wh_study_end_t end = WH_STUDY_FAILED;
     catch_signals();
-    if (!wh_pool_open(&pool, study, count_threads(options))) {
+    if (!wh_pool_open(&pool, study, wh_study_threads(options->threads))) {
         fprintf(stderr, "waferhand study: no memory or threads (expected fewer with --threads)\n");
     } else if (ranks->rank > 0) {
         end = wh_ranks_help(ranks, &pool, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;

@@ -19,6 +19,9 @@ typedef enum {
     WH_STUDY_HELPED       /* another rank has the result */
 } wh_study_end_t;
 
+/* So many threads, or if it is 0 one for each processor, shared with the other ranks on the machine. */
+size_t wh_study_threads(size_t wanted);
+
 /* Plays what is not yet done of an opened study. `progress` is filled in, to be freed by wh_progress_free,
  * when the study is done. */
 wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *options, wh_ranks_t *ranks,

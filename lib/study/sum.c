@@ -1,11 +1,12 @@
 #include "sum.h"
 
 #include <math.h>
+#include <string.h>
 
 #define UNIT (1.0 / 1073741824.0)
 #define Z 1.959963984540054
 
-static int64_t whole_of(double value) {
+int64_t wh_sum_whole(double value) {
     const double scaled = floor(value * 1073741824.0 + 0.5);
     if (!(scaled > -(double)WH_SUM_MOST)) {
         return -WH_SUM_MOST;
@@ -41,6 +42,11 @@ static double middle_of(uint32_t bin) {
     return bin < WH_SUM_SIDE ? -middle_of_side(WH_SUM_SIDE - 1 - bin) : middle_of_side(bin - WH_SUM_SIDE);
 }
 
+static double half_width_of(uint32_t bin) {
+    const uint32_t side = bin < WH_SUM_SIDE ? WH_SUM_SIDE - 1 - bin : bin - WH_SUM_SIDE;
+    return side < 128 ? 0.5 : (double)(UINT64_C(1) << (side - 64) / 64) / 2;
+}
+
 /* ------------------------------------------------------------------------------------------------- adding */
 
 static void widen(wh_sum_t *sum, int64_t least, int64_t most) {
@@ -49,7 +55,7 @@ static void widen(wh_sum_t *sum, int64_t least, int64_t most) {
 }
 
 void wh_sum_add(wh_sum_t *sum, double value) {
-    const int64_t whole = whole_of(value);
+    const int64_t whole = wh_sum_whole(value);
     widen(sum, whole, whole);
     ++sum->count;
     sum->sum += whole;
@@ -112,6 +118,26 @@ double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille) {
         }
     }
     return 0;
+}
+
+/* A bin's values are taken as spread evenly over it. */
+void wh_sum_histogram(const wh_sum_t *sum, double low, double high, double counts[], size_t count) {
+    const double step = (high - low) / (double)count;
+    memset(counts, 0, count * sizeof *counts);
+    for (uint32_t bin = 0; bin < WH_SUM_BINS && sum->count > 0; ++bin) {
+        if (sum->bins[bin] == 0) {
+            continue;
+        }
+        const double middle = middle_of(bin) * UNIT;
+        const double half = half_width_of(bin) * UNIT;
+        const double first = fmax(middle - half, low);
+        const double last = fmin(middle + half, high);
+        for (size_t i = 0; i < count; ++i) {
+            const double from = fmax(first, low + step * (double)i);
+            const double to = fmin(last, low + step * (double)(i + 1));
+            counts[i] += to > from ? (double)sum->bins[bin] * (to - from) / (last - first) : 0;
+        }
+    }
 }
 
 wh_confidence_t wh_wilson_interval(uint64_t hits, uint64_t trials) {

@@ -31,6 +31,9 @@ typedef struct {
     uint64_t bins[WH_SUM_BINS];
 } wh_sum_t;
 
+/* A value as a whole multiple of 2^-30, rounded; beyond WH_SUM_MOST it is that. */
+int64_t wh_sum_whole(double value);
+
 /* One more value; it must be finite. At most 2^40 of them. Cost: about 5 ns. */
 void wh_sum_add(wh_sum_t *sum, double value);
 
@@ -47,6 +50,11 @@ double wh_sum_most(const wh_sum_t *sum);
  * least that, as the middle of its bin, which is within 1/128 of the value, and within least and most. 0 when
  * nothing was counted. */
 double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille);
+
+/* How many values lie in each of `count` stretches of the same length from `low` up to `high`, which are not
+ * equal and between which all values are: `counts` add up to sum->count. Off by the width of a bin of the
+ * sum at each end of a stretch. */
+void wh_sum_histogram(const wh_sum_t *sum, double low, double high, double counts[], size_t count);
 
 /* A rate, and how sure it is. */
 typedef struct {

@@ -24,13 +24,9 @@ void wh_tally_free(wh_tally_t *tally) {
     free_rows(&tally->expectations);
     free_rows(&tally->errors);
     free(tally->wafers);
+    wh_relations_free(&tally->relations);
+    wh_trial_lines_free(&tally->lines);
     memset(tally, 0, sizeof *tally);
-}
-
-void wh_tally_clear(wh_tally_t *tally) {
-    const size_t wafer_count = tally->wafer_count;
-    wh_tally_free(tally);
-    wh_tally_init(tally, wafer_count);
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */
@@ -136,6 +132,7 @@ static void sort_rows(wh_tally_rows_t *rows) {
 void wh_tally_sort(wh_tally_t *tally) {
     sort_rows(&tally->expectations);
     sort_rows(&tally->errors);
+    wh_trial_lines_sort(&tally->lines);
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
@@ -145,27 +142,31 @@ static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nomi
            wafer->holder == nominal->holder;
 }
 
-/* How far off the wafer ends; infinite if it is elsewhere. */
-static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer,
-                        const wh_study_wafer_t *nominal) {
+/* How far off the wafer ends; infinite if it is elsewhere. `ends` becomes what the sums have; false, and it
+ * is unchanged, if they have nothing. */
+static bool add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal,
+                      double ends[WH_TALLY_QUANTITIES], double *off) {
+    *off = 0;
     if (!is_there(wafer, nominal)) {
         ++tally->elsewhere;
-        return (double)INFINITY;
+        *off = (double)INFINITY;
+        return false;
     }
     const wh_place_t *place = &wafer->place;
     if (place->station == WH_NONE) {
-        return 0;
+        return false;
     }
     const double dx = place->dx - nominal->place.dx;
     const double dy = place->dy - nominal->place.dy;
-    const double off = sqrt(dx * dx + dy * dy);
-    wh_sum_add(&tally->of[WH_TALLY_DX], dx);
-    wh_sum_add(&tally->of[WH_TALLY_DY], dy);
-    wh_sum_add(&tally->of[WH_TALLY_DZ], place->dz - nominal->place.dz);
-    wh_sum_add(&tally->of[WH_TALLY_TILT],
-               wh_deg_from_rad(place->tilt) - wh_deg_from_rad(nominal->place.tilt));
-    wh_sum_add(&tally->of[WH_TALLY_OFF], off);
-    return off;
+    ends[WH_TALLY_DX] = dx;
+    ends[WH_TALLY_DY] = dy;
+    ends[WH_TALLY_DZ] = place->dz - nominal->place.dz;
+    ends[WH_TALLY_TILT] = wh_deg_from_rad(place->tilt) - wh_deg_from_rad(nominal->place.tilt);
+    ends[WH_TALLY_OFF] = *off = sqrt(dx * dx + dy * dy);
+    for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
+        wh_sum_add(&tally->of[q], ends[q]);
+    }
+    return true;
 }
 
 static void merge_wafers(wh_tally_t *tally, const wh_tally_t *other) {
@@ -210,19 +211,71 @@ static void add_events(wh_tally_t *tally, const wh_outcome_t *outcome) {
     }
 }
 
+static void add_wafers(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome,
+                       wh_trial_line_t *line) {
+    for (size_t w = 0; w < study->wafer_count; ++w) {
+        double ends[WH_TALLY_QUANTITIES];
+        double off;
+        const bool is_there =
+            add_wafer(&tally->wafers[w], &outcome->wafers[w], &study->wafers[w], ends, &off);
+        if (w < tally->relations.wafer_count && is_there) {
+            wh_relations_add_wafer(&tally->relations, w, ends);
+        }
+        line->off = off > line->off ? off : line->off;
+        line->elsewhere += isfinite(off) ? 0 : 1;
+    }
+}
+
+static void count_troubles(const wh_outcome_t *outcome, wh_trial_line_t *line) {
+    const wh_record_t *record = outcome->record;
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        line->missed += record->expectations[i].ok ? 0 : 1;
+    }
+    for (size_t i = 0; i < record->command_count; ++i) {
+        line->errors += record->commands[i].error != WH_OK ? 1 : 0;
+    }
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        line->complaints += wh_record_is_complaint((wh_event_kind_t)kind) ? outcome->events[kind] : 0;
+    }
+}
+
+static void add_line(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome,
+                     wh_trial_line_t *line) {
+    count_troubles(outcome, line);
+    double *ends = wh_trial_lines_add(&tally->lines, line, study->wafer_count);
+    for (size_t w = 0; w < study->wafer_count; ++w) {
+        const wh_place_t *place = &outcome->wafers[w].place;
+        const bool lies = is_there(&outcome->wafers[w], &study->wafers[w]) && place->station != WH_NONE;
+        const double values[WH_TRIAL_LINE_ENDS] = {place->dx, place->dy, place->dz,
+                                                   wh_deg_from_rad(place->tilt)};
+        for (size_t e = 0; e < WH_TRIAL_LINE_ENDS; ++e) {
+            ends[w * WH_TRIAL_LINE_ENDS + e] = lies ? values[e] : (double)NAN;
+        }
+    }
+}
+
 void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome) {
-    wh_tally_trial_t trial = {outcome->trial, outcome->met, 0};
+    wh_trial_line_t line = {.trial = outcome->trial,
+                            .met = outcome->met,
+                            .whole = outcome->whole,
+                            .ended = outcome->record->failure != NULL};
+    const wh_trial_t name = {study->seed, outcome->trial};
     ++tally->trials;
-    tally->met += outcome->met ? 1 : 0;
-    tally->whole += outcome->whole ? 1 : 0;
-    tally->ended += outcome->record->failure ? 1 : 0;
+    tally->met += line.met ? 1 : 0;
+    tally->whole += line.whole ? 1 : 0;
+    tally->ended += line.ended ? 1 : 0;
     add_events(tally, outcome);
     add_expectations(tally, outcome);
     add_errors(tally, outcome);
-    for (size_t w = 0; w < study->wafer_count; ++w) {
-        const double off = add_wafer(&tally->wafers[w], &outcome->wafers[w], &study->wafers[w]);
-        trial.off = off > trial.off ? off : trial.off;
+    wh_relations_need(&tally->relations, study->cause_count,
+                      wh_relations_wafers(study->cause_count, study->wafer_count));
+    wh_causes_draw(study->causes, study->cause_count, study->layout, &name, tally->relations.drawn);
+    wh_relations_add(&tally->relations, !line.met);
+    add_wafers(tally, study, outcome, &line);
+    if (outcome->trial < study->lines) {
+        add_line(tally, study, outcome, &line);
     }
+    const wh_tally_trial_t trial = {line.trial, line.met, line.off};
     wh_tally_note_worst(tally, &trial);
 }
 
@@ -238,6 +291,8 @@ void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other) {
     merge_rows(&tally->expectations, &other->expectations);
     merge_rows(&tally->errors, &other->errors);
     merge_wafers(tally, other);
+    wh_relations_merge(&tally->relations, &other->relations);
+    wh_trial_lines_merge(&tally->lines, &other->lines);
     for (size_t i = 0; i < other->worst_count; ++i) {
         wh_tally_note_worst(tally, &other->worst[i]);
     }

@@ -2,6 +2,8 @@
 #ifndef WH_STUDY_TALLY_H
 #define WH_STUDY_TALLY_H
 
+#include "lines.h"
+#include "relations.h"
 #include "study.h"
 #include "sum.h"
 
@@ -59,6 +61,8 @@ typedef struct {
     wh_tally_wafer_t *wafers;
     wh_tally_trial_t worst[WH_STUDY_WORST]; /* the worst first */
     size_t worst_count;
+    wh_relations_t relations; /* of what was drawn with what came of it */
+    wh_trial_lines_t lines;   /* of the trials below study->lines */
 } wh_tally_t;
 
 /* What came of one trial. */
@@ -74,7 +78,6 @@ typedef struct {
 
 /* Room for a study's wafers. Memory that runs out ends the program, here and below. */
 void wh_tally_init(wh_tally_t *tally, size_t wafer_count);
-void wh_tally_clear(wh_tally_t *tally);
 void wh_tally_free(wh_tally_t *tally);
 
 void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome);
@@ -82,7 +85,7 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
 /* All that another has counted. The result does not depend on order, to the last bit. */
 void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other);
 
-/* Puts expectations and errors in the order of line and place, to be printed. */
+/* Puts expectations and errors in the order of line and place, and lines in that of trials, to be printed. */
 void wh_tally_sort(wh_tally_t *tally);
 
 /* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. */

@@ -191,6 +191,23 @@ bool wh_output_is_kept(const char *path) {
     return look_up(path, false);
 }
 
+/* Static, as the list is. */
+static struct {
+    void (*hear)(void *user, const char *path);
+    void *user;
+} listener;
+
+void wh_output_hear_inputs(void (*hear)(void *user, const char *path), void *user) {
+    listener.hear = hear;
+    listener.user = user;
+}
+
+void wh_output_note_input(const char *path) {
+    if (listener.hear) {
+        listener.hear(listener.user, path);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- state */
 
 void wh_output_state_path(const char *name, char *path, size_t size) {
@@ -223,4 +240,21 @@ bool wh_output_is_one_file(const char *a, const char *b) {
     struct stat one;
     struct stat two;
     return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+}
+
+void wh_output_word(FILE *out, const char *word) {
+    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; ++c) {
+        if (*c == '\'') {
+            fputs("'\\''", out);
+        } else {
+            fputc((unsigned char)*c, out);
+        }
+    }
+    fputc('\'', out);
 }

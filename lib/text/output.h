@@ -43,6 +43,12 @@ bool wh_output_is_one_file(const char *a, const char *b);
 void wh_output_keep(const char *path);
 bool wh_output_is_kept(const char *path);
 
+/* Says that a file is about to be read as an input, be it there or not: who listens hears of it. */
+void wh_output_note_input(const char *path);
+
+/* From now on this is called with each path that is noted so, from any thread. Null: nobody listens. */
+void wh_output_hear_inputs(void (*listener)(void *user, const char *path), void *user);
+
 /* What is said of an output that would be written over a kept file. */
 #define WH_OUTPUT_KEPT "this is an input or another output (expected a file of its own)"
 
@@ -54,5 +60,8 @@ void wh_output_state_path(const char *name, char *path, size_t size);
 /* Makes the folders that a file is to be in, for their owner alone. False and errno if that was not
  * possible. */
 bool wh_output_make_folders(const char *path);
+
+/* Writes a word so that a shell reads it back unchanged. */
+void wh_output_word(FILE *out, const char *word);
 
 #endif

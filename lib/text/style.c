@@ -17,9 +17,15 @@ bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term
     return terminal && able && !refused;
 }
 
+/* Open MPI's mpirun gives the first rank a pseudo-terminal, also when its own output goes into a file. */
+static bool is_asked_for_under_mpirun(void) {
+    const char *forced = getenv("CLICOLOR_FORCE");
+    return !getenv("OMPI_COMM_WORLD_SIZE") || (forced && forced[0] != '\0' && strcmp(forced, "0") != 0);
+}
+
 wh_style_t wh_style_of(FILE *out) {
     const int descriptor = fileno(out);
-    const bool terminal = descriptor >= 0 && isatty(descriptor) == 1;
+    const bool terminal = descriptor >= 0 && isatty(descriptor) == 1 && is_asked_for_under_mpirun();
     struct winsize size;
     wh_style_t style;
     style.colour = wh_style_wants_colour(terminal, getenv("NO_COLOR"), getenv("TERM"));

@@ -19,7 +19,8 @@ typedef struct {
 typedef enum { WH_INK_PLAIN, WH_INK_GOOD, WH_INK_BAD, WH_INK_WARN, WH_INK_DIM, WH_INK_BOLD } wh_ink_t;
 
 /* The style for a stream: colour as wh_style_wants_colour says of NO_COLOR and TERM, UTF-8 by the locale,
- * width from the terminal. A stream without a descriptor counts as no terminal. */
+ * width from the terminal. A stream without a descriptor counts as no terminal; so does each under mpirun,
+ * where nobody can tell, unless the environment has CLICOLOR_FORCE, not empty and not 0. */
 wh_style_t wh_style_of(FILE *out);
 
 /* On a terminal, unless NO_COLOR is set and not empty or TERM is unset, empty or "dumb". Either string may be

@@ -246,16 +246,27 @@ static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
 
 /* -------------------------------------------------------------------------------------------------- nodes */
 
-static void add_fixed(scene_t *scene) {
+static void add_base(scene_t *scene) {
     const wh_pose_t here = wh_pose_identity();
     body_t base = {0};
-    body_t obstacles = {0};
     add_parts(scene, &base, 1U << WH_PART_ARM, WH_ARM_BASE, NULL);
     (void)wh_gltf_add_node(&scene->gltf, "base", finish_body(scene, &base, "base"), &here, "base", 0);
-    add_parts(scene, &obstacles, 1U << WH_PART_FIXED, WH_NONE, NULL);
-    const size_t mesh = finish_body(scene, &obstacles, "obstacles");
-    if (mesh != SIZE_MAX) {
-        (void)wh_gltf_add_node(&scene->gltf, "obstacles", mesh, &here, "obstacles", 0);
+}
+
+/* A node for each, as an obstacle has one part. */
+static void add_obstacles(scene_t *scene) {
+    const wh_world_config_t *world = &scene->layout->world;
+    const wh_pose_t here = wh_pose_identity();
+    size_t index = 0;
+    for (size_t i = 0; i < world->part_count; ++i) {
+        const wh_part_t *part = &world->parts[i];
+        if (part->kind == WH_PART_FIXED && part->owner == WH_NONE) {
+            const char *name = wh_layout_part_name(scene->layout, (int32_t)i);
+            body_t body = {0};
+            wh_mesh_add_convex(&body.inks[wh_ink_of(part)], &part->convex, &part->convex.body_from_shape);
+            (void)wh_gltf_add_node(&scene->gltf, name, finish_body(scene, &body, name), &here, "obstacle",
+                                   index++);
+        }
     }
 }
 
@@ -329,7 +340,8 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     for (size_t ink = 0; ink < WH_INKS; ++ink) {
         (void)wh_gltf_add_material(&scene.gltf, &wh_ink_materials[ink]);
     }
-    add_fixed(&scene);
+    add_base(&scene);
+    add_obstacles(&scene);
     add_stations(&scene);
     add_links(&scene);
     add_grippers(&scene);

@@ -323,5 +323,42 @@ return function(native, lookup)
     end
   end
 
+  ------------------------------------------------------------------------------------------------ kept states
+
+  -- Plain data, with functions as they are.
+  local function copy(value)
+    if type(value) ~= "table" then
+      return value
+    end
+    local copied = {}
+    for name, part in pairs(value) do
+      copied[name] = copy(part)
+    end
+    return copied
+  end
+
+  -- A held plan but for its requests, which are planned anew when it goes on.
+  local function copy_plan(plan)
+    local copied = {}
+    for name, part in pairs(plan or {}) do
+      if type(name) == "string" then
+        copied[name] = copy(part)
+      end
+    end
+    return plan and copied
+  end
+
+  -- A function that makes the arm again what it is now, and one that says if it still is.
+  function arm.keep()
+    local plan, inside, since = copy_plan(find_held()), arm.inside, arm.since
+    local stopped, homed, was_inside = arm.stopped, arm.homed, copy(arm.inside)
+    return function()
+      held, arm.inside, arm.since = copy_plan(plan), copy(was_inside), since
+      arm.stopped, arm.homed = stopped, homed
+    end, function()
+      return arm.inside == inside and arm.stopped == stopped and arm.homed == homed
+    end
+  end
+
   return arm
 end

@@ -1,7 +1,7 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs = ipairs, math, pairs
+local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 
 return function(native, patterns, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup)
@@ -36,6 +36,46 @@ return function(native, patterns, lookup)
 
   function commands.rotate(station, degrees)
     arm.move(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
+  end
+
+  local function sensing()
+    local names = {}
+    for name, station in pairs(native.layout.stations) do
+      names[#names + 1] = station.sensor and name
+    end
+    return #names > 0 and "expected a prealigner with an edge sensor: " .. lookup.listed(names)
+      or "expected a prealigner with an edge sensor: this cell has none"
+  end
+
+  -- A turn and two samples more: from the first sample that is at least one ahead of where the chuck stands.
+  local function edge_scan(station_name)
+    local station = lookup.station(station_name)
+    local sensor = station.sensor
+    if not sensor then
+      native.fail("BAD_ARGUMENT", ("station: %s (%s)"):format(lookup.quote(station_name), sensing()))
+    end
+    local axis = native.layout.grippers[station.chuck].axis
+    local axes, step = native.axes(), 2 * math.pi / sensor.samples
+    local first = (math.floor(axes[axis] / step) + 2) % sensor.samples
+    axes[axis] = axes[axis] + (sensor.samples + 2) * step
+    native.arm_edge(station.chuck, first, sensor.samples)
+    local ok, problem = pcall(function()
+      play { dwell = native.layout.slice }
+      play { axes = axes }
+    end)
+    local scan = native.edge()
+    if scan.is_armed then
+      native.disarm_edge()
+    end
+    if not ok then
+      error(problem, 0)
+    end
+    return scan
+  end
+
+  -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
+  function commands.edge_scan(station)
+    return arm.move(lookup.command("EDGE_SCAN", station), edge_scan, station)
   end
 
   local function valve(gripper, level)
@@ -144,6 +184,19 @@ return function(native, patterns, lookup)
   -- Gives up what is held in a phase, as a STOP from outside does; without that nothing.
   function commands.stop()
     arm.stop()
+  end
+
+  local keep_slots = commands.keep_slots
+  commands.keep_slots = nil
+
+  -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
+  function commands.keep()
+    local put_slots_back = keep_slots()
+    local put_arm_back, is_as_was = arm.keep()
+    return function()
+      put_slots_back()
+      put_arm_back()
+    end, is_as_was
   end
 
   commands.run = arm.run

@@ -1,6 +1,6 @@
 -- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
 -- makes the same words of typed lines: a session calls it before it sets up the cell, a script's run never
--- does. Returns as well what looks at stations for `waferhand layout`.
+-- does. Returns as well what looks at stations for `waferhand layout`, and what `waferhand definitions` prints.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, pairs, pcall, rawset, select = error, ipairs, pairs, pcall, rawset, select
@@ -25,15 +25,16 @@ return function(native)
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
   local queries = native.module("mcs/queries.lua")(native, lookup)
-  local run = commands.run
+  local run, keep = commands.run, commands.keep
   local reach = native.module("mcs/reach.lua")(native, {
     rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
     try_out = commands.try_out, try_carrying = commands.try_carrying,
   })
-  commands.rehearse, commands.rehearse_map, commands.run = nil, nil, nil
+  commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
   commands.try_out, commands.try_carrying = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, lookup)
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
+  local words = native.module("mcs/words.lua")
 
   -- cell "LAYOUT.lua", relative to the script: every slot must be in reach.
   local function cell(path)
@@ -69,7 +70,11 @@ return function(native)
 
   -- The word for scripts: it refuses what the action takes no notice of.
   local function word(name, action)
-    local most = native.parameters(action)
+    local known = words.scripts[name]
+    local most = known and #known.takes
+    if native.parameters(action) ~= most then
+      error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
+    end
     return function(...)
       native.begin_word(name)
       for place = most + 1, select("#", ...) do
@@ -91,9 +96,10 @@ return function(native)
 
   local function open_prompt()
     local tokens = native.module("mcs/tokens.lua")(native)
+    local states = native.module("mcs/saved_states.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens)
-    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep)
+    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end
 
@@ -115,5 +121,10 @@ return function(native)
     end
   end
 
-  return open_prompt, survey
+  local function define()
+    local targets = native.module("mcs/targets.lua")(native, lookup)
+    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
+  end
+
+  return open_prompt, survey, define
 end

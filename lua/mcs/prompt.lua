@@ -1,7 +1,7 @@
 -- Executes one operator's line by the same words that scripts use, and answers it in one line: OK and values,
 -- or ERROR, a number of the catalogue, its name and the reason. A line is only ever read, never run as Lua.
 
-return function(native, prompt_commands, tokens, lookup)
+return function(native, prompt_commands, tokens, lookup, states)
   local function refuse(text, ...)
     native.fail("BAD_ARGUMENT", text:format(...))
   end
@@ -68,7 +68,10 @@ return function(native, prompt_commands, tokens, lookup)
     if not command then
       prompt_commands.refuse(list[1].raw)
     end
-    return command.run(read(name, command, list))
+    if command.keeps then
+      return command.run(read(name, command, list))
+    end
+    return states.follow(line, command.run, read(name, command, list))
   end
 
   -- What the cell complained of since `mark`, as text, or nil.

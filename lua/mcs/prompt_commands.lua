@@ -5,7 +5,9 @@
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
-return function(native, commands, queries, lookup, tokens)
+-- keeps     true: it changes nothing that UNDO could take back, or sees to that itself
+
+return function(native, commands, queries, lookup, tokens, states, keep)
   local prompt_commands = {}
 
   -- WHERE stops after so many bytes: an answer is one line.
@@ -45,6 +47,7 @@ return function(native, commands, queries, lookup, tokens)
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
     phase = function() return lookup.phases end,
+    name = function() return {} end, save = states.names,
   }
 
   local station_options = { gripper = "gripper", force = "switch" }
@@ -100,6 +103,15 @@ return function(native, commands, queries, lookup, tokens)
 
   -- How the command that is held is answered: after a CONTINUE as after itself.
   local answer_held
+
+  function states.keep()
+    local put_back, is_as_was = keep()
+    local answer = answer_held
+    return function()
+      put_back()
+      answer_held = answer
+    end, is_as_was
+  end
 
   -- Runs one that may be held in a phase. `answer` makes the pairs that stand before the time.
   local function carried(answer, action, ...)
@@ -312,6 +324,25 @@ return function(native, commands, queries, lookup, tokens)
     return native.status()
   end
 
+  local function place()
+    return tokens.pairs { { "time", native.utime() / 1e6 } }
+  end
+
+  local function save(arguments)
+    states.save(arguments[1])
+    return place()
+  end
+
+  local function restore(arguments)
+    states.restore(arguments[1])
+    return place()
+  end
+
+  local function undo()
+    local line, left = states.undo()
+    return tokens.pairs { { "undone", line }, { "left", left } } .. " " .. place()
+  end
+
   local function version()
     return tokens.pairs { { "version", native.version() } }
   end
@@ -353,10 +384,16 @@ return function(native, commands, queries, lookup, tokens)
     RECOVER = { takes = {}, run = moving(commands.recover),
                 does = "straight out of the station that the arm stands in" },
     STOP = { takes = {}, run = stop, does = "ends the command that runs, gives up one that is held" },
-    RESET = { takes = {}, run = reset,
+    RESET = { takes = {}, run = reset, keeps = true,
               does = "reads the layout anew and begins another run, with the layout's wafers" },
-    STATUS = { takes = {}, run = status, does = "what goes on, where the robot is, what is held, the last error" },
-    VERSION = { takes = {}, run = version, does = "the program's version" },
+    SAVE = { takes = { "name" }, run = save, keeps = true,
+             does = "keeps under this name all that simulator and motion control are" },
+    RESTORE = { takes = { "save" }, run = restore, does = "puts back what was saved under this name" },
+    UNDO = { takes = {}, run = undo, keeps = true,
+             does = "takes back the last command that changed something, several times" },
+    STATUS = { takes = {}, run = status, keeps = true,
+               does = "what goes on, where the robot is, what is held, the last error" },
+    VERSION = { takes = {}, run = version, keeps = true, does = "the program's version" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
                does = "turns a prealigner's chuck by so much" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
@@ -372,22 +409,23 @@ return function(native, commands, queries, lookup, tokens)
     FAULT = { takes = { "fault" }, options = fault_options, run = fault,
               does = "lets a fault begin, and tells its number" },
     CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
-    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset,
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, keeps = true,
                does = "where the wafer is in that slot's frame" },
-    HOLDER = { takes = { "wafer" }, run = holder, does = "the gripper that holds the wafer" },
-    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity,
+    HOLDER = { takes = { "wafer" }, run = holder, keeps = true, does = "the gripper that holds the wafer" },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, keeps = true,
                   does = "the check of the wafer against the gripper" },
-    MEASURE = { takes = { "frame", "frame" }, run = measure,
+    MEASURE = { takes = { "frame", "frame" }, run = measure, keeps = true,
                 does = "how the second frame lies in the first one's axes: "
                   .. "a wafer, gripper, station, slot (A/1) or base" },
-    DISTANCE = { takes = { "frame", "frame" }, run = distance, does = "of two frames' origins" },
-    ANGLE = { takes = { "frame", "frame" }, run = angle, does = "between two frames' z axes" },
-    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where,
+    DISTANCE = { takes = { "frame", "frame" }, run = distance, keeps = true, does = "of two frames' origins" },
+    ANGLE = { takes = { "frame", "frame" }, run = angle, keeps = true, does = "between two frames' z axes" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, keeps = true,
               does = "where wafers are; without a name, all" },
-    AXES = { takes = {}, run = axes, does = "where the axes stand, degrees and mm" },
-    STATIONS = { takes = {}, run = stations, does = "the stations of the cell" },
-    HELP = { takes = { "command" }, optional = true, run = help, does = "the commands, or how one is typed" },
-    QUIT = { takes = {}, run = quit, does = "leaves the prompt" },
+    AXES = { takes = {}, run = axes, keeps = true, does = "where the axes stand, degrees and mm" },
+    STATIONS = { takes = {}, run = stations, keeps = true, does = "the stations of the cell" },
+    HELP = { takes = { "command" }, optional = true, run = help, keeps = true,
+             does = "the commands, or how one is typed" },
+    QUIT = { takes = {}, run = quit, keeps = true, does = "leaves the prompt" },
   }
 
   return prompt_commands

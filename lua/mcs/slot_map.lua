@@ -2,7 +2,7 @@
 -- since. It never looks into the cell: what it has not seen is unknown, and unknown slots may be entered.
 
 -- Kept, for a script may set globals of these names.
-local ipairs = ipairs
+local ipairs, pairs = ipairs, pairs
 
 return function(native)
   local slot_map = {}
@@ -89,6 +89,24 @@ return function(native)
 
   function slot_map.check_put(target)
     check_entry(target, is_room)
+  end
+
+  -- A function that makes the map again what it is now.
+  function slot_map.keep()
+    local function copy(map)
+      local copied = {}
+      for station, entry in pairs(map) do
+        copied[station] = { mapped = entry.mapped, codes = {} }
+        for slot, code in pairs(entry.codes) do
+          copied[station].codes[slot] = code
+        end
+      end
+      return copied
+    end
+    local kept = copy(known)
+    return function()
+      known = copy(kept)
+    end
   end
 
   return slot_map

@@ -236,6 +236,8 @@ return function(native, patterns, lookup, arm, targets)
     return arm.move(lookup.command("MAP", station), map, station, options)
   end
 
+  transfer.keep_slots = slot_map.keep
+
   -------------------------------------------------------------------------------------------------- rehearsal
 
   local function plan(word, station, slot, gripper)

@@ -69,7 +69,7 @@ class Browser:
         self.requests, self.errors = [], []
         self.driver.get(path.as_uri())
         self.wait("return performance.getEntriesByName('complete').length > 0")
-        self.wait("return !Waferhand.plots.panels.some((panel) => !panel.graph)")
+        self.wait("return !(Waferhand.plots && Waferhand.plots.panels.some((panel) => !panel.graph))")
         self.settle()
 
     def opened(self, path):

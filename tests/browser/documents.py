@@ -21,6 +21,15 @@ for i = 1, 460 do
 end
 """
 
+# A front end that does the same over and over: the first cycle comes from home.
+CYCLES = """cell "%s/lua/layouts/efem.lua"
+for i = 1, 8 do
+  cycle()
+  get("FOUP1", i)   put("FOUP2", i)
+end
+cycle()
+"""
+
 # The page's template, and what goes into it from elsewhere.
 PAGE = ROOT / "lib/report/page"
 LIBRARIES = {
@@ -84,6 +93,16 @@ def hour():
     script.write_text(HOUR % ROOT)
     report(script, "--data", data, "-o", page)
     return json.loads(data.read_text()), page
+
+
+@functools.lru_cache(maxsize=None)
+def cycles():
+    """The page of a run of cycles in a cell with walls, and its document's text."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    script, data, page = FOLDER / "cycles.lua", FOLDER / "cycles.json", FOLDER / "cycles.html"
+    script.write_text(CYCLES % ROOT)
+    report(script, "--data", data, "-o", page)
+    return data.read_text(), page
 
 
 def without(document, *path):

@@ -1,5 +1,6 @@
 """How it looks: contrast, narrow windows, light and dark, paper; the screenshots in build/browser are for people."""
 import base64
+import json
 import re
 import unittest
 
@@ -202,6 +203,191 @@ class Looks(unittest.TestCase):
             self.page.key("n") if name == "top" else None
             self.page.key("f") if name == "gripper" else None
             self.page.shoot(f"view_{name}")
+
+
+# What can be seen in the cell: kind and number of all nodes that are shown, and the names that are.
+SEEN = """const { view } = Waferhand.stage, seen = (object) => !object || (object.visible && seen(object.parent));
+    return Object.values(view.named).filter(seen).map((object) => `${object.userData.node.kind} ${object.userData.node.index}`)"""
+TAGS = "return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => [tag.className, tag.textContent])"
+
+
+class Cell(unittest.TestCase):
+    """Names, parts that are hidden, the trail, the section and shadows."""
+
+    def setUp(self):
+        text, path = documents.cycles()
+        self.document = json.loads(text)
+        self.page = browser.shared(True)
+        self.page.resize(1440, 900)
+        self.page.open(path)
+        self.path = path
+
+    def tearDown(self):
+        self.assertEqual(self.page.faults(), [])
+        self.page.resize(1440, 900)
+
+    def pixels(self):
+        """Of the picture of the cell as it is."""
+        return self.page.js("return Waferhand.stage.view.still()")
+
+    def test_names(self):
+        self.page.seek(1.5)
+        self.page.key("n")
+        tags = dict(reversed(each) for each in self.page.js(TAGS))
+        for name, kind in (("rear wall", "tag obstacle"), ("table", "tag obstacle"), ("FOUP1", "tag station"), ("ALIGN", "tag station")):
+            self.assertEqual(tags.get(name), kind)
+        boxes = self.page.js("""return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => {
+            const box = tag.getBoundingClientRect(); return [box.left, box.top, box.right, box.bottom, tag.textContent] })""")
+        for i, a in enumerate(boxes):
+            for b in boxes[i + 1:]:
+                self.assertFalse(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3], (a[4], b[4]))
+        self.page.shoot("names")
+
+    def test_parts_are_hidden_and_shown(self):
+        everything = self.page.js(SEEN)
+        self.page.key("n")
+        self.page.key("h")
+        self.assertEqual(self.page.js("return document.activeElement.dataset.name"), "robot")
+        self.page.js("document.querySelector('#parts [data-name=wafers]').focus()")
+        self.page.key(" ", code="Space")
+        self.assertEqual([each for each in everything if each not in self.page.js(SEEN)],
+                         [f"wafer {i}" for i in range(25)])
+        self.page.js("document.querySelector('#parts [data-name=\"obstacles.2\"]').click()")
+        self.page.settle()
+        names = [name for _, name in self.page.js(TAGS)]
+        self.assertIn("table", names)
+        self.assertNotIn("rear wall", names)
+        self.assertFalse([name for name in names if name.startswith("W")])
+        left, top, width, height = self.page.box("#canvas canvas")
+        hits = self.page.js("""const [width, height, left, top] = arguments, kinds = new Set();
+            for (let x = 0.05; x < 1; x += 0.1) { for (let y = 0.05; y < 1; y += 0.1) { Waferhand.stage.view.pick({
+                clientX: left + x * width, clientY: top + y * height }).forEach((hit) => kinds.add(`${hit.kind} ${hit.i}`)); } }
+            return Array.from(kinds)""", width, height, left, top)
+        self.assertIn("obstacle 2", hits)
+        self.assertFalse([hit for hit in hits if hit.startswith("wafer") or hit == "obstacle 1"])
+        self.page.key("l")
+        address = self.page.driver.current_url
+        self.assertIn("&hide=wafers,obstacles.2", address)
+        self.page.driver.get("about:blank")
+        self.page.driver.get(address)
+        self.page.wait("return performance.getEntriesByName('complete').length > 0")
+        self.assertNotIn("wafer 3", self.page.js(SEEN))
+        self.assertNotIn("obstacle 1", self.page.js(SEEN))
+        self.assertFalse(self.page.js("return document.querySelector('#parts [data-name=wafers]').checked"))
+        self.page.js("document.querySelector('#parts button').click()")
+        self.assertEqual(self.page.js(SEEN), everything)
+        self.page.js("location.hash = 'hide=nothing,stations.99,robot'")
+        self.page.settle()
+        self.assertEqual(self.page.js("return Array.from(Waferhand.parts.hidden)"), ["robot"])
+        self.assertFalse([each for each in self.page.js(SEEN) if each in ("base 0", "link 2", "gripper 0")])
+        self.assertIn("gripper 1", self.page.js(SEEN))
+
+    def test_trail(self):
+        """It is where the gripper was in the last three seconds, the oldest point the faintest."""
+        t = self.document["run"]["steady_cycle"]["begin_s"] + 1.5
+        self.page.seek(t)
+        self.page.key("r")
+        points = self.page.js("return Waferhand.trail.points(Waferhand.shown, 0, arguments[0])", t)
+        self.assertTrue(140 < len(points) <= self.page.js("return Waferhand.trail.most"))
+        self.assertEqual([points[0]["age"], points[0]["dot"]], [0, False])
+        for point in points[::10]:
+            pose = self.page.js("return Waferhand.robot.gripper(Waferhand.shown.tracks, 0, arguments[0])", t - 3 * point["age"])
+            for found, wanted in zip(point["r"], pose["r"], strict=True):
+                self.assertAlmostEqual(found, wanted, delta=1e-6)
+        ages = [point["age"] for point in points]
+        self.assertEqual(ages, sorted(ages))
+        self.assertTrue(0.98 < ages[-1] <= 1)
+        self.assertAlmostEqual(len([point for point in points if point["dot"]]), 30, delta=1)
+        laid = self.page.js("""const [trail, ...others] = Waferhand.stage.view.trails, [line] = trail.path.children;
+            return [others.length, trail.path.visible, line.geometry.drawRange.count,
+                Array.from(line.geometry.attributes.position.array.slice(0, 3))]""")
+        self.assertEqual(laid[:3], [0, True, len(points)])
+        for found, wanted in zip(laid[3], points[0]["r"], strict=True):
+            self.assertAlmostEqual(1000 * found, wanted, delta=1e-3)
+        self.page.shoot("trail")
+        self.page.seek(0)
+        self.assertEqual(len(self.page.js("return Waferhand.trail.points(Waferhand.shown, 0, 0)")), 2)
+
+    def test_section(self):
+        whole = self.pixels()
+        self.page.key("x")
+        slider = "document.querySelector('#section input[type=range]')"
+        at = self.page.js(f"return Number({slider}.value)")
+        self.assertNotEqual(self.pixels(), whole)
+        self.page.js(f"{slider}.focus()")
+        now = self.page.now()
+        self.page.key("ArrowRight")
+        self.assertEqual([self.page.js(f"return Number({slider}.value)"), self.page.now()], [at + 1, now])
+        self.page.js("document.querySelector('#section input[value=z]').click()")
+        self.page.js(f"{slider}.value = 905; {slider}.dispatchEvent(new Event('input'))")
+        self.page.settle()
+        self.page.shoot("section")
+        planes = self.page.js("""const found = new Set(); Waferhand.stage.view.scene.traverse((child) => { if (child.userData.part) {
+            child.material.clippingPlanes.forEach((plane) => found.add(JSON.stringify([plane.normal.toArray(), plane.constant]))); } });
+            return Array.from(found)""")
+        self.assertEqual([json.loads(each) for each in planes], [[[0, 0, -1], 0.905]])
+        left, top, width, height = self.page.box("#canvas canvas")
+        hits = self.page.js("""const [width, height, left, top] = arguments, made = [];
+            for (let x = 0.05; x < 1; x += 0.05) { for (let y = 0.05; y < 1; y += 0.05) { made.push(...Waferhand.stage.view.pick({
+                clientX: left + x * width, clientY: top + y * height })); } } return made.map((hit) => hit.at[2])""",
+                            width, height, left, top)
+        self.assertTrue(len(hits) > 20 and max(hits) <= 905, (len(hits), max(hits)))
+        self.page.key("l")
+        self.assertIn("&cut=z,905,-1", self.page.driver.current_url)
+        self.page.js("location.hash = 'cut=y,-260,1'")
+        self.page.settle()
+        self.assertEqual(self.page.js("return Waferhand.section.plane()"), {"axis": 1, "at": -260, "keep": 1})
+        for wrong in ("cut=w,1,1", "cut=x,,1", "cut=x,1,0", "cut=x", ""):
+            self.page.js("location.hash = arguments[0]", wrong)
+            self.page.settle()
+            self.assertIsNone(self.page.js("return Waferhand.section.plane()"), wrong)
+        self.page.js("Waferhand.clock.seek(0); Waferhand.clock.flush()")
+        self.page.key("x")
+        self.page.key("x")
+        self.page.seek(now)
+        self.assertEqual(self.pixels(), whole)
+
+    def test_shadows(self):
+        with_ = self.pixels()
+        self.page.key("s")
+        without = self.pixels()
+        self.assertNotEqual(with_, without)
+        self.assertEqual(self.page.js("return document.querySelector('[data-name=shadows]').getAttribute('aria-pressed')"), "false")
+        self.page.key("s")
+        self.assertEqual(self.pixels(), with_)
+
+    def test_without_webgl(self):
+        """Parts, names and the trail are in drawings, too; there is no section and no shadow."""
+        page = browser.shared(False)
+        page.resize(1440, 900)
+        page.open(self.path)
+        self.assertEqual(page.js("return Array.from(document.querySelectorAll('#toolbar .group button'), (each) => each.dataset.name)"),
+                         ["whole", "top", "side", "gripper", "names", "frames", "trail", "parts", "link", "picture"])
+        still = "return Waferhand.stage.view.still()"
+        pictures = [page.js(still)]
+        for key in "rn":
+            page.key(key)
+            pictures.append(page.js(still))
+        for key in ("x", "s"):
+            page.key(key)
+            self.assertEqual(page.js(still), pictures[-1])
+        page.js("Waferhand.parts.set(['obstacles'])")
+        pictures.append(page.js(still))
+        self.assertEqual(len(set(pictures)), 4)
+        page.shoot("drawing_parts")
+        self.assertEqual(page.faults(), [])
+
+    def test_narrow(self):
+        self.page.resize(360, 740)
+        for key in "hxn":
+            self.page.key(key)
+        self.page.js("document.querySelector('#parts details').open = true")
+        self.page.settle()
+        self.page.js("document.getElementById('stage').scrollIntoView()")
+        self.page.shoot("narrow_parts")
+        self.assertLessEqual(self.page.js("return document.documentElement.scrollWidth"), 360)
+        self.assertEqual(self.page.js("""return Array.from(document.querySelectorAll('#toolbar button, .sheet, .sheet label'), (each) =>
+            each.getBoundingClientRect()).filter((box) => box.width > 0 && (box.left < 0 || box.right > 361)).length"""), 0)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
 """Play, pause, speed, scrubber, keys and plots: all show one time and one window of it."""
+import json
 import os
 import time
 import unittest
@@ -231,6 +232,115 @@ class Time(unittest.TestCase):
         page.cdp("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
         page.click(*self.middle("#copy"))
         page.wait("return document.getElementById('copy').textContent === 'Copied'", 5)
+
+
+class Cycles(unittest.TestCase):
+    """A run of many cycles opens with the first steady one; combs become bands."""
+
+    def setUp(self):
+        text, self.path = documents.cycles()
+        self.document = json.loads(text)
+        self.steady = self.document["run"]["steady_cycle"]
+        self.page = browser.plain()
+        self.page.open(self.path)
+
+    def tearDown(self):
+        self.assertEqual(self.page.faults(), [])
+
+    def window(self):
+        return self.page.js("return Waferhand.clock.window")
+
+    def assert_window(self, low, high):
+        self.assertAlmostEqual(self.window()[0], low, delta=1e-6)
+        self.assertAlmostEqual(self.window()[1], high, delta=1e-6)
+
+    def said(self):
+        return self.page.text(".zoom .window").replace("\u00a0", " ")
+
+    def test_the_first_steady_cycle_is_in_view(self):
+        begins = [each["begin_s"] for each in self.document["run"]["cycles"]]
+        self.assertEqual([self.steady["begin_s"], self.steady["end_s"]], begins[1:3])
+        self.assert_window(*begins[1:3])
+        self.assertAlmostEqual(self.page.now(), begins[1], delta=1e-6)
+        self.assertEqual(self.said(), f"Shown: the first steady cycle, {self.steady['times']} like it in a row: "
+                         f"{begins[1]:.3f} s to {begins[2]:.3f} s of {self.document['duration_s']:.3f} s")
+        self.page.key("0")
+        self.assert_window(0, self.document["duration_s"])
+        self.assertEqual(self.said(), f"Shown: the whole run, {self.document['duration_s']:.3f} s")
+        self.page.key("c")
+        self.assert_window(*begins[1:3])
+        pressed = "return document.querySelector('.zoom [aria-keyshortcuts=c]').getAttribute('aria-pressed')"
+        self.assertEqual(self.page.js(pressed), "true")
+        self.page.key("-")
+        self.assertEqual(self.page.js(pressed), "false")
+
+    def test_a_link_to_the_whole_run(self):
+        self.page.key("0")
+        self.page.key("l")
+        self.assertIn("window=0,", self.page.driver.current_url)
+        address = self.page.driver.current_url
+        self.page.driver.get("about:blank")
+        self.page.driver.get(address)
+        self.page.wait("return performance.getEntriesByName('complete').length > 0")
+        self.assert_window(0, self.document["duration_s"])
+
+    def test_no_cycle_no_guess(self):
+        for run, words in (({"found": False, "reason": "of no reason"}, "of no reason"), ({}, "the document holds none"),
+                           ({"found": True, "begin_s": 5, "end_s": 1e9}, "the document holds none")):
+            made = dict(self.document, run=dict(self.document["run"], steady_cycle=run))
+            made["run"]["commands"] = made["run"]["commands"] * 3
+            self.page.open(documents.page_of(made, "no_cycle"))
+            self.assert_window(0, made["duration_s"])
+            self.assertTrue(self.said().endswith(f"; no steady cycle: {words}"), self.said())
+            self.assertEqual(self.page.js("return document.querySelectorAll('.zoom [aria-keyshortcuts=c]').length"), 0)
+
+    def test_bands(self):
+        """A comb's lowest, highest and mean values in columns of pixels; a gap is one."""
+        found = self.page.js("""const t = [], v = [];
+            for (let i = 0; i <= 4000; ++i) { t.push(i / 100); v.push(i % 4 === 1 ? 3 : i % 4 === 3 ? -1 : 1); }
+            const gap = v.map((value, i) => (i > 2000 ? null : value)), { bands } = Waferhand;
+            return [bands.isComb(v, 400), bands.isComb(v.slice(0, 50), 400), bands.curve([t, v], [0, 40], 400),
+                bands.curve([t, gap], [0, 40], 400), bands.curve([[0, 40], [0, 8]], [0, 40], 80)]""")
+        comb, few, band, half, ramp = found
+        self.assertEqual([comb, few], [True, False])
+        self.assertEqual([len(band["t"]), set(band["low"]), set(band["high"])], [50, {-1}, {3}])
+        for mean in band["mean"]:
+            self.assertAlmostEqual(mean, 1, delta=0.01)
+        self.assertEqual([half["low"].count(None), half["mean"][24] is None, half["mean"][26]], [24, False, None])
+        self.assertEqual(len(ramp["mean"]), 10)
+        for i, (low, mean, high) in enumerate(zip(ramp["low"], ramp["mean"], ramp["high"], strict=True)):
+            for value, wanted in ((low, 0.8 * i), (mean, 0.8 * i + 0.4), (high, 0.8 * i + 0.8)):
+                self.assertAlmostEqual(value, wanted, delta=1e-9)
+
+    def test_shares(self):
+        """Bars too close to be seen are as high as their share of a column's time; the shares add up."""
+        columns = self.page.js("""const bars = [];
+            for (let i = 0; i < 1000; ++i) { bars.push({ from: i / 100, to: i / 100 + 0.0025, colour: i % 2 ? 's0' : 's1' }); }
+            return [Waferhand.bands.areDense(0, 1000, 400), Waferhand.bands.areDense(0, 50, 400),
+                Waferhand.bands.shares(bars, [0, 20], 400).map((column) => [column.get('s0') || 0, column.get('s1') || 0])]""")
+        self.assertEqual(columns[:2], [True, False])
+        for i, (even, odd) in enumerate(columns[2]):
+            self.assertAlmostEqual(even, 0.125 if i < 25 else 0, delta=1e-6)
+            self.assertAlmostEqual(odd, 0.125 if i < 25 else 0, delta=1e-6)
+
+    def test_a_comb_is_drawn_as_a_band(self):
+        made = json.loads(json.dumps(self.document))
+        curve = made["tracks"]["axes"][1]
+        curve["t"] = [i * made["duration_s"] / 5000 for i in range(5001)]
+        curve["v"] = [400 + 100 * (i % 2) for i in range(5001)]
+        curve["slope"] = [0] * 5001
+        made["tracks"]["valves"][0] = {"t": curve["t"], "v": [i % 2 for i in range(5001)]}
+        self.page.open(documents.page_of(made, "comb"))
+        self.page.key("0")
+        self.page.js("document.getElementById('axes').scrollIntoView()")
+        self.page.settle()
+        bands = self.page.js("""Waferhand.plots.showAll(); return Waferhand.plots.panels.map((panel) =>
+            [panel.curves.map((curve, i) => curve.name + (panel.bands[i] ? '*' : '')).join(), panel.banded.hidden])""")
+        self.assertIn(["R*,Z", False], bands)
+        self.assertIn(["theta,yaw,PA chuck", True], bands)
+        self.assertEqual(self.page.js("return Array.from(document.querySelectorAll('p.banded'), (each) => each.hidden)"),
+                         [False, True, True])
+        self.page.shoot("comb")
 
 
 if __name__ == "__main__":

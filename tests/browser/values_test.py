@@ -1,5 +1,7 @@
 """What the page shows at a time is what its document says: exactly at points, by cubics in between."""
+import json
 import random
+import subprocess
 import unittest
 
 import browser
@@ -208,6 +210,41 @@ class Values(unittest.TestCase):
         self.assertIn(document["reproduce"], page.text("#reproduce code"))
         self.assertIn(f"{run['throughput']['wafers_per_hour']:.1f}", page.text("#split"))
 
+
+
+class Study(unittest.TestCase):
+    """The page of a study: what it shows is what the program says, and a click gives the command of that trial."""
+
+    def test_points_and_worst_trials(self):
+        path = documents.FOLDER / "study.html"
+        documents.FOLDER.mkdir(parents=True, exist_ok=True)
+        told = json.loads(subprocess.run(
+            [documents.PROGRAM, "study", "lua/examples/07_study.lua", "--trials", "2000", "--worst", "100", "--json", "--report", path],
+            cwd=documents.ROOT, check=True, capture_output=True).stdout)
+        page.open(path)
+        self.assertEqual(page.faults(), [])
+        self.assertEqual(page.outside(), [])
+        failed = told["trials"] - told["success"]["met"]
+        self.assertIn(f"{failed} of 2000 failed", page.text("#head"))
+        wafer = told["wafers"][0]
+        self.assertEqual(page.js("return document.querySelectorAll('.cloud .point').length"), wafer["count"])
+        self.assertEqual(page.js("return document.querySelectorAll('.histograms svg').length"), 5)
+        self.assertEqual(page.js("return document.querySelectorAll('#causes .mean, #causes .range').length"),
+                         2 * sum(each["failing"]["by_size"] is not None for each in told["drawn"]))
+        self.assertEqual(page.js("return Array.from(document.querySelectorAll('#worst button'), (each) => Number(each.textContent))"),
+                         [each["trial"] for each in told["worst"]])
+        page.js("document.querySelectorAll('#worst button')[3].click()")
+        worst = told["worst"][3]
+        self.assertEqual(page.text("#chosen code"), f"waferhand study --seed 1 lua/examples/07_study.lua --trial {worst['trial']}")
+        self.assertIn(f"Trial {worst['trial']}: {'ok' if worst['ok'] else 'failed'}", page.text("#chosen h2"))
+        drawn = page.js("return Array.from(document.querySelectorAll('#chosen dt'), (each) => each.textContent)")
+        self.assertIn("Wafer 1 dx", drawn)
+        self.assertIn("B yaw", drawn)
+        self.assertEqual(page.js("return document.querySelectorAll('.picked').length"), 1)
+        page.js("document.querySelector('.cloud .point').dispatchEvent(new MouseEvent('click'))")
+        trial = page.js("return document.querySelector('.cloud .point').dataset.trial")
+        self.assertTrue(page.text("#chosen code").endswith(f" --trial {trial}"))
+        page.shoot("study")
 
 if __name__ == "__main__":
     unittest.main()

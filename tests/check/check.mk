@@ -3,7 +3,8 @@
 
 .PHONY: check check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-proofs check-builds check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
-FORMATTED := $(C_FILES) $(shell find lib tests -name '*.cpp' -o -name '*.java')
+CXX_FILES := $(shell find lib -name '*.[ch]pp')
+FORMATTED := $(C_FILES) $(shell find lib tests -name '*.[ch]pp' -o -name '*.java')
 SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/link/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
 check: check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-proofs check-builds check-deviations
@@ -43,10 +44,13 @@ check-builds:
 
 # ---------------------------------------------------------------------------------- one log a source and tool
 SOURCES := $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
-SOURCE_LOGS := $(foreach tool,tidy scan analyzer,$(SOURCES:%.c=$(B)/$(tool)/%.log))
+CXX_LOGS := $(PROGRAM_CXX_SOURCES:%.cpp=$(B)/tidy/%.log)
+SOURCE_LOGS := $(foreach tool,tidy scan analyzer,$(SOURCES:%.c=$(B)/$(tool)/%.log)) $(CXX_LOGS)
 $(foreach tool,tidy scan analyzer,$(LIBRARY_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(LIBRARY_FLAGS))
 $(foreach tool,tidy scan analyzer,$(COLLISION_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(COLLISION_FLAGS))
 $(foreach tool,tidy scan analyzer,$(PROGRAM_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(PROGRAM_FLAGS))
+$(CXX_LOGS): FLAGS = $(filter-out -Werror,$(PROGRAM_CXX_FLAGS))
+$(CXX_LOGS): $(filter %.hpp,$(CXX_FILES))
 $(SOURCE_LOGS): $(HEADERS) $(B)/flags $(B)/lcm/waferhand_messages.h
 
 # $(call look,WHAT,COMMAND): the command's log, shown when the command itself fails
@@ -55,9 +59,14 @@ define look
 @echo "  $(1) $@"
 $(Q)$(2) >$@ 2>&1 || { cat $@; exit 1; }
 endef
+define tidy
+$(call look,TIDY,clang-tidy --quiet $< -- $(FLAGS))
+$(Q)sed -i 's|^$(CURDIR)/||' $@
+endef
 $(B)/tidy/%.log: %.c .clang-tidy
-	$(call look,TIDY,clang-tidy --quiet $< -- $(FLAGS))
-	$(Q)sed -i 's|^$(CURDIR)/||' $@
+	$(tidy)
+$(B)/tidy/%.log: %.cpp .clang-tidy
+	$(tidy)
 $(B)/scan/%.log: %.c
 	$(call look,SCAN,clang --analyze --analyzer-output text $(FLAGS) $<)
 $(B)/analyzer/%.log: %.c
@@ -82,13 +91,13 @@ $(B)/log/library: $(LIBRARY_SOURCES) $(HEADERS) tests/check/check.mk
 	$(call look,MISRA,{ $(call CPPCHECK_LIBRARY,double) && $(call CPPCHECK_LIBRARY,float,-DWH_FLOAT); })
 
 # At most 10 ways through a function, each case of a switch counted, and 60 lines.
-$(B)/log/functions: $(C_FILES) tests/check/functions.awk
-	$(call look,PMCCABE,pmccabe $(C_FILES) 2>&1 | awk -F '\t' -f tests/check/functions.awk)
+$(B)/log/functions: $(C_FILES) $(CXX_FILES) tests/check/functions.awk
+	$(call look,PMCCABE,pmccabe $(C_FILES) $(CXX_FILES) 2>&1 | awk -F '\t' -f tests/check/functions.awk)
 # Rooms whose lines, banners and members are looked at.
 TIDY_ROOMS := $(LIBRARY_ROOMS) $(COLLISION_ROOM) $(HOST_ROOMS)
-$(B)/log/texts: $(C_FILES) tests/check/texts.awk tests/check/check.mk
+$(B)/log/texts: $(C_FILES) $(CXX_FILES) tests/check/texts.awk tests/check/check.mk
 	$(call look,TEXTS,LC_ALL=C awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' \
-	    -v tidy='^lib/($(subst $() ,|,$(TIDY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))
+	    -v tidy='^lib/($(subst $() ,|,$(TIDY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES) $(CXX_FILES))
 
 LOGS := $(SOURCE_LOGS) $(addprefix $(B)/log/,library program functions texts)
 check-deviations: $(LOGS) lib/DEVIATIONS.md

@@ -3,17 +3,22 @@
  *
  * The linker puts __wrap_... in the place of what would end the process or begin the work: see tests/fuzz/fuzz.mk. */
 #include <argp.h>
+#include <math.h>
 #include <setjmp.h>
 #include <string.h>
 
 #include "app/apart.h"
 #include "app/app.h"
 #include "app/connection.h"
+#include "app/new_cell.h"
 #include "app/run_arguments.h"
 #include "app/test_find.h"
+#include "app/watch.h"
 #include "fuzz.h"
 #include "layout/layout.h"
+#include "mcs/definitions.h"
 #include "study/study.h"
+#include "study/sweep.h"
 #include "text/csv.h"
 
 #define WORDS 24
@@ -77,6 +82,13 @@ bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 FILE *__wrap_wh_log_file(const char *path, const char **fault);
 bool __wrap_wh_study_open(wh_study_t *study);
+bool __real_wh_sweep_open(wh_script_sweep_t *sweep);
+bool __wrap_wh_sweep_open(wh_script_sweep_t *sweep);
+bool __wrap_wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
+int __wrap_wh_watch(const wh_watch_options_t *options);
+bool __wrap_wh_new_cell_is_free(const char *folder);
+bool __wrap_wh_new_cell_make(const wh_new_cell_t *cell, const char *folder);
+char *__wrap_wh_definitions_make(wh_sandbox_result_t *result);
 bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
                          wh_test_result_t results[]);
 bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
@@ -100,6 +112,7 @@ static void check_parameters(const char *const *parameters, size_t count) {
 
 static void check_run(const wh_script_run_options_t *run) {
     check_parameters(run->parameters, run->parameter_count);
+    check_parameters(run->errors, run->error_count);
     REQUIRE(run->limits.instructions <= UINT64_C(1000000000000000000));
     REQUIRE(run->limits.memory_bytes == 0 || run->limits.memory_bytes >= (size_t)1 << 20);
     REQUIRE(run->limits.memory_bytes <= (size_t)1000000 << 20);
@@ -138,6 +151,24 @@ bool __wrap_wh_study_open(wh_study_t *study) {
     return false;
 }
 
+/* Ranges are read as they are; one that is none is refused. */
+bool __wrap_wh_sweep_open(wh_script_sweep_t *sweep) {
+    refused = refused || !__real_wh_sweep_open(sweep);
+    return !refused;
+}
+
+bool __wrap_wh_sweep_play(wh_script_sweep_t *sweep, size_t threads) {
+    reached = true;
+    REQUIRE(sweep->run.script != NULL && threads >= 1);
+    REQUIRE(sweep->axis_count >= 1 && sweep->axis_count <= WH_SWEEP_AXES);
+    REQUIRE(sweep->point_count >= 1 && sweep->point_count <= WH_SWEEP_MOST);
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        REQUIRE(isfinite(wh_sweep_value(sweep, sweep->point_count - 1, axis)));
+    }
+    check_parameters(sweep->parameters, sweep->parameter_count);
+    return false;
+}
+
 bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
                          wh_test_result_t results[]) {
     (void)results;
@@ -151,6 +182,33 @@ bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test
         REQUIRE(options->timeout_s >= 1e-3 && options->timeout_s <= 1e6);
     }
     return false;
+}
+
+/* It would wait for somebody to save a file. */
+int __wrap_wh_watch(const wh_watch_options_t *options) {
+    reached = true;
+    REQUIRE(options->act != NULL);
+    return options->act(options->user);
+}
+
+bool __wrap_wh_new_cell_is_free(const char *folder) {
+    REQUIRE(refused || folder != NULL);
+    return true;
+}
+
+bool __wrap_wh_new_cell_make(const wh_new_cell_t *cell, const char *folder) {
+    reached = true;
+    REQUIRE(refused || folder != NULL);
+    REQUIRE(refused || (cell->wafer >= 100 && cell->wafer <= 300));
+    REQUIRE(refused || (cell->foups >= 1 && cell->foups <= WH_NEW_FOUPS));
+    REQUIRE(refused || (cell->blades >= 1 && cell->blades <= WH_NEW_BLADES));
+    return false;
+}
+
+char *__wrap_wh_definitions_make(wh_sandbox_result_t *result) {
+    reached = true;
+    snprintf(result->message, sizeof result->message, "not made");
+    return NULL;
 }
 
 /* The machine's folders are not searched. */
@@ -277,10 +335,12 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run,      wh_app_mcs,  wh_app_sim,  wh_app_replay, wh_app_report, wh_app_layout, wh_app_study,
-        wh_app_estimate, wh_app_test, wh_app_diff, wh_app_events, wh_app_csv,    wh_app_check};
-    static const char *const names[] = {"run",      "mcs",  "sim",  "replay", "report", "layout", "study",
-                                        "estimate", "test", "diff", "events", "csv",    "check"};
+        wh_app_run,   wh_app_mcs,      wh_app_sim,  wh_app_replay,      wh_app_report, wh_app_layout,
+        wh_app_study, wh_app_estimate, wh_app_test, wh_app_diff,        wh_app_events, wh_app_csv,
+        wh_app_check, wh_app_sweep,    wh_app_new,  wh_app_definitions, wh_app_budget};
+    static const char *const names[] = {"run",   "mcs",      "sim",  "replay",      "report", "layout",
+                                        "study", "estimate", "test", "diff",        "events", "csv",
+                                        "check", "sweep",    "new",  "definitions", "budget"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

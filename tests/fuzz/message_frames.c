@@ -9,8 +9,9 @@
 /* What to put right, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };
 
-static const char *const channels[] = {WH_CHANNEL_COMMAND, WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
-                                       WH_CHANNEL_MCS,     WH_CHANNEL_REQUEST, WH_CHANNEL_CELL};
+static const char *const channels[] = {WH_CHANNEL_COMMAND,  WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
+                                       WH_CHANNEL_MCS,      WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
+                                       WH_CHANNEL_EDGE_SCAN};
 
 static int64_t fingerprint_of(const char *channel) {
     if (strcmp(channel, WH_CHANNEL_COMMAND) == 0) {
@@ -24,6 +25,9 @@ static int64_t fingerprint_of(const char *channel) {
     }
     if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
         return __waferhand_cell_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_EDGE_SCAN) == 0) {
+        return __waferhand_edge_scan_get_hash();
     }
     return __waferhand_state_get_hash();
 }
@@ -52,8 +56,8 @@ uint64_t fuzz_hash_of(const waferhand_state *message) {
     return wh_physics_state_hash(&arrays.physics, &table);
 }
 
-/* Where the hash stands: fingerprint, four words, status and four counts before it. */
-#define HASH_AT (8 + 4 * 8 + 5 * 4)
+/* Where the hash stands: fingerprint, four words, status and five counts before it. */
+#define HASH_AT (8 + 4 * 8 + 6 * 4)
 
 static void put_hash(fuzz_frame_t *frame) {
     waferhand_state message;
@@ -129,10 +133,11 @@ DEFINE_CHECK(state)
 DEFINE_CHECK(mcs)
 DEFINE_CHECK(request)
 DEFINE_CHECK(cell)
+DEFINE_CHECK(edge_scan)
 
 bool fuzz_check_decoding(const fuzz_frame_t *frame) {
-    static bool (*const checks[])(const fuzz_frame_t *frame) = {check_command, check_state,   check_state,
-                                                                check_mcs,     check_request, check_cell};
+    static bool (*const checks[])(const fuzz_frame_t *frame) = {
+        check_command, check_state, check_state, check_mcs, check_request, check_cell, check_edge_scan};
     for (size_t i = 0; i < sizeof channels / sizeof channels[0]; ++i) {
         if (frame->channel == channels[i]) {
             return checks[i](frame);

@@ -218,7 +218,7 @@ static void check_report(void) {
             record.wafers[w].holder = record.wafers[w].place.station = WH_NONE;
         }
         REQUIRE(wh_record_print_json(&record, nowhere) == 0);
-        REQUIRE(wh_record_print_table(&record, nowhere, &style, 0) == 0);
+        REQUIRE(wh_record_print_table(&record, nowhere, &style, NULL) == 0);
     }
     wh_record_free(&record);
 }

@@ -84,7 +84,8 @@ static void check_report(void) {
     REQUIRE(json_array_size(json_object_get(json, "wafers")) == mcs.layout->wafer_count);
     json_decref(json);
     free(text);
-    REQUIRE(wh_record_print_table(&record, nowhere, &style, WH_TABLE_GANTT | WH_TABLE_MARGINS) == 0);
+    const wh_record_sections_t all = {.gantt = true, .cycle = true, .margins = true};
+    REQUIRE(wh_record_print_table(&record, nowhere, &style, &all) == 0);
 }
 
 /* A sandbox that an input has been through does its work once it has a new budget. */

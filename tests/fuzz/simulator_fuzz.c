@@ -142,6 +142,17 @@ static wh_physics_t take_physics(bytes_t *in) {
     return physics;
 }
 
+static wh_scan_order_t take_order(bytes_t *in) {
+    wh_scan_order_t order;
+    memset(&order, 0, sizeof order);
+    order.kind = (wh_scan_order_kind_t)(take_byte(in) % 4);
+    order.gripper = take_byte(in) % 4;
+    order.count = take_int(in);
+    take(in, &order.first, sizeof order.first);
+    order.first %= order.count & 1 ? 10000 : INT64_MAX;
+    return order;
+}
+
 static wh_command_t take_command(bytes_t *in, size_t gripper_count, int64_t seq) {
     wh_command_t command;
     memset(&command, 0, sizeof command);
@@ -155,6 +166,9 @@ static wh_command_t take_command(bytes_t *in, size_t gripper_count, int64_t seq)
     for (size_t g = 0; g < WH_GRIPPERS && g < gripper_count; ++g) {
         command.grippers[g].base_from_gripper = take_pose(in);
         command.grippers[g].valve = take_byte(in) % 16 == 15 ? take_int(in) : kind >> (g % 4) & 1;
+    }
+    if (kind & 64) {
+        command.scan = take_order(in);
     }
     command.fault_count = kind & 32 ? take_byte(in) % (WH_COMMAND_FAULTS + 2) : 0;
     for (size_t i = 0; i < command.fault_count && i < WH_COMMAND_FAULTS; ++i) {
@@ -310,6 +324,22 @@ static void run_commands(bytes_t *in, const wh_cell_t *cell) {
     }
 }
 
+/* An edge sensor at the last gripper; base is the station. */
+static void set_up_scanning(run_t *run) {
+    static wh_rim_t rim;
+    static const wh_rim_t *rims[WAFERS];
+    static wh_scanner_t scanner;
+    const size_t grippers = run->storage.gripper_count;
+    rim = wh_rim_nominal(150);
+    for (size_t w = 0; w < WAFERS; ++w) {
+        rims[w] = &rim;
+    }
+    scanner = (wh_scanner_t){wh_sensor_nominal(150), (int32_t)grippers - 1, 1, wh_pose_identity()};
+    scanner.sensor.noise = 0.01;
+    const wh_scanning_t scanning = {&scanner, grippers > 0 ? 1 : 0, rims};
+    REQUIRE(wh_simulator_set_scanning(&run->simulator, &scanning) == WH_OK);
+}
+
 static wh_status_t set_up(run_t *run, const wh_grasp_config_t *config, const wh_cell_t *cell,
                           const wh_physics_t *physics) {
     static wh_simulator_t before;
@@ -320,6 +350,7 @@ static wh_status_t set_up(run_t *run, const wh_grasp_config_t *config, const wh_
         return status;
     }
     REQUIRE(wh_cell_validate(cell, run->storage.gripper_count) == WH_OK);
+    set_up_scanning(run);
     const uint64_t hash = wh_simulator_hash(&run->simulator);
     const wh_status_t refusal = wh_simulator_set_physics(&run->simulator, physics);
     REQUIRE(refusal == wh_physics_validate(physics, run->storage.gripper_count, run->storage.wafer_count));

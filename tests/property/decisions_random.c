@@ -25,6 +25,10 @@ static void compare_tallies(const wh_tally_t *one, const wh_tally_t *other) {
     }
     assert_int_equal(one->errors.count, other->errors.count);
     assert_memory_equal(one->wafers, other->wafers, one->wafer_count * sizeof *one->wafers);
+    assert_int_equal(wh_relations_size(&one->relations), wh_relations_size(&other->relations));
+    for (size_t i = 0; i < wh_relations_size(&one->relations); ++i) {
+        assert_true(*wh_relations_number(&one->relations, i) == *wh_relations_number(&other->relations, i));
+    }
     assert_int_equal(one->worst_count, other->worst_count);
     for (size_t i = 0; i < one->worst_count; ++i) {
         assert_int_equal(one->worst[i].trial, other->worst[i].trial);
@@ -34,7 +38,9 @@ static void compare_tallies(const wh_tally_t *one, const wh_tally_t *other) {
 
 static void play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     char message[WH_SANDBOX_MESSAGE_BYTES];
-    wh_tally_clear(tally);
+    const size_t wafer_count = tally->wafer_count;
+    wh_tally_free(tally);
+    wh_tally_init(tally, wafer_count);
     assert_true(wh_worker_play(worker, trial, tally, message));
 }
 
@@ -112,9 +118,9 @@ static void an_example(void **state) {
 
 static void a_script_that_measures_is_never_replayed(void **state) {
     (void)state;
-    static const char *const frames[] = {"by=frames"};
-    compare("tests/end_to_end/data/study_measure.lua", NULL, 0, 0, 0);
-    compare("tests/end_to_end/data/study_measure.lua", frames, 1, 0, 0);
+    static const char *const parameters[] = {"by=offset", "by=frames"};
+    compare(RETRY, &parameters[0], 1, 0, 0);
+    compare(RETRY, &parameters[1], 1, 0, 0);
 }
 
 static void collisions_are_never_replayed(void **state) {

@@ -1,8 +1,9 @@
-/* Random stations and axes, measured with noise: estimates lie within their standard deviations of the truth and within the goals,
+/* Random stations, axes and robots, measured with noise: estimates lie within their standard deviations of the truth and within the goals,
  * and what measurements do not tell is never a wrong number. */
 #include "support/support.h"
 
 #include "estimate/frame.h"
+#include "estimate/geometry.h"
 #include "estimate/limits.h"
 #include "motion/profile.h"
 #include "support/pose.h"
@@ -10,6 +11,7 @@
 #define FRAMES (2000 / WH_TEST_SHARE)
 #define AXES (30 / WH_TEST_SHARE)
 #define MOVES 200
+#define ROBOTS (120 / WH_TEST_SHARE)
 
 /* Standard deviations beyond which an estimate is wrong; those of few points have wider tails. */
 #define WRONG 6
@@ -180,6 +182,316 @@ static void times_of_another_law_are_refused(void **state) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- robots */
+
+#define DEG 0.017453292519943295
+#define NUMBERS WH_GEOMETRY_PARAMETERS
+
+static wh_touch_t touches[120];
+
+static void turn(double *a, double *b, double angle) {
+    const double old = *a;
+    *a = old * cos(angle) - *b * sin(angle);
+    *b = old * sin(angle) + *b * cos(angle);
+}
+
+/* Where the point that touches is: forward kinematics of the test's own, from the tool outwards to the floor. */
+static wh_vec3_t reached(const double *p, const double *q) {
+    double x = p[WH_GEOMETRY_TOOL_X];
+    double y = p[WH_GEOMETRY_TOOL_Y];
+    double z = p[WH_GEOMETRY_SCALE + 2] * q[2] + p[WH_GEOMETRY_ZERO + 2];
+    turn(&x, &y, p[WH_GEOMETRY_SCALE + 3] * q[3]);
+    x += p[WH_GEOMETRY_SCALE + 1] * q[1] + p[WH_GEOMETRY_ZERO + 1];
+    turn(&x, &y, p[WH_GEOMETRY_SCALE] * q[0] + p[WH_GEOMETRY_ZERO]);
+    turn(&z, &x, p[WH_GEOMETRY_TILT_Y]);
+    turn(&y, &z, p[WH_GEOMETRY_TILT_X]);
+    return wh_vec3(x + p[WH_GEOMETRY_X], y + p[WH_GEOMETRY_Y], z);
+}
+
+/* The direction in which the tool's x points. */
+static double headed(const double *p, const double *q) {
+    double x = 1;
+    double y = 0;
+    double z = 0;
+    turn(&x, &y,
+         p[WH_GEOMETRY_SCALE] * q[0] + p[WH_GEOMETRY_ZERO] + p[WH_GEOMETRY_SCALE + 3] * q[3] +
+             p[WH_GEOMETRY_ZERO + 3]);
+    turn(&z, &x, p[WH_GEOMETRY_TILT_Y]);
+    turn(&y, &z, p[WH_GEOMETRY_TILT_X]);
+    return atan2(y, x);
+}
+
+static void random_robot(double *p) {
+    static const double most[NUMBERS] = {2000, 2000, 0.02, 0.02, 3.1, 5, 1000, 3.1, 200, 200};
+    for (int k = 0; k < NUMBERS; ++k) {
+        p[k] = k < WH_GEOMETRY_SCALE ? wh_test_uniform(-most[k], most[k]) : 1;
+    }
+}
+
+/* The axes whose bits are set vary, theta and r being 0 and 1. */
+static void touch_points(const double *p, size_t count, double sd, unsigned varied) {
+    static const double least[4] = {-150 * DEG, 350, 700, -100 * DEG};
+    static const double most[4] = {150 * DEG, 850, 1200, 100 * DEG};
+    double at[4];
+    for (int k = 0; k < 4; ++k) {
+        at[k] = wh_test_uniform(least[k], most[k]);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        wh_touch_t *touch = &touches[i];
+        for (int k = 0; k < 4; ++k) {
+            touch->axes[k] = (varied >> k & 1U) != 0 ? wh_test_uniform(least[k], most[k]) : at[k];
+        }
+        touch->touched = near_to(reached(p, touch->axes), sd);
+        touch->heading = (double)NAN;
+    }
+}
+
+static double off_by(const wh_geometry_estimate_t *found, const double *truth, int k) {
+    const double off = found->values[k].value - truth[k];
+    const bool turns = k == WH_GEOMETRY_ZERO || k == WH_GEOMETRY_ZERO + 3;
+    return (turns ? remainder(off, 6.283185307179586) : off) / found->values[k].sd;
+}
+
+/* Puts the first lines wrong, and measures headings. */
+static void spoil(const double *truth, size_t count, size_t wrong, double sd) {
+    for (size_t i = 0; i < count; ++i) {
+        if (i < wrong) {
+            const int axis = (int)wh_test_below(4);
+            touches[i].axes[axis] += axis == 1 || axis == 2 ? 2 + 200 * sd : 2 * DEG + sd;
+        }
+        touches[i].heading = headed(truth, touches[i].axes) + noise(0.02 * DEG);
+    }
+}
+
+/* Returns how many of the good lines were set aside; of the wrong ones all are that show. */
+static size_t count_aside(const double *truth, size_t count, size_t wrong, double sd) {
+    size_t aside = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const wh_vec3_t there = reached(truth, touches[i].axes);
+        const wh_vec3_t off = wh_vec3_subtract(&there, &touches[i].touched);
+        assert_true(touches[i].is_set_aside || sqrt(wh_vec3_dot(&off, &off)) < 12 * sd);
+        aside += touches[i].is_set_aside && i >= wrong ? 1 : 0;
+    }
+    return aside;
+}
+
+static void robots_lie_within_their_deviations(void **state) {
+    (void)state;
+    int near = 0;
+    int all = 0;
+    double squares = 0;
+    size_t wrongly_aside = 0;
+    for (int round = 0; round < ROBOTS; ++round) {
+        double truth[NUMBERS];
+        wh_geometry_estimate_t found;
+        const size_t count = 20 + wh_test_below(60);
+        const size_t wrong = wh_test_below((uint32_t)count / 8);
+        const double sd = wh_test_decades(1e-3, 0.1);
+        random_robot(truth);
+        touch_points(truth, count, sd, 15);
+        spoil(truth, count, wrong, sd);
+        assert_int_equal(wh_geometry_estimate(touches, count, false, &found), WH_OK);
+        assert_string_equal(found.reason, "");
+        wrongly_aside += count_aside(truth, count, wrong, sd);
+        for (int k = 0; k < WH_GEOMETRY_SCALE; ++k) {
+            const double off = off_by(&found, truth, k);
+            assert_true(found.values[k].is_determined);
+            assert_near(off, 0, WRONG);
+            near += fabs(off) < 2 ? 1 : 0;
+            squares += off * off;
+            ++all;
+        }
+    }
+    print_message("robots: %.4f within 2 deviations, %.4f\n", (double)near / all, squares / all);
+    assert_near((double)near / all, 0.95, 0.025);
+    assert_near(squares / all, 1.05, 0.15);
+    assert_true(wrongly_aside <= 2);
+}
+
+/* The derivatives of a residual's sum of squares, and of what the points are told by, in differences. */
+static void differ(const double *p, const double *q, double by[3][NUMBERS]) {
+    for (int k = 0; k < NUMBERS; ++k) {
+        const double step = k < 2 || (k >= WH_GEOMETRY_ZERO + 1 && k <= WH_GEOMETRY_TOOL_Y) ? 1e-3 : 1e-6;
+        double moved[NUMBERS];
+        memcpy(moved, p, sizeof moved);
+        moved[k] = p[k] + step;
+        const wh_vec3_t more = reached(moved, q);
+        moved[k] = p[k] - step;
+        const wh_vec3_t less = reached(moved, q);
+        by[0][k] = (more.x - less.x) / (2 * step);
+        by[1][k] = (more.y - less.y) / (2 * step);
+        by[2][k] = (more.z - less.z) / (2 * step);
+    }
+}
+
+/* Solves a x = b with b the k-th unit vector, for the numbers of the list; returns x's own entry: a variance. */
+static double inverse_entry(double a[NUMBERS][NUMBERS], const int *list, int count, int which) {
+    double m[NUMBERS][NUMBERS + 1];
+    for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < count; ++k) {
+            m[i][k] = a[list[i]][list[k]];
+        }
+        m[i][count] = i == which ? 1 : 0;
+    }
+    for (int i = 0; i < count; ++i) { /* positive definite: no pivots */
+        for (int row = 0; row < count; ++row) {
+            const double part = m[row][i] / m[i][i];
+            for (int k = i; row != i && k <= count; ++k) {
+                m[row][k] -= part * m[i][k];
+            }
+        }
+    }
+    return m[which][count] / m[which][which];
+}
+
+/* The normal equations at a fit: products of derivatives, slopes of the squares, the squares. */
+typedef struct {
+    double products[NUMBERS][NUMBERS], slopes[NUMBERS], squares;
+} normal_t;
+
+static void add_normal(normal_t *normal, const wh_geometry_estimate_t *found, const wh_touch_t *touch) {
+    double by[3][NUMBERS];
+    const wh_vec3_t there = reached(found->fitted, touch->axes);
+    const wh_vec3_t rest = wh_vec3_subtract(&touch->touched, &there);
+    const wh_vec3_t off = wh_geometry_residual(found, touch);
+    assert_near(off.x, rest.x, 1e-9);
+    assert_near(off.y, rest.y, 1e-9);
+    assert_near(off.z, rest.z, 1e-9);
+    differ(found->fitted, touch->axes, by);
+    for (int i = 0; i < NUMBERS && !touch->is_set_aside; ++i) {
+        for (int k = 0; k < NUMBERS; ++k) {
+            normal->products[i][k] += by[0][i] * by[0][k] + by[1][i] * by[1][k] + by[2][i] * by[2][k];
+        }
+        normal->slopes[i] += by[0][i] * rest.x + by[1][i] * rest.y + by[2][i] * rest.z;
+    }
+    normal->squares += touch->is_set_aside ? 0 : wh_vec3_dot(&rest, &rest);
+}
+
+static void judge_robot(const wh_geometry_estimate_t *found, normal_t *normal, const double *truth) {
+    int list[NUMBERS];
+    int count = 0;
+    for (int k = 0; k < (found->has_scales ? NUMBERS : WH_GEOMETRY_SCALE); ++k) {
+        list[count] = k;
+        count += k == WH_GEOMETRY_ZERO + 3 ? 0 : 1;
+    }
+    const double variance = normal->squares / (3 * (double)found->used - count);
+    for (int i = 0; i < count; ++i) {
+        const int k = list[i];
+        const double sd = sqrt(variance * inverse_entry(normal->products, list, count, i));
+        assert_true(found->values[k].is_determined);
+        assert_near(found->values[k].sd / sd, 1, 1e-4);
+        assert_near(off_by(found, truth, k), 0, WRONG);
+        assert_near(normal->slopes[k] / sqrt(normal->products[k][k] * normal->squares), 0, 1e-5);
+    }
+}
+
+/* No other numbers fit better, and deviations are those of the normal equations. */
+static void robots_are_the_best_fit_by_differences(void **state) {
+    (void)state;
+    for (int round = 0; round < ROBOTS / 3; ++round) {
+        const bool scales = round % 2 == 1;
+        const size_t count = 30 + wh_test_below(60);
+        double truth[NUMBERS];
+        normal_t normal = {.squares = 0};
+        wh_geometry_estimate_t found;
+        random_robot(truth);
+        truth[WH_GEOMETRY_TOOL_X] = 150;
+        for (int k = WH_GEOMETRY_SCALE; scales && k < NUMBERS; ++k) {
+            truth[k] = wh_test_uniform(0.99, 1.01);
+        }
+        touch_points(truth, count, 0.02, 15);
+        assert_int_equal(wh_geometry_estimate(touches, count, scales, &found), WH_OK);
+        for (size_t i = 0; i < count; ++i) {
+            add_normal(&normal, &found, &touches[i]);
+        }
+        judge_robot(&found, &normal, truth);
+    }
+}
+
+/* What a fit to touches with some axes varied must tell, and must not; what it tells is right. */
+static void judge_varied(const wh_geometry_estimate_t *found, const double *truth, unsigned varied) {
+    const bool reaches = (varied & 3) != 0;
+    for (int k = 0; k < NUMBERS; ++k) {
+        if (found->values[k].is_determined) {
+            assert_near(off_by(found, truth, k), 0, WRONG);
+        }
+    }
+    assert_false(found->values[WH_GEOMETRY_ZERO + 3].is_determined);
+    assert_non_null(strstr(found->reason, "zero_yaw"));
+    assert_int_equal(found->values[WH_GEOMETRY_ZERO + 1].is_determined, (varied & 9) == 9);
+    assert_int_equal(found->values[WH_GEOMETRY_TOOL_X].is_determined, (varied & 8) != 0 && reaches);
+    assert_true(reaches || !found->values[WH_GEOMETRY_X].is_determined);
+}
+
+/* The axes that a reason names, as bits. */
+static unsigned named_by(const char *reason) {
+    static const char *const says[4] = {"theta turned", "other r", "other z", "yaw turned"};
+    unsigned named = 0;
+    for (unsigned k = 0; k < 4; ++k) {
+        named |= strstr(reason, says[k]) ? 1U << k : 0;
+    }
+    return named;
+}
+
+/* Touches with all sets of axes varied; once the moves are made that are said to be missing, all is told. */
+static void robots_are_right_or_not_determined(void **state) {
+    (void)state;
+    for (unsigned round = 0; round < ROBOTS; ++round) {
+        const unsigned varied = round % 16;
+        const size_t count = 24 + wh_test_below(20);
+        const double sd = wh_test_decades(1e-3, 0.05);
+        double truth[NUMBERS];
+        wh_geometry_estimate_t found;
+        random_robot(truth);
+        touch_points(truth, count, sd, varied);
+        const wh_status_t status = wh_geometry_estimate(touches, count, false, &found);
+        assert_true(status == WH_OK || status == WH_STATUS_NOT_DETERMINED);
+        judge_varied(&found, truth, varied);
+        touch_points(truth, count, sd, varied | named_by(found.reason));
+        for (size_t i = 0; i < count; ++i) {
+            touches[i].heading = headed(truth, touches[i].axes);
+        }
+        assert_int_equal(wh_geometry_estimate(touches, count, false, &found), WH_OK);
+        for (int k = 0; k < WH_GEOMETRY_SCALE; ++k) {
+            assert_true(found.values[k].is_determined);
+        }
+    }
+}
+
+static void robots_of_another_kind_are_refused(void **state) {
+    (void)state;
+    for (int round = 0; round < ROBOTS / 5; ++round) {
+        double truth[NUMBERS];
+        wh_geometry_estimate_t found;
+        random_robot(truth);
+        truth[WH_GEOMETRY_TOOL_X] = 120;
+        touch_points(truth, 40, 0.02, 15);
+        for (size_t i = 0; i < 40; i += 2) { /* moved in between */
+            touches[i].touched.x += 3;
+        }
+        assert_int_equal(wh_geometry_estimate(touches, 40, false, &found), WH_STATUS_NO_FIT);
+        touch_points(truth, 40, 0.02, 15);
+        for (size_t i = 0; i < 40; ++i) { /* told the other way round */
+            touches[i].axes[0] = -touches[i].axes[0];
+        }
+        assert_int_equal(wh_geometry_estimate(touches, 40, false, &found), WH_STATUS_NO_FIT);
+        const int axis = WH_GEOMETRY_SCALE + (int)wh_test_below(4);
+        truth[axis] = 1.003;
+        touch_points(truth, 40, 0.02, 15);
+        assert_int_equal(wh_geometry_estimate(touches, 40, false, &found), WH_STATUS_NO_FIT);
+        assert_int_equal(wh_geometry_estimate(touches, 40, true, &found), WH_OK);
+        assert_true(found.values[axis].is_determined);
+        assert_near(off_by(&found, truth, axis), 0, WRONG);
+        truth[axis] = 1;
+        touch_points(truth, 20, 0.02, 7);
+        touches[7].axes[3] += 1; /* it alone is turned, and a millimetre off: nobody could tell */
+        touches[7].touched = reached(truth, touches[7].axes);
+        touches[7].touched.x += 1;
+        assert_int_equal(wh_geometry_estimate(touches, 20, false, &found), WH_OK);
+        assert_false(found.values[WH_GEOMETRY_TOOL_X].is_determined);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_lie_within_their_deviations),
@@ -187,6 +499,10 @@ int main(void) {
         cmocka_unit_test(the_goal_is_met_for_an_axis_of_the_usual_kind),
         cmocka_unit_test(limits_are_right_or_not_determined),
         cmocka_unit_test(times_of_another_law_are_refused),
+        cmocka_unit_test(robots_lie_within_their_deviations),
+        cmocka_unit_test(robots_are_the_best_fit_by_differences),
+        cmocka_unit_test(robots_are_right_or_not_determined),
+        cmocka_unit_test(robots_of_another_kind_are_refused),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; the bytes of a snapshot; and random numbers, which are doubles in float as well. Prints a hash of
+ * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles in float as well. Prints a hash of
  * each: the lines of tests/target/golden.txt for its number type, but for the last, "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
@@ -233,6 +233,81 @@ static void deviates(void) {
     add_double(wh_ln((double)(1 + below(1U << 31)) / 1024));
 }
 
+/* A wafer with a notch and a chip, seen with noise: its circle and, of enough samples, its notch. False if the scan
+ * does not tell them. */
+static bool scan(int32_t samples) {
+    static wh_rim_point_t points[3600];
+    static wh_rim_ray_t rays[3600];
+    const wh_chip_t chip = {1, 8, 2};
+    const wh_trial_t trial = {state, below(1000)};
+    wh_rim_t rim = wh_rim_nominal(150);
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_align_limits_t limits = wh_align_limits_default();
+    wh_align_result_t result = {0};
+    rim.notch.direction = (double)below(6283) / 1000;
+    rim.chips[0] = chip;
+    rim.chip_count = 1;
+    sensor.samples = samples;
+    sensor.noise = 0.005;
+    sensor.error.offset = 0.125;
+    const wh_placement_t placement = {(double)below(9000) / 1000, -(double)below(9000) / 1000, 0.5};
+    for (uint32_t i = 0; i < (uint32_t)samples; ++i) {
+        const wh_glance_t glance = {wh_sensor_angle(&sensor, i), 6, trial, i};
+        const int32_t sample = wh_sensor_read(&sensor, &rim, &placement, &glance);
+        hash = wh_hash_int(hash, sample);
+        add_double(wh_rim_distance(&rim, &placement, sensor.error.offset, -glance.turn));
+        points[i] = wh_sensor_point(&sensor, &sensor.error, &glance, sample);
+    }
+    const wh_rim_scan_t whole = {points, (size_t)samples, sensor.error.offset, sensor.pixel};
+    const bool good = wh_align_estimate(&whole, &sensor, &rim, &limits, rays, &result) == WH_OK;
+    add_double(result.circle.x);
+    add_double(result.circle.y);
+    add_double(result.circle.radius);
+    add_double(result.circle.sd_centre);
+    add_double(result.circle.scatter);
+    add_double(result.turn);
+    add_double(result.sd_turn);
+    hash = wh_hash_int(hash, result.verdict);
+    return good && (samples < 3600 || result.verdict == WH_OK);
+}
+
+/* A wafer on a gripper goes through two beams; when, and the centre that this tells. False if it tells none. */
+static bool pass_beams(void) {
+    const double across[2] = {60, -110};
+    const wh_pose_t base = wh_pose_identity();
+    const wh_centring_t known = wh_centring_nominal(150);
+    wh_rim_t rim = wh_rim_nominal(150);
+    wh_crossing_t crossings[WH_CROSSINGS];
+    wh_centres_t centres = {0};
+    wh_pose_t lies = base;
+    size_t count = 0;
+    rim.notch.direction = (double)below(6283) / 1000;
+    lies.r.x = (wh_real_t)below(1000) / 500;
+    lies.r.y = -(wh_real_t)below(1000) / 500;
+    for (int32_t beam = 0; beam < 2; ++beam) {
+        const wh_beam_t line = wh_beam_at(&base, 0, across[beam], -10, 10);
+        bool broken = false;
+        for (int slice = -25; slice < 25; ++slice) {
+            wh_pose_t poses[2] = {base, base};
+            poses[0].r.x = (wh_real_t)(8 * slice);
+            poses[1].r.x = (wh_real_t)(8 * slice + 8);
+            const wh_shade_t shade = {wh_slice_motion_between(&poses[0], &poses[1]), &lies, &rim, NULL};
+            double part = 0;
+            while (count < WH_CROSSINGS && wh_beam_next(&line, &shade, 1, &part, &broken)) {
+                add_double(part);
+                (void)wh_beam_crossing(&line, &shade.motion, part, 0.016, &crossings[count]);
+                crossings[count].beam = beam;
+                crossings[count++].edge = broken ? WH_CROSSING_IN : WH_CROSSING_OUT;
+            }
+        }
+    }
+    const wh_status_t status = wh_centring_solve(&known, crossings, count, &centres);
+    add_double(centres.candidates[0].x);
+    add_double(centres.candidates[0].y);
+    add_double(centres.candidates[0].sd_centre);
+    return status == WH_OK;
+}
+
 /* In halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
     printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
@@ -241,6 +316,14 @@ static int report(const char *what, bool good) {
         printf("%s: refused, or not enough of each event\n", what);
     }
     return good ? 0 : 1;
+}
+
+static bool scans(void) {
+    bool good = true;
+    for (int wafer = 0; wafer < 10; ++wafer) {
+        good = scan(wafer == 0 ? 3600 : 180) && good;
+    }
+    return good;
 }
 
 int main(void) {
@@ -270,5 +353,14 @@ int main(void) {
         deviates();
     }
     failed += report("deviate", true);
+    hash = WH_HASH_START;
+    good = scans();
+    failed += report("scan", good);
+    hash = WH_HASH_START;
+    good = true;
+    for (int wafer = 0; wafer < 20; ++wafer) {
+        good = pass_beams() && good;
+    }
+    failed += report("beams", good);
     return failed;
 }

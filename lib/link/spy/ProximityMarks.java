@@ -82,8 +82,9 @@ final class ProximityMarks {
 
     /** The events of one state message. */
     static final class State {
-        private static final int HEAD = 88, WAFER = 100, GRIPPER = 446, EVENT = 156, FAULT = 328, CHECK = 8;
-        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16;
+        private static final int HEAD = 125, WAFER = 100, GRIPPER = 446, EVENT = 156, FAULT = 328, SAMPLE = 4,
+                                 CHECK = 8;
+        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64;
 
         final long utime, seq, run, layout;
         final List<Event> events = new ArrayList<>();
@@ -101,7 +102,9 @@ final class ProximityMarks {
             final int grippers = count(data, GRIPPERS);
             final int count = count(data, EVENTS);
             final int faults = count(data, FAULTS);
-            demand(size == HEAD + WAFER * wafers + GRIPPER * grippers + EVENT * count + FAULT * faults,
+            final int samples = count(data, SAMPLES);
+            demand(size == HEAD + WAFER * wafers + GRIPPER * grippers + EVENT * count + FAULT * faults +
+                               SAMPLE * samples,
                    "a whole state");
             demand(utime >= 0 && seq >= 0 && isSound(data, size), "a sound state");
             final int first = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers;

@@ -15,6 +15,7 @@ final class ProximityNames {
     private static final int GRIPPERS = 8;
     private static final int WAFERS = 256;
     private static final int FAULTS = 16;
+    private static final int SENSORS = 8;
     /** Bytes of a station after its name, and in the message before and after the layout's path. */
     private static final int STATION = 3 * 8 + 9 * 8 + 4 + 8 + 4, BEFORE_LAYOUT = 3 * 8,
                              AFTER_PATH = 6 * 8 + 3 + 12 * 8;
@@ -32,6 +33,8 @@ final class ProximityNames {
         final int stations = count(data, data.available());
         wafers = new String[count(data, WAFERS)];
         count(data, FAULTS);
+        count(data, SENSORS);
+        count(data, WAFERS + 1); // rims
         valves = new String[grippers.length];
         texts(data, grippers);
         texts(data, valves);

@@ -72,16 +72,20 @@
         return new Response(stream).text();
     }
 
+    /* Promises what the page carries, as it is. */
+    async function unpack() {
+        return object(JSON.parse(await inflate(document.getElementById('document').textContent.trim())));
+    }
+
     /* Promises the document, or null with `W.fault` telling why. */
     async function read() {
         try {
-            const text = await inflate(document.getElementById('document').textContent.trim());
-            return complete(object(JSON.parse(text)));
+            return complete(await unpack());
         } catch (error) {
             W.fault = error.message;
             return null;
         }
     }
 
-    W.document = { read, complete };
+    W.document = { read, complete, unpack };
 }(window.Waferhand));

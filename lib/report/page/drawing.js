@@ -112,12 +112,56 @@
         pen.lineWidth = 1;
     }
 
+    /* Obstacles are named in the middle of their tops. */
+    function obstacles(view) {
+        return view.bodies.filter((body) => body.owner && body.owner.kind === 'obstacle').map(({ owner, points }) => {
+            const middle = [0, 1].map((i) => points.reduce((sum, p) => sum + p[i], 0) / points.length);
+            return { name: owner.name, kind: 'obstacle', i: owner.index, at: [...middle, Math.max(...points.map((p) => p[2]))] };
+        });
+    }
+
+    /* What has a name, the weightiest first, and where it is. */
+    function named(view) {
+        const { slots, names } = view.doc;
+        const moving = Object.values(view.movers).filter((mover) => mover.pose)
+            .map(({ kind, i, name, pose: { r } }) => ({ kind, i, name, at: r }));
+        const stations = slots.filter((slot) => slot.slot === 1 && names.stations[slot.station] !== undefined)
+            .map(({ station, r }) => ({ kind: 'station', i: station, name: names.stations[station], at: r }));
+        return [].concat(moving.filter(({ kind }) => kind === 'gripper'), stations, obstacles(view),
+            moving.filter(({ kind }) => kind === 'wafer')).filter(({ kind, i }) => !W.parts.isHidden(kind, i));
+    }
+
+    /* Where two would cover each other the first stays. */
     function drawNames(view, panel) {
-        Object.values(view.movers).filter((mover) => mover.kind !== 'link' && mover.pose)
-            .forEach((mover) => {
-                const [x, y] = panel.spot(mover.pose.r);
-                text(view, mover.name, x + 6, y - 6, W.theme.colour('ink'));
-            });
+        const taken = [];
+        named(view).forEach(({ name, kind, at }) => {
+            const [x, y] = panel.spot(at);
+            const high = kind === 'station' ? y + 16 : y - 6;
+            const box = { left: x, right: x + view.pen.measureText(name).width + 8, top: high - 14, bottom: high + 3 };
+            if (!taken.some((other) => box.left < other.right && other.left < box.right && box.top < other.bottom
+                && other.top < box.bottom)) {
+                taken.push(box);
+                text(view, name, x + 6, high, W.theme.colour('ink'));
+            }
+        });
+    }
+
+    /* Older parts of it are fainter. */
+    function drawTrail(view, panel, i) {
+        const points = W.trail.points(view.doc, i, view.at);
+        const spots = points.map((point) => panel.spot(point.r));
+        const colour = W.theme.series(i);
+        points.forEach(({ age, dot }, k) => {
+            view.pen.globalAlpha = 1 - 0.85 * age;
+            if (k > 0) {
+                line(view, spots[k - 1], spots[k], colour, 1.5);
+            }
+            if (dot) {
+                view.pen.fillStyle = colour;
+                view.pen.fillRect(spots[k][0] - 2, spots[k][1] - 2, 4, 4);
+            }
+        });
+        view.pen.globalAlpha = 1;
     }
 
     function drawFrames(view, panel) {
@@ -170,10 +214,14 @@
 
     function drawPanel(view, panel) {
         const nearest = (body) => Math.max(...body.now.map(panel.side.near));
-        view.bodies.filter((body) => body.now).map((body) => [nearest(body), body])
+        const isShown = ({ owner }) => !owner || !W.parts.isHidden(owner.kind, owner.index);
+        view.bodies.filter((body) => body.now && isShown(body)).map((body) => [nearest(body), body])
             .sort((a, b) => a[0] - b[0]).forEach(([, body]) => drawBody(view, panel, body));
         text(view, panel.side.title, panel.area.x + 14, panel.area.y + 64, W.theme.colour('dim'));
         drawMarks(view, panel);
+        if (view.options.trail) {
+            W.trail.riders(view.doc).filter((i) => !W.parts.isHidden('gripper', i)).forEach((i) => drawTrail(view, panel, i));
+        }
         if (view.options.frames) {
             drawFrames(view, panel);
         }
@@ -212,7 +260,7 @@
         const spot = [event.clientX - area.left, event.clientY - area.top];
         const found = [];
         panels(view).forEach((panel) => Object.values(view.movers).forEach(({ kind, i, pose: at }) => {
-            if (at && kind !== 'link') {
+            if (at && kind !== 'link' && !W.parts.isHidden(kind, i)) {
                 const [x, y] = panel.spot(at.r);
                 found.push({ kind, i, at: at.r, far: Math.hypot(x - spot[0], y - spot[1]) });
             }
@@ -233,6 +281,7 @@
         view.paint = () => draw(view);
         view.resize = () => draw(view);
         view.show = (name) => { view.shown = name; draw(view); };
+        view.hide = () => draw(view);
         view.set = (options) => { Object.assign(view.options, options); draw(view); };
         view.rule = (ends, words) => { Object.assign(view, { ends, measured: words }); draw(view); };
         view.pick = (event) => pick(view, event);

@@ -83,14 +83,16 @@
         return part.bodies;
     }
 
-    /* Goes through the tree; a node in `movers` begins anew, for its own pose is set later. */
-    function collect(node, above, mover, movers, found) {
+    /* Goes through the tree; a node in `movers` begins anew, for its own pose is set later. A body's owner is the nearest node
+     * above it that is of a kind. */
+    function collect(node, above, { mover, owner }, movers, found) {
         const own = movers[W.gltf.key(node.kind, node.index)];
+        const below = { mover: own || mover, owner: node.kind ? node : owner };
         const matrix = own ? IDENTITY : product(above, local(node));
         node.parts.forEach((part) => bodies(part).forEach(({ points, dented }) => found.push({
-            mover: own || mover, part, dented, points: points.map((p) => apply(matrix, ...p)),
+            mover: below.mover, owner: below.owner, part, dented, points: points.map((p) => apply(matrix, ...p)),
         })));
-        node.children.forEach((child) => collect(child, matrix, own || mover, movers, found));
+        node.children.forEach((child) => collect(child, matrix, below, movers, found));
     }
 
     /* y up becomes z up for what stands still. */
@@ -98,7 +100,7 @@
 
     function make(roots, movers) {
         const found = [];
-        roots.forEach((root) => collect(root, Z_UP, null, movers, found));
+        roots.forEach((root) => collect(root, Z_UP, { mover: null, owner: null }, movers, found));
         return found;
     }
 

@@ -21,23 +21,28 @@
         { keys: ['4'], name: '4', text: 'ride along with a gripper; again: with the next', act: view('gripper') },
         { keys: ['m'], name: 'm', text: 'measure', act: () => W.measure.toggle() },
         { keys: ['f'], name: 'f', text: 'frames', act: option('frames') },
-        { keys: ['n'], name: 'n', text: 'names of wafers, grippers and stations', act: option('names') },
+        { keys: ['n'], name: 'n', text: 'names of wafers, grippers, stations and obstacles', act: option('names') },
+        { keys: ['r'], name: 'r', text: 'trail: where grippers were in the last 3 s, a dot each 0.1 s', act: option('trail') },
+        { keys: ['s'], name: 's', text: 'shadows', act: option('shadows') },
+        { keys: ['h'], name: 'h', text: 'list of parts to hide and to show', act: () => W.stage.view && W.stage.list() },
+        { keys: ['x'], name: 'x', text: 'section: a plane that cuts the cell', act: () => W.stage.view && W.stage.section() },
         { keys: ['l'], name: 'l', text: 'a link to this moment and view', act: () => W.link.take() },
         { keys: ['p'], name: 'p', text: 'save the picture', act: () => W.stage.view && W.link.picture() },
         { keys: ['+', '='], name: '+', text: 'plots: shorter time', act: () => W.clock.zoom(0.5) },
         { keys: ['-'], name: '\u2212', text: 'plots: longer time', act: () => W.clock.zoom(2) },
+        { keys: ['c'], name: 'c', text: 'plots: the first steady cycle', act: () => W.cycle.show() },
         { keys: ['0'], name: '0', text: 'plots: the whole run', act: () => W.clock.reset() },
         { keys: ['t'], name: 't', text: 'light or dark', act: () => W.theme.toggle() },
         { keys: ['?'], name: '?', text: 'this list', act: () => keys.help() },
     ];
 
-    /* Keys that an element with the focus needs itself. */
+    const MOVES = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End'];
+    const OWN = { BUTTON: [' '], SUMMARY: [' '], checkbox: [' '], radio: [' ', ...MOVES], range: MOVES };
+
+    /* Keys that an element with the focus needs itself; the scrubber's do what the page's do. */
     function isTaken(target, key) {
-        const name = target.tagName;
-        if (name === 'TEXTAREA' || name === 'SELECT' || (name === 'INPUT' && target.type !== 'range')) {
-            return true;
-        }
-        return key === ' ' && (name === 'BUTTON' || name === 'SUMMARY');
+        const kind = target.tagName === 'INPUT' ? target.type : target.tagName;
+        return kind === 'TEXTAREA' || kind === 'SELECT' || (target.id !== 'scrubber' && (OWN[kind] || []).includes(key));
     }
 
     function pressed(event) {

@@ -67,13 +67,13 @@
         }
     }
 
-    /* The first bar that ends within the window; they are in order and do not overlap. */
-    function first(bars, t) {
+    /* How many bars come before the first that is not `before`; they are in order and do not overlap. */
+    function countBefore(bars, before) {
         let low = 0;
         let high = bars.length;
         while (low < high) {
             const middle = (low + high) >> 1;
-            if (bars[middle].to < t) {
+            if (before(bars[middle])) {
                 low = middle + 1;
             } else {
                 high = middle;
@@ -82,18 +82,33 @@
         return low;
     }
 
-    /* Bars within a pixel that is drawn already are left out. */
+    /* The first bar that ends at t or later, and the first that begins after it. */
+    const first = (bars, t) => countBefore(bars, (bar) => bar.to < t);
+    const after = (bars, t) => countBefore(bars, (bar) => bar.from <= t);
+
+    /* What bars that are too dense to be seen take of each column's time: as high as their share, one colour on the other. */
+    function drawShares(chart, pen, bars, y) {
+        W.bands.shares(bars, W.clock.window, width(chart)).forEach((column, i) => {
+            let bottom = y + ROW - 4;
+            column.forEach((share, colour) => {
+                const high = colour === 'bad' ? Math.max(share * (ROW - 8), 2) : share * (ROW - 8);
+                pen.fillStyle = W.theme.colour(colour);
+                pen.fillRect(left() + i * W.bands.WIDE, bottom - high, W.bands.WIDE, high);
+                bottom -= high;
+            });
+        });
+    }
+
     function drawBars(chart, pen, lane, y) {
-        let drawn = -Infinity;
-        for (let i = first(lane.bars, W.clock.window[0]); i < lane.bars.length; ++i) {
-            const bar = lane.bars[i];
-            if (bar.from > W.clock.window[1]) {
-                return;
-            }
-            if (spot(chart, bar.to) > drawn + 0.5) {
-                drawBar(chart, pen, bar, y, i);
-                drawn = spot(chart, bar.to);
-            }
+        const begin = first(lane.bars, W.clock.window[0]);
+        const end = after(lane.bars, W.clock.window[1]);
+        lane.dense = W.bands.areDense(begin, end, width(chart));
+        if (lane.dense) {
+            drawShares(chart, pen, lane.bars.slice(begin, end), y);
+            return;
+        }
+        for (let i = begin; i < end; ++i) {
+            drawBar(chart, pen, lane.bars[i], y, i);
         }
     }
 
@@ -143,6 +158,7 @@
         pen.font = '12px system-ui, "DejaVu Sans", sans-serif';
         drawAxis(chart, pen, height);
         chart.group.lanes.forEach((lane, i) => drawLane(chart, pen, lane, i));
+        chart.banded.hidden = !chart.group.lanes.some((lane) => lane.dense);
         follow(chart);
     }
 
@@ -173,15 +189,17 @@
         const names = group.lanes.map((lane) => lane.name).join(', ');
         const chart = { group, canvas: W.element('canvas', { class: 'lanes', role: 'img',
             'aria-label': `${group.title} over time: ${names}; in figures in the tables below` }),
-        cursor: W.element('div', { class: 'cursor' }) };
+        cursor: W.element('div', { class: 'cursor' }),
+        banded: W.element('p', { class: 'note banded', hidden: true }, 'As high as their share of the time, where bars lie too '
+            + 'close to be seen one by one.') };
         charts.push(chart);
         listen(chart);
         new ResizeObserver(() => draw(chart)).observe(chart.canvas);
-        return W.element('div', { class: 'frame' }, chart.canvas, chart.cursor);
+        return [W.element('div', { class: 'frame' }, chart.canvas, chart.cursor), chart.banded];
     }
 
     lanes.section = function (group) {
-        const body = [group.lanes.length > 0 ? make(group) : W.why(group.why)];
+        const body = group.lanes.length > 0 ? make(group) : [W.why(group.why)];
         if (group.note && group.lanes.length > 0) {
             body.push(W.why(group.note));
         }

@@ -1,5 +1,5 @@
-/* A link to what is shown: time, window of the plots and view stand behind the page's address, and are there again when such an
- * address is opened. What does not belong there is passed over. */
+/* A link to what is shown: time, window of the plots, view, what is hidden and the plane that cuts stand behind the page's
+ * address, and are there again when such an address is opened. What does not belong there is passed over. */
 (function (W) {
     'use strict';
 
@@ -24,7 +24,7 @@
     link.text = function () {
         const parts = [['t', digits([W.clock.now], 6)]];
         const [from, to] = W.clock.window;
-        if (from > W.clock.begin || to < W.clock.end) {
+        if (from !== W.cycle.opened[0] || to !== W.cycle.opened[1]) {
             parts.push(['window', digits([from, to], 6)]);
         }
         if (W.stage.view) {
@@ -32,6 +32,12 @@
         }
         if (W.stage.view && W.stage.shown === 'gripper') {
             parts.push(['gripper', W.stage.rider + 1]);
+        }
+        if (W.parts.text()) {
+            parts.push(['hide', W.parts.text()]);
+        }
+        if (W.section.text()) {
+            parts.push(['cut', W.section.text()]);
         }
         const seen = eye();
         return parts.concat(seen ? [['eye', digits(seen, 4)]] : []).map((each) => each.join('=')).join('&');
@@ -64,6 +70,12 @@
             W.clock.seek(t[0]);
         }
         restoreView(found);
+        if (W.stage.view) {
+            W.parts.set((found.get('hide') || '').split(','));
+        }
+        if (W.stage.view && W.stage.view.cut) {
+            W.section.restore(found.get('cut'));
+        }
     }
 
     /* Into the address, and to the clipboard where the browser lets it. */

@@ -15,10 +15,7 @@
     const host = (id) => document.getElementById(id);
 
     function plots(doc) {
-        const buttons = [['Shorter time (+)', '+', () => W.clock.zoom(0.5)], ['Longer time (-)', '\u2212', () => W.clock.zoom(2)],
-            ['The whole run (0)', 'All', () => W.clock.reset()]].map(([title, text, act]) => W.element('button',
-            { type: 'button', title, 'aria-label': title, click: act }, text));
-        host('plots').append(W.element('div', { class: 'zoom', role: 'toolbar', 'aria-label': 'Time window' }, ...buttons));
+        host('plots').append(W.cycle.toolbar());
         W.plots.start(doc);
         W.lanes.start();
         const curves = W.curves.groups(doc);
@@ -49,6 +46,7 @@
         }
         W.shown = doc;
         W.clock.start(doc);
+        W.cycle.start(doc);
         part(host('head'), () => W.summary.start(doc));
         part(host('canvas'), () => W.stage.start(doc));
         part(host('transport'), () => W.transport.start(doc));

@@ -6,7 +6,7 @@
     const plots = { panels: [], seen: null, doc: null };
 
     /* The width left of the plots for numbers and names. */
-    plots.gutter = () => (document.body.clientWidth < 560 ? 58 : 92);
+    plots.gutter = () => (document.body.clientWidth < 560 ? 70 : 92);
 
     const area = (panel) => panel.graph.getArea();
 
@@ -14,9 +14,39 @@
     const timeTick = (t, granularity, how, graph) => W.tick(t, extent(graph.xAxisRange())) + '\u00a0s';
     const valueTick = (value, granularity, how, graph) => W.tick(value, extent(graph.yAxisRange()));
 
-    /* The allowed side of each limit is tinted, the limit drawn. */
+    /* From the lowest to the highest value in each column. */
+    function drawBand(pen, graph, band, colour) {
+        pen.fillStyle = colour;
+        pen.globalAlpha = 0.28;
+        band.t.forEach((t, i) => {
+            if (band.low[i] !== null) {
+                const [left, right] = [t - band.width / 2, t + band.width / 2].map((at) => graph.toDomXCoord(at));
+                const [low, high] = [band.low[i], band.high[i]].map((value) => graph.toDomYCoord(value));
+                pen.fillRect(left, high, right - left, Math.max(low - high, 1));
+            }
+        });
+        pen.globalAlpha = 1;
+    }
+
     function underlay(panel) {
-        return (pen, { x, y, w, h }, graph) => panel.limits.forEach((limit) => {
+        return (pen, area_, graph) => {
+            drawLimits(panel, pen, area_, graph);
+            pen.save();
+            pen.beginPath();
+            pen.rect(area_.x, area_.y, area_.w, area_.h);
+            pen.clip();
+            panel.bands.forEach((band, i) => {
+                if (band) {
+                    drawBand(pen, graph, band, W.theme.series(panel.curves[i].colour));
+                }
+            });
+            pen.restore();
+        };
+    }
+
+    /* The allowed side of each limit is tinted, the limit drawn. */
+    function drawLimits(panel, pen, { x, y, w, h }, graph) {
+        panel.limits.forEach((limit) => {
             const at = W.clamp(graph.toDomYCoord(limit.value), y, y + h);
             pen.save();
             pen.fillStyle = W.theme.colour('allowed');
@@ -87,8 +117,8 @@
             dateWindow: W.clock.window.slice(), valueRange: panel.range,
             rightGap: 10, underlayCallback: underlay(panel), interactionModel: interaction(),
             axes: {
-                x: { axisLabelFormatter: timeTick, pixelsPerLabel: 90 },
-                y: { axisLabelFormatter: valueTick, axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 28 },
+                x: { axisLabelFormatter: timeTick, pixelsPerLabel: 62 },
+                y: { axisLabelFormatter: valueTick, axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 20 },
             },
             clickCallback: (event) => W.clock.seek(panel.graph.toDataXCoord(panel.graph.eventToDomCoords(event)[0])),
             drawCallback: (graph, initial) => { if (!initial) { zoomed(panel); } },
@@ -106,7 +136,11 @@
     }
 
     function data(panel) {
-        return W.reduce.rows(panel.curves, W.clock.window, Math.max(panel.host.clientWidth, 200));
+        panel.bands = [];
+        const pixels = Math.max(panel.host.clientWidth - plots.gutter(), 100);
+        const rows = W.reduce.rows(panel.curves, W.clock.window, pixels, panel.bands);
+        panel.banded.hidden = !panel.bands.some(Boolean);
+        return rows;
     }
 
     function legendItem(panel, curve, i) {
@@ -125,8 +159,9 @@
         panel.cursor = W.element('div', { class: 'cursor', hidden: true });
         const items = panel.curves.map((curve, i) => legendItem(panel, curve, i));
         const limits = panel.limits.map((limit) => W.element('span', { class: 'limit' }, limit.text));
+        panel.banded = W.element('span', { class: 'note banded', hidden: true }, 'line: mean, band: lowest to highest');
         panel.box = W.element('figure', { class: 'panel' },
-            W.element('figcaption', {}, W.element('span', { class: 'name' }, panel.title), ...items, ...limits),
+            W.element('figcaption', {}, W.element('span', { class: 'name' }, panel.title), ...items, panel.banded, ...limits),
             W.element('div', { class: 'frame' }, panel.host, panel.cursor));
         return panel.box;
     }

@@ -5,11 +5,18 @@
 
     const PIXELS = 3; /* from point to point of a cubic */
     const PARTS = 64; /* of one cubic, at most */
+    const LEAST = 50; /* points of a comb */
 
-    /* The points of one curve within a window, and one beyond it on either side: [times, values]. */
+    /* The points of one curve within a window, and one beyond it on either side: [times, values], of a comb its means, and its
+     * band as well. */
     function curve(from, window, columns) {
         const first = Math.max(W.tracks.index(from.t, window[0]), 0);
         const last = Math.min(W.tracks.index(from.t, window[1]) + 1, from.t.length - 1);
+        const points = last - first > LEAST ? all(from, first, last, Infinity) : null;
+        if (points && W.bands.isComb(points[1], columns)) {
+            const band = W.bands.curve(points, window, columns);
+            return [band.t, band.mean, band];
+        }
         return last - first >= 4 * columns ? extremes(all(from, first, last, Infinity), window, columns)
             : all(from, first, last, (window[1] - window[0]) * PIXELS / columns);
     }
@@ -61,9 +68,11 @@
     /* All values that a curve takes, nearly: what it ranges over. */
     const range = (from) => all(from, 0, from.t.length - 1, Infinity)[1];
 
-    /* Rows for dygraphs: the times of all curves, null where a curve has no point, NaN where it has a gap. */
-    function rows(curves, window, columns) {
+    /* Rows for dygraphs: the times of all curves, null where a curve has no point, NaN where it has a gap. `bands` is given the
+     * band of each curve that is a comb. */
+    function rows(curves, window, columns, bands) {
         const shown = curves.map((each) => curve(each, window, columns));
+        shown.forEach(([, , band], i) => { (bands || [])[i] = band || null; });
         const next = shown.map(() => 0);
         const made = [];
         for (;;) {

@@ -18,14 +18,19 @@
     }
 
     function command(doc) {
-        const button = W.element('button', { type: 'button', id: 'copy', click() {
-            copy(doc.reproduce).then((copied) => {
+        return commandOf(doc.reproduce, 'copy');
+    }
+
+    /* A command to read and to copy. */
+    function commandOf(text, id) {
+        const button = W.element('button', { type: 'button', id, click() {
+            copy(text).then((copied) => {
                 button.textContent = copied ? 'Copied' : 'Please copy by hand';
                 W.say(button.textContent);
                 setTimeout(() => { button.textContent = 'Copy'; }, 2000);
             });
         } }, 'Copy');
-        return W.element('div', { class: 'command' }, W.element('code', {}, doc.reproduce), button);
+        return W.element('div', { class: 'command' }, W.element('code', {}, text), button);
     }
 
     function facts(doc) {
@@ -41,6 +46,7 @@
     }
 
     W.reproduce = {
+        commandOf,
         start(doc, host) {
             const made = W.tables.section('reproduce', 'To have this run again', ['', ''], facts(doc),
                 'The document does not hold what reproduces the run.');

@@ -95,13 +95,6 @@
         return triads;
     }
 
-    function light(scene) {
-        scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8f96, 0.75));
-        const sun = new THREE.DirectionalLight(0xffffff, 0.45);
-        sun.position.set(-0.6, -1.2, 2);
-        scene.add(sun);
-    }
-
     /* Null where there is no WebGL: asked for here, for three.js complains aloud. The picture is kept for paper. */
     function renderer() {
         const canvas = W.element('canvas');
@@ -126,10 +119,17 @@
         host.append(view.canvas);
         view.scene.add(world(doc, roots, view.named));
         view.moving = movers(doc, view.scene, view.named);
-        light(view.scene);
         pose(view, 0);
         view.corners = W.camera.corners(view.scene);
         addFloor(view);
+        W.light.add(view);
+        W.light.mark(view.scene);
+        view.gl.localClippingEnabled = true;
+        view.trails = W.trail.riders(doc).map((i) => {
+            const path = W.shapes.path(W.trail.most);
+            view.scene.add(path);
+            return { i, path };
+        });
         view.triads = addTriads(doc, view.scene, view.moving);
         view.marks = W.marks.make(view.scene, doc, (kind, text) => W.labels.make(view, kind, text));
         W.labels.add(view);
@@ -142,7 +142,14 @@
         view.paint = () => { paint(view); draw(view); };
         view.resize = () => { resize(view); draw(view); };
         view.show = (name, rider) => { view.rig.show(name, rider); draw(view); };
-        view.set = (options) => { Object.assign(view.options, options); view.paint(); };
+        view.set = (options) => {
+            Object.assign(view.options, options);
+            W.light.set(view, !!view.options.shadows);
+            view.paint();
+        };
+        view.hide = () => { hide(view); draw(view); };
+        view.cut = (plane) => { cut(view, plane); draw(view); };
+        view.bounds = () => bounds(view);
         view.rule = (ends, text) => W.labels.rule(view, ends, text);
         view.draw = () => draw(view);
         view.pick = (event) => pick(view, event);
@@ -158,7 +165,7 @@
         view.at = t;
         view.moving.forEach((mover) => {
             const found = poseOf(view.doc, mover, t);
-            mover.object.visible = found !== null;
+            mover.object.visible = found !== null && !W.parts.isHidden(mover.kind, mover.i);
             if (found) {
                 put(mover.object, found);
             }
@@ -168,12 +175,51 @@
                 dye(mover.object, waferColour(holder));
             }
         });
+        W.light.stale(view);
+    }
+
+    /* What stands still is hidden here, what moves with its pose. */
+    function hide(view) {
+        Object.values(view.named).forEach((object) => {
+            object.visible = !W.parts.isHidden(object.userData.node.kind, object.userData.node.index);
+        });
+        pose(view, view.at);
+    }
+
+    /* Shows only what lies on one side of a plane; null: all. */
+    function cut(view, plane) {
+        const normal = new THREE.Vector3().setComponent(plane ? plane.axis : 0, plane ? plane.keep : 1);
+        const planes = plane ? [new THREE.Plane(normal, -plane.keep * plane.at * M)] : [];
+        W.shapes.CUT.shown.value = plane ? 1 : 0;
+        view.scene.traverse((child) => {
+            if (child.userData.part || child.userData.edges !== undefined) {
+                child.material.clippingPlanes = planes;
+            }
+        });
+        W.light.stale(view);
+    }
+
+    /* The box of all that is in the cell, mm of base. */
+    function bounds(view) {
+        const { min, max } = new THREE.Box3().setFromPoints(view.corners);
+        return { low: min.toArray().map((x) => x / M), high: max.toArray().map((x) => x / M) };
+    }
+
+    /* Only where it is seen: each point is a pose. */
+    function layTrails(view) {
+        view.trails.forEach(({ i, path }) => {
+            path.visible = !!view.options.trail && !W.parts.isHidden('gripper', i);
+            if (path.visible) {
+                W.shapes.lay(path, W.trail.points(view.doc, i, view.at), W.theme.series(i), W.theme.colour('stage'));
+            }
+        });
     }
 
     /* Colours after a change of theme or of what is shown. */
     function paint(view) {
         const colour = W.theme.colour;
         view.scene.background = new THREE.Color(colour('stage'));
+        W.shapes.CUT.colour.value.set(colour('cut'));
         view.scene.traverse((child) => {
             if (child.userData.edges !== undefined) {
                 child.material.color.set(colour('edge'));
@@ -214,9 +260,12 @@
         view.due = false;
         view.rig.ride();
         view.marks.update(view.at);
+        layTrails(view);
         view.gl.render(view.scene, view.rig.camera);
         W.labels.hang(view);
     }
+
+    const isSeen = (object) => object === null || (object.visible && isSeen(object.parent));
 
     /* What a mesh belongs to: the nearest node above it that is of a kind. */
     function owner(object) {
@@ -230,9 +279,9 @@
             1 - (event.clientY - area.top) / area.height * 2);
         const ray = new THREE.Raycaster();
         ray.setFromCamera(spot, view.rig.camera);
-        return ray.intersectObjects(view.scene.children, true).filter((hit) => hit.object.userData.part)
+        return ray.intersectObjects(view.scene.children, true).filter((hit) => hit.object.userData.part && isSeen(hit.object))
             .map((hit) => ({ node: owner(hit.object), at: hit.point.toArray().map((x) => x / M) }))
-            .filter((hit) => hit.node)
+            .filter((hit) => hit.node && !W.section.isAway(hit.at))
             .map(({ node, at }) => ({ kind: node.userData.node.kind, i: node.userData.node.index, at }));
     }
 

@@ -18,10 +18,29 @@
         return part;
     }
 
+    /* Where a plane cuts a closed body one looks at its back: in one colour, hatched, that is the cut. */
+    const CUT = { colour: { value: new THREE.Color(0x888888) }, shown: { value: 0 } };
+    const HATCH = `
+        if (cutShown > 0.5 && !gl_FrontFacing) {
+            gl_FragColor.rgb = mod(gl_FragCoord.x + gl_FragCoord.y, 7.0) < 1.4 ? 0.72 * cutColour : cutColour;
+        }`;
+
+    function hatch(shader) {
+        shader.uniforms.cutColour = CUT.colour;
+        shader.uniforms.cutShown = CUT.shown;
+        shader.fragmentShader = 'uniform vec3 cutColour;\nuniform float cutShown;\n'
+            + shader.fragmentShader.replace('#include <fog_fragment>', HATCH + '\n#include <fog_fragment>');
+    }
+
     function surface(part) {
         const clear = part.alpha < 1;
-        return new THREE.MeshLambertMaterial({ transparent: clear, opacity: part.alpha, depthWrite: !clear,
-            side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+        const made = new THREE.MeshLambertMaterial({ transparent: clear, opacity: part.alpha, depthWrite: !clear,
+            side: THREE.DoubleSide, shadowSide: THREE.BackSide, clippingPlanes: [], clipShadows: true,
+            polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+        if (!clear) {
+            made.onBeforeCompile = hatch;
+        }
+        return made;
     }
 
     /* A part with its edges, as drawings have them. */
@@ -91,5 +110,42 @@
         return object;
     }
 
-    W.shapes = { tree, triad, mark, line, AXES };
+    /* A path of up to `most` points, with dots, through whatever is before it. */
+    function path(most) {
+        const buffer = () => {
+            const made = new THREE.BufferGeometry();
+            ['position', 'color'].forEach((name) => made.setAttribute(name,
+                new THREE.BufferAttribute(new Float32Array(3 * most), 3)));
+            return made;
+        };
+        const look = { vertexColors: THREE.VertexColors, depthTest: false, transparent: true };
+        const lines = new THREE.Line(buffer(), new THREE.LineBasicMaterial(look));
+        const dots = new THREE.Points(buffer(),
+            new THREE.PointsMaterial(Object.assign({ size: 5, sizeAttenuation: false }, look)));
+        const group = new THREE.Group();
+        [lines, dots].forEach((each) => Object.assign(each, { frustumCulled: false, renderOrder: 9 }));
+        group.add(lines, dots);
+        return group;
+    }
+
+    function fill(object, points, colourOf) {
+        const { position, color } = object.geometry.attributes;
+        points.forEach((point, i) => {
+            const { r, g, b } = colourOf(point);
+            position.setXYZ(i, ...point.r.map((x) => 0.001 * x));
+            color.setXYZ(i, r, g, b);
+        });
+        [position, color].forEach((each) => { each.needsUpdate = true; });
+        object.geometry.setDrawRange(0, points.length);
+    }
+
+    /* Shows points { r (mm), age (0 to 1), dot }: the older, the nearer to the ground's colour. */
+    function lay(made, points, colour, ground) {
+        const [from, to] = [new THREE.Color(colour), new THREE.Color(ground)];
+        const colourOf = (point) => from.clone().lerp(to, 0.85 * point.age);
+        fill(made.children[0], points, colourOf);
+        fill(made.children[1], points.filter((point) => point.dot), colourOf);
+    }
+
+    W.shapes = { tree, triad, mark, line, path, lay, CUT, AXES };
 }(window.Waferhand));

@@ -3,11 +3,12 @@
     'use strict';
 
     const VIEWS = [['whole', 'Whole', '1'], ['top', 'Top', '2'], ['side', 'Side', '3'], ['gripper', 'Gripper', '4']];
-    const OPTIONS = [['names', 'Names', 'n'], ['frames', 'Frames', 'f']];
+    const OPTIONS = [['names', 'Names', 'n'], ['frames', 'Frames', 'f'], ['trail', 'Trail', 'r'], ['shadows', 'Shadows', 's']];
 
     const TAKEN = [['link', 'Link', 'l', () => W.link.take()], ['picture', 'Picture', 'p', () => W.link.picture()]];
 
-    const stage = { view: null, shown: 'whole', rider: 0, options: { names: false, frames: false }, buttons: {} };
+    const stage = { view: null, shown: 'whole', rider: 0, buttons: {},
+        options: { names: false, frames: false, trail: false, shadows: true } };
 
     function button(name, text, key, pressed) {
         const made = W.element('button', { type: 'button', 'aria-pressed': 'false', title: `${text} (${key})`,
@@ -28,12 +29,51 @@
         W.say(name === 'gripper' ? `riding along with ${doc.names.grippers[stage.rider]}` : `view: ${name}`);
     };
 
-    stage.toggle = function (name) {
-        stage.options[name] = !stage.options[name];
-        stage.buttons[name].setAttribute('aria-pressed', stage.options[name]);
+    stage.choose = function (name, on) {
+        if (!stage.buttons[name]) {
+            return;
+        }
+        stage.options[name] = on;
+        stage.buttons[name].setAttribute('aria-pressed', on);
         stage.view.set(stage.options);
         legend();
     };
+
+    stage.toggle = (name) => stage.choose(name, !stage.options[name]);
+
+    /* The list of parts, opened and closed; the focus goes along. */
+    stage.list = function () {
+        stage.parts.hidden = !stage.parts.hidden;
+        stage.buttons.parts.setAttribute('aria-pressed', !stage.parts.hidden);
+        stage.buttons.parts.setAttribute('aria-expanded', !stage.parts.hidden);
+        (stage.parts.hidden ? stage.buttons.parts : stage.parts.querySelector('input')).focus({ preventScroll: true });
+    };
+
+    stage.section = function () {
+        if (stage.buttons.section) {
+            W.section.toggle();
+            W.say(W.section.on ? 'a plane cuts the cell' : 'no section');
+        }
+    };
+
+    /* What is hidden, and where the cell is cut, as the view is told. */
+    function changed() {
+        stage.view.hide();
+        if (stage.buttons.section) {
+            stage.view.cut(W.section.plane());
+            stage.buttons.section.setAttribute('aria-pressed', W.section.on);
+        }
+    }
+
+    function sheets(doc, roots) {
+        const host = W.element('div', { id: 'sheets' });
+        stage.parts = W.parts.make(doc, roots, changed);
+        host.append(stage.parts);
+        if (stage.view.cut) {
+            host.append(W.section.make(stage.view.bounds(), changed));
+        }
+        document.getElementById('toolbar').append(host);
+    }
 
     const item = (colour, text, shape) => W.element('span', { class: 'item' },
         W.element('i', { class: 'dot ' + (shape || ''), style: `background: var(--${colour})` }), text);
@@ -52,10 +92,13 @@
     function toolbar() {
         const bar = document.getElementById('toolbar');
         const views = VIEWS.map(([name, text, key]) => button(name, text, key, () => stage.show(name)));
-        const options = OPTIONS.map(([name, text, key]) => button(name, text, key, () => stage.toggle(name)));
+        const options = OPTIONS.filter(([name]) => name !== 'shadows' || stage.view.cut)
+            .map(([name, text, key]) => button(name, text, key, () => stage.toggle(name)));
+        const lists = [button('parts', 'Parts', 'h', stage.list)].concat(stage.view.cut
+            ? [button('section', 'Section', 'x', stage.section)] : []);
         const taken = TAKEN.map(([name, text, key, act]) => W.element('button', { type: 'button', title: `${text} (${key})`,
             'aria-keyshortcuts': key, 'data-name': name, click: act }, text));
-        bar.append(...[views, options, taken].map((group) => W.element('span', { class: 'group' }, ...group)));
+        bar.append(...[views, options, lists, taken].map((group) => W.element('span', { class: 'group' }, ...group)));
     }
 
     function picture(host, doc) {
@@ -65,6 +108,7 @@
                 : 'The cell is not shown: the document holds no scene.'));
             return null;
         }
+        stage.roots = roots;
         const view = W.scene.make(host, doc, roots);
         if (!view) {
             host.classList.add('flat');
@@ -88,6 +132,8 @@
         }
         describe(stage.view.canvas);
         toolbar();
+        sheets(doc, stage.roots);
+        stage.choose('shadows', true);
         legend();
         stage.buttons.whole.setAttribute('aria-pressed', 'true');
         W.clock.on('time', (clock) => stage.view.update(clock.now));

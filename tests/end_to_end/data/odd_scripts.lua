@@ -78,7 +78,7 @@ function cases.wrong_values()
   local words = {
     get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
     ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
-    continue = {}, stop = {}, rotate = { station, number("degrees", 5) }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
+    continue = {}, stop = {}, rotate = { station, number("degrees", 5) }, edge_scan = { station }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
     move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
     wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7) },
     fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },
@@ -174,6 +174,29 @@ function cases.endless_record()
   while true do
     expect(true, text)
   end
+end
+
+-- A STOP after `at` seconds of carrying a wafer from slot 1 of A; then HOME, and the wafer gets to `to` after all.
+function cases.stop_anywhere()
+  cell "../../../lua/layouts/paper.lua"
+  local slot = params.to == "P" and 1 or 3
+  stop_in(params.at)
+  local finished = pcall(function()
+    get("A", 1)
+    put(params.to, slot)
+  end)
+  expect(not finished, "the STOP comes in time")
+  local entered, problem = pcall(get, "A", 2)
+  expect(not entered and problem.name == "STOPPED", "nothing goes into a station before HOME")
+  home()
+  local dx, _, dz = offset("Wafer 1", "A", 1)
+  if holder("Wafer 1") == nil and math.abs(dx) < 1 and math.abs(dz) < 1 then
+    get("A", 1)
+  end
+  if holder("Wafer 1") == "EE" then
+    put(params.to, slot)
+  end
+  expect_offset("Wafer 1", params.to, slot, 0, 0, 0.01)
 end
 
 cases[params.case]()

@@ -1,5 +1,14 @@
--- Catches what fails and goes another way: half of the trials are not commanded as the run without errors is.
+-- Catches what fails and goes another way: half of the trials are not commanded as the run without errors is. Or, with
+-- params.by, decides by what it measures.
 cell "study_cell.lua"
+
+-- By a measured number, or by a distance of frames, which recorded decisions cannot have.
+if params.by then
+  get("A", 1)
+  local far = params.by == "frames" and distance("A/1", "B/1") > 950
+  put("B", (far or params.by == "offset" and offset("Wafer 1", "A", 1) > 0) and 1 or 2)
+  return
+end
 
 local function try(command, ...)
   local ok, problem = pcall(command, ...)

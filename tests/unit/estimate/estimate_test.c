@@ -1,4 +1,4 @@
-/* Frames and limits from measurements with known answers; what they do not tell; tables that are refused. */
+/* Frames, limits and robots from measurements with known answers; what they do not tell; tables that are refused. */
 #include "support/support.h"
 
 #include <unistd.h>
@@ -157,6 +157,135 @@ static void limits_that_times_do_not_tell_are_refused(void **state) {
     assert_true(found.reason[0] != '\0');
 }
 
+/* ------------------------------------------------------------------------------------------------- robots */
+
+#define DEG 0.017453292519943295
+
+static wh_touch_t touches[WH_GEOMETRY_MOST_TOUCHES + 1];
+
+/* A level robot at (800, -300), 90 degrees round, whose r is told 2 short and z 10 high, with a tool 20 ahead and 30 to the
+ * left of its wrist: touches by turns of quarters, so that sines are 0 and 1. */
+static void make_touches(size_t count) {
+    static const double s[4] = {0, 1, 0, -1};
+    for (size_t i = 0; i < count; ++i) {
+        const size_t arm = i % 4;
+        const size_t wrist = (arm + i / 4) % 4; /* yaw turned by quarters from arm */
+        const double r = 400 + 50 * (double)(i % 5);
+        const double z = 900 + 7 * (double)(i % 3);
+        const double ahead = s[(wrist + 1) % 4];
+        const double side = s[wrist];
+        wh_touch_t *touch = &touches[i];
+        *touch = (wh_touch_t){.heading = (double)NAN};
+        touch->axes[WH_AXIS_THETA] = (90 * (double)arm - 90) * DEG;
+        touch->axes[WH_AXIS_R] = r;
+        touch->axes[WH_AXIS_Z] = z;
+        touch->axes[WH_AXIS_YAW] = 90 * (double)(i / 4 % 4) * DEG;
+        touch->touched.x = 800 + (r + 2) * s[(arm + 1) % 4] + 20 * ahead - 30 * side;
+        touch->touched.y = -300 + (r + 2) * s[arm] + 20 * side + 30 * ahead;
+        touch->touched.z = z - 10;
+    }
+}
+
+static void a_robot_is_found_exactly(void **state) {
+    (void)state;
+    static const double truth[WH_GEOMETRY_SCALE] = {800, -300, 0, 0, 90 * DEG, 2, -10, -5 * DEG, 20, 30};
+    wh_geometry_estimate_t found;
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) {
+        touches[i].heading = touches[i].axes[WH_AXIS_THETA] + touches[i].axes[WH_AXIS_YAW] + 85 * DEG;
+    }
+    touches[5].axes[WH_AXIS_R] += 1.5; /* a wrong line, and a wrong heading */
+    touches[9].heading += 3 * DEG;
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_OK);
+    assert_string_equal(found.reason, "");
+    for (int k = 0; k < WH_GEOMETRY_SCALE; ++k) {
+        assert_true(found.values[k].is_determined);
+        assert_near(found.values[k].value, truth[k], 1e-8);
+        assert_true(found.values[k].sd < 1e-5);
+    }
+    assert_int_equal(found.set_aside, 1);
+    assert_true(touches[5].is_set_aside && !touches[6].is_set_aside);
+    assert_true(touches[9].is_heading_set_aside && !touches[10].is_heading_set_aside);
+    assert_true(found.is_base_determined);
+    assert_near(found.points_from_base.r.z, -10, 1e-8);
+    assert_near(found.base_rpy[2], 90 * DEG, 1e-9);
+    const wh_vec3_t there = wh_geometry_in_base(&found, &touches[0].touched);
+    assert_near(there.x, touches[0].touched.y + 300, 1e-6);
+    assert_near(there.y, 800 - touches[0].touched.x, 1e-6);
+    assert_near(there.z, touches[0].touched.z + 10, 1e-6);
+    assert_string_equal(wh_geometry_name(WH_GEOMETRY_ZERO + WH_AXIS_R), "zero_r");
+}
+
+static void robots_that_touches_do_not_tell_say_what_is_missing(void **state) {
+    (void)state;
+    wh_geometry_estimate_t found;
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) { /* not turned at the wrist */
+        const double arm = touches[i].axes[WH_AXIS_THETA] + 90 * DEG;
+        const double r = touches[i].axes[WH_AXIS_R] + 22;
+        touches[i].axes[WH_AXIS_YAW] = 0;
+        touches[i].touched.x = 800 + r * cos(arm) - 30 * sin(arm);
+        touches[i].touched.y = -300 + r * sin(arm) + 30 * cos(arm);
+    }
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_OK);
+    assert_string_equal(found.reason, "zero_r, tool_x: touches with yaw turned; zero_yaw: the tool's "
+                                      "heading, in 4 touches or more");
+    assert_false(found.values[WH_GEOMETRY_ZERO + WH_AXIS_R].is_determined);
+    assert_near(found.values[WH_GEOMETRY_TOOL_Y].value, 30, 1e-6);
+    touches[3].axes[WH_AXIS_YAW] = 90 * DEG; /* but for one: it alone tells */
+    const double arm = touches[3].axes[WH_AXIS_THETA] + 90 * DEG;
+    const double r = touches[3].axes[WH_AXIS_R] + 2 - 30;
+    touches[3].touched.x = 800 + r * cos(arm) - 20 * sin(arm);
+    touches[3].touched.y = -300 + r * sin(arm) + 20 * cos(arm);
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_OK);
+    assert_non_null(strstr(found.reason, "zero_r, tool_x: touches like number 4, which alone tells it"));
+    for (size_t i = 0; i < 24; ++i) { /* the same touch over and over */
+        touches[i] = touches[0];
+    }
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NOT_DETERMINED);
+    assert_non_null(strstr(found.reason, "theta turned"));
+    assert_false(found.is_base_determined);
+}
+
+static void robots_are_refused_by_number(void **state) {
+    (void)state;
+    wh_geometry_estimate_t found;
+    memset(touches, 0, sizeof touches);
+    make_touches(24);
+    assert_int_equal(wh_geometry_estimate(NULL, 24, false, &found), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_geometry_estimate(touches, WH_GEOMETRY_MOST_TOUCHES + 1, false, &found),
+                     WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_geometry_estimate(touches, 7, false, &found), WH_STATUS_TOO_FEW_POINTS);
+    assert_string_equal(found.reason, "7 of at least 8 touches");
+    touches[8].touched.z = (double)NAN;
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_OUT_OF_RANGE);
+    make_touches(24);
+    touches[8].axes[WH_AXIS_R] = 1e300;
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_OUT_OF_RANGE);
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) { /* one part in a hundred too long */
+        touches[i].axes[WH_AXIS_R] /= 1.002;
+    }
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NO_FIT);
+    assert_string_equal(found.reason, "the scale of r seems to be off by 0.2 %: fit the scales as well");
+    assert_int_equal(wh_geometry_estimate(touches, 24, true, &found), WH_OK);
+    assert_near(found.values[WH_GEOMETRY_SCALE + WH_AXIS_R].value, 1.002, 1e-7);
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) {
+        touches[i].heading = 0.1 * (double)(i * i % 17);
+    }
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NO_FIT);
+    assert_non_null(strstr(found.reason, "heading"));
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) { /* heights where the sides should be */
+        const double z = touches[i].touched.z;
+        touches[i].touched.z = touches[i].touched.y;
+        touches[i].touched.y = z;
+    }
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NO_FIT);
+}
+
 /* ------------------------------------------------------------------------------------------------- tables */
 
 static char path[WH_TEST_PATH];
@@ -260,6 +389,29 @@ static void a_move_table_keeps_axes_apart(void **state) {
     wh_move_table_close(&table);
 }
 
+static void a_touch_table_may_lack_headings(void **state) {
+    (void)state;
+    wh_touch_table_t table = {.count = 0};
+    write_table(
+        "theta,r,z,yaw,touched_x,touched_y,touched_z,heading\n180,400,900,-90,1,2,3,\n0,1,2,3,4,5,6,90\n");
+    assert_int_equal(wh_touch_table_open(&table, path), WH_OK);
+    assert_int_equal(table.count, 2);
+    assert_near(table.touches[0].axes[WH_AXIS_THETA], 180 * DEG, 1e-12);
+    assert_near(table.touches[0].axes[WH_AXIS_R], 400, 0);
+    assert_near(table.touches[0].axes[WH_AXIS_YAW], -90 * DEG, 1e-12);
+    assert_true(isnan(table.touches[0].heading));
+    assert_near(table.touches[1].heading, 90 * DEG, 1e-12);
+    assert_near(table.touches[1].touched.z, 6, 0);
+    assert_int_equal(table.lines[1], 3);
+    assert_false(wh_touch_table_estimate(&table, false));
+    assert_int_equal(table.estimate.status, WH_STATUS_TOO_FEW_POINTS);
+    wh_touch_table_close(&table);
+    write_table("theta,r,z,yaw,touched_x,touched_y,touched_z\n1,2,3,4,5,6,7\n");
+    assert_int_equal(wh_touch_table_open(&table, path), WH_OK);
+    assert_true(isnan(table.touches[0].heading));
+    wh_touch_table_close(&table);
+}
+
 static int make_path(void **state) {
     (void)state;
     return close(mkstemp(wh_test_path(path, "estimate")));
@@ -279,10 +431,14 @@ int main(void) {
         cmocka_unit_test(short_moves_tell_no_speed_and_say_so),
         cmocka_unit_test(a_delay_is_refused_unless_it_is_asked_for),
         cmocka_unit_test(limits_that_times_do_not_tell_are_refused),
+        cmocka_unit_test(a_robot_is_found_exactly),
+        cmocka_unit_test(robots_that_touches_do_not_tell_say_what_is_missing),
+        cmocka_unit_test(robots_are_refused_by_number),
         cmocka_unit_test(tables_are_read_by_columns_quotes_and_lines),
         cmocka_unit_test(tables_are_refused_by_line_column_and_value),
         cmocka_unit_test(moves_are_refused_by_axis_way_and_time),
         cmocka_unit_test(a_move_table_keeps_axes_apart),
+        cmocka_unit_test(a_touch_table_may_lack_headings),
     };
     return cmocka_run_group_tests(tests, make_path, remove_path);
 }

@@ -5,7 +5,7 @@
 
 /* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
  * LCM sends longer messages in fragments, which get lost one by one. */
-enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, NAME = 64 };
+enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64, NAME = 64 };
 
 typedef struct {
     const char *name;
@@ -33,20 +33,23 @@ static void largest_state_fits(void **state) {
     static waferhand_gripper_state grippers[GRIPPERS];
     static waferhand_event events[EVENTS];
     static waferhand_fault_slot faults[FAULTS];
+    static int32_t samples[SAMPLES];
     (void)state;
     const waferhand_state message = {.wafer_count = WAFERS,
                                      .gripper_count = GRIPPERS,
                                      .event_count = EVENTS,
                                      .fault_count = FAULTS,
+                                     .sample_count = SAMPLES,
                                      .wafers = wafers,
                                      .grippers = grippers,
                                      .events = events,
-                                     .faults = faults};
+                                     .faults = faults,
+                                     .samples = samples};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
-    /* Computed by hand: a header of 80, a check of 8, wafers of 100, grippers of 446, events of 156 and slots of
-     * faults of 328 bytes. */
-    assert_int_equal(size, 88 + WAFERS * 100 + GRIPPERS * 446 + EVENTS * 156 + FAULTS * 328);
+    /* Computed by hand: a header of 117, a check of 8, wafers of 100, grippers of 446, events of 156, slots of
+     * faults of 328 and samples of 4 bytes. */
+    assert_int_equal(size, 125 + SAMPLES * 4 + WAFERS * 100 + GRIPPERS * 446 + EVENTS * 156 + FAULTS * 328);
     assert_true(size <= DATAGRAM);
 }
 
@@ -82,7 +85,7 @@ static void fixed_sizes(void **state) {
     (void)state;
     const waferhand_command command = {0};
     const waferhand_proximity proximity = {0};
-    assert_int_equal(waferhand_command_encoded_size(&command), 1469);
+    assert_int_equal(waferhand_command_encoded_size(&command), 1489);
     assert_int_equal(waferhand_proximity_encoded_size(&proximity), 508);
 }
 

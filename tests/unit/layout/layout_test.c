@@ -256,6 +256,100 @@ static void a_blades_place_is_in_the_hash(void **state) {
     assert_true(plain != above);
 }
 
+#define PREALIGNER(sensor)                                                                                   \
+    "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, stations = { A = { at = { 700, 0, 900 }, "   \
+    "slots = 3, pitch = 10 }, P = { kind = 'prealigner', at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, " sensor  \
+    " } }, "
+#define RIM(rim) "wafers = { { station = 'A', slot = 1 }, { station = 'A', slot = 2, rim = { " rim " } } }, "
+
+static void an_edge_sensor_and_the_rims_that_it_sees_are_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(PREALIGNER("sensor = { }") RIM(""));
+    const wh_sensor_t nominal = wh_sensor_nominal(150);
+    const wh_rim_t notched = wh_rim_nominal(150);
+    assert_int_equal(layout->scanner_count, 1);
+    assert_int_equal(layout->scanners[0].gripper, 1);
+    assert_int_equal(layout->scanners[0].seed, 1);
+    assert_memory_equal(&layout->scanners[0].base_from_station, &layout->places[1].base_from_station,
+                        sizeof(wh_pose_t));
+    assert_memory_equal(&layout->scanners[0].sensor, &nominal, sizeof nominal);
+    assert_ptr_equal(layout->rims[0], layout->nominal_rim);
+    assert_memory_equal(layout->rims[1], &notched, sizeof notched);
+    layout = read_sound(PREALIGNER(
+        "sensor = { samples = 1000, pixel = 0.01, noise = 0.005, length = 20, offset = 0.1, tilt = 2, "
+        "latency = 2e-5, zero = -0.1, gain = 0.001, at = 90, encoder = 20000, seed = 5, "
+        "hidden = { { from = 45, width = 90 } } }") RIM("diameter = 299.9, notch = { at = 90, depth = 1.1, "
+                                                        "angle = 92, bottom = 1, corner = 0.2 }, flats = { "
+                                                        "{ at = 180, length = 20 } }, chips = { { at = 270, "
+                                                        "width = 2, depth = 0.5 } }, bow = 0.1, saddle = "
+                                                        "0.2, saddle_at = 180, glass = 0.5"));
+    const wh_sensor_t *sensor = &layout->scanners[0].sensor;
+    const wh_rim_t *rim = layout->rims[1];
+    const double sensor_numbers[] = {sensor->samples,        sensor->pixel,          sensor->noise,
+                                     sensor->length,         sensor->error.offset,   sensor->tilt,
+                                     sensor->error.latency,  sensor->error.zero,     sensor->error.gain,
+                                     sensor->direction,      sensor->encoder,        sensor->hidden_count,
+                                     sensor->hidden[0].from, sensor->hidden[0].width};
+    const double wanted_sensor[] = {1000, 0.01,  0.005,     20,    0.1, 2 * WH_PI / 180, 2e-5,
+                                    -0.1, 0.001, WH_PI / 2, 20000, 1,   WH_PI / 4,       WH_PI / 2};
+    const double rim_numbers[] = {rim->radius,
+                                  rim->notch.direction,
+                                  rim->notch.depth,
+                                  rim->notch.opening,
+                                  rim->notch.bottom,
+                                  rim->notch.corner,
+                                  rim->flats[0].direction,
+                                  rim->flats[0].length,
+                                  rim->flats[1].length,
+                                  rim->chip_count,
+                                  rim->chips[0].direction,
+                                  rim->chips[0].width,
+                                  rim->chips[0].depth,
+                                  rim->bow,
+                                  rim->saddle,
+                                  rim->saddle_direction,
+                                  rim->transmission};
+    const double wanted_rim[] = {149.95, WH_PI / 2, 1.1, 92 * WH_PI / 180, 1, 0.2, WH_PI,
+                                 20,     0,         1,   3 * WH_PI / 2,    2, 0.5, 0.1,
+                                 0.2,    WH_PI,     0.5};
+    for (size_t i = 0; i < sizeof wanted_sensor / sizeof wanted_sensor[0]; ++i) {
+        assert_near(sensor_numbers[i], wanted_sensor[i], 1e-12);
+    }
+    for (size_t i = 0; i < sizeof wanted_rim / sizeof wanted_rim[0]; ++i) {
+        assert_near(rim_numbers[i], wanted_rim[i], 1e-12);
+    }
+    assert_int_equal(layout->scanners[0].seed, 5);
+}
+
+/* Wafers of 150 mm have a flat, at the notch's direction; without depth there is no mark at all. */
+static void the_usual_rim_is_that_of_the_layouts_wafer(void **state) {
+    (void)state;
+    const wh_layout_t *layout =
+        read_sound(PREALIGNER("sensor = { }") "wafer = { diameter = 150, notch = { at = 90, depth = 0 } }");
+    assert_near(layout->nominal_rim->flats[0].length, 57.5, 0);
+    assert_near(layout->nominal_rim->flats[0].direction, WH_PI / 2, 1e-15);
+    assert_near(layout->nominal_rim->notch.depth, 0, 0);
+    layout = read_sound(PREALIGNER("sensor = { }") "wafer = { notch = { at = 90, depth = 1.2 } }");
+    assert_near(layout->nominal_rim->notch.depth, 1.2, 0);
+    assert_near(layout->nominal_rim->notch.direction, WH_PI / 2, 1e-15);
+    layout = read_sound(PREALIGNER("sensor = { }") "wafer = { notch = { depth = 0 } }");
+    assert_near(layout->nominal_rim->notch.depth, 0, 0);
+}
+
+static void sensors_and_rims_are_in_the_hash_once_there_is_a_sensor(void **state) {
+    (void)state;
+    const uint64_t without =
+        wh_layout_hash(read_sound(PREALIGNER("") "wafers = { { station = 'A', slot = 2 } }"));
+    const uint64_t usual =
+        wh_layout_hash(read_sound(PREALIGNER("sensor = { }") "wafers = { { station = 'A', slot = 2 } }"));
+    const uint64_t noisy = wh_layout_hash(
+        read_sound(PREALIGNER("sensor = { noise = 0.001 }") "wafers = { { station = 'A', slot = 2 } }"));
+    const uint64_t chipped = wh_layout_hash(read_sound(
+        PREALIGNER("sensor = { }") "wafers = { { station = 'A', slot = 2, rim = { chips = { { at = 3, "
+                                   "width = 1, depth = 1 } } } } }"));
+    assert_true(without != usual && usual != noisy && usual != chipped && noisy != chipped);
+}
+
 static void wafers_lie_where_the_slots_frame_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -273,11 +367,19 @@ static void wafers_lie_where_the_slots_frame_says(void **state) {
     assert_near(start->R.m[0][0], -1, 0);
 }
 
+typedef struct {
+    const char *fields, *message;
+} wrong_t;
+
+static void expect_all_refused(const wrong_t rows[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        expect_refused(rows[i].fields, rows[i].message);
+    }
+}
+
 static void what_is_wrong_is_named(void **state) {
     (void)state;
-    static const struct {
-        const char *fields, *message;
-    } rows[] = {
+    static const wrong_t rows[] = {
         {"", "stations: nothing"},
         {STATIONS, "grippers: nothing"},
         {GRIPPERS STATIONS "colour = 3", "cell.lua: colour: 3 (expected one of the fields wafer"},
@@ -318,9 +420,46 @@ static void what_is_wrong_is_named(void **state) {
         {GRIPPERS STATIONS "wafers = { [1] = { station = 'A', slot = 1 }, [3] = { } }",
          "cell.lua: wafers[3]: a table (expected a list: entries 1, 2, ... without names and gaps)"},
     };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
-        expect_refused(rows[i].fields, rows[i].message);
-    }
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
+}
+
+static void what_is_wrong_with_sensors_and_rims_is_named(void **state) {
+    (void)state;
+    static const wrong_t rows[] = {
+        {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, sensor = { } } }",
+         "stations.A.sensor: a table (expected nothing: only a station of kind \"prealigner\""},
+        {PREALIGNER("sensor = { pixels = 3 }"), "stations.P.sensor.pixels: 3 (expected one of the fields"},
+        {PREALIGNER("sensor = { samples = 89 }"),
+         "stations.P.sensor.samples: 89 (expected a whole number from 90"},
+        {PREALIGNER("sensor = { samples = 36000 }") "chuck = { speed = 720 }",
+         "stations.P.sensor.samples: 36000 (expected at most 31000: the chuck turns by up to 0.72 degrees in "
+         "a"},
+        {PREALIGNER("sensor = { }") "chuck = { speed = 6000 }",
+         "(expected a slower chuck: chuck.speed at most 5729.58"},
+        {PREALIGNER("sensor = { }") "slice = 0.5, check = 'swept'",
+         "(expected a slower chuck: chuck.speed at most 343.775"},
+        {PREALIGNER("sensor = { encoder = 3000 }"),
+         "sensor.encoder: 3000 (expected 0, or a whole number from samples"},
+        {PREALIGNER("sensor = { hidden = { { from = 3 } } }"), "sensor.hidden[1].width: nothing"},
+        {PREALIGNER("sensor = { }") "wafer = { diameter = 700, thickness = 1 }",
+         "an edge sensor sees wafers from 20"},
+        {PREALIGNER("sensor = { }") "wafer = { notch = { depth = 5 } }",
+         "wafer.notch.depth: 5 (expected 0, or a depth"},
+        {PREALIGNER("") RIM(""),
+         "wafers[2].rim: a table (expected nothing: no prealigner of this layout has"},
+        {PREALIGNER("sensor = { }") RIM("radius = 3"), "wafers[2].rim.radius: 3 (expected one of the fields"},
+        {PREALIGNER("sensor = { }") RIM("glass = 1"),
+         "wafers[2].rim.glass: 1 (expected a number from 0 to 0.9"},
+        {PREALIGNER("sensor = { }") RIM("notch = { depth = 0.3, bottom = 2 }"),
+         "wafers[2].rim.notch.bottom: nothing (expected a notch of depth 0"},
+        {PREALIGNER("sensor = { }") RIM("flats = { { at = 0, length = 300 } }"),
+         "wafers[2].rim.flats[1].length: 300 (expected a number from 2 to 210"},
+        {PREALIGNER("sensor = { }") RIM("chips = { { at = 0, width = 1, depth = 2 } }"),
+         "wafers[2].rim.chips[1].depth: 2 (expected a number from 0 to 1"},
+        {PREALIGNER("sensor = { }") RIM("chips = { {}, {}, {}, {}, {}, {}, {}, {}, {} }"),
+         "wafers[2].rim.chips: a table (expected at most 8 of them"},
+    };
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
 }
 
 /* Of several unknown fields the same one is named in every run, whatever Lua's order. */
@@ -346,8 +485,16 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(an_edge_sensor_and_the_rims_that_it_sees_are_read, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(the_usual_rim_is_that_of_the_layouts_wafer, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(sensors_and_rims_are_in_the_hash_once_there_is_a_sensor, open_sandbox,
+                                        close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_named, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_sensors_and_rims_is_named, open_sandbox,
+                                        close_sandbox),
         cmocka_unit_test_setup_teardown(the_first_unknown_field_by_name_is_reported, open_sandbox,
                                         close_sandbox),
     };

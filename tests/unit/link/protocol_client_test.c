@@ -290,6 +290,53 @@ static void a_free_run_hears_that_a_slice_before_the_last_was_refused(void **sta
     wh_node_close(&node);
 }
 
+static int64_t told[20];
+static size_t told_count;
+
+static void note_state(void *user, const wh_state_t *state) {
+    (void)user;
+    assert_true(told_count < sizeof told / sizeof told[0]);
+    told[told_count++] = state->seq;
+}
+
+/* Answers from slice 2 on come all at once, behind slice 4, and each of them twice. */
+static void answer_in_a_heap(void *user, const void *data, size_t size) {
+    static uint8_t kept[3][WH_LINK_DATAGRAM];
+    static size_t sizes[3];
+    waferhand_command message;
+    (void)user;
+    assert_true(wh_link_decode_command(data, size, &message));
+    (void)wh_protocol_server_command(&server, &message, NULL);
+    if (message.seq == 1) {
+        assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
+    } else if (message.seq <= 4) {
+        sizes[message.seq - 2] = server.encoded_size;
+        memcpy(kept[message.seq - 2], server.encoded, server.encoded_size);
+    }
+    for (size_t i = 0; message.seq == 4 && i < 6; ++i) {
+        assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, kept[i / 2], sizes[i / 2]));
+    }
+}
+
+/* An edge scan has samples in each state, so none of those between two exchanges may be passed over. */
+static void a_free_run_tells_each_state_that_it_takes_once(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.rate = 1000, .taken = note_state};
+    wh_state_t answer = {.status = WH_OK};
+    told_count = 0;
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_in_a_heap, NULL));
+    for (int64_t seq = 1; seq <= 5; ++seq) {
+        assert_int_equal(send_slice(seq, &answer), WH_OK);
+    }
+    (void)wh_node_drain(&node, 64);
+    assert_int_equal(told_count, 4);
+    for (size_t i = 0; i < 4; ++i) {
+        assert_int_equal(told[i], i + 1);
+    }
+    wh_node_close(&node);
+}
+
 /* Without a word from a simulator the next slice is due all the same, but for one whose state is awaited. */
 static void a_free_run_waits_for_a_state_that_is_awaited(void **state) {
     (void)state;
@@ -394,6 +441,63 @@ static void a_simulator_that_was_not_asked_is_not_silent(void **state) {
 }
 
 /* Those behind the last state, of which nobody knows. */
+/* One that does all but take a state back. */
+static void answer_but_take_nothing(void *user, const void *data, size_t size) {
+    waferhand_command message;
+    assert_true(wh_link_decode_command(data, size, &message));
+    if (message.run == server.identity.run || message.seq == 1) {
+        answer_truly(user, data, size);
+        return;
+    }
+    (void)wh_protocol_server_command(&server, &message, NULL); /* UNKNOWN_RUN */
+    assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
+}
+
+static void take_back(void *user, const void *data, size_t size) {
+    (void)user;
+    waferhand_state message;
+    assert_true(wh_link_decode_state(data, size, &message));
+    (void)wh_protocol_server_restore(&server, &message);
+    (void)waferhand_state_decode_cleanup(&message);
+}
+
+static void a_run_is_put_back_if_the_simulator_takes_its_state(void **state) {
+    (void)state;
+    static uint8_t saved[2][sizeof(waferhand_command) + WH_LINK_DATAGRAM];
+    const wh_protocol_client_options_t options = {.rate = 0};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_but_take_nothing, NULL));
+    const size_t before = wh_protocol_client_save(&client, saved[0]);
+    for (int64_t seq = 1; seq <= 3; ++seq) {
+        assert_int_equal(send_slice(seq, &answer), WH_OK);
+    }
+    const size_t size = wh_protocol_client_save(&client, saved[1]);
+    const uint64_t hash = client.hash;
+    const int64_t run = client.identity.run;
+    assert_int_equal(send_slice(4, &answer), WH_OK);
+    assert_int_equal(wh_protocol_client_restore(&client, saved[1], size, &answer), WH_STATUS_NOT_RESTORED);
+    assert_int_equal(client.identity.run, run);
+    assert_int_equal(send_slice(5, &answer), WH_OK); /* all is as it was */
+    assert_int_equal(server.seq, 5);
+
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_RESTORE, take_back, NULL));
+    assert_int_equal(wh_protocol_client_restore(&client, saved[1], size, &answer), WH_OK);
+    assert_true(client.identity.run != run);
+    assert_int_equal(client.hash, hash);
+    assert_int_equal(answer.seq, 3);
+    assert_int_equal(answer.event_count, 0);
+    assert_int_equal(server.seq, 3);
+    assert_int_equal(send_slice(4, &answer), WH_OK);
+    assert_int_equal(server.seq, 4);
+
+    assert_int_equal(wh_protocol_client_restore(&client, saved[0], before, &answer), WH_OK);
+    assert_int_equal(send_slice(1, &answer), WH_OK);
+    assert_int_equal(server.seq, 1);
+    assert_string_equal(said, "");
+    wh_node_close(&node);
+}
+
 static void slices_that_no_state_tells_of_are_missed_ones_of_a_free_run(void **state) {
     (void)state;
     wh_state_t answer = {.status = WH_OK};
@@ -414,12 +518,15 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_free_run_hears_that_a_slice_before_the_last_was_refused, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_free_run_waits_for_a_state_that_is_awaited, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_free_run_tells_each_state_that_it_takes_once, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stop_loses_no_slice, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator,
                                         set_up, tear_down),
         cmocka_unit_test_setup_teardown(two_simulators_are_told_from_one_that_was_started_anew, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_simulator_that_was_not_asked_is_not_silent, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_is_put_back_if_the_simulator_takes_its_state, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(slices_that_no_state_tells_of_are_missed_ones_of_a_free_run, set_up,
                                         tear_down),
     };

@@ -6,10 +6,14 @@
 #include "mcs/script_run.h"
 
 #define SCRIPT "tests/end_to_end/data/delayed.lua"
+#define EDGE "lua/examples/09_edge_scan.lua"
 
 static wh_protocol_server_t servers[2];
 static int64_t restart_every;
 static size_t restarts, faults_seen, slips_seen;
+static const char *script = SCRIPT;
+static uint8_t sampled[WH_LINK_DATAGRAM]; /* the first state that has samples */
+static size_t sampled_size;
 
 static void send(const wh_command_t *command) {
     waferhand_command decoded;
@@ -44,6 +48,10 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
         faults_seen += state->events[i].kind == WH_EVENT_FAULT_ARMED ? 1 : 0;
         slips_seen += state->events[i].kind == WH_EVENT_SLIPPED ? 1 : 0;
     }
+    if (state->physics->scan.sample_count > 0 && sampled_size == 0) {
+        sampled_size = server->encoded_size;
+        memcpy(sampled, server->encoded, sampled_size);
+    }
     if (restart_every > 0 && command->seq % restart_every == 0) {
         restart(server->layout);
     }
@@ -59,7 +67,7 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
 }
 
 static uint64_t run_with(int64_t every, bool by_call) {
-    wh_script_run_options_t options = {.script = SCRIPT};
+    wh_script_run_options_t options = {.script = script};
     wh_script_run_t run;
     options.partners.connect = by_call ? NULL : connect_server;
     restart_every = every;
@@ -83,7 +91,76 @@ static void restarted_again_and_again(void **state) {
     assert_true(run_with(1, false) == by_call);
 }
 
+/* Also in the middle of a scan; and motion control collects the same samples, as the script's expectations show. */
+static void a_scan_goes_on_in_another_server(void **state) {
+    (void)state;
+    script = EDGE;
+    sampled_size = 0;
+    const uint64_t by_call = run_with(0, true);
+    assert_true(by_call == UINT64_C(0xcd21f71bc181a5f9));
+    assert_true(run_with(0, false) == by_call);
+    assert_true(sampled_size > 0);
+    assert_true(run_with(7, false) == by_call);
+    assert_true(restarts > 500);
+    assert_true(run_with(1, false) == by_call);
+    script = SCRIPT;
+}
+
 /* ---------------------------------------------------------------------------------------------- what is refused */
+
+static void other_sample(waferhand_state *message) {
+    message->samples[0] += 1;
+}
+
+static void more_taken(waferhand_state *message) {
+    message->scan_taken += 1;
+}
+
+static void no_gripper(waferhand_state *message) {
+    message->scan_gripper = 2;
+}
+
+static void no_turn(waferhand_state *message) {
+    message->scan_turn = (double)NAN;
+}
+
+static void other_turn(waferhand_state *message) {
+    message->scan_turn += 1e-9;
+}
+
+static void no_scan(waferhand_state *message) {
+    message->scan_number = 0;
+}
+
+static void no_other_scan_is_taken_over(void **state) {
+    static void (*const changes[])(waferhand_state * message) = {other_sample, more_taken, no_gripper,
+                                                                 no_turn,      other_turn, no_scan};
+    static wh_protocol_server_t fresh;
+    wh_script_run_options_t options = {.script = EDGE, .partners = {.connect = connect_server}};
+    wh_script_run_t run;
+    (void)state;
+    restart_every = 0;
+    sampled_size = 0;
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
+    assert_int_equal(wh_protocol_server_open(&fresh, server->layout), WH_OK);
+    for (size_t i = 0; i <= sizeof changes / sizeof changes[0]; ++i) {
+        const bool changed = i < sizeof changes / sizeof changes[0];
+        waferhand_state message;
+        assert_true(wh_link_decode_state(sampled, sampled_size, &message));
+        if (changed) {
+            changes[i](&message);
+        }
+        assert_int_equal(wh_protocol_server_restore(&fresh, &message),
+                         changed ? WH_SERVER_IGNORED : WH_SERVER_RESTORED);
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+    /* A count that is not followed by so many samples. */
+    for (size_t cut = 1; cut < sampled_size; cut += 7) {
+        waferhand_state message;
+        assert_false(wh_link_decode_state(sampled, sampled_size - cut, &message));
+    }
+    wh_script_run_close(&run);
+}
 
 static void no_level(waferhand_state *message) {
     message->grippers[0].vacuum_level = 2;
@@ -167,11 +244,54 @@ static void the_cell_tells_it_all(void **state) {
     wh_script_run_close(&run);
 }
 
+/* The same with edge sensors and rims; a cell that no layout could have made is refused. */
+static void the_cell_tells_what_sensors_see(void **state) {
+    static wh_link_cell_t cell;
+    static uint8_t bytes[WH_LINK_DATAGRAM];
+    wh_script_run_options_t options = {.script = EDGE, .partners = {.connect = connect_server}};
+    wh_script_run_t run;
+    (void)state;
+    restart_every = 0;
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
+    wh_layout_t layout = *server->layout;
+    layout.scanners[0].sensor.hidden_count = 1;
+    layout.scanners[0].sensor.hidden[0] = (wh_arc_t){1, 0.5};
+    const wh_link_identity_t identity = {1, wh_layout_hash(&layout)};
+    assert_true(wh_link_cell_from_layout(&layout, &identity, &cell));
+    assert_int_equal(cell.message.rim_count, 2);
+    const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &cell.message);
+    waferhand_cell message;
+    assert_true(size > 0);
+    for (size_t cut = 1; cut < (size_t)size; cut += 7) {
+        assert_false(wh_link_decode_cell(bytes, (size_t)size - cut, &message));
+    }
+    assert_true(wh_link_decode_cell(bytes, (size_t)size, &message));
+    wh_layout_t *made = wh_link_layout_from_cell(&message);
+    assert_non_null(made);
+    const wh_scanning_t before = wh_layout_scanning(&layout);
+    const wh_scanning_t after = wh_layout_scanning(made);
+    assert_true(wh_scanning_hash(&before, 1, 0) == wh_scanning_hash(&after, 1, 0));
+    wh_link_layout_free(made);
+    message.rims[1].wafer = 1;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.rims[1].wafer = 0;
+    message.rims[1].chip_depth[0] = 40;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.rims[1].chip_depth[0] = 0.1;
+    message.sensors[0].gripper = 0; /* no chuck */
+    assert_null(wh_link_layout_from_cell(&message));
+    message.sensors[0].gripper = 1;
+    message.sensors[0].samples = 10;
+    assert_null(wh_link_layout_from_cell(&message));
+    (void)waferhand_cell_decode_cleanup(&message);
+    wh_script_run_close(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(restarted_again_and_again),
-        cmocka_unit_test(no_other_condition_is_taken_over),
-        cmocka_unit_test(the_cell_tells_it_all),
+        cmocka_unit_test(restarted_again_and_again),   cmocka_unit_test(no_other_condition_is_taken_over),
+        cmocka_unit_test(the_cell_tells_it_all),       cmocka_unit_test(a_scan_goes_on_in_another_server),
+        cmocka_unit_test(no_other_scan_is_taken_over), cmocka_unit_test(the_cell_tells_what_sensors_see),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -106,11 +106,11 @@ static void a_stop_may_come_at_any_time(void **state) {
         for (int step = 1; step <= 78; ++step) {
             char at[30];
             snprintf(at, sizeof at, "at=%.3f", 0.05 * step);
-            const char *const parameters[] = {at, targets[t]};
-            const wh_script_run_options_t options = {.script = "tests/end_to_end/data/stop_anywhere.lua",
+            const char *const parameters[] = {"case=stop_anywhere", at, targets[t]};
+            const wh_script_run_options_t options = {.script = ODD_SCRIPTS,
                                                      .limits = {.print_to = stderr},
                                                      .parameters = parameters,
-                                                     .parameter_count = 2};
+                                                     .parameter_count = 3};
             if (wh_script_run(&run, &options) != WH_RUN_MET) {
                 fail_msg("%s %s: %s", at, targets[t], run.record.failure ? run.record.failure : run.message);
             }

@@ -219,6 +219,8 @@ static const kind_t *find_kind(const char *name, size_t length) {
                                    {"HANDOVER", "new_first", {"new", "5"}},
                                    {"VACUUM_CHECK", "both", {"never", "5"}},
                                    {"SWITCH", "true", {"yes", "1"}},
+                                   {"NAME", "n", {NULL}},
+                                   {"SAVE", "n", {"Q", "5"}},
                                    {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
                                    {"SECONDS", "1", {"-1", "2000000", "x", "inf", "nan"}}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
@@ -687,6 +689,113 @@ static void a_reset_to_a_layout_that_is_refused_changes_nothing(void **state) {
     (void)remove(path);
 }
 
+/* ------------------------------------------------------------------------- SAVE, RESTORE, UNDO
+ */
+
+static uint64_t hash_now(void) {
+    return session.mcs.link->hash(session.mcs.link);
+}
+
+static void what_was_saved_goes_on_with_the_same_bits(void **state) {
+    (void)state;
+    static const char *const lines[] = {"FAULT slow_vacuum gripper=PA value=0.01",
+                                        "GET A 1 stop=up",
+                                        "CONTINUE",
+                                        "PUT B 2",
+                                        "GET B 1",
+                                        "PUT P 1",
+                                        "ROTATE P 30",
+                                        "VALVE EE 0",
+                                        "MOVE theta=20"};
+    const size_t count = sizeof lines / sizeof lines[0];
+    uint64_t hashes[sizeof lines / sizeof lines[0] + 1];
+    char name[40];
+    for (size_t i = 0; i <= count; ++i) {
+        (void)snprintf(name, sizeof name, "SAVE s%zu", i);
+        assert_answer(name, "OK time=");
+        hashes[i] = hash_now();
+        if (i < count) {
+            assert_answer(lines[i], "OK");
+        }
+    }
+    for (size_t from = count + 1; from-- > 0;) {
+        (void)snprintf(name, sizeof name, "RESTORE s%zu", from);
+        assert_answer(name, "OK time=");
+        for (size_t i = from; i < count; ++i) {
+            assert_int_equal(hash_now(), hashes[i]);
+            assert_answer(lines[i], "OK");
+        }
+        assert_int_equal(hash_now(), hashes[count]);
+    }
+}
+
+static void what_was_done_is_taken_back(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"UNDO", "ERROR 68 NOTHING_TO_UNDO: "},
+        {"RESTORE a", "ERROR 67 NO_SUCH_SAVE: no state was saved under this name; \"a\" (expected a saved "
+                      "name; there is none)"},
+        {"SAVE \"to begin\"", "OK time=0"},
+        {"GET A 1", "OK"},
+        {"GET A 2", "ERROR 44 "}, /* refused: it changed nothing */
+        {"HOLDER \"Wafer 1\"", "OK holder=EE"},
+        {"PUT B 2", "OK"},
+        {"PUT B 2", "ERROR 43 "},
+        {"UNDO", "OK undone=\"PUT B 2\" left=1 time=1.965"},
+        {"HOLDER \"Wafer 1\"", "OK holder=EE"},
+        {"PUT B 2", "OK"}, /* the slot book has forgotten the first one, too */
+        {"restore \"To Begin\"", "OK time=0"},
+        {"STATUS", "OK phase=idle seq=0 time=0 theta=0 r=300 z=900 yaw=0 EE.holds=none PA.holds=none"},
+        {"UNDO", "OK undone=\"restore \\\"To Begin\\\"\" left=2 time=4.302"},
+        {"UNDO", "OK undone=\"PUT B 2\" left=1 time=1.965"},
+        {"UNDO", "OK undone=\"GET A 1\" left=0 time=0"},
+        {"UNDO", "ERROR 68 "},
+        {"RESTORE b", "ERROR 67 NO_SUCH_SAVE: no state was saved under this name; \"b\" (expected to begin)"},
+        {"GET A 1 stop=extended", "OK wafer=none seconds=1 stop=extended"},
+        {"STOP", "OK"},
+        {"GET A 1", "ERROR 52 STOPPED"},
+        {"UNDO", "OK undone=STOP left=1 time=1"},
+        {"STATUS", "OK phase=held command=\"GET A 1 stop=extended\" stop=extended"},
+        {"CONTINUE", "OK wafer=\"Wafer 1\" seconds=0.965"},
+        {"UNDO", "OK undone=CONTINUE left=1 time=1"},
+        {"CONTINUE", "OK wafer=\"Wafer 1\" seconds=0.965"},
+        {"FAULT leak gripper=EE value=0.2", "OK fault=1"},
+        {"UNDO", "OK undone=\"FAULT leak gripper=EE value=0.2\" left=2 time=1.965"},
+        {"CLEAR 1", "ERROR 48 "},
+        {"SAVE", "ERROR 48 "},
+        {"UNDO 2", "ERROR 48 "},
+        {"RESET", "OK"},
+        {"UNDO", "ERROR 68 "},
+        {"RESTORE \"to begin\"", "ERROR 67 "},
+    };
+    ASSERT_DIALOGUE(dialogue);
+}
+
+static void so_many_are_taken_back_and_no_more(void **state) {
+    (void)state;
+    char expected[80];
+    for (int i = 1; i <= WH_MCS_UNDONE + 3; ++i) {
+        assert_answer("WAIT 0.001", "OK");
+    }
+    for (int i = WH_MCS_UNDONE; i-- > 0;) {
+        (void)snprintf(expected, sizeof expected, "OK undone=\"WAIT 0.001\" left=%d time=", i);
+        assert_answer("UNDO", expected);
+    }
+    assert_answer("UNDO", "ERROR 68 ");
+    assert_int_equal(session.mcs.track.slice, 3);
+}
+
+/* A link that tells nobody what its other side is. */
+static void what_a_link_does_not_tell_is_refused_by_name(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {{"SAVE a",
+                                           "ERROR 69 NOT_RESTORED: the simulator does not take a saved "
+                                           "state; this simulator does not tell all that it is"},
+                                          {"GET A 1", "OK wafer=\"Wafer 1\""},
+                                          {"UNDO", "ERROR 68 "}};
+    ASSERT_DIALOGUE(dialogue);
+}
+
 int main(void) {
 #define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_paper, close_session)
 #define IN_BETWEEN(test) cmocka_unit_test_setup_teardown(test, open_between, close_session)
@@ -711,6 +820,10 @@ int main(void) {
         cmocka_unit_test_teardown(a_line_is_reported, close_session),
         cmocka_unit_test(what_cannot_be_opened),
         cmocka_unit_test(a_layout_that_spoils_the_strings),
+        IN_PAPER(what_was_saved_goes_on_with_the_same_bits),
+        IN_PAPER(what_was_done_is_taken_back),
+        IN_PAPER(so_many_are_taken_back_and_no_more),
+        IN_BETWEEN(what_a_link_does_not_tell_is_refused_by_name),
         IN_PAPER(status_tells_where_all_is),
         IN_PAPER(reset_is_a_new_beginning),
         cmocka_unit_test(a_reset_to_a_layout_that_is_refused_changes_nothing),

@@ -72,10 +72,10 @@ static void assert_real(json_t *object, const char *key, double value) {
 }
 
 static void head(void **state) {
-    static const char *const keys[] = {"format", "ok",          "script", "layout", "slices",
-                                       "missed", "simulated_s", "wall_s", "hash",   "throughput",
-                                       "split",  "commands",    "wafers", "events", "expectations",
-                                       "cycles", "gantt",       "reach",  NULL};
+    static const char *const keys[] = {"format",       "ok",          "script",   "layout", "slices",
+                                       "missed",       "simulated_s", "wall_s",   "hash",   "throughput",
+                                       "steady_cycle", "split",       "commands", "wafers", "events",
+                                       "expectations", "cycles",      "gantt",    "reach",  NULL};
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);

@@ -20,7 +20,7 @@ static char *print(const wh_record_t *record, const wh_style_t *style) {
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
-    assert_int_equal(wh_record_print_table(record, out, style, 0), 0);
+    assert_int_equal(wh_record_print_table(record, out, style, NULL), 0);
     fclose(out);
     return text;
 }
@@ -446,7 +446,7 @@ static void write_error(void **state) {
         skip();
     }
     fixture_transfer(&f);
-    assert_int_equal(wh_record_print_table(&f.record, full, &piped, 0), -1);
+    assert_int_equal(wh_record_print_table(&f.record, full, &piped, NULL), -1);
     fclose(full);
 }
 

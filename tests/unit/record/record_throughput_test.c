@@ -56,7 +56,9 @@ static void begin(void) {
 
 /* ---------------------------------------------------------------------------------------------------- table */
 
-static char *print(const wh_style_t *style, unsigned sections) {
+static const wh_record_sections_t with_gantt = {.gantt = true};
+
+static char *print(const wh_style_t *style, const wh_record_sections_t *sections) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -78,7 +80,7 @@ static void gantt_shows_the_commands(void **state) {
     const wh_style_t style = {false, true, 50};
     (void)state;
     begin();
-    char *text = print(&style, WH_TABLE_GANTT);
+    char *text = print(&style, &with_gantt);
     assert_says(
         text,
         "\nGantt\n"
@@ -102,7 +104,7 @@ static void gantt_in_ascii(void **state) {
     add_cycle(2, f.texts[7], 0);
     strcpy(f.texts[6], "put it there");
     add_cycle(4, f.texts[6], 5000);
-    char *text = print(&style, WH_TABLE_GANTT);
+    char *text = print(&style, &with_gantt);
     assert_says(text, "\ncycle     |1                  |put it there\n"
                       "command   |GET B 1        |   |PUT P 1\n"
                       "robot     ------vv########....################--\n"
@@ -120,7 +122,7 @@ static void gantt_at_any_width(void **state) {
     for (size_t width = 0; width < 200; ++width) {
         const wh_style_t style = {false, false, width};
         const size_t columns = width == 0 ? 100 : width > 30 ? width - 10 : 20;
-        char *text = print(&style, WH_TABLE_GANTT);
+        char *text = print(&style, &with_gantt);
         const char *row = strstr(text, "\nPA turns ");
         assert_non_null(row);
         assert_int_equal(strcspn(row + 1, "\n"), 10 + columns);
@@ -129,11 +131,58 @@ static void gantt_at_any_width(void **state) {
     }
 }
 
+/* From 2 s to 7 s, 40 columns of 125 slices: what began before has no bar, what lies outside has no row. */
+static void gantt_of_a_window(void **state) {
+    const wh_style_t style = {false, true, 50};
+    const wh_record_sections_t window = {.gantt = true, .from_s = 2, .to_s = 7};
+    const wh_record_sections_t beyond = {.gantt = true, .from_s = 10};
+    (void)state;
+    begin();
+    char *text = print(&style, &window);
+    assert_says(text, "\nGantt\n"
+                      "s         2               4               6\n"
+                      "command   GET B 1         │WAIT 1 │PUT P 1\n"
+                      "robot     ████████████████········████████████████\n"
+                      "EE holds  ━Wäfer №3━━━━━━━━━━━━━━━━━━━━━━━━━━━━━━━\n"
+                      "EE valve  oooooooooooooooooooooooooooooooooooooooo\n"
+                      "█ moving with a wafer");
+    assert_says(text, "   3  GET B 1   4.000");
+    assert_says(text, "  all      10.000");
+    free(text);
+    text = print(&style, &beyond);
+    assert_says(text, "\nGantt\nnothing: no slice of the run, which took 10.000 s, lies there\n");
+    assert_null(strstr(text, "Totals"));
+    free(text);
+}
+
+static void steady_cycles_by_themselves(void **state) {
+    const wh_style_t style = {false, false, 50};
+    const wh_record_sections_t wanted = {.cycle = true};
+    (void)state;
+    begin();
+    char *text = print(&style, &wanted);
+    assert_says(text, "\nFirst steady cycle\nno steady cycle: no two cycles are marked");
+    assert_null(strstr(text, "\nGantt\n"));
+    free(text);
+    fixture_command(&f, 6, "PUT P 1", 10, 15);
+    f.record.slices = 15000;
+    f.record.simulated_s = 15;
+    add_cycle(2, f.texts[7], 5000);
+    strcpy(f.texts[6], "again");
+    add_cycle(2, f.texts[6], 10000);
+    text = print(&style, &wanted);
+    assert_says(text,
+                "\nFirst steady cycle\n5.000 s, from 5.000 s to 10.000 s, with 1 command: cycle 1; 2 like it "
+                "in a row, to 1 %\nno wafers per hour: no wafer was put into a station that counts\n");
+    assert_says(text, "\ncycle     |1\ncommand   |PUT P 1\n");
+    free(text);
+}
+
 static void times(void **state) {
     const wh_style_t style = {false, true, 0};
     (void)state;
     begin();
-    char *text = print(&style, WH_TABLE_GANTT);
+    char *text = print(&style, &with_gantt);
     assert_says(text, "line  command       s  with wafer  without  vacuum  valves  waiting\n"
                       "   3  GET B 1   4.000       2.000    1.500   0.499   0.001\n"
                       "   4  WAIT 1    1.000                                         1.000\n"
@@ -198,7 +247,7 @@ static void margins(void **state) {
     (void)state;
     begin();
     fill_reach();
-    char *text = print(&style, WH_TABLE_MARGINS);
+    char *text = print(&style, &(wh_record_sections_t){.margins = true});
     assert_says(
         text,
         "station  theta deg  from          r mm  from           z mm  from          yaw deg  from\n"
@@ -326,6 +375,8 @@ int main(void) {
         cmocka_unit_test(gantt_shows_the_commands),
         cmocka_unit_test(gantt_in_ascii),
         cmocka_unit_test(gantt_at_any_width),
+        cmocka_unit_test(gantt_of_a_window),
+        cmocka_unit_test(steady_cycles_by_themselves),
         cmocka_unit_test(times),
         cmocka_unit_test(sections_are_asked_for),
         cmocka_unit_test(wafers_per_hour_are_counted),

@@ -1,10 +1,10 @@
-/* Wafers per hour by the rules of record/throughput.h, and a whole run's figures against times computed by hand. */
+/* Wafers per hour by the rules of record/throughput.h, steady cycles by those of record/steady.h, and a whole run's figures against times computed by hand. */
 #include "support/support.h"
 
 #include <string.h>
 
 #include "mcs/script_run.h"
-#include "record/throughput.h"
+#include "record/steady.h"
 #include "support/record.h"
 
 /* -------------------------------------------------------------------------------------------------- rules */
@@ -378,6 +378,171 @@ static void forgetting(void **state) {
     wh_record_free(&record);
 }
 
+/* ---------------------------------------------------------------------------------------- steady cycles */
+
+static wh_command_record_t listed[40];
+static char texts[40][20];
+
+/* One command behind the other. */
+static void add_command(const char *text, double seconds) {
+    const size_t i = f.record.command_count++;
+    const double at = i == 0 ? 0 : listed[i - 1].end_s;
+    strcpy(texts[i], text);
+    listed[i] = (wh_command_record_t){.text = texts[i], .begin_s = at, .end_s = at + seconds};
+    f.record.slices = (int64_t)(listed[i].end_s * 1000 + 0.5);
+}
+
+static void begin_commands(void) {
+    begin(0);
+    f.record.commands = listed;
+}
+
+/* Gets of one slot after the other, the first from home; each put at its end. */
+static void add_transfers(size_t count) {
+    static const char *const gets[] = {"GET A 1", "GET A 2", "GET A 3", "GET A 4"};
+    for (size_t i = 0; i < count; ++i) {
+        add_command(gets[i], i == 0 ? 3 : 2);
+        add_command("PUT B 7", 1);
+        add_put(f.record.slices, (int32_t)(i % FIXTURE_WAFERS), FIXTURE_B, 7);
+    }
+}
+
+static void assert_unsteady(wh_steady_t reason) {
+    const wh_steady_cycle_t found = wh_steady_cycle(&f.record);
+    assert_int_equal(found.found, reason);
+    assert_non_null(wh_steady_reason(reason));
+    assert_int_equal(found.count + found.times + found.mark + found.wafers, 0);
+    assert_true(found.seconds == 0 && found.wafers_per_hour == 0);
+    assert_int_equal(found.begin + found.end, 0);
+}
+
+static void assert_steady(size_t first, size_t count, int64_t from, int64_t to, size_t times) {
+    const wh_steady_cycle_t found = wh_steady_cycle(&f.record);
+    assert_int_equal(found.found, WH_STEADY_FOUND);
+    assert_null(wh_steady_reason(found.found));
+    assert_int_equal(found.first, first);
+    assert_int_equal(found.count, count);
+    assert_int_equal(found.begin, from);
+    assert_int_equal(found.end, to);
+    assert_int_equal(found.times, times);
+    assert_near(found.seconds, (double)(to - from) / 1000, 1e-12);
+    assert_near(found.wafers_per_hour,
+                found.figure == WH_FIGURE_GIVEN ? 3600 * (double)found.wafers / found.seconds : 0, 1e-9);
+}
+
+static void a_cycle_is_found_without_marks(void **state) {
+    (void)state;
+    begin_commands();
+    assert_unsteady(WH_STEADY_NO_COMMANDS);
+    add_transfers(4);
+    assert_steady(2, 2, 4000, 7000, 3);
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_GIVEN);
+    assert_int_equal(wh_steady_cycle(&f.record).wafers, 1);
+    assert_int_equal(wh_steady_cycle(&f.record).mark, 0);
+    /* What comes before and behind does not belong to it. */
+    begin_commands();
+    add_command("HOME", 1);
+    add_transfers(4);
+    add_command("WAIT 5", 5);
+    assert_steady(3, 2, 5000, 8000, 3);
+}
+
+static void a_longer_cycle_is_not_what_repeats_within_it(void **state) {
+    static const char *const cycle[] = {"GET A 1", "PUT B 1", "GET A 2", "PUT B 2", "ROTATE P 90"};
+    (void)state;
+    begin_commands();
+    for (size_t i = 0; i < 15; ++i) {
+        add_command(cycle[i % 5], 1);
+    }
+    assert_steady(0, 5, 0, 5000, 3);
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_NO_WAFER);
+}
+
+static void what_does_not_repeat_is_no_cycle(void **state) {
+    (void)state;
+    begin_commands();
+    add_transfers(2);
+    assert_unsteady(WH_STEADY_NO_CYCLES);
+    /* Three like ones that are less than half of the run. */
+    begin_commands();
+    add_transfers(3);
+    static const char *const others[] = {"GET B 1", "WAIT 1",  "ROTATE P 1", "HOME",
+                                         "MOVE 1",  "PUT A 1", "STOP"};
+    for (size_t i = 0; i < 7; ++i) {
+        add_command(others[i], 1);
+    }
+    assert_unsteady(WH_STEADY_NO_CYCLES);
+}
+
+/* Each of these differs from its neighbours by a hundredth and a bit, has an error, or as many wafers not. */
+static void cycles_that_differ_are_not_steady(void **state) {
+    (void)state;
+    begin_commands();
+    for (size_t i = 0; i < 5; ++i) {
+        add_command("GET A 1", i % 2 ? 1 : 1.011);
+    }
+    assert_unsteady(WH_STEADY_UNLIKE);
+    listed[3].end_s += 0.002; /* 1.011, 1.002 and 1.009: within a hundredth */
+    listed[4].begin_s += 0.002;
+    assert_steady(2, 1, 2011, 3022, 3);
+    listed[3].error = WH_STATUS_BAD_ARGUMENT;
+    assert_unsteady(WH_STEADY_UNLIKE);
+    begin_commands();
+    add_transfers(3);
+    listed[0].end_s = listed[1].begin_s = 2; /* then all are alike */
+    made_puts[1].slice = 7500;               /* in the third cycle, with another one */
+    assert_unsteady(WH_STEADY_UNLIKE);
+}
+
+static void marked_cycles_go_before_what_repeats(void **state) {
+    (void)state;
+    begin_commands();
+    add_transfers(4);
+    add_cycle(0);
+    assert_unsteady(WH_STEADY_NO_CYCLES);
+    add_cycle(7000);
+    add_cycle(10000);
+    add_cycle(13000);
+    assert_steady(4, 2, 7000, 10000, 2);
+    assert_int_equal(wh_steady_cycle(&f.record).mark, 2);
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_GIVEN);
+    made_cycles[2].begin = 9000;
+    assert_unsteady(WH_STEADY_UNLIKE);
+}
+
+/* One wafer that is put twice in a cycle: marked it is one wafer of it, else nobody can tell. */
+static void a_wafer_put_twice_in_a_cycle(void **state) {
+    (void)state;
+    begin_commands();
+    for (size_t i = 0; i < 3; ++i) {
+        add_command("GET A 1", 1);
+        add_command("PUT B 1", 1);
+        add_put(f.record.slices, 0, FIXTURE_B, 1);
+        add_command("GET B 1", 1);
+        add_command("PUT A 1", 1);
+        add_put(f.record.slices, 0, FIXTURE_A, 1);
+    }
+    assert_steady(0, 4, 0, 4000, 3);
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_TWICE);
+    add_cycle(0);
+    add_cycle(4000);
+    add_cycle(8000);
+    assert_steady(0, 4, 0, 4000, 3);
+    assert_int_equal(wh_steady_cycle(&f.record).wafers, 1);
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_GIVEN);
+    f.record.ok = false;
+    assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_FAILED);
+}
+
+static void a_kind_is_what_and_where(void **state) {
+    (void)state;
+    assert_int_equal(wh_steady_kind_length("GET A 1"), 5);
+    assert_int_equal(wh_steady_kind_length("GET \"load port\" 1"), 15);
+    assert_int_equal(wh_steady_kind_length("WAIT -2"), 4);
+    assert_int_equal(wh_steady_kind_length("HOME"), 4);
+    assert_int_equal(wh_steady_kind_length(""), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_record_of_nothing),
@@ -389,6 +554,13 @@ int main(void) {
         cmocka_unit_test(an_only_cycle_counts),
         cmocka_unit_test(cycles_without_a_slice_are_none),
         cmocka_unit_test(a_wafer_counts_once_a_cycle),
+        cmocka_unit_test(a_cycle_is_found_without_marks),
+        cmocka_unit_test(a_longer_cycle_is_not_what_repeats_within_it),
+        cmocka_unit_test(what_does_not_repeat_is_no_cycle),
+        cmocka_unit_test(cycles_that_differ_are_not_steady),
+        cmocka_unit_test(marked_cycles_go_before_what_repeats),
+        cmocka_unit_test(a_wafer_put_twice_in_a_cycle),
+        cmocka_unit_test(a_kind_is_what_and_where),
         cmocka_unit_test_teardown(split_of_a_cycle, close_run),
         cmocka_unit_test_teardown(throughput_of_cycles, close_run),
         cmocka_unit_test_teardown(intervals_add_up, close_run),

@@ -1,10 +1,11 @@
-/* Means, deviations and quantiles of a study, whoever adds them up; intervals of a rate against closed forms. */
+/* Means, deviations, quantiles and histograms of a study, whoever adds them up; intervals of a rate against closed forms;
+ * correlations against the textbook's, and none where there is nothing to say. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "math/deviate.h"
-#include "study/sum.h"
+#include "study/relations.h"
 #include "support/support.h"
 
 static int compare(const void *a, const void *b) {
@@ -120,8 +121,153 @@ static void intervals_at_the_ends_have_closed_forms(void **state) {
     assert_true(unknown.low == 0 && unknown.high == 1);
 }
 
+static void histogram_counts_all(void **state) {
+    (void)state;
+    static wh_sum_t sum;
+    static double values[VALUES];
+    enum { BARS = 8 };
+    double counts[BARS];
+    double exact[BARS] = {0};
+    double total = 0;
+    memset(&sum, 0, sizeof sum);
+    for (size_t i = 0; i < VALUES; ++i) {
+        const wh_trial_t trial = {5, i};
+        values[i] = wh_deviate_uniform(&trial, 0, 0) * 3;
+        wh_sum_add(&sum, values[i]);
+    }
+    const double low = wh_sum_least(&sum);
+    const double step = (wh_sum_most(&sum) - low) / BARS;
+    wh_sum_histogram(&sum, low, wh_sum_most(&sum), counts, BARS);
+    for (size_t i = 0; i < VALUES; ++i) {
+        const size_t bar = (size_t)floor((values[i] - low) / step + 1e-7);
+        ++exact[bar < BARS ? bar : BARS - 1];
+    }
+    for (size_t i = 0; i < BARS; ++i) {
+        assert_near(counts[i], exact[i], 0.05 * VALUES / BARS);
+        total += counts[i];
+    }
+    assert_near(total, VALUES, 1e-6);
+}
+
+/* ------------------------------------------------------------------------------------------- correlations */
+
+enum { PAIRS = 400, CAUSES = 3 };
+
+/* The first cause is what the wafer's dx follows, and by its size what fails; the second goes with nothing; the third
+ * never varies. */
+static void draw(size_t trial, double drawn[CAUSES], double ends[WH_RELATION_ENDS], bool *failed) {
+    const wh_trial_t name = {7, trial};
+    const double noise = wh_deviate_normal(&name, 2, 0);
+    drawn[0] = 0.3 * wh_deviate_normal(&name, 0, 0);
+    drawn[1] = 2 * wh_deviate_normal(&name, 1, 0);
+    drawn[2] = 0.5;
+    ends[0] = drawn[0] + 0.3 * noise;
+    ends[1] = noise;
+    ends[2] = 0;
+    ends[3] = fabs(drawn[0]);
+    ends[4] = fabs(noise);
+    *failed = fabs(drawn[0]) > 0.5;
+}
+
+static void add_pairs(wh_relations_t *relations, wh_sum_t sums[WH_RELATION_ENDS], size_t from, size_t step,
+                      uint64_t *failed_trials) {
+    wh_relations_need(relations, CAUSES, 1);
+    for (size_t i = from; i < PAIRS; i += step) {
+        double ends[WH_RELATION_ENDS];
+        bool failed;
+        draw(i, relations->drawn, ends, &failed);
+        wh_relations_add(relations, failed);
+        wh_relations_add_wafer(relations, 0, ends);
+        *failed_trials += failed ? 1 : 0;
+        for (size_t q = 0; q < WH_RELATION_ENDS; ++q) {
+            wh_sum_add(&sums[q], ends[q]);
+        }
+    }
+}
+
+/* Of the first cause, or its size, with dx, tilt or failing, as a textbook has it. */
+static double plain_correlation(bool by_size, int with) {
+    double x[PAIRS], y[PAIRS];
+    double mean_x = 0, mean_y = 0, xy = 0, xx = 0, yy = 0;
+    for (size_t i = 0; i < PAIRS; ++i) {
+        double drawn[CAUSES];
+        double ends[WH_RELATION_ENDS];
+        bool failed;
+        draw(i, drawn, ends, &failed);
+        x[i] = by_size ? fabs(drawn[0]) : drawn[0];
+        y[i] = with < 0 ? (failed ? 1 : 0) : ends[with];
+        mean_x += x[i] / PAIRS;
+        mean_y += y[i] / PAIRS;
+    }
+    for (size_t i = 0; i < PAIRS; ++i) {
+        xy += (x[i] - mean_x) * (y[i] - mean_y);
+        xx += (x[i] - mean_x) * (x[i] - mean_x);
+        yy += (y[i] - mean_y) * (y[i] - mean_y);
+    }
+    return xy / sqrt(xx * yy);
+}
+
+static void correlations_are_the_textbooks(void **state) {
+    (void)state;
+    static wh_sum_t sums[WH_RELATION_ENDS];
+    wh_relations_t whole = {0};
+    wh_relations_t parts[2] = {{0}, {0}};
+    static wh_sum_t others[WH_RELATION_ENDS];
+    uint64_t failed = 0;
+    uint64_t again = 0;
+    add_pairs(&whole, sums, 0, 1, &failed);
+    add_pairs(&parts[0], others, 0, 2, &again);
+    add_pairs(&parts[1], others, 1, 2, &again);
+    wh_relations_merge(&parts[1], &parts[0]);
+    for (size_t i = 0; i < wh_relations_size(&whole); ++i) {
+        assert_true(*wh_relations_number(&whole, i) == *wh_relations_number(&parts[1], i));
+    }
+    assert_in_range(failed, 20, 80);
+    const wh_correlation_t size = wh_relations_failing(&whole, 0, true, PAIRS, failed);
+    const wh_correlation_t value = wh_relations_failing(&whole, 0, false, PAIRS, failed);
+    const wh_correlation_t dx = wh_relations_end(&whole, 0, 0, 0, &sums[0]);
+    const wh_correlation_t tilt = wh_relations_end(&whole, 0, 0, 3, &sums[3]);
+    assert_near(size.r, plain_correlation(true, -1), 1e-6);
+    assert_near(value.r, plain_correlation(false, -1), 1e-6);
+    assert_near(dx.r, plain_correlation(false, 0), 1e-6);
+    assert_near(tilt.r, 1, 1e-6);
+    assert_true(size.low > 0.5 && size.high < 0.9 && value.low < 0 && value.high > 0);
+    assert_true(dx.low > 0.5 && dx.low < dx.r && dx.r < dx.high && dx.high < 0.85);
+    /* What goes with nothing is not told to. */
+    const wh_correlation_t none = wh_relations_failing(&whole, 1, true, PAIRS, failed);
+    assert_true(none.determined && none.low < 0 && none.high > 0);
+    /* 21 intervals: erfc(z / sqrt 2) = 0.05 / 21, z = 3.038; atanh is linear near 0. */
+    assert_near((none.high - none.low) / 2, 3.038 / sqrt(PAIRS - 3.0), 0.003);
+    wh_relations_free(&whole);
+    wh_relations_free(&parts[0]);
+    wh_relations_free(&parts[1]);
+}
+
+static void not_determined(void **state) {
+    (void)state;
+    static wh_sum_t sums[WH_RELATION_ENDS];
+    wh_relations_t relations = {0};
+    uint64_t failed = 0;
+    const wh_sum_t empty = {0};
+    add_pairs(&relations, sums, 0, 1, &failed);
+    assert_false(wh_relations_failing(&relations, 2, true, PAIRS, failed).determined);
+    assert_false(wh_relations_end(&relations, 2, 0, 0, &sums[0]).determined);
+    assert_false(wh_relations_end(&relations, 0, 0, 2, &sums[2]).determined);
+    assert_false(wh_relations_end(&relations, 0, 0, 0, &empty).determined);
+    assert_false(wh_relations_failing(&relations, 0, true, PAIRS, 4).determined);
+    assert_false(wh_relations_failing(&relations, 0, true, PAIRS, PAIRS - 4).determined);
+    assert_true(wh_relations_failing(&relations, 0, true, PAIRS, 5).determined);
+    wh_relations_free(&relations);
+    assert_int_equal(wh_relations_wafers(1000, 100), 2);
+    assert_int_equal(wh_relations_wafers(0, 100), 0);
+    assert_int_equal(wh_relations_wafers(13, 1), 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(histogram_counts_all),
+        cmocka_unit_test(correlations_are_the_textbooks),
+        cmocka_unit_test(not_determined),
         cmocka_unit_test(sums_have_mean_deviation_and_quantiles),
         cmocka_unit_test(sums_do_not_depend_on_who_adds),
         cmocka_unit_test(sums_bear_extremes),

@@ -1,0 +1,28 @@
+/* A command that is carried out again each time one of the files that it reads is saved: `--watch`.
+ *
+ * Each time it is carried out in a process of its own, which tells what it reads: a script, its modules, its
+ * layout and that one's modules, meshes; also files that are not there, as one that an editor is replacing. A
+ * run that goes on while a file is saved is given up.
+ */
+#ifndef WH_APP_WATCH_H
+#define WH_APP_WATCH_H
+
+#include <stddef.h>
+
+typedef struct {
+    int (*act)(void *user); /* carries it out; the exit status */
+    void *user;
+    const char *const *outputs; /* paths that it may write; null for one that is not wanted */
+    size_t output_count;
+} wh_watch_options_t;
+
+/* What an option's table says of --watch. */
+#define WH_WATCH_HELP                                                                                        \
+    "Do it again each time one of the files that are read is saved, until Ctrl-C; what is wrong is told, "   \
+    "and it goes on"
+
+/* Watches until SIGINT or SIGTERM ends it: then WH_EXIT_MET. WH_EXIT_USAGE, and a line on standard error, if
+ * the system lets no files be watched or begins no process. */
+int wh_watch(const wh_watch_options_t *options);
+
+#endif

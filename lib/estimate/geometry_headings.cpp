@@ -1,0 +1,162 @@
+#include <algorithm>
+
+#include "geometry_internal.hpp"
+#include "reason_internal.hpp"
+
+namespace wh_estimate {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+double rare_of(double freedom) {
+    constexpr double five_squared = 25;
+    const double part = (freedom - 5.0 / 6) / ((freedom - 2.0 / 3) * (freedom - 2.0 / 3));
+    return freedom > 2 ? std::sqrt(freedom * std::expm1(five_squared * part)) : HUGE_VAL;
+}
+
+namespace {
+
+constexpr double heading_misfit = 0.02; /* rad */
+
+/* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less
+ * theta and yaw. */
+double yaw_zero_of(const double *p, const wh_touch_t &touch) {
+    const Matrix3d tilt = tilt_of(p);
+    const double x = std::cos(touch.heading);
+    const double y = std::sin(touch.heading);
+    const double z = -(tilt(0, 2) * x + tilt(1, 2) * y) / tilt(2, 2); /* level with the blade */
+    const Vector3d ahead = tilt.transpose() * Vector3d(x, y, z);
+    const double theta = p[WH_GEOMETRY_SCALE + WH_AXIS_THETA] * touch.axes[WH_AXIS_THETA] + p[theta_zero];
+    const double yaw = p[WH_GEOMETRY_SCALE + WH_AXIS_YAW] * touch.axes[WH_AXIS_YAW];
+    return std::remainder(std::atan2(ahead(1), ahead(0)) - theta - yaw, full_turn);
+}
+
+/* What the headings say, each less the middle of all. */
+struct headings_t {
+    double rests[WH_GEOMETRY_MOST_TOUCHES];
+    double sizes[WH_GEOMETRY_MOST_TOUCHES]; /* to be sorted */
+    size_t touches[WH_GEOMETRY_MOST_TOUCHES];
+    bool is_used[WH_GEOMETRY_MOST_TOUCHES];
+    size_t count, used;
+    double middle, mean, sd;
+};
+
+double middle_of(double *values, size_t count) {
+    std::nth_element(values, values + count / 2, values + count);
+    return values[count / 2];
+}
+
+void read_headings(const touches_t &data, const double *p, headings_t *headings) {
+    double x = 0;
+    double y = 0;
+    for (size_t i = 0; i < data.count; ++i) {
+        if (data.is_used[i] && !std::isnan(data.touches[i].heading)) {
+            headings->rests[headings->count] = yaw_zero_of(p, data.touches[i]);
+            headings->touches[headings->count] = i;
+            x += std::cos(headings->rests[headings->count]);
+            y += std::sin(headings->rests[headings->count]);
+            ++headings->count;
+        }
+    }
+    const double about = std::atan2(y, x);
+    for (size_t i = 0; i < headings->count; ++i) {
+        headings->rests[i] = std::remainder(headings->rests[i] - about, full_turn);
+        headings->sizes[i] = headings->rests[i];
+    }
+    headings->middle = headings->count > 0 ? middle_of(headings->sizes, headings->count) : 0;
+    for (size_t i = 0; i < headings->count; ++i) {
+        headings->rests[i] -= headings->middle;
+        headings->sizes[i] = std::abs(headings->rests[i]);
+    }
+    headings->middle += about;
+}
+
+/* Sets aside, and takes the mean of the others. */
+void average(headings_t *headings) {
+    const auto count = static_cast<double>(headings->count);
+    headings->sd = 1.4826 * (1 + 5 / count) * middle_of(headings->sizes, headings->count);
+    headings->sd = std::max(headings->sd, 1e-9);
+    for (int round = 0; round < 4; ++round) {
+        const double most = WH_GEOMETRY_ASIDE_SDS * headings->sd;
+        const double centre = headings->mean;
+        double sum = 0;
+        double squares = 0;
+        headings->used = 0;
+        for (size_t i = 0; i < headings->count; ++i) {
+            const double rest = headings->rests[i];
+            headings->is_used[i] = std::abs(rest - centre) <= most;
+            headings->used += headings->is_used[i] ? 1 : 0;
+            sum += headings->is_used[i] ? rest : 0;
+            squares += headings->is_used[i] ? rest * rest : 0;
+        }
+        const auto used = static_cast<double>(headings->used);
+        headings->mean = sum / used;
+        headings->sd = std::sqrt((squares - sum * headings->mean) / std::max(used - 1, 1.0));
+        headings->sd = std::max(headings->sd, 1e-9);
+    }
+}
+
+/* True if the headings go with an axis, which the mean would not show. */
+bool goes_with(const touches_t &data, const headings_t &headings, int axis) {
+    double products = 0;
+    double spread = 0;
+    double mean = 0;
+    for (size_t i = 0; i < headings.count; ++i) {
+        mean += headings.is_used[i] ? data.touches[headings.touches[i]].axes[axis] : 0;
+    }
+    mean /= static_cast<double>(headings.used);
+    for (size_t i = 0; i < headings.count; ++i) {
+        const double off = data.touches[headings.touches[i]].axes[axis] - mean;
+        products += headings.is_used[i] ? off * headings.rests[i] : 0;
+        spread += headings.is_used[i] ? off * off : 0;
+    }
+    const double freedom = static_cast<double>(headings.used) - 2;
+    const double left = headings.sd * headings.sd * (freedom + 1) - products * products / spread;
+    return spread > 1e-6 && products * products / spread > left / freedom * std::pow(rare_of(freedom), 2);
+}
+
+wh_status_t judge_headings(const touches_t &data, const headings_t &headings,
+                           wh_geometry_estimate_t *estimate) {
+    if (static_cast<double>(headings.count - headings.used) >
+        WH_GEOMETRY_ASIDE * static_cast<double>(headings.count)) {
+        tell(estimate->reason, "%zu of %zu headings disagree with the others", headings.count - headings.used,
+             headings.count);
+        return WH_STATUS_NO_FIT;
+    }
+    if (headings.sd > heading_misfit || goes_with(data, headings, WH_AXIS_YAW) ||
+        goes_with(data, headings, WH_AXIS_THETA)) {
+        tell(estimate->reason,
+             "the headings do not go with theta and yaw: residuals of %.3g degrees rms; is yaw told the "
+             "other way round, or its scale off?",
+             headings.sd * 360 / full_turn);
+        return WH_STATUS_NO_FIT;
+    }
+    return WH_OK;
+}
+
+} // namespace
+
+wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate) {
+    headings_t headings = {};
+    wh_estimate_value_t &zero = estimate->values[yaw_zero];
+    const wh_estimate_value_t &theta = estimate->values[theta_zero];
+    read_headings(data, estimate->fitted, &headings);
+    if (headings.count < WH_GEOMETRY_HEADINGS) {
+        return WH_OK;
+    }
+    average(&headings);
+    estimate->headings = headings.used;
+    estimate->headings_aside = headings.count - headings.used;
+    estimate->heading_rms = headings.sd;
+    for (size_t i = 0; i < headings.count; ++i) {
+        data.touches[headings.touches[i]].is_heading_set_aside = !headings.is_used[i];
+    }
+    const wh_status_t status = judge_headings(data, headings, estimate);
+    zero.value = std::remainder(headings.middle + headings.mean, full_turn);
+    zero.sd = std::hypot(headings.sd / std::sqrt(static_cast<double>(headings.used)), theta.sd);
+    zero.is_determined = theta.is_determined && zero.sd <= WH_GEOMETRY_ANGLE_SD;
+    estimate->fitted[yaw_zero] = zero.value;
+    return status;
+}
+
+} // namespace wh_estimate

@@ -1,0 +1,443 @@
+#include "layout_fields.h"
+
+#define NUMBER "number"
+#define TRIPLE "number[]"
+#define SWITCH "boolean"
+#define SHAPE "\"normal\"|\"uniform\""
+#define END                                                                                                  \
+    { NULL, NULL, NULL, false }
+
+/* --------------------------------------------------------------------------------------------- the cell */
+
+const wh_reader_field_t wh_layout_top_fields[] = {
+    {"wafer", "waferhand.wafer_size", "the wafers' size", false},
+    {"tolerance", "\"paper\"|\"strict\"|waferhand.tolerance", "when a gripper may take a wafer", false},
+    {"near", "waferhand.near", "how near a miss must be to be reported", false},
+    {"check", "\"sampled\"|\"swept\"", "if the check runs between slices, too", false},
+    {"slice", NUMBER, "s: the length of a slice, a whole number of microseconds", false},
+    {"seat", SWITCH, "true: the pick draws the wafer onto the pads", false},
+    {"settle", SWITCH, "true: a wafer let go above a slot comes to lie on it", false},
+    {"placing", "waferhand.placing", "the limits above which a wafer's place is reported", false},
+    {"collision", SWITCH, "true: look for collisions while stepping", false},
+    {"look_ahead", SWITCH, "true: a command that would collide is refused", false},
+    {"robot", "waferhand.robot", "the robot's axes", false},
+    {"homed", SWITCH, "false: HOME comes first", false},
+    {"chuck", "waferhand.chuck", "the limits of the prealigners' chucks", false},
+    {"grippers", "waferhand.gripper[]", "blades on the robot, and one on each prealigner", true},
+    {"stations", "table<string, waferhand.station>", "the stations by name", true},
+    {"wafers", "waferhand.wafer[]", "where wafers lie when a run begins", false},
+    {"shapes", "waferhand.shapes", "sizes of blade, ledges, arm, FOUPs and chucks", false},
+    {"obstacles", "waferhand.obstacle[]", "walls, tables, tools on the robot", false},
+    {"clearance", "waferhand.clearance", "gaps that must be kept", false},
+    {"vacuum", "\"ideal\"|\"delayed\"|waferhand.vacuum", "how the vacuum builds up and falls", false},
+    {"pads", "waferhand.pads", "what the pads hold: a wafer that would slip is named", false},
+    {"faults", "waferhand.fault[]", "faults on purpose", false},
+    {"study", "waferhand.study", "what the trials of a study draw", false},
+    {"corrections", "waferhand.corrections", "how far a command may go beside what was taught", false},
+    END};
+
+const wh_reader_field_t wh_layout_wafer_size_fields[] = {{"diameter", NUMBER, "mm", false},
+                                                         {"thickness", NUMBER, "mm", false},
+                                                         {"notch", "waferhand.notch", "the notch", false},
+                                                         END};
+
+const wh_reader_field_t wh_layout_notch_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", false}, {"depth", NUMBER, "mm", false}, END};
+
+const wh_reader_field_t wh_layout_tolerance_fields[] = {
+    {"projz", NUMBER, "mm: the limit of |dr_proj_z|", false},
+    {"projxy", NUMBER, "mm: the limit of |dr_proj_xy|", false},
+    {"planar", NUMBER, "the limit of n1_proj_n2, a cosine", false},
+    END};
+
+const wh_reader_field_t wh_layout_near_fields[] = {
+    {"projz", NUMBER, "mm", false}, {"projxy", NUMBER, "mm", false}, END};
+
+const wh_reader_field_t wh_layout_placing_fields[] = {
+    {"off_centre", NUMBER, "mm beside the slot's centre; 0: never", false},
+    {"askew", NUMBER, "degrees of tilt; 0: never", false},
+    END};
+
+const wh_reader_field_t wh_layout_corrections_fields[] = {{"x", NUMBER, "mm", false},
+                                                          {"y", NUMBER, "mm", false},
+                                                          {"z", NUMBER, "mm", false},
+                                                          {"turn", NUMBER, "degrees", false},
+                                                          END};
+
+const wh_reader_field_t wh_layout_vacuum_fields[] = {
+    {"model", "\"ideal\"|\"delayed\"", "whose values the other fields have by default", false},
+    {"build", NUMBER, "s: time constant upwards", false},
+    {"vent", NUMBER, "s: time constant downwards", false},
+    {"idle", NUMBER, "0 to 1: the level of an open valve without a wafer", false},
+    {"sensor_on", NUMBER, "0 to 1: the level at which the sensor goes on", false},
+    {"sensor_off", NUMBER, "0 to 1: the level below which the sensor goes off", false},
+    {"release", NUMBER, "0 to 1: the level below which a closed valve lets go", false},
+    END};
+
+const wh_reader_field_t wh_layout_pads_fields[] = {
+    {"friction", NUMBER, "the coefficient between pads and wafer", true},
+    {"force", NUMBER, "N: the force of the full vacuum", true},
+    {"mass", NUMBER, "kg: of a wafer", false},
+    {"gravity", NUMBER, "m/s^2, along -z of base", false},
+    END};
+
+/* -------------------------------------------------------------------------------------------- the robot */
+
+const wh_reader_field_t wh_layout_robot_fields[] = {
+    {"kind", "\"TRZY\"", "theta, R, Z and a yaw axis at the wrist", false},
+    {"theta", "waferhand.turning_axis", "the turn about the robot's axis", false},
+    {"r", "waferhand.straight_axis", "the way out", false},
+    {"z", "waferhand.straight_axis", "the height", false},
+    {"yaw", "waferhand.turning_axis", "the turn of the wrist", false},
+    END};
+
+const wh_reader_field_t wh_layout_turning_axis_fields[] = {
+    {"min", NUMBER, "degrees: where the travel begins", false},
+    {"max", NUMBER, "degrees: where the travel ends", false},
+    {"home", NUMBER, "degrees", false},
+    {"speed", NUMBER, "degrees/s", false},
+    {"acceleration", NUMBER, "degrees/s^2", false},
+    {"jerk", NUMBER, "degrees/s^3", false},
+    END};
+
+const wh_reader_field_t wh_layout_straight_axis_fields[] = {
+    {"min", NUMBER, "mm: where the travel begins", false},
+    {"max", NUMBER, "mm: where the travel ends", false},
+    {"home", NUMBER, "mm", false},
+    {"speed", NUMBER, "mm/s", false},
+    {"acceleration", NUMBER, "mm/s^2", false},
+    {"jerk", NUMBER, "mm/s^3", false},
+    END};
+
+const wh_reader_field_t wh_layout_chuck_fields[] = {{"speed", NUMBER, "degrees/s", false},
+                                                    {"acceleration", NUMBER, "degrees/s^2", false},
+                                                    {"jerk", NUMBER, "degrees/s^3", false},
+                                                    END};
+
+const wh_reader_field_t wh_layout_gripper_fields[] = {
+    {"name", "string", "how commands name it", true},
+    {"on", "string", "what carries it: \"robot\", or the name of a prealigner", false},
+    {"valve", "string", "the name of the output that switches it", false},
+    {"at", TRIPLE, "x, y, z in mm: where it sits on the end-effector", false},
+    {"rpy", TRIPLE, "0, 0 and yaw in degrees", false},
+    END};
+
+/* ---------------------------------------------------------------------------------- stations and wafers */
+
+const wh_reader_field_t wh_layout_station_fields[] = {
+    {"kind", "\"slots\"|\"prealigner\"|\"foup\"", "what stands there", false},
+    {"at", TRIPLE, "x, y, z in mm, in base: the centre of a wafer's back face in slot 1", true},
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees: x is the way in, z goes up through the slots", false},
+    {"taught", SWITCH, "false: every command at the station is refused", false},
+    {"slots", "integer", "how many", false},
+    {"pitch", NUMBER, "mm from slot to slot", false},
+    {"effector", "string", "the gripper that serves it, unless a command names another", false},
+    {"stroke", NUMBER, "mm: the height of the stroke", false},
+    {"offset", NUMBER, "mm above the slot at which a GET leaves", false},
+    {"retract", NUMBER, "mm before the slot, where the straight way in begins", false},
+    {"pickup_speed", NUMBER, "mm/s: of the strokes", false},
+    {"pickup_acceleration", NUMBER, "mm/s^2: of the strokes; 0: what the axes allow", false},
+    {"release", NUMBER, "mm above the slot at which a PUT switches the valves", false},
+    {"vacuum_delay", NUMBER, "s from the end of the stroke until the sensor is asked", false},
+    {"vacuum_check", "\"both\"|\"get\"|\"put\"|\"none\"", "the commands that the sensor decides", false},
+    {"timeout", NUMBER, "s: how long a command waits for the sensor", false},
+    {"retries", "integer", "how often a GET that took nothing tries again", false},
+    {"wait", NUMBER, "s: how long the arm stands in the station before the stroke", false},
+    {"map_speed", NUMBER, "mm/s: of the sweep over the slots", false},
+    {"check_map", SWITCH, "true: GET and PUT want a MAP before them", false},
+    {"handover", "\"new_first\"|\"same_slice\"", "at a chuck: the order of the two valves", false},
+    {"counts", SWITCH, "true: a wafer that is put here is done, for wafers per hour", false},
+    {"sensor", "waferhand.sensor", "at a prealigner: what sees the wafer's edge", false},
+    END};
+
+const wh_reader_field_t wh_layout_wafer_fields[] = {
+    {"name", "string", "how commands name it", false},
+    {"station", "string", "the station in which it lies", true},
+    {"slot", "integer", "from 1, at the bottom", true},
+    {"dx", NUMBER, "mm off the slot's centre, along its x", false},
+    {"dy", NUMBER, "mm off the slot's centre, along its y", false},
+    {"dz", NUMBER, "mm above the slot", false},
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
+    {"rim", "waferhand.rim", "its true rim, which edge sensors see", false},
+    END};
+
+/* --------------------------------------------------------------------------------- edge sensors and rims */
+
+const wh_reader_field_t wh_layout_sensor_fields[] = {
+    {"samples", "integer", "how many in a turn", false},
+    {"pixel", NUMBER, "mm: a pixel's length", false},
+    {"length", NUMBER, "mm: the line's length", false},
+    {"noise", NUMBER, "mm: standard deviation of one sample", false},
+    {"seed", "integer", "names the noise, with the number of the scan", false},
+    {"at", NUMBER, "degrees: where the line points from the chuck's axis, about the station's z", false},
+    {"encoder", "integer", "counts in a turn of the chuck; 0: no steps", false},
+    {"offset", NUMBER, "mm by which the line passes the axis, to the left", false},
+    {"zero", NUMBER, "mm by which its inner end is farther out", false},
+    {"gain", NUMBER, "the part of their length by which pixels are longer", false},
+    {"latency", NUMBER, "s by which a sample is taken later than it is due", false},
+    {"tilt", NUMBER, "degrees of its light out of the upright, outwards going up", false},
+    {"hidden", "waferhand.arc[]", "arcs of the chuck in which something covers the line", false},
+    END};
+
+const wh_reader_field_t wh_layout_arc_fields[] = {
+    {"from", NUMBER, "degrees", true}, {"width", NUMBER, "degrees", true}, END};
+
+const wh_reader_field_t wh_layout_rim_fields[] = {
+    {"diameter", NUMBER, "mm", false},
+    {"notch", "waferhand.rim_notch", "the notch", false},
+    {"flats", "waferhand.flat[]", "the flats", false},
+    {"chips", "waferhand.chip[]", "what is broken off", false},
+    {"bow", NUMBER, "mm: how far the rim is above the centre, the same all round", false},
+    {"saddle", NUMBER, "mm: how far the rim is above the centre, twice up and down", false},
+    {"saddle_at", NUMBER, "degrees: where the saddle is highest", false},
+    {"glass", NUMBER, "0 to 0.9: the part of the light that comes through", false},
+    END};
+
+const wh_reader_field_t wh_layout_rim_notch_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", false},
+    {"depth", NUMBER, "mm; 0: none", false},
+    {"angle", NUMBER, "degrees between its flanks", false},
+    {"bottom", NUMBER, "mm: the radius at its bottom", false},
+    {"corner", NUMBER, "mm: the radius where it meets the rim", false},
+    END};
+
+const wh_reader_field_t wh_layout_flat_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", true}, {"length", NUMBER, "mm", true}, END};
+
+const wh_reader_field_t wh_layout_chip_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", true},
+    {"width", NUMBER, "mm along the rim", true},
+    {"depth", NUMBER, "mm", true},
+    END};
+
+/* ------------------------------------------------------------------------------------------- collisions */
+
+const wh_reader_field_t wh_layout_shapes_fields[] = {
+    {"blade", "waferhand.blade", "a horseshoe below the wafer", false},
+    {"arm", "waferhand.arm", "two links below the end-effector", false},
+    {"ledge", "waferhand.ledge", "the two supports of a wafer in each slot", false},
+    {"foup", "waferhand.foup", "the walls about a FOUP's wafers", false},
+    {"chuck", "waferhand.spindle", "a prealigner's chuck and what it stands on", false},
+    END};
+
+const wh_reader_field_t wh_layout_blade_fields[] = {
+    {"thickness", NUMBER, "mm", false},
+    {"half_width", NUMBER, "mm from its middle to its side", false},
+    {"finger", NUMBER, "mm: the width of a finger", false},
+    {"length", NUMBER, "mm by which the fingers reach before its origin", false},
+    {"palm", NUMBER, "mm by which it ends behind its origin", false},
+    END};
+
+const wh_reader_field_t wh_layout_arm_fields[] = {
+    {"reach", NUMBER, "mm from the wrist to the end-effector's origin", false},
+    {"link", NUMBER, "mm: the length of each link", false},
+    {"right_handed", SWITCH, "true: the elbow is on the right", false},
+    END};
+
+const wh_reader_field_t wh_layout_ledge_fields[] = {{"inner", NUMBER, "mm beside the middle", false},
+                                                    {"outer", NUMBER, "mm beside the middle", false},
+                                                    {"thickness", NUMBER, "mm", false},
+                                                    {"length", NUMBER, "mm", false},
+                                                    END};
+
+const wh_reader_field_t wh_layout_foup_fields[] = {
+    {"room", NUMBER, "mm between a wafer's rim and the walls", false},
+    {"wall", NUMBER, "mm: their thickness", false},
+    {"floor", NUMBER, "mm from the floor to the first slot", false},
+    {"roof", NUMBER, "mm from the last slot to the roof", false},
+    END};
+
+const wh_reader_field_t wh_layout_spindle_fields[] = {
+    {"radius", NUMBER, "mm: of the chuck", false},
+    {"height", NUMBER, "mm: of the chuck", false},
+    {"body", NUMBER, "mm: the radius of the body that it stands on", false},
+    END};
+
+const wh_reader_field_t wh_layout_obstacle_fields[] = {
+    {"name", "string", "how hits name it", false},
+    {"on", "string",
+     "what carries it: \"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name", false},
+    {"at", TRIPLE, "x, y, z in mm: its middle", true},
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees", false},
+    {"box", TRIPLE, "x, y, z in mm: its sizes", false},
+    {"cylinder", "waferhand.round", "along z", false},
+    {"capsule", "waferhand.round", "along z; the height is without its caps", false},
+    {"mesh", "string", "an STL file of a convex body, beside the layout", false},
+    {"unit", "\"mm\"|\"cm\"|\"m\"|\"inch\"", "of the mesh, which wants it", false},
+    END};
+
+const wh_reader_field_t wh_layout_round_fields[] = {
+    {"radius", NUMBER, "mm", true}, {"height", NUMBER, "mm", true}, END};
+
+const wh_reader_field_t wh_layout_clearance_fields[] = {
+    {"blade_wafer_above", NUMBER, "mm from a blade to the wafer above it", false},
+    {"blade_wafer_below", NUMBER, "mm from a blade to the wafer below it", false},
+    {"blade_other", NUMBER, "mm from a blade to ledges, chucks, walls", false},
+    {"wafer_wafer", NUMBER, "mm from a held wafer to another one", false},
+    {"wafer_ledge", NUMBER, "mm from a held wafer to a ledge", false},
+    {"wafer_other", NUMBER, "mm from a held wafer to the rest", false},
+    {"arm_other", NUMBER, "mm from the arm to the rest", false},
+    {"arm_itself", NUMBER, "mm from the arm to its own blades and what they hold", false},
+    END};
+
+/* ----------------------------------------------------------------------------------------------- faults */
+
+#define OF_EVERY_FAULT                                                                                       \
+    {"after", NUMBER, "s until it begins", false}, {                                                         \
+        "lasting", NUMBER, "s; without it until it is cleared", false                                        \
+    }
+#define GRIPPER                                                                                              \
+    { "gripper", "string", "whose; without it the first on the robot", false }
+#define WAFER                                                                                                \
+    { "wafer", "string", "which", true }
+
+static const wh_reader_field_t of_gripper[] = {
+    {"kind", "\"no_vacuum\"|\"sensor_on\"|\"sensor_off\"|\"valve_stuck\"|\"axis_stopped\"",
+     "what happens: no vacuum; a sensor, a valve or the axes are stuck", true},
+    OF_EVERY_FAULT,
+    GRIPPER,
+    END};
+static const wh_reader_field_t slow_vacuum[] = {{"kind", "\"slow_vacuum\"", "the vacuum is slow", true},
+                                                OF_EVERY_FAULT,
+                                                GRIPPER,
+                                                {"value", NUMBER, "s: the time constant upwards", true},
+                                                END};
+static const wh_reader_field_t leak[] = {{"kind", "\"leak\"", "the vacuum leaks", true},
+                                         OF_EVERY_FAULT,
+                                         GRIPPER,
+                                         {"value", NUMBER, "0 to 1: the highest level", true},
+                                         END};
+static const wh_reader_field_t of_command[] = {
+    {"kind", "\"command_lost\"", "all grippers and valves stay as they were", true}, OF_EVERY_FAULT, END};
+static const wh_reader_field_t missing[] = {
+    {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};
+static const wh_reader_field_t doubled[] = {
+    {"kind", "\"wafer_doubled\"", "the wafer lies on another one, in the same slot", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"onto", "string", "the other wafer", true},
+    END};
+static const wh_reader_field_t crossed[] = {
+    {"kind", "\"wafer_crossed\"", "one edge lies higher than the other", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"value", NUMBER, "mm by which it does", false},
+    END};
+static const wh_reader_field_t shifted[] = {
+    {"kind", "\"wafer_shifted\"", "the wafer is moved, in its own frame", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"dx", NUMBER, "mm", false},
+    {"dy", NUMBER, "mm", false},
+    {"dz", NUMBER, "mm", false},
+    END};
+static const wh_reader_field_t tilted[] = {
+    {"kind", "\"wafer_tilted\"", "the wafer is turned, in its own frame", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees", true},
+    END};
+
+const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
+    [WH_FAULT_NO_VACUUM] = of_gripper,
+    [WH_FAULT_SLOW_VACUUM] = slow_vacuum,
+    [WH_FAULT_SENSOR_ON] = of_gripper,
+    [WH_FAULT_SENSOR_OFF] = of_gripper,
+    [WH_FAULT_LEAK] = leak,
+    [WH_FAULT_VALVE_STUCK] = of_gripper,
+    [WH_FAULT_AXIS_STOPPED] = of_gripper,
+    [WH_FAULT_COMMAND_LOST] = of_command,
+    [WH_FAULT_WAFER_MISSING] = missing,
+    [WH_FAULT_WAFER_DOUBLED] = doubled,
+    [WH_FAULT_WAFER_CROSSED] = crossed,
+    [WH_FAULT_WAFER_SHIFTED] = shifted,
+    [WH_FAULT_WAFER_TILTED] = tilted,
+};
+
+/* ---------------------------------------------------------------------------------------------- studies */
+
+#define PLACEMENT_FIELDS                                                                                     \
+    {"dx", NUMBER, "mm, in the slot's frame", false}, {"dy", NUMBER, "mm", false},                           \
+        {"dz", NUMBER, "mm", false}, {"tilt", NUMBER, "degrees, about the slot's x and about its y", false}, \
+        {"turn", NUMBER, "degrees, about z", false}, {                                                       \
+        "shape", SHAPE, "how they are spread", false                                                         \
+    }
+
+#define TEACHING_FIELDS                                                                                      \
+    {"x", NUMBER, "mm, along base's x", false}, {"y", NUMBER, "mm, along base's y", false},                  \
+        {"z", NUMBER, "mm, along base's z", false}, {"roll", NUMBER, "degrees, about base's x", false},      \
+        {"pitch", NUMBER, "degrees, about base's y", false},                                                 \
+        {"yaw", NUMBER, "degrees, about base's z", false}, {                                                 \
+        "shape", SHAPE, "how they are spread", false                                                         \
+    }
+
+const wh_reader_field_t wh_layout_study_fields[] = {
+    {"shape", SHAPE, "how all errors are spread", false},
+    {"placement", "waferhand.placement", "of every wafer in its slot", false},
+    {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
+    {"timing", "waferhand.timing", "of valves and vacuum", false},
+    {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
+    {"stations", "table<string, waferhand.teaching>", "of one station alone, by name", false},
+    {"grippers", "table<string, waferhand.valve>", "of one gripper's valve alone, by name", false},
+    END};
+
+const wh_reader_field_t wh_layout_placement_fields[] = {PLACEMENT_FIELDS, END};
+const wh_reader_field_t wh_layout_teaching_fields[] = {TEACHING_FIELDS, END};
+const wh_reader_field_t wh_layout_timing_fields[] = {
+    {"valve", NUMBER, "s by which a valve acts late", false},
+    {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};
+const wh_reader_field_t wh_layout_valve_fields[] = {
+    {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
+
+/* --------------------------------------------------------------------------------------------- the list */
+
+const wh_layout_class_t wh_layout_classes[] = {
+    {"layout", "A cell, which a layout's file returns.", wh_layout_top_fields},
+    {"wafer_size", "The size of all wafers.", wh_layout_wafer_size_fields},
+    {"notch", "A wafer's notch.", wh_layout_notch_fields},
+    {"tolerance", "When a gripper may take a wafer.", wh_layout_tolerance_fields},
+    {"near", "How near a miss must be to be reported.", wh_layout_near_fields},
+    {"placing", "Limits above which the place of a wafer that was set down is reported.",
+     wh_layout_placing_fields},
+    {"corrections", "How far a command may go beside what was taught.", wh_layout_corrections_fields},
+    {"vacuum", "The vacuum of all grippers.", wh_layout_vacuum_fields},
+    {"pads", "What holds a wafer on the pads.", wh_layout_pads_fields},
+    {"robot", "The robot's axes.", wh_layout_robot_fields},
+    {"turning_axis", "An axis that turns.", wh_layout_turning_axis_fields},
+    {"straight_axis", "An axis that goes straight.", wh_layout_straight_axis_fields},
+    {"chuck", "The limits of the prealigners' chucks.", wh_layout_chuck_fields},
+    {"gripper", "A blade on the robot, or a prealigner's chuck.", wh_layout_gripper_fields},
+    {"station", "A place with slots, a prealigner or a FOUP.", wh_layout_station_fields},
+    {"wafer", "A wafer, where it lies when a run begins.", wh_layout_wafer_fields},
+    {"sensor", "A line sensor beside a prealigner's chuck.", wh_layout_sensor_fields},
+    {"arc", "A part of a turn.", wh_layout_arc_fields},
+    {"rim", "A wafer's true rim.", wh_layout_rim_fields},
+    {"rim_notch", "A notch with its roundings.", wh_layout_rim_notch_fields},
+    {"flat", "A flat.", wh_layout_flat_fields},
+    {"chip", "What is broken off a rim.", wh_layout_chip_fields},
+    {"shapes", "Sizes of what collisions look at.", wh_layout_shapes_fields},
+    {"blade", "A gripper on the robot.", wh_layout_blade_fields},
+    {"arm", "The links of the arm.", wh_layout_arm_fields},
+    {"ledge", "The supports of a wafer in a slot.", wh_layout_ledge_fields},
+    {"foup", "A FOUP's walls.", wh_layout_foup_fields},
+    {"spindle", "A prealigner's chuck.", wh_layout_spindle_fields},
+    {"obstacle", "Something in the way: one shape about a place.", wh_layout_obstacle_fields},
+    {"round", "A cylinder or a capsule.", wh_layout_round_fields},
+    {"clearance", "Gaps that must be kept.", wh_layout_clearance_fields},
+    {"fault.gripper", "A fault of a gripper.", of_gripper},
+    {"fault.slow_vacuum", "A fault of a gripper's vacuum.", slow_vacuum},
+    {"fault.leak", "A fault of a gripper's vacuum.", leak},
+    {"fault.command", "A fault of all that is commanded.", of_command},
+    {"fault.missing", "A fault of a wafer.", missing},
+    {"fault.doubled", "A fault of a wafer.", doubled},
+    {"fault.crossed", "A fault of a wafer.", crossed},
+    {"fault.shifted", "A fault of a wafer.", shifted},
+    {"fault.tilted", "A fault of a wafer.", tilted},
+    {"study", "What the trials of a study draw.", wh_layout_study_fields},
+    {"placement", "Widths of errors of a wafer's place.", wh_layout_placement_fields},
+    {"teaching", "Widths of errors of a station's place.", wh_layout_teaching_fields},
+    {"timing", "Widths of errors of times.", wh_layout_timing_fields},
+    {"valve", "The width of a valve's delay.", wh_layout_valve_fields},
+    {NULL, NULL, NULL}};

@@ -1,0 +1,134 @@
+/* Edge scans: the sensor at a prealigner is armed with the next slice's command, and the samples that the
+ * states bring are collected.
+ *
+ * Each state carries the samples of its own slice, and how many were taken up to it. So states that come
+ * twice add nothing; states that never came (of a free run) leave holes, which are counted. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "../script/wh_module_values.h"
+#include "../text/array.h"
+#include "native.h"
+
+static int32_t magnitude(int32_t count) {
+    return count < 0 ? -count : count;
+}
+
+static bool is_of(const wh_mcs_edge_t *edge, const wh_scan_t *scan) {
+    const wh_scan_order_t *order = &edge->order;
+    return edge->samples && scan->number > edge->before && scan->gripper == order->gripper &&
+           scan->count == order->count && scan->first == order->first;
+}
+
+static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
+    const int32_t begin = scan->taken - scan->sample_count;
+    for (; edge->taken < begin; ++edge->taken) {
+        edge->samples[edge->taken] = WH_NONE;
+        ++edge->missed;
+    }
+    for (; edge->taken < scan->taken; ++edge->taken) {
+        edge->samples[edge->taken] = scan->samples[edge->taken - begin];
+    }
+    edge->armed = scan->armed;
+}
+
+/* Only a state of a slice after the last one that was heard of: in a free run it may come again. */
+void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
+    wh_mcs_edge_t *edge = &mcs->edge;
+    if (!state->physics || state->seq <= edge->seq) {
+        return;
+    }
+    const wh_scan_t *scan = &state->physics->scan;
+    const bool was_armed = edge->armed;
+    edge->seq = state->seq;
+    edge->number = scan->number;
+    if (is_of(edge, scan)) {
+        collect(edge, scan);
+        if (was_armed && !edge->armed && mcs->partners.edge) {
+            mcs->partners.edge(mcs->partners.user, mcs);
+        }
+    }
+}
+
+void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state) {
+    (void)command;
+    wh_mcs_hear(user, state);
+}
+
+void wh_mcs_free_edge(wh_mcs_edge_t *edge) {
+    free(edge->samples);
+    edge->samples = NULL;
+}
+
+/* native.arm_edge(gripper, first, count): from the end of the next slice on the sensor at this chuck takes
+ * `count` samples, each when the chuck turns past its angle; below 0 the chuck turns clockwise. What was
+ * collected before is gone. */
+static int arm_edge(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_scanning_t scanning = wh_layout_scanning(mcs->layout);
+    const int64_t count = luaL_checkinteger(L, 3);
+    const int64_t most = (int64_t)WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
+    const wh_scan_order_t order = {WH_SCAN_ARM, wh_mcs_index(L, 1, mcs->state.gripper_count),
+                                   count < -most || count > most ? 0 : (int32_t)count,
+                                   luaL_checkinteger(L, 2)};
+    luaL_argcheck(L, wh_scanning_check(&scanning, &order) == WH_OK, 3, "no scan of an edge sensor");
+    wh_mcs_free_edge(edge);
+    edge->samples = wh_array_new((size_t)magnitude(order.count), sizeof *edge->samples);
+    edge->order = order;
+    edge->before = edge->number;
+    edge->taken = 0;
+    edge->missed = 0;
+    edge->armed = true;
+    mcs->command.scan = order;
+    mcs->unplayed = "a scan of a wafer's edge";
+    return 0;
+}
+
+/* native.disarm_edge(): with the next slice. What was collected stays. */
+static int disarm_edge(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_DISARM};
+    return 0;
+}
+
+/* native.edge(): what was collected since arm_edge, nil without one. `samples` are as many as were asked for,
+ * `count`: dark pixels, or -1 where none has come (`missed` of them), be it that its state was lost or that
+ * the scan has ended before. `first` is the number of the first of them, `is_armed` if there are more to
+ * come. */
+static int read_edge(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_mcs_edge_t *edge = &mcs->edge;
+    if (!edge->samples) {
+        return 0;
+    }
+    wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
+    const int32_t count = magnitude(edge->order.count);
+    wh_sandbox_charge(L, (uint64_t)count);
+    lua_createtable(L, 0, 5);
+    lua_createtable(L, count, 0);
+    for (int32_t i = 0; i < count; ++i) {
+        lua_pushinteger(L, i < edge->taken ? edge->samples[i] : WH_NONE);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "samples");
+    wh_lua_set_integer(L, "first", edge->order.first);
+    wh_lua_set_integer(L, "count", edge->order.count);
+    wh_lua_set_integer(L, "missed", edge->missed + count - edge->taken);
+    wh_lua_set_boolean(L, "is_armed", edge->armed);
+    return 1;
+}
+
+void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner) {
+    const wh_sensor_t *sensor = &scanner->sensor;
+    lua_createtable(L, 0, 5);
+    wh_lua_set_integer(L, "samples", sensor->samples);
+    wh_lua_set_integer(L, "pixels", wh_sensor_pixels(sensor));
+    wh_lua_set_number(L, "pixel", sensor->pixel);
+    wh_lua_set_number(L, "middle", sensor->middle);
+    wh_lua_set_number(L, "length", sensor->length);
+}
+
+const luaL_Reg wh_mcs_edge_functions[] = {
+    {"arm_edge", arm_edge}, {"disarm_edge", disarm_edge}, {"edge", read_edge}, {NULL, NULL}};

@@ -1,0 +1,165 @@
+/* The state of a session, kept whole and put back: motion control's, and the simulator's. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../sim/snapshot.h"
+#include "native.h"
+
+/* The name of the type of userdata. */
+#define SAVED "wh.saved_state"
+
+/* Of motion control; what the other side of the link is follows as bytes. */
+typedef struct {
+    wh_track_t track;
+    wh_command_t command;
+    wh_machine_cache_t cache;
+    wh_mcs_seen_t seen;
+    wh_mcs_held_t held;
+    int64_t stop_slice;
+    wh_fault_t faults[WH_FAULTS];
+    size_t fault_count;
+    int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
+    uint32_t edge_number;
+    size_t size; /* of `bytes` */
+    uint8_t bytes[];
+} saved_t;
+
+static bool is_local(const wh_mcs_t *mcs) {
+    return mcs->link == &mcs->local.simulator.link;
+}
+
+static void keep(const wh_mcs_t *mcs, saved_t *saved) {
+    saved->track = mcs->track;
+    saved->command = mcs->command;
+    saved->cache = mcs->cache;
+    saved->seen = mcs->seen;
+    saved->held = mcs->held;
+    saved->stop_slice = mcs->stop_slice;
+    memcpy(saved->faults, mcs->faults, sizeof saved->faults);
+    saved->fault_count = mcs->fault_count;
+    saved->edge_seq = mcs->edge.seq;
+    saved->edge_number = mcs->edge.number;
+}
+
+static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
+    mcs->track = saved->track;
+    mcs->command = saved->command;
+    mcs->cache = saved->cache;
+    mcs->seen = saved->seen;
+    mcs->held = saved->held;
+    mcs->stop_slice = saved->stop_slice;
+    memcpy(mcs->faults, saved->faults, sizeof mcs->faults);
+    mcs->fault_count = saved->fault_count;
+    wh_mcs_free_edge(&mcs->edge);
+    mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
+    mcs->recorder.slice = saved->track.slice;
+    /* The check begins anew: it would take what was put back for a motion. */
+    mcs->local.collision.world = NULL;
+}
+
+/* Pushes room for so many bytes, and what motion control is. */
+static saved_t *push_saved(lua_State *L, const wh_mcs_t *mcs, size_t size) {
+    saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 0);
+    memset(saved, 0, sizeof *saved);
+    keep(mcs, saved);
+    saved->size = size;
+    if (!luaL_getmetatable(L, SAVED)) {
+        lua_pop(L, 1);
+        (void)luaL_newmetatable(L, SAVED);
+    }
+    lua_setmetatable(L, -2);
+    return saved;
+}
+
+static void save_local(lua_State *L, const wh_mcs_t *mcs) {
+    const wh_simulator_t *simulator = &mcs->local.simulator;
+    const size_t most = wh_simulator_saved_size(simulator);
+    saved_t *saved = push_saved(L, mcs, most);
+    (void)wh_simulator_save(simulator, saved->bytes, most, &saved->size);
+}
+
+static void save_partner(lua_State *L, wh_mcs_t *mcs) {
+    const wh_mcs_partners_t *partners = &mcs->partners;
+    uint8_t *bytes = lua_newuserdatauv(L, WH_MCS_SAVED_BYTES, 0);
+    const size_t size = partners->save ? partners->save(partners->user, bytes) : 0;
+    if (size == 0) {
+        wh_mcs_raise(L, mcs, partners->save ? WH_STATUS_NO_ANSWER : WH_STATUS_NOT_RESTORED,
+                     partners->save ? "the state of the last slice has not come"
+                                    : "this simulator does not tell all that it is");
+    }
+    memcpy(push_saved(L, mcs, size)->bytes, bytes, size);
+}
+
+/* native.save(): all that the next slice depends on, as a value for native.restore. Raises if the link cannot
+ * tell what its other side is. */
+static int save(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    if (is_local(mcs)) {
+        save_local(L, mcs);
+    } else {
+        save_partner(L, mcs);
+    }
+    return 1;
+}
+
+static wh_status_t restore_local(lua_State *L, wh_mcs_t *mcs, const saved_t *saved) {
+    wh_simulator_t *simulator = &mcs->local.simulator;
+    wh_snapshot_room_t *room = lua_newuserdatauv(L, sizeof *room, 0);
+    room->wafers = lua_newuserdatauv(L, (mcs->state.wafer_count + 1) * sizeof *room->wafers, 0);
+    room->grippers = lua_newuserdatauv(L, (mcs->state.gripper_count + 1) * sizeof *room->grippers, 0);
+    const wh_status_t status = wh_simulator_load(simulator, saved->bytes, saved->size, room);
+    if (status == WH_OK) {
+        wh_simulator_view(simulator, &mcs->state);
+        mcs->state.seq = saved->track.slice;
+        mcs->state.utime = saved->track.slice * saved->track.slice_us;
+    }
+    return status;
+}
+
+/* Before the first slice the link has no state: it is as the layout says. */
+static wh_status_t restore_partner(wh_mcs_t *mcs, const saved_t *saved) {
+    const wh_mcs_partners_t *partners = &mcs->partners;
+    wh_state_t state;
+    memset(&state, 0, sizeof state);
+    wh_simulator_view(&mcs->local.simulator, &state);
+    const wh_status_t status = partners->restore
+                                   ? partners->restore(partners->user, saved->bytes, saved->size, &state)
+                                   : WH_STATUS_NOT_RESTORED;
+    if (status == WH_OK) {
+        mcs->state = state;
+    }
+    return status;
+}
+
+/* native.restore(saved): all is as it was. Raises if the link does not take it; then nothing has changed. */
+static int restore(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const saved_t *saved = luaL_checkudata(L, 1, SAVED);
+    const wh_status_t status = is_local(mcs) ? restore_local(L, mcs, saved) : restore_partner(mcs, saved);
+    if (status != WH_OK) {
+        const char *why = mcs->partners.explain ? mcs->partners.explain(mcs->partners.user, status) : NULL;
+        wh_mcs_raise(L, mcs, status, status == WH_STATUS_NOT_RESTORED ? "all is as it was" : why);
+    }
+    put_back(mcs, saved);
+    return 0;
+}
+
+/* native.differs(saved): a slice was played since, a fault is on its way, or a command is held or no longer
+ * is. */
+static int differs(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const saved_t *saved = luaL_checkudata(L, 1, SAVED);
+    lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
+                           saved->command.fault_count != mcs->command.fault_count ||
+                           strcmp(saved->held.command, mcs->held.command) != 0);
+    return 1;
+}
+
+/* native.most_undone(): how many commands UNDO takes back. */
+static int count_most(lua_State *L) {
+    lua_pushinteger(L, WH_MCS_UNDONE);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_saved_functions[] = {
+    {"save", save}, {"restore", restore}, {"differs", differs}, {"most_undone", count_most}, {NULL, NULL}};

@@ -1,0 +1,30 @@
+/* Which drawn error of a study costs most. */
+#ifndef WH_PRINT_STUDY_CAUSES_H
+#define WH_PRINT_STUDY_CAUSES_H
+
+#include <jansson.h>
+
+#include "study_print.h"
+
+/* A drawn error, and what goes with it. */
+typedef struct {
+    const wh_cause_t *cause;
+    size_t index;              /* among the study's causes */
+    wh_correlation_t by_size;  /* of failing with the size of what is drawn */
+    wh_correlation_t by_value; /* with the value; not determined of delays, which have one direction */
+    wh_correlation_t end;      /* the strongest of those with the ends of wafers */
+    size_t wafer, quantity;    /* which it is of, when it is determined */
+} wh_cause_told_t;
+
+/* All of them, to be freed: the one that goes with failing most strongly first; then those of which that is
+ * not determined, by `end`; then the rest as they are drawn. Their count is study->cause_count. */
+wh_cause_told_t *wh_causes_told(const wh_study_result_t *result);
+
+/* "Wafer 1 dx mm", "vacuum s". */
+#define WH_CAUSE_NAME 120
+void wh_cause_name(const wh_cause_t *cause, const wh_layout_t *layout, char name[WH_CAUSE_NAME]);
+
+/* The list `drawn` of print/study_print.h. */
+json_t *wh_causes_to_json(const wh_study_result_t *result);
+
+#endif

@@ -1,0 +1,172 @@
+#include "sweep_print.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "../text/grid.h"
+#include "../text/json.h"
+
+static const char *const verdicts[] = {"ok", "failed", "bad"};
+
+size_t wh_sweep_count(const wh_script_sweep_t *sweep, wh_sweep_verdict_t verdict) {
+    size_t count = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        count += sweep->points[i].verdict == verdict ? 1 : 0;
+    }
+    return count;
+}
+
+/* -------------------------------------------------------------------------------------------------- table */
+
+static const struct {
+    const char *heading;
+    size_t offset; /* of the figure in a point */
+} figures[] = {{";simulated s{3}", offsetof(wh_sweep_point_t, simulated_s)},
+               {";wafers/h{1}", offsetof(wh_sweep_point_t, wafers_per_hour)},
+               {";|dr_proj_z|{4}", offsetof(wh_sweep_point_t, projz)},
+               {";|dr_proj_xy|{4}", offsetof(wh_sweep_point_t, projxy)},
+               {";gap mm{3}", offsetof(wh_sweep_point_t, gap)}};
+#define FIGURES (sizeof figures / sizeof figures[0])
+
+static double figure_of(const wh_sweep_point_t *point, size_t k) {
+    double value;
+    memcpy(&value, (const char *)point + figures[k].offset, sizeof value);
+    return value;
+}
+
+/* True if any run has this figure; `FIGURES`: a reason. */
+static bool has_any(const wh_script_sweep_t *sweep, size_t k) {
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const wh_sweep_point_t *point = &sweep->points[i];
+        if (k == FIGURES ? point->reason != NULL : (bool)isfinite(figure_of(point, k))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *style,
+                           const bool shown[FIGURES + 1]) {
+    char columns[800] = "";
+    size_t length = 0;
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        length += (size_t)snprintf(columns + length, sizeof columns - length, "%.60s{0,12};",
+                                   sweep->axes[axis].name);
+    }
+    length += (size_t)snprintf(columns + length, sizeof columns - length, "result");
+    for (size_t k = 0; k < FIGURES; ++k) {
+        length += shown[k]
+                      ? (size_t)snprintf(columns + length, sizeof columns - length, "%s", figures[k].heading)
+                      : 0;
+    }
+    (void)snprintf(columns + length, sizeof columns - length, "%s", shown[FIGURES] ? ";why" : "");
+    return wh_grid_new(style, sweep->axis_count, columns);
+}
+
+static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i,
+                    const bool shown[FIGURES + 1]) {
+    const wh_sweep_point_t *point = &sweep->points[i];
+    size_t column = 0;
+    wh_grid_row(grid);
+    for (; column < sweep->axis_count; ++column) {
+        wh_grid_number(grid, column, WH_INK_PLAIN, wh_sweep_value(sweep, i, column));
+    }
+    wh_grid_text(grid, column++, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                 verdicts[point->verdict]);
+    for (size_t k = 0; k < FIGURES; ++k) {
+        if (isfinite(figure_of(point, k))) {
+            wh_grid_number(grid, column, WH_INK_PLAIN, figure_of(point, k));
+        }
+        column += shown[k] ? 1 : 0;
+    }
+    if (point->reason) {
+        wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->reason);
+    }
+}
+
+/* The run that is ok and has most wafers per hour, or else takes least time; point_count if none is ok. */
+static size_t find_best(const wh_script_sweep_t *sweep) {
+    size_t best = sweep->point_count;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const wh_sweep_point_t *point = &sweep->points[i];
+        const wh_sweep_point_t *before = best < sweep->point_count ? &sweep->points[best] : NULL;
+        const bool is_faster = before && isfinite(point->wafers_per_hour) && isfinite(before->wafers_per_hour)
+                                   ? point->wafers_per_hour > before->wafers_per_hour
+                                   : before && point->simulated_s < before->simulated_s;
+        if (point->verdict == WH_SWEEP_OK && (!before || is_faster)) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
+    const size_t best = find_best(sweep);
+    if (best == sweep->point_count) {
+        return;
+    }
+    fputs("the fastest of them:", out);
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        char value[WH_SWEEP_VALUE];
+        wh_sweep_text(wh_sweep_value(sweep, best, axis), value);
+        fprintf(out, " --set %s=%s", sweep->axes[axis].name, value);
+    }
+    fprintf(out, ", %.3f s simulated\n", sweep->points[best].simulated_s);
+}
+
+int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_style_t *style) {
+    const size_t ok = wh_sweep_count(sweep, WH_SWEEP_OK);
+    bool shown[FIGURES + 1];
+    for (size_t k = 0; k <= FIGURES; ++k) {
+        shown[k] = has_any(sweep, k);
+    }
+    wh_grid_t *grid = new_grid(sweep, style, shown);
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        add_row(sweep, grid, i, shown);
+    }
+    wh_style_put(out, sweep->run.script);
+    fputs("\n\n", out);
+    wh_grid_print(grid, out);
+    fputc('\n', out);
+    wh_style_print(style, out, ok == sweep->point_count ? WH_INK_GOOD : WH_INK_BAD, "%zu of %zu runs ok", ok,
+                   sweep->point_count);
+    fputc('\n', out);
+    print_best(sweep, out);
+    return ferror(out) ? -1 : 0;
+}
+
+/* --------------------------------------------------------------------------------------------------- JSON */
+
+static json_t *axis(const void *subject, size_t i) {
+    const wh_sweep_axis_t *of = &((const wh_script_sweep_t *)subject)->axes[i];
+    return wh_json_set(json_object(), "name %s start %g step %g count %lld", of->name, of->start, of->step,
+                       (json_int_t)of->count);
+}
+
+static json_t *run(const void *subject, size_t i) {
+    const wh_script_sweep_t *sweep = subject;
+    const wh_sweep_point_t *point = &sweep->points[i];
+    json_t *values = json_array();
+    for (size_t k = 0; k < sweep->axis_count; ++k) {
+        wh_json_append(values, wh_json_real(wh_sweep_value(sweep, i, k)));
+    }
+    json_t *object = wh_json_add(json_object(), "values", values, NULL);
+    (void)wh_json_set(object,
+                      "verdict %s reason %s simulated_s %g wafers_per_hour %g dr_proj_z %g dr_proj_xy %g "
+                      "gap %g",
+                      verdicts[point->verdict], point->reason, point->simulated_s, point->wafers_per_hour,
+                      point->projz, point->projxy, point->gap);
+    return wh_json_add(object, "hash",
+                       point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);
+}
+
+int wh_sweep_print_json(const wh_script_sweep_t *sweep, FILE *out) {
+    json_t *root = wh_json_set(json_object(), "format %d ok %i script %s", 1,
+                               wh_sweep_count(sweep, WH_SWEEP_OK) == sweep->point_count, sweep->run.script);
+    wh_json_put(root, "axes", wh_json_list(axis, sweep, sweep->axis_count));
+    wh_json_put(root, "runs", wh_json_list(run, sweep, sweep->point_count));
+    const int status = wh_json_print(root, out);
+    json_decref(root);
+    return status;
+}

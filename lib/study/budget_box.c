@@ -1,0 +1,417 @@
+/* The largest box of all errors together in which no trial fails. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/philox.h"
+#include "../text/array.h"
+#include "budget_internal.h"
+
+/* So many points are tried at a time, by all threads: the result does not depend on how many there are. With
+ * collisions it is fewer, for those behind one that fails are tried again. */
+#define BATCH 64
+#define BATCH_WITH 8
+
+/* How many corners one station has. */
+#define CORNERS (1U << WH_SPREADS)
+
+/* A ray is tried at so many places before it is bisected. */
+#define PLACES 8
+
+/* With collisions there is one for so many samples. */
+#define SAMPLES_WITH 16
+
+typedef struct {
+    wh_budget_crew_t *crew;
+    wh_budget_t *budget;
+    wh_budget_box_t *box;
+    wh_budget_player_t *player; /* of the thread that leads */
+    size_t size;                /* of points */
+    size_t *order;              /* of each station among those that are looked at */
+    size_t wanted;              /* so many are */
+    const int32_t **width;      /* of each error; null: not looked at */
+    int8_t *signs;              /* of the corner that failed last */
+    wh_budget_level_t level;    /* of the list that is tried */
+    /* A batch. */
+    size_t first;
+    int32_t *points;
+    bool passes[BATCH];
+} boxing_t;
+
+/* --------------------------------------------------------------------------------------------------- size */
+
+static int32_t width_of(const boxing_t *boxing, size_t i) {
+    return boxing->width[i] ? *boxing->width[i] : 0;
+}
+
+static void set_share(boxing_t *boxing, int64_t share) {
+    wh_budget_box_t *box = boxing->box;
+    box->share = share;
+    for (size_t i = 0; i < boxing->size; ++i) {
+        box->half[i] = (int32_t)(width_of(boxing, i) * share / box->whole);
+    }
+}
+
+/* The least share whose box has the point in it. */
+static int64_t share_of(const boxing_t *boxing, const int32_t point[]) {
+    int64_t share = 0;
+    for (size_t i = 0; i < boxing->size; ++i) {
+        const int64_t width = width_of(boxing, i);
+        if (point[i] != 0 && width > 0) {
+            const int64_t needed = (llabs(point[i]) * boxing->box->whole + width - 1) / width;
+            share = needed > share ? needed : share;
+        }
+    }
+    return share;
+}
+
+static int32_t clip(int32_t value, int32_t most) {
+    return value > most ? most : value < -most ? -most : value;
+}
+
+/* ------------------------------------------------------------------------------------------------- points */
+
+static size_t count_beside(const boxing_t *boxing, bool with) {
+    const size_t errors = WH_SPREADS * boxing->wanted;
+    if (!boxing->box->outside) {
+        return 0;
+    }
+    return with ? errors : errors * (errors + 1) / 2;
+}
+
+static size_t count_alone(const boxing_t *boxing, bool with) {
+    return boxing->wanted > 1 && !with ? CORNERS * boxing->wanted : 0;
+}
+
+static size_t count_drawn(const boxing_t *boxing, bool with) {
+    const uint64_t samples = boxing->budget->options.samples;
+    return (size_t)(with ? (samples + SAMPLES_WITH - 1) / SAMPLES_WITH : samples);
+}
+
+static size_t count_of(const boxing_t *boxing, wh_box_kind_t kind) {
+    const bool with = boxing->level == WH_BUDGET_WITH && boxing->budget->study->layout->collision;
+    switch (kind) {
+    case WH_BOX_ALIKE:
+        return CORNERS;
+    case WH_BOX_OPPOSITE:
+        return boxing->wanted > 1 ? CORNERS : 0;
+    case WH_BOX_ALONE:
+        return count_alone(boxing, with);
+    case WH_BOX_BESIDE:
+        return count_beside(boxing, with);
+    case WH_BOX_CORNER:
+    case WH_BOX_INSIDE:
+    default:
+        return count_drawn(boxing, with);
+    }
+}
+
+/* Which kind a point of the list is of; `index` becomes its number among these. False behind the list. */
+static bool find_kind(const boxing_t *boxing, size_t *index, wh_box_kind_t *kind) {
+    for (*kind = WH_BOX_ALIKE; *kind < WH_BOX_KINDS; ++*kind) {
+        const size_t count = count_of(boxing, *kind);
+        if (*index < count) {
+            return true;
+        }
+        *index -= count;
+    }
+    return false;
+}
+
+static uint32_t draw(const boxing_t *boxing, wh_box_kind_t kind, size_t index, size_t i) {
+    const uint64_t seed = boxing->budget->options.seed;
+    const uint32_t counter[4] = {(uint32_t)kind, (uint32_t)i, (uint32_t)index, 0};
+    const uint32_t key[2] = {(uint32_t)seed, (uint32_t)(seed >> 32)};
+    return wh_philox(counter, key).words[0];
+}
+
+/* Corner number `pattern` has bit `axis` set where that error is upwards. */
+static int32_t corner_of(size_t pattern, size_t axis, int32_t half) {
+    return (pattern >> axis & 1U) != 0 ? half : -half;
+}
+
+/* Of all pairs one, which may be twice the same: number `index` is `one` and `other`, at most `one`. */
+static void find_pair(size_t index, size_t *one, size_t *other) {
+    *one = 0;
+    while (index > *one) {
+        index -= ++*one;
+    }
+    *other = index;
+}
+
+/* The corner that failed last, with one error turned over for each of the first numbers, then with two. */
+static int32_t beside(const boxing_t *boxing, size_t index, size_t i, int32_t half) {
+    const size_t errors = WH_SPREADS * boxing->wanted;
+    if (boxing->order[i / WH_SPREADS] == SIZE_MAX) {
+        return 0;
+    }
+    const size_t number = boxing->order[i / WH_SPREADS] * WH_SPREADS + i % WH_SPREADS;
+    size_t one = index;
+    size_t other = index;
+    if (index >= errors) {
+        find_pair(index - errors, &one, &other);
+        ++one;
+    }
+    return (number == one || number == other ? -1 : 1) * boxing->signs[i] * half;
+}
+
+static int32_t coordinate(const boxing_t *boxing, wh_box_kind_t kind, size_t index, size_t i) {
+    const int32_t half = boxing->box->half[i];
+    const size_t axis = i % WH_SPREADS;
+    const size_t place = boxing->order[i / WH_SPREADS];
+    switch (kind) {
+    case WH_BOX_ALIKE:
+        return corner_of(index, axis, half);
+    case WH_BOX_OPPOSITE:
+        return corner_of(index, axis, place % 2 == 0 ? half : -half);
+    case WH_BOX_ALONE:
+        return place == index / CORNERS ? corner_of(index % CORNERS, axis, half) : 0;
+    case WH_BOX_CORNER:
+        return corner_of(draw(boxing, kind, index, i) >> 31, 0, half);
+    case WH_BOX_BESIDE:
+        return beside(boxing, index, i, half);
+    case WH_BOX_INSIDE:
+    default:
+        return (int32_t)((2 * (uint64_t)half + 1) * draw(boxing, kind, index, i) >> 32) - half;
+    }
+}
+
+/* False behind the list's end. */
+static bool make_point(const boxing_t *boxing, size_t index, int32_t point[]) {
+    wh_box_kind_t kind;
+    if (!find_kind(boxing, &index, &kind)) {
+        return false;
+    }
+    for (size_t i = 0; i < boxing->size; ++i) {
+        point[i] = coordinate(boxing, kind, index, i);
+    }
+    return true;
+}
+
+/* ---------------------------------------------------------------------------------------------- shrinking */
+
+static void put_on_ray(const boxing_t *boxing, const int32_t end[], int64_t at, int64_t length,
+                       int32_t point[]) {
+    for (size_t i = 0; i < boxing->size; ++i) {
+        point[i] = (int32_t)(end[i] * at / length);
+    }
+}
+
+/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`. */
+static void go_back(boxing_t *boxing, int32_t end[]) {
+    int32_t *point = wh_array_new(boxing->size, sizeof *point);
+    int64_t length = 0;
+    for (size_t i = 0; i < boxing->size; ++i) {
+        length = llabs(end[i]) > length ? llabs(end[i]) : length;
+    }
+    int64_t inside = 0;
+    int64_t outside = length;
+    for (int64_t place = 1; place < PLACES && outside == length; ++place) {
+        put_on_ray(boxing, end, length * place / PLACES, length, point);
+        *(wh_budget_passes(boxing->player, point, boxing->level) ? &inside : &outside) =
+            length * place / PLACES;
+    }
+    while (outside - inside > 1) {
+        const int64_t middle = inside + (outside - inside) / 2;
+        put_on_ray(boxing, end, middle, length, point);
+        *(wh_budget_passes(boxing->player, point, boxing->level) ? &inside : &outside) = middle;
+    }
+    put_on_ray(boxing, end, outside, length, point);
+    memcpy(end, point, boxing->size * sizeof *end);
+    free(point);
+}
+
+static void note_corner(boxing_t *boxing) {
+    for (size_t i = 0; i < boxing->size; ++i) {
+        const int32_t value = boxing->box->outside[i];
+        boxing->signs[i] = (int8_t)(value > 0 ? 1 : value < 0 ? -1 : boxing->signs[i]);
+    }
+}
+
+/* Shrinks the box until a point that fails is outside, and the point of the box next to it passes: these are
+ * its witnesses. */
+static void shrink(boxing_t *boxing, const int32_t failing[]) {
+    wh_budget_box_t *box = boxing->box;
+    const size_t bytes = boxing->size * sizeof *failing;
+    box->inside = box->inside ? box->inside : wh_array_new(boxing->size, sizeof *box->inside);
+    box->outside = box->outside ? box->outside : wh_array_new(boxing->size, sizeof *box->outside);
+    memcpy(box->inside, failing, bytes);
+    do {
+        memcpy(box->outside, box->inside, bytes);
+        go_back(boxing, box->outside);
+        note_corner(boxing);
+        set_share(boxing, share_of(boxing, box->outside) - 1);
+        for (size_t i = 0; i < boxing->size; ++i) {
+            box->inside[i] = clip(box->outside[i], box->half[i]);
+        }
+    } while (!wh_budget_passes(boxing->player, box->inside, boxing->level));
+}
+
+/* -------------------------------------------------------------------------------------------------- tries */
+
+static void try_point(wh_budget_player_t *player, void *user, size_t index) {
+    boxing_t *boxing = user;
+    int32_t *point = boxing->points + index * boxing->size;
+    boxing->passes[index] =
+        !make_point(boxing, boxing->first + index, point) || wh_budget_passes(player, point, boxing->level);
+}
+
+/* Tries all points of the level's list, each in the box as it then is. False if there are no threads;
+ * `*clean` becomes false if one failed. */
+static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
+    int32_t *ignored = wh_array_new(boxing->size, sizeof *ignored);
+    const bool costly = level == WH_BUDGET_WITH && boxing->budget->study->layout->collision;
+    const size_t batch = costly ? BATCH_WITH : BATCH;
+    boxing->level = level;
+    boxing->first = 0;
+    while (boxing->box->share > 0 && make_point(boxing, boxing->first, ignored)) {
+        if (!wh_budget_share_out(boxing->crew, batch, try_point, boxing, NULL)) {
+            free(ignored);
+            return false;
+        }
+        size_t failed = 0;
+        while (failed < batch && boxing->passes[failed]) {
+            ++failed;
+        }
+        if (failed < batch) {
+            shrink(boxing, boxing->points + failed * boxing->size);
+            *clean = false;
+        }
+        boxing->first += failed < batch ? failed + 1 : batch;
+    }
+    free(ignored);
+    return true;
+}
+
+static void tell_round(const boxing_t *boxing, size_t round) {
+    const wh_budget_options_t *options = &boxing->budget->options;
+    if (options->tell) {
+        options->tell(options->user, "rounds of the box of all errors", round, 0);
+    }
+}
+
+/* Until none of the points fails in a box that stays the same. */
+static bool try_lists(boxing_t *boxing) {
+    bool clean = false;
+    for (size_t round = 1; !clean; ++round) {
+        clean = true;
+        tell_round(boxing, round);
+        if ((boxing->budget->two_ways && !try_list(boxing, WH_BUDGET_WITHOUT, &clean)) ||
+            (clean && !try_list(boxing, WH_BUDGET_WITH, &clean))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---------------------------------------------------------------------------------------------- witnesses */
+
+/* Takes errors out of a point that fails as long as it fails: `count` in a row from each `first`. */
+static void take_out(boxing_t *boxing, int32_t point[], size_t count) {
+    int32_t *less = wh_array_new(boxing->size, sizeof *less);
+    for (size_t first = 0; first < boxing->size; first += count) {
+        bool is_any = false;
+        memcpy(less, point, boxing->size * sizeof *less);
+        for (size_t i = first; i < first + count; ++i) {
+            is_any = is_any || less[i] != 0;
+            less[i] = 0;
+        }
+        if (is_any && !wh_budget_passes(boxing->player, less, WH_BUDGET_WITH)) {
+            memcpy(point, less, boxing->size * sizeof *less);
+        }
+    }
+    free(less);
+}
+
+/* Leaves of the witnesses only the errors that it takes. False if a point of the box was found to fail on the
+ * way: then the box has shrunk. */
+static bool settle(boxing_t *boxing) {
+    wh_budget_box_t *box = boxing->box;
+    const int64_t share = box->share;
+    if (!box->outside) {
+        return true;
+    }
+    boxing->level = WH_BUDGET_WITH;
+    take_out(boxing, box->outside, WH_SPREADS);
+    take_out(boxing, box->outside, 1);
+    for (size_t i = 0; i < boxing->size; ++i) {
+        box->inside[i] = clip(box->outside[i], box->half[i]);
+    }
+    const bool is_within = share_of(boxing, box->outside) <= share;
+    const bool passes = !is_within && wh_budget_passes(boxing->player, box->inside, WH_BUDGET_WITH);
+    if (!passes) {
+        int32_t *failing = wh_array_new(boxing->size, sizeof *failing);
+        memcpy(failing, is_within ? box->outside : box->inside, boxing->size * sizeof *failing);
+        shrink(boxing, failing);
+        free(failing);
+    }
+    return passes;
+}
+
+static bool confirm(boxing_t *boxing) {
+    wh_budget_box_t *box = boxing->box;
+    wh_budget_why_t ignored;
+    if (!box->outside || (wh_budget_run(boxing->player, box->inside, &ignored) &&
+                          !wh_budget_run(boxing->player, box->outside, &box->why))) {
+        return true;
+    }
+    fputs(
+        "waferhand budget: all errors together: the script alone does not end as its trials did (expected a "
+        "script that does the same each time)\n",
+        stderr);
+    return false;
+}
+
+static void count_tried(boxing_t *boxing) {
+    for (wh_box_kind_t kind = WH_BOX_ALIKE; kind < WH_BOX_KINDS; ++kind) {
+        boxing->level = WH_BUDGET_WITH;
+        boxing->box->tried[kind] = count_of(boxing, kind);
+        boxing->level = WH_BUDGET_WITHOUT;
+        boxing->box->tried_without[kind] = boxing->budget->two_ways ? count_of(boxing, kind) : 0;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- all of it */
+
+static void open(boxing_t *boxing) {
+    wh_budget_t *budget = boxing->budget;
+    const size_t stations = budget->study->layout->station_count;
+    boxing->size = WH_SPREADS * stations;
+    boxing->order = wh_array_new(stations, sizeof *boxing->order);
+    boxing->width = wh_array_new(boxing->size, sizeof *boxing->width);
+    boxing->signs = wh_array_new(boxing->size, sizeof *boxing->signs);
+    memset(boxing->signs, 1, boxing->size * sizeof *boxing->signs);
+    boxing->points = wh_array_new(BATCH * boxing->size, sizeof *boxing->points);
+    boxing->box->half = wh_array_new(boxing->size, sizeof *boxing->box->half);
+    for (size_t s = 0; s < stations; ++s) {
+        const wh_budget_station_t *station = &budget->stations[s];
+        boxing->order[s] = station->wanted ? boxing->wanted++ : SIZE_MAX;
+        for (size_t axis = 0; axis < WH_SPREADS && station->wanted; ++axis) {
+            const int32_t *width = &station->errors[axis].width;
+            boxing->width[s * WH_SPREADS + axis] = width;
+            boxing->box->whole = *width > boxing->box->whole ? *width : boxing->box->whole;
+        }
+    }
+}
+
+bool wh_budget_find_box(wh_budget_crew_t *crew) {
+    boxing_t boxing = {
+        .crew = crew, .budget = crew->budget, .box = &crew->budget->box, .player = &crew->players[0]};
+    open(&boxing);
+    bool found = true;
+    if (boxing.box->whole > 0) {
+        bool settled = false;
+        set_share(&boxing, boxing.box->whole);
+        while (found && !settled) {
+            found = try_lists(&boxing);
+            settled = !found || settle(&boxing);
+        }
+        count_tried(&boxing);
+        found = found && confirm(&boxing);
+    }
+    free(boxing.order);
+    free(boxing.width);
+    free(boxing.signs);
+    free(boxing.points);
+    return found;
+}

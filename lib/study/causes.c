@@ -1,0 +1,93 @@
+#include "causes.h"
+
+#include "../text/array.h"
+
+#define COMPONENTS 6
+
+typedef struct {
+    wh_cause_t *causes;
+    size_t count, capacity;
+} list_t;
+
+static void add(list_t *list, wh_cause_kind_t kind, size_t index, size_t component, double width) {
+    if (width > 0) {
+        list->causes = wh_array_grow(list->causes, list->count, &list->capacity, sizeof *list->causes);
+        list->causes[list->count++] = (wh_cause_t){kind, index, component, width};
+    }
+}
+
+/* A wafer's tilt is one width, drawn about x and about y. */
+static size_t spread_of(wh_cause_kind_t kind, size_t component) {
+    return kind == WH_CAUSE_WAFER && component >= 4 ? component - 1 : component;
+}
+
+static void add_spreads(list_t *list, wh_cause_kind_t kind, size_t index, const wh_spreads_t *spreads) {
+    for (size_t component = 0; component < COMPONENTS; ++component) {
+        add(list, kind, index, component, spreads->of[spread_of(kind, component)].width);
+    }
+}
+
+wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
+    const wh_errors_t *errors = layout->errors;
+    list_t list = {wh_array_new(1, sizeof *list.causes), 0, 1};
+    for (size_t w = 0; errors && w < layout->wafer_count; ++w) {
+        add_spreads(&list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
+    }
+    for (size_t s = 0; errors && s < layout->station_count; ++s) {
+        add_spreads(&list, WH_CAUSE_STATION, s, &errors->stations[s]);
+    }
+    for (size_t g = 0; errors && g < layout->machine.gripper_count; ++g) {
+        add(&list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
+    }
+    add(&list, WH_CAUSE_VACUUM, 0, 0, errors ? errors->vacuum.width : 0);
+    *count = list.count;
+    return list.causes;
+}
+
+static double component_of(const wh_displacement_t *drawn, size_t component) {
+    const double moved[] = {drawn->moved.x, drawn->moved.y, drawn->moved.z};
+    return component < 3 ? moved[component] : drawn->turn[component - 3];
+}
+
+/* A displacement is drawn once, for all of its components that follow each other. */
+void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
+                    const wh_trial_t *trial, double drawn[]) {
+    const wh_errors_t *errors = layout->errors;
+    wh_displacement_t last = {0};
+    for (size_t i = 0; i < count; ++i) {
+        const wh_cause_t *cause = &causes[i];
+        const bool goes_on =
+            i > 0 && causes[i - 1].kind == cause->kind && causes[i - 1].index == cause->index;
+        if (cause->kind == WH_CAUSE_VALVE) {
+            drawn[i] = wh_errors_draw_valve(errors, trial, cause->index);
+        } else if (cause->kind == WH_CAUSE_VACUUM) {
+            drawn[i] = wh_errors_draw_vacuum(errors, trial);
+        } else {
+            last = goes_on                         ? last
+                   : cause->kind == WH_CAUSE_WAFER ? wh_errors_draw_wafer(errors, trial, cause->index)
+                                                   : wh_errors_draw_station(errors, trial, cause->index);
+            drawn[i] = component_of(&last, cause->component);
+        }
+    }
+}
+
+const char *wh_cause_what(const wh_cause_t *cause) {
+    static const char *const wafer[COMPONENTS] = {"dx", "dy", "dz", "tilt_x", "tilt_y", "turn"};
+    static const char *const station[COMPONENTS] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    return cause->kind == WH_CAUSE_WAFER     ? wafer[cause->component]
+           : cause->kind == WH_CAUSE_STATION ? station[cause->component]
+           : cause->kind == WH_CAUSE_VALVE   ? "valve"
+                                             : "vacuum";
+}
+
+const char *wh_cause_unit(const wh_cause_t *cause) {
+    const bool is_delay = cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM;
+    return is_delay ? "s" : cause->component < 3 ? "mm" : "deg";
+}
+
+const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
+    return cause->kind == WH_CAUSE_WAFER     ? layout->wafers[cause->index].name
+           : cause->kind == WH_CAUSE_STATION ? layout->stations[cause->index].name
+           : cause->kind == WH_CAUSE_VALVE   ? layout->grippers[cause->index].name
+                                             : NULL;
+}

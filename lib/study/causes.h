@@ -1,0 +1,32 @@
+/* What a study draws: each error whose width is not 0, one by one. */
+#ifndef WH_STUDY_CAUSES_H
+#define WH_STUDY_CAUSES_H
+
+#include "../layout/layout.h"
+
+typedef enum { WH_CAUSE_WAFER, WH_CAUSE_STATION, WH_CAUSE_VALVE, WH_CAUSE_VACUUM } wh_cause_kind_t;
+
+typedef struct {
+    wh_cause_kind_t kind;
+    size_t index;     /* of the wafer, station or gripper */
+    size_t component; /* of a wafer's or station's displacement: x, y, z, then the turns about them */
+    double width;     /* mm, degrees, s */
+} wh_cause_t;
+
+/* Those of a layout, in the order of `kind`, `index` and `component`. To be freed. Memory that runs out ends
+ * the program. */
+wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count);
+
+/* What a trial draws of each: mm, degrees, s. Cost: about 70 ns each. */
+void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
+                    const wh_trial_t *trial, double drawn[]);
+
+/* What is drawn, as "dx", "tilt_x", "yaw", "valve" or "vacuum", and its unit: "mm", "deg" or "s". Both are
+ * constant texts. */
+const char *wh_cause_what(const wh_cause_t *cause);
+const char *wh_cause_unit(const wh_cause_t *cause);
+
+/* Of whom: the name of the wafer, station or gripper; null for the vacuum, which is all grippers'. */
+const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout);
+
+#endif

@@ -1,0 +1,150 @@
+#include "lines.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+
+enum { MET = 1, WHOLE = 2, ENDED = 4 };
+
+void wh_trial_lines_free(wh_trial_lines_t *lines) {
+    free(lines->lines);
+    free(lines->ends);
+    memset(lines, 0, sizeof *lines);
+}
+
+double *wh_trial_lines_add(wh_trial_lines_t *lines, const wh_trial_line_t *line, size_t wafer_count) {
+    const size_t width = wafer_count * WH_TRIAL_LINE_ENDS;
+    lines->wafer_count = wafer_count;
+    lines->lines = wh_array_grow(lines->lines, lines->count, &lines->capacity, sizeof *lines->lines);
+    lines->ends = wh_array_reserve(lines->ends, (lines->count + 1) * width + 1, &lines->end_capacity,
+                                   sizeof *lines->ends);
+    lines->lines[lines->count] = *line;
+    return &lines->ends[lines->count++ * width];
+}
+
+void wh_trial_lines_merge(wh_trial_lines_t *lines, const wh_trial_lines_t *other) {
+    const size_t width = other->wafer_count * WH_TRIAL_LINE_ENDS;
+    for (size_t i = 0; i < other->count; ++i) {
+        double *ends = wh_trial_lines_add(lines, &other->lines[i], other->wafer_count);
+        memcpy(ends, &other->ends[i * width], width * sizeof *ends);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ sorting */
+
+typedef struct {
+    uint64_t trial;
+    size_t from;
+} place_t;
+
+static int compare(const void *a, const void *b) {
+    const place_t *one = a;
+    const place_t *other = b;
+    return (one->trial > other->trial) - (one->trial < other->trial);
+}
+
+void wh_trial_lines_sort(wh_trial_lines_t *lines) {
+    wh_trial_lines_t sorted = {0};
+    const size_t width = lines->wafer_count * WH_TRIAL_LINE_ENDS;
+    place_t *places = wh_array_new(lines->count, sizeof *places);
+    for (size_t i = 0; i < lines->count; ++i) {
+        places[i] = (place_t){lines->lines[i].trial, i};
+    }
+    qsort(places, lines->count, sizeof *places, compare);
+    for (size_t i = 0; i < lines->count; ++i) {
+        const size_t from = places[i].from;
+        double *ends = wh_trial_lines_add(&sorted, &lines->lines[from], lines->wafer_count);
+        memcpy(ends, &lines->ends[from * width], width * sizeof *ends);
+    }
+    free(places);
+    wh_trial_lines_free(lines);
+    *lines = sorted;
+}
+
+uint64_t wh_trial_lines_below(const wh_trial_lines_t *lines, uint64_t trial) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < lines->count; ++i) {
+        count += lines->lines[i].trial < trial ? 1 : 0;
+    }
+    return count;
+}
+
+/* --------------------------------------------------------------------------------------------------- text */
+
+static void put(FILE *out, uint64_t value, char after) {
+    fprintf(out, "%llx%c", (unsigned long long)value, after);
+}
+
+static void put_real(FILE *out, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(out, bits, ' ');
+}
+
+char *wh_trial_lines_text(const wh_trial_lines_t *lines) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    const size_t width = lines->wafer_count * WH_TRIAL_LINE_ENDS;
+    for (size_t i = 0; i < lines->count; ++i) {
+        const wh_trial_line_t *line = &lines->lines[i];
+        put(out, line->trial, ' ');
+        put(out, (line->met ? MET : 0U) | (line->whole ? WHOLE : 0U) | (line->ended ? ENDED : 0U), ' ');
+        put(out, line->missed, ' ');
+        put(out, line->errors, ' ');
+        put(out, line->complaints, ' ');
+        put(out, line->elsewhere, ' ');
+        put_real(out, line->off);
+        for (size_t e = 0; e < width; ++e) {
+            put_real(out, lines->ends[i * width + e]);
+        }
+    }
+    if (fclose(out) != 0) {
+        wh_memory_out();
+    }
+    return text;
+}
+
+/* Takes a number off the text; none is left when the text is at its end. */
+static bool take(const char **text, uint64_t *value) {
+    char *end = NULL;
+    *value = strtoull(*text, &end, 16);
+    const bool taken = end != *text && *end == ' ';
+    *text = taken ? end + 1 : *text;
+    return taken;
+}
+
+static bool take_real(const char **text, double *value) {
+    uint64_t bits;
+    const bool taken = take(text, &bits);
+    memcpy(value, &bits, sizeof bits);
+    return taken;
+}
+
+bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count) {
+    bool sound = true;
+    while (sound && *text != '\0') {
+        uint64_t numbers[6] = {0};
+        double off = 0;
+        for (size_t i = 0; sound && i < 6; ++i) {
+            sound = take(&text, &numbers[i]);
+        }
+        sound = sound && take_real(&text, &off);
+        const wh_trial_line_t line = {numbers[0],
+                                      (numbers[1] & MET) != 0,
+                                      (numbers[1] & WHOLE) != 0,
+                                      (numbers[1] & ENDED) != 0,
+                                      (uint32_t)numbers[2],
+                                      (uint32_t)numbers[3],
+                                      (uint32_t)numbers[4],
+                                      (uint32_t)numbers[5],
+                                      off};
+        double *ends = wh_trial_lines_add(lines, &line, wafer_count);
+        for (size_t e = 0; sound && e < wafer_count * WH_TRIAL_LINE_ENDS; ++e) {
+            sound = take_real(&text, &ends[e]);
+        }
+    }
+    return sound;
+}

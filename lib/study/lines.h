@@ -1,0 +1,47 @@
+/* What came of single trials, a line each: for a table of them, and for points in a plot. */
+#ifndef WH_STUDY_LINES_H
+#define WH_STUDY_LINES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Where a wafer lies in its slot (mm, deg): dx, dy, dz, tilt. NaN if it is not where it should be, or lies
+ * nowhere. */
+#define WH_TRIAL_LINE_ENDS 4
+
+typedef struct {
+    uint64_t trial;
+    bool met, whole, ended;
+    uint32_t missed, errors, complaints; /* expectations, commands, events of the cell */
+    uint32_t elsewhere;                  /* wafers */
+    double off; /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
+} wh_trial_line_t;
+
+/* To be zeroed; `wafer_count` is that of the first line. */
+typedef struct {
+    size_t count, capacity, end_capacity, wafer_count;
+    wh_trial_line_t *lines;
+    double *ends; /* of line i from i * wafer_count * WH_TRIAL_LINE_ENDS on */
+} wh_trial_lines_t;
+
+/* Memory that runs out ends the program, here and below. */
+void wh_trial_lines_free(wh_trial_lines_t *lines);
+
+/* One more; returns the room for how its wafers lie. */
+double *wh_trial_lines_add(wh_trial_lines_t *lines, const wh_trial_line_t *line, size_t wafer_count);
+void wh_trial_lines_merge(wh_trial_lines_t *lines, const wh_trial_lines_t *other);
+
+/* By trial. */
+void wh_trial_lines_sort(wh_trial_lines_t *lines);
+
+/* How many are of trials below this. */
+uint64_t wh_trial_lines_below(const wh_trial_lines_t *lines, uint64_t trial);
+
+/* As a text, to be freed: the bits of each number in hexadecimal digits. */
+char *wh_trial_lines_text(const wh_trial_lines_t *lines);
+
+/* Adds those of such a text. False if it is none, then some may have been added. */
+bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count);
+
+#endif

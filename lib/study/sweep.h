@@ -1,0 +1,62 @@
+/* A script that is run once for each value of a parameter, or for each combination of several. */
+#ifndef WH_STUDY_SWEEP_H
+#define WH_STUDY_SWEEP_H
+
+#include "../mcs/script_run.h"
+
+/* So many runs at most. */
+#define WH_SWEEP_MOST 10000
+
+/* So many parameters vary at most. */
+#define WH_SWEEP_AXES 4
+
+/* A parameter that takes the values start, start + step, ... up to end. */
+typedef struct {
+    char *name;
+    double start, step;
+    size_t count;
+} wh_sweep_axis_t;
+
+typedef enum {
+    WH_SWEEP_OK,
+    WH_SWEEP_FAILED, /* as of a run; or it moves nothing and expects nothing */
+    WH_SWEEP_BAD     /* script, layout or parameter cannot be used with these values */
+} wh_sweep_verdict_t;
+
+/* What came of a run. A figure that it has not is infinite. */
+typedef struct {
+    wh_sweep_verdict_t verdict;
+    char *reason; /* why it is not ok; else null */
+    double simulated_s, wafers_per_hour;
+    double projz, projxy; /* mm, the largest at picks */
+    double gap;           /* mm, the smallest of all, if collisions are looked for */
+    uint64_t hash;
+} wh_sweep_point_t;
+
+typedef struct {
+    wh_script_run_options_t run;   /* of each; its parameters are set here */
+    const char *const *parameters; /* NAME=START:STEP:END, and NAME=VALUE, which stays */
+    size_t parameter_count;
+    wh_sweep_axis_t *axes; /* the last one varies first */
+    size_t axis_count;
+    wh_sweep_point_t *points;
+    size_t point_count;
+} wh_script_sweep_t;
+
+/* Reads the parameters. Zero `sweep` but for run, parameters and parameter_count, and close it either way.
+ * False, and the reason on stderr, if a range is none, none is given, or they are too many runs. Memory that
+ * runs out ends the program. */
+bool wh_sweep_open(wh_script_sweep_t *sweep);
+void wh_sweep_close(wh_script_sweep_t *sweep);
+
+/* Runs them all on so many threads. False, and the reason on stderr, if there is no thread. */
+bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
+
+/* The value that a run has on an axis. */
+double wh_sweep_value(const wh_script_sweep_t *sweep, size_t point, size_t axis);
+
+/* How an axis' value is handed over. */
+#define WH_SWEEP_VALUE 32
+void wh_sweep_text(double value, char text[WH_SWEEP_VALUE]);
+
+#endif

@@ -1,0 +1,31 @@
+-- What an edge sensor sees of a wafer that lies off the chuck's axis: how far the rim goes in and out, and where the notch is.
+cell "../layouts/sensor.lua"
+
+get("A", 1)   put("P", 1)
+local scan = edge_scan("P")
+local samples, n = scan.samples, #scan.samples
+expect(n == 3600 and scan.missed == 0, "a sample each tenth of a degree")
+
+-- The middle between the highest and the lowest sample apart from the notch is the radius, half their distance how far off it lies.
+local sorted = table.move(samples, 1, n, 1, {})
+table.sort(sorted)
+local pixel, inner = 0.007, 150 - 28 / 2
+local radius = inner + (sorted[n] + sorted[n // 100]) / 2 * pixel
+local off = (sorted[n] - sorted[n // 100]) / 2 * pixel
+expect(math.abs(radius - 300.05 / 2) < 0.05, "the radius is 150.025 mm, roughly")
+expect(math.abs(off - distance("PA", "W01")) < 0.05, "so far is the wafer beside the axis, roughly")
+
+-- A notch is where a sample is deepest below those 2 degrees before and after it. Sample k is seen at -k/n of a turn from the
+-- chuck's x, for the chuck turns and the sensor stands.
+local deepest, at = 0, 0
+for i = 1, n do
+  local around = (samples[(i - 21) % n + 1] + samples[(i + 19) % n + 1]) / 2
+  if around - samples[i] > deepest then
+    deepest, at = around - samples[i], i
+  end
+end
+local direction = -(scan.first + at - 1) * 360 / n % 360
+expect(math.abs(deepest * pixel - 1) < 0.05, "it is 1 mm deep")
+-- That is from the chuck's axis: from the wafer's own middle it may differ by the angle under which that is seen from the rim.
+expect(math.abs(direction - 37) < math.deg(off / radius), "it points to 37 degrees, as the wafer does")
+print(("radius %.2f mm, %.2f mm off, notch at %.1f degrees"):format(radius, off, direction))

@@ -1,0 +1,174 @@
+-- What editors are told of layouts and scripts, in the annotations of the Lua language server: made of what
+-- the readers of layouts go by (native.classes), of the words (lua/mcs/words.lua), and of the options that
+-- commands look up.
+
+-- Kept, for a script may set globals of these names.
+local ipairs, pairs, select, table, wh = ipairs, pairs, select, table, wh
+
+-- What stands for all other fields of a table: so a typo has a type that no value fits.
+local UNKNOWN = "waferhand.no_such_field"
+
+return function(native, lookup, targets, words)
+  local lines = {}
+
+  local function add(text, ...)
+    lines[#lines + 1] = select("#", ...) > 0 and text:format(...) or text
+  end
+
+  -- One that is in tables of this class. An optional one ends in ?, as does its type in words.lua.
+  local function add_field(name, kind, text, optional)
+    add("---@field %s%s %s%s", name, optional and "?" or "", kind, text ~= "" and " " .. text or "")
+  end
+
+  local function open(name, text)
+    add("")
+    add("---%s", text)
+    add("---@class waferhand.%s", name)
+  end
+
+  -- Of a table that is written by hand: no other fields.
+  local function close()
+    add("---@field [string] %s", UNKNOWN)
+  end
+
+  ------------------------------------------------------------------------------------------------- layouts
+
+  local ranges = native.ranges()
+
+  -- A station's number tells its range, which commands have, too.
+  local function with_range(class, field)
+    local range = class.name == "station" and ranges[field.name]
+    return range and ("%s; from %.10g to %.10g"):format(field.text, range[1], range[2]) or field.text
+  end
+
+  local function add_layouts()
+    local faults = {}
+    for _, class in ipairs(native.classes()) do
+      open(class.name, class.text)
+      for _, field in ipairs(class.fields) do
+        add_field(field.name, field.type, with_range(class, field), not field.required)
+      end
+      close()
+      faults[#faults + 1] = class.name:find("^fault") and "waferhand." .. class.name or nil
+    end
+    add("")
+    add("---@alias waferhand.fault %s", table.concat(faults, "|"))
+  end
+
+  ------------------------------------------------------------------------------------------------- options
+
+  local function type_of(kind)
+    if not kind.values then
+      return kind[3] and "number" or "string"
+    end
+    local list = {}
+    for place, value in ipairs(kind.values) do
+      if value == true then
+        return "boolean"
+      end
+      list[place] = lookup.quote(value)
+    end
+    return table.concat(list, "|")
+  end
+
+  local function text_of(kind)
+    local unit = kind[3] or ""
+    return kind[2] and ("%s from %.10g to %.10g"):format(unit, kind[1], kind[2]):gsub("^ ", "") or unit
+  end
+
+  local function add_numbers(name, text, fields)
+    open(name, text)
+    for _, field in ipairs(fields) do
+      add_field(field, "number", text_of(lookup.ranges[field]), true)
+    end
+    close()
+  end
+
+  local function add_options(name, text, ...)
+    open(name, text)
+    for _, kinds in ipairs({ ... }) do
+      for field, kind in pairs(kinds) do
+        add_field(field, type_of(kind), text_of(kind), true)
+      end
+    end
+    close()
+  end
+
+  local function add_all_options()
+    local own, common = targets.phase_fields, { lookup.options, lookup.parameters }
+    add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])
+    add_options("carrying_options", "What GET and PUT may say for themselves.", own[""], common[1], common[2])
+    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.get_, common[1], common[2])
+    add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
+    add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
+    add("")
+    add('---@alias waferhand.clearance_kind "%s"', table.concat(native.clearance_kinds(), '"|"'))
+  end
+
+  --------------------------------------------------------------------------------------------------- words
+
+  local function add_results()
+    for _, class in ipairs(words.classes) do
+      open(class[1], class[2])
+      for place = 3, #class do
+        local kind, optional = class[place][2]:gsub("%?$", "")
+        add_field(class[place][1], kind, class[place][3], optional == 1)
+      end
+    end
+  end
+
+  local function add_function(name, word)
+    local names = {}
+    add("")
+    add("---%s", word.does)
+    for place, parameter in ipairs(word.takes) do
+      local kind, optional = parameter[2]:gsub("%?$", "")
+      names[place] = parameter[1]
+      add("---@param %s%s %s %s", parameter[1], optional == 1 and "?" or "", kind, parameter[3])
+    end
+    for _, result in ipairs(word.gives or {}) do
+      add("---@return %s %s", result[1], result[2])
+    end
+    add("function %s(%s) end", name, table.concat(names, ", "))
+  end
+
+  local function add_module()
+    local names = {}
+    for name in pairs(wh.errors) do
+      names[#names + 1] = ('"%s"'):format(name)
+    end
+    add("")
+    add("---@alias waferhand.error_name %s", table.concat(names, "|"))
+    add("")
+    add("---The check and the grasp table, and the catalogue of errors.")
+    add("---@class waferhand.module")
+    add("---@field version string")
+    add("---@field errors table<waferhand.error_name, { number: integer, text: string }>")
+    add("wh = {}")
+    for name, word in pairs(words.module) do
+      add_function("wh." .. name, word)
+    end
+  end
+
+  return function()
+    add("---@meta")
+    add("-- What layouts and scripts of Waferhand %s may say: printed by `waferhand definitions`.", native.version())
+    add("")
+    add("---What no such table has: a typo?")
+    add("---@class %s", UNKNOWN)
+    add_layouts()
+    add_all_options()
+    add_results()
+    for name, word in pairs(words.scripts) do
+      add_function(name, word)
+    end
+    add_module()
+    add("")
+    add("---What --set NAME=VALUE handed over.")
+    add("---@type table<string, number|string|boolean>")
+    add("params = {}")
+    add("")
+    add("return {}")
+    return table.concat(lines, "\n") .. "\n"
+  end
+end

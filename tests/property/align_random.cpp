@@ -1,0 +1,522 @@
+/* Random wafers on random chucks: how far circle, notch and flats of a scan are from the truth and from what is
+ * stated; verdicts; the circle by Eigen; and scans, rims and sensors that are none. WH_ALIGN_WAFERS=n takes so many wafers. */
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "support/support.h"
+
+#include "align/align.h"
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double rad = pi / 180;
+constexpr double um = 1e-3;
+constexpr int samples = 3600;
+
+int wafers() {
+    const char *text = std::getenv("WH_ALIGN_WAFERS");
+    return text == nullptr ? 500 / WH_TEST_SHARE : std::max(1, std::atoi(text));
+}
+
+/* What a scan is taken of, and with what. */
+struct Chuck {
+    wh_rim_t rim;
+    wh_placement_t placement;
+    wh_sensor_t sensor;
+    wh_trial_t trial;
+    int64_t first;
+    int way;
+};
+
+struct Scan {
+    std::vector<wh_rim_point_t> points;
+    std::vector<wh_rim_ray_t> rays;
+    wh_rim_scan_t scan;
+    explicit Scan(const Chuck &chuck) : points(samples), rays(samples) {
+        for (size_t i = 0; i < samples; ++i) {
+            const double turn =
+                wh_sensor_angle(&chuck.sensor, chuck.first + chuck.way * static_cast<int64_t>(i));
+            const wh_glance_t glance = {turn, chuck.way * 2 * pi, chuck.trial, static_cast<uint32_t>(i)};
+            const int32_t sample = wh_sensor_read(&chuck.sensor, &chuck.rim, &chuck.placement, &glance);
+            points[i] = wh_sensor_point(&chuck.sensor, &chuck.sensor.error, &glance, sample);
+        }
+        scan = {points.data(), points.size(), chuck.sensor.error.offset, chuck.sensor.pixel};
+    }
+    Scan(const Scan &) = delete;
+    Scan &operator=(const Scan &) = delete;
+    wh_status_t fit(wh_circle_t &circle) {
+        return wh_circle_fit(&scan, rays.data(), &circle);
+    }
+};
+
+wh_rim_t draw_notched() {
+    wh_rim_t rim = wh_rim_nominal(150);
+    rim.notch.depth += wh_test_uniform(0, 0.25);
+    rim.notch.opening += wh_test_uniform(-1, 5) * rad;
+    rim.notch.corner = wh_test_uniform(0, 0.2);
+    return rim;
+}
+
+/* The secondary flat is a quarter or half of a turn away. */
+wh_rim_t draw_flat() {
+    wh_rim_t rim = wh_rim_nominal(75);
+    if (wh_test_below(2)) {
+        rim.flats[1].length = 37.5;
+        rim.flats[1].direction = wh_test_below(2) ? -pi / 2 : pi;
+    }
+    return rim;
+}
+
+/* Noise of 5 um. A wafer in four has flats. */
+Chuck draw(int wafer) {
+    Chuck chuck;
+    const bool flat = wafer % 4 == 3;
+    chuck.rim = flat ? draw_flat() : draw_notched();
+    chuck.sensor = wh_sensor_nominal(chuck.rim.radius);
+    chuck.rim.radius += wh_test_uniform(-0.1, 0.1);
+    chuck.rim.bow = wh_test_uniform(-0.2, 0.2);
+    chuck.rim.chip_count = static_cast<int32_t>(wh_test_below(3));
+    for (int32_t i = 0; i < chuck.rim.chip_count; ++i) {
+        wh_chip_t &chip = chuck.rim.chips[i];
+        chip.direction = wh_test_uniform(-pi, pi);
+        chip.width = wh_test_uniform(0.2, 4);
+        chip.depth = wh_test_uniform(0.2, 1) * std::min(chip.width, 2.0);
+    }
+    const double e = (flat ? 7 : 10) * std::sqrt(wh_test_uniform(0, 1));
+    const double phi = wh_test_uniform(-pi, pi);
+    chuck.placement = {e * std::cos(phi), e * std::sin(phi), wh_test_uniform(-pi, pi)};
+    wh_sensor_t &sensor = chuck.sensor;
+    sensor.direction = wh_test_uniform(-pi, pi);
+    sensor.encoder = wh_test_below(2) ? 65536 : 0;
+    sensor.noise = 5 * um;
+    sensor.tilt = wh_test_uniform(-0.05, 0.05);
+    sensor.error = {wh_test_uniform(-0.2, 0.2), wh_test_uniform(-0.2, 0.2), wh_test_uniform(-1e-3, 1e-3),
+                    wh_test_uniform(-1e-4, 1e-4)};
+    sensor.hidden[0].from = wh_test_uniform(-pi, pi);
+    chuck.trial = {wh_test_random(), static_cast<uint64_t>(wafer)};
+    chuck.first = static_cast<int64_t>(wh_test_below(samples));
+    chuck.way = wh_test_below(2) ? 1 : -1;
+    wh_bad_field_t bad = {nullptr, WH_NONE};
+    assert_int_equal(wh_rim_validate(&chuck.rim, &bad), WH_OK);
+    assert_int_equal(wh_sensor_validate(&chuck.sensor, &bad), WH_OK);
+    return chuck;
+}
+
+void hide(Chuck &chuck, double degrees) {
+    chuck.sensor.hidden_count = degrees > 0 ? 1 : 0;
+    chuck.sensor.hidden[0].width = degrees * rad;
+}
+
+/* -------------------------------------------------------------------------------------------- the truth */
+
+/* The worst of all wafers, and the mean square in units of the stated deviations. */
+struct Errors {
+    double centre = 0, deviations = 0, squares = 0;
+    int count = 0;
+
+    void see(const wh_circle_t &circle, const wh_placement_t &truth, double limit) {
+        const double x = circle.x - truth.x;
+        const double y = circle.y - truth.y;
+        const double off = std::hypot(x, y);
+        assert_true(off <= limit);
+        centre = std::max(centre, off);
+        deviations = std::max(
+            {deviations, off / circle.sd_centre, std::fabs(x) / circle.sd_x, std::fabs(y) / circle.sd_y});
+        squares += std::pow(x / circle.sd_x, 2) + std::pow(y / circle.sd_y, 2);
+        ++count;
+    }
+    void finish(double degrees) const {
+        const double honest = std::sqrt(squares / (2 * count));
+        std::printf("%3.0f degrees hidden: %d wafers, centre off by at most %.3f um, %.2f deviations of 6, "
+                    "%.3f in the root mean square\n",
+                    degrees, count, centre / um, deviations, honest);
+        assert_true(deviations <= 6);
+        assert_true(std::fabs(honest - 1) <= 0.1 + 3 / std::sqrt(count));
+    }
+};
+
+/* With flats fewer samples count. With half of a turn hidden the stated deviations alone say how many less. */
+void the_centre_is_as_near_as_it_says(void **) {
+    static const struct {
+        double degrees, limit, of_flats;
+    } cases[] = {{0, 0.7 * um, 1 * um}, {60, 1 * um, 2 * um}, {180, 2.5 * um, INFINITY}};
+    for (const auto &one : cases) {
+        wh_test_seed();
+        Errors errors;
+        for (int wafer = 0; wafer < wafers(); ++wafer) {
+            Chuck chuck = draw(wafer);
+            hide(chuck, one.degrees);
+            Scan scan(chuck);
+            wh_circle_t circle;
+            const bool flat = chuck.rim.notch.depth == 0;
+            const wh_status_t status = scan.fit(circle);
+            if (status == WH_STATUS_CENTRE_NOT_SURE && flat && one.degrees == 180) {
+                continue; /* flats and chips leave less than half of what is seen */
+            }
+            assert_int_equal(status, WH_OK);
+            errors.see(circle, chuck.placement, flat ? one.of_flats : one.limit);
+        }
+        errors.finish(one.degrees);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ Eigen */
+
+/* Gauss and Newton by orthogonal factors of all rows, from the truth, with sines of the C library. */
+struct Oracle {
+    Eigen::Vector3d at;
+    Eigen::Matrix3d inverse;
+    double scatter = 0;
+
+    Oracle(const Chuck &chuck, const Scan &scan)
+        : at(chuck.placement.x, chuck.placement.y, chuck.rim.radius) {
+        Eigen::Matrix<double, Eigen::Dynamic, 3> rows(samples, 3);
+        Eigen::VectorXd off(samples);
+        for (int round = 0; round < 6; ++round) {
+            double weights = 0;
+            for (int i = 0; i < samples; ++i) {
+                const auto place = static_cast<size_t>(i);
+                const double root = std::sqrt(scan.rays[place].weight);
+                weights += scan.rays[place].weight;
+                fill(scan.points[place], scan.scan.offset, rows, off, i);
+                rows.row(i) *= root;
+                off(i) = root > 0 ? root * off(i) : 0;
+            }
+            at += rows.colPivHouseholderQr().solve(off);
+            scatter = std::sqrt(off.squaredNorm() / (weights - 3));
+        }
+        inverse = (rows.transpose() * rows).inverse();
+    }
+    void fill(const wh_rim_point_t &point, double offset, Eigen::Matrix<double, Eigen::Dynamic, 3> &rows,
+              Eigen::VectorXd &off, int i) const {
+        const double c = std::cos(point.angle);
+        const double s = std::sin(point.angle);
+        const double q = offset + at(0) * s - at(1) * c;
+        const double root = std::sqrt(at(2) * at(2) - q * q);
+        rows.row(i) << c - q * s / root, s + q * c / root, at(2) / root;
+        off(i) = point.radius - (at(0) * c + at(1) * s + root);
+    }
+};
+
+/* Of normal noise, Tukey's weights see this part of the mean square: the integrals of w x^2 and w, cut at 6
+ * deviations. */
+double seen_by_tukey() {
+    double squares = 0;
+    double weights = 0;
+    for (int i = -6000; i <= 6000; ++i) {
+        const double x = i * 1e-3;
+        const double w = std::pow(1 - x * x / 36, 2) * std::exp(-x * x / 2);
+        squares += w * x * x;
+        weights += w;
+    }
+    return squares / weights;
+}
+
+/* The squares of the sums of 24 blocks against the sum of the squares, if they are more than double of noise's. */
+double inflated(const Scan &scan) {
+    std::vector<double> weighted;
+    for (const wh_rim_ray_t &ray : scan.rays) {
+        if (ray.weight > 0) {
+            weighted.push_back(ray.weight * ray.residual);
+        }
+    }
+    const Eigen::Map<Eigen::VectorXd> all(weighted.data(), static_cast<Eigen::Index>(weighted.size()));
+    const Eigen::Index size = all.size() / 24 + 1;
+    double blocks = 0;
+    for (Eigen::Index first = 0; first < all.size(); first += size) {
+        blocks += std::pow(all.segment(first, std::min(size, all.size() - first)).sum(), 2);
+    }
+    const double times = blocks / all.squaredNorm() * 24 / 21;
+    return times > 2 ? times : 1;
+}
+
+void the_fit_is_eigens(void **) {
+    wh_test_seed();
+    const double seen = seen_by_tukey();
+    double position = 0;
+    double deviation = 0;
+    for (int wafer = 0; wafer < wafers() / 5 + 1; ++wafer) {
+        Chuck chuck = draw(wafer);
+        hide(chuck, wafer % 3 * 90);
+        Scan scan(chuck);
+        wh_circle_t circle;
+        assert_int_equal(scan.fit(circle), WH_OK);
+        const Oracle oracle(chuck, scan);
+        const double scatter = oracle.scatter / std::sqrt(seen);
+        const double inflation = inflated(scan);
+        const Eigen::Vector3d fitted(circle.x, circle.y, circle.radius);
+        const Eigen::Vector3d stated(circle.sd_x, circle.sd_y, circle.sd_radius);
+        const Eigen::Vector3d wanted = scatter * std::sqrt(inflation) * oracle.inverse.diagonal().cwiseSqrt();
+        const double largest =
+            scatter * std::sqrt(inflation) *
+            std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(oracle.inverse.topLeftCorner<2, 2>())
+                          .eigenvalues()(1));
+        position = std::max(position, (fitted - oracle.at).cwiseAbs().maxCoeff());
+        deviation =
+            std::max({deviation, (stated - wanted).cwiseQuotient(wanted).cwiseAbs().maxCoeff(),
+                      std::fabs(circle.sd_centre / largest - 1), std::fabs(circle.scatter / scatter - 1),
+                      std::fabs(circle.inflation / inflation - 1)});
+        assert_true(circle.used > 0 && circle.used <= circle.seen && circle.seen <= scan.points.size());
+    }
+    std::printf("off Eigen's by at most %.2e mm; the deviations by a part of %.2e\n", position, deviation);
+    assert_true(position <= 1e-9);
+    assert_true(deviation <= 1e-4);
+}
+
+/* ------------------------------------------------------------------------------------------------ the whole */
+
+/* Up to 2 mm wide, at most half as deep: less than a notch, whatever their number. */
+void chip(wh_rim_t &rim) {
+    rim.chip_count = 1 + static_cast<int32_t>(wh_test_below(3));
+    for (int32_t i = 0; i < rim.chip_count; ++i) {
+        wh_chip_t &one = rim.chips[i];
+        one.direction = wh_test_uniform(-pi, pi);
+        one.width = wh_test_uniform(0.2, 2);
+        one.depth = wh_test_uniform(0.1, 0.5) * one.width;
+    }
+}
+
+struct Crowd {
+    const char *name;
+    double noise, glass, degrees;
+    bool chipped, flat;
+    double unsure; /* at most, a part */
+};
+
+/* What the verdicts of a crowd of wafers were worth. */
+struct Verdicts {
+    double largest = 0, deviations = 0, squares = 0, in_deviations = 0;
+    int sure = 0, unsure = 0;
+
+    void see(const wh_align_result_t &result, const Chuck &chuck) {
+        if (result.verdict != WH_OK) {
+            assert_int_not_equal(result.verdict, WH_STATUS_NO_NOTCH);
+            ++unsure;
+            return;
+        }
+        const double off =
+            std::hypot(result.circle.x - chuck.placement.x, result.circle.y - chuck.placement.y);
+        const double turn = std::fabs(std::remainder(result.turn - chuck.placement.turn, 2 * pi));
+        assert_true(off <= 10 * um && off <= 6 * result.circle.sd_centre);
+        assert_true(turn <= 0.05 * rad && turn <= 6 * result.sd_turn);
+        largest = std::max(largest, turn / rad);
+        deviations = std::max({deviations, off / result.circle.sd_centre, turn / result.sd_turn});
+        squares += std::pow(turn / rad, 2);
+        in_deviations += std::pow(turn / result.sd_turn, 2);
+        ++sure;
+    }
+    void finish(const Crowd &crowd) const {
+        const double honest = std::sqrt(in_deviations / sure);
+        std::printf(
+            "%s: %d sure, %d not; turn off by %.5f degrees rms, %.5f at most; %.2f deviations, %.3f rms\n",
+            crowd.name, sure, unsure, std::sqrt(squares / sure), largest, deviations, honest);
+        assert_true(unsure <= crowd.unsure * (sure + unsure) + 1);
+        assert_true(std::fabs(honest - 1) <= 0.1 + 3 / std::sqrt(sure));
+    }
+};
+
+wh_align_result_t estimate(const Chuck &chuck, Scan &scan) {
+    wh_rim_t nominal = wh_rim_nominal(chuck.rim.notch.depth > 0 ? 150 : 75);
+    nominal.flats[1] = chuck.rim.flats[1];
+    nominal.transmission = chuck.rim.transmission;
+    const wh_align_limits_t limits = wh_align_limits_default();
+    wh_align_result_t result;
+    assert_int_equal(
+        wh_align_estimate(&scan.scan, &chuck.sensor, &nominal, &limits, scan.rays.data(), &result), WH_OK);
+    return result;
+}
+
+/* Never wrong: the centre off by 10 um, the turn by 0.05 degrees, or one of them by 6 of its deviations. */
+void a_verdict_is_right_or_not_sure(void **) {
+    static const Crowd crowds[] = {
+        {"clean", 5 * um, 0, 0, false, false, 0.001},
+        {"flats", 5 * um, 0, 0, false, true, 0.001},
+        {"chipped", 5 * um, 0, 0, true, false, 0.05},
+        {"20 um of noise", 20 * um, 0, 0, false, false, 0.001},
+        {"noise, chipped", 20 * um, 0, 0, true, false, 0.05},
+        {"glass", 5 * um, 0.5, 0, false, false, 0.02},
+        {"glass, chipped", 5 * um, 0.5, 0, true, false, 0.1},
+        {"half hidden", 5 * um, 0, 180, false, false, 0.6},
+        {"half hidden, chipped", 5 * um, 0, 180, true, false, 0.7},
+    };
+    for (const Crowd &crowd : crowds) {
+        wh_test_seed();
+        Verdicts verdicts;
+        for (int wafer = 0; wafer < wafers() / 2 + 1; ++wafer) {
+            Chuck chuck = draw(crowd.flat ? 3 : 0);
+            chuck.trial.trial = static_cast<uint64_t>(wafer);
+            chuck.rim.chip_count = 0;
+            chuck.rim.transmission = crowd.glass;
+            chuck.sensor.noise = crowd.noise;
+            hide(chuck, crowd.degrees);
+            if (crowd.chipped) {
+                chip(chuck.rim);
+            }
+            Scan scan(chuck);
+            verdicts.see(estimate(chuck, scan), chuck);
+        }
+        verdicts.finish(crowd);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------- bad input */
+
+/* Makes the scan wrong in one way; what the fit has to say of it. */
+wh_status_t spoil(Scan &scan, uint32_t way) {
+    const size_t i = 1 + wh_test_below(samples - 2);
+    wh_rim_point_t &point = scan.points[i];
+    static const double none[] = {NAN, INFINITY, -INFINITY};
+    static const double bad_radius[] = {NAN, INFINITY, -INFINITY, 0.99, 1000.01, -150};
+    static const double bad_offset[] = {NAN, INFINITY, -1.001, 1.001};
+    static const double bad_pixel[] = {NAN, INFINITY, -1e-9, 0.1001};
+    switch (way) {
+    case 0:
+        point.angle = none[wh_test_below(3)];
+        return WH_STATUS_BAD_SCAN;
+    case 1:
+        point.sight = WH_SIGHT_RIM;
+        point.radius = bad_radius[wh_test_below(6)];
+        return WH_STATUS_BAD_SCAN;
+    case 2:
+        point.angle = scan.points[i + 1].angle;
+        return WH_STATUS_BAD_SCAN;
+    case 3:
+        std::swap(point.angle, scan.points[i - 1].angle);
+        return WH_STATUS_BAD_SCAN;
+    case 4:
+        scan.points.back().angle =
+            scan.points[0].angle + (point.angle > scan.points[0].angle ? 2 : -2) * 3.1416;
+        return WH_STATUS_BAD_SCAN;
+    case 5:
+        scan.scan.offset = bad_offset[wh_test_below(4)];
+        return WH_STATUS_OUT_OF_RANGE;
+    case 6:
+        scan.scan.pixel = bad_pixel[wh_test_below(4)];
+        return WH_STATUS_OUT_OF_RANGE;
+    case 7:
+        scan.scan.count = WH_SENSOR_SAMPLES + 1;
+        return WH_STATUS_OUT_OF_RANGE;
+    case 8:
+        scan.scan.count = wh_test_below(WH_SCAN_LEAST);
+        return WH_STATUS_TOO_FEW_SAMPLES;
+    case 9:
+        for (size_t k = WH_SCAN_LEAST - 1; k < samples; ++k) {
+            scan.points[k].sight = wh_test_below(2) ? WH_SIGHT_NOTHING : WH_SIGHT_COVERED;
+        }
+        return WH_STATUS_TOO_FEW_SAMPLES;
+    case 10:
+        for (wh_rim_point_t &each : scan.points) {
+            each.radius = 150;
+        }
+        return WH_STATUS_BAD_SCAN;
+    default:
+        for (wh_rim_point_t &each : scan.points) {
+            each.radius = wh_test_uniform(140, 160);
+        }
+        return WH_STATUS_CENTRE_NOT_SURE;
+    }
+}
+
+void what_is_no_scan_is_refused(void **) {
+    wh_test_seed();
+    for (uint32_t round = 0; round < 240; ++round) {
+        Chuck chuck = draw(static_cast<int>(round));
+        Scan scan(chuck);
+        wh_circle_t circle;
+        std::memset(&circle, 0x5a, sizeof circle);
+        const wh_circle_t before = circle;
+        const wh_status_t wanted = spoil(scan, round % 12);
+        const wh_status_t status = scan.fit(circle);
+        if (status != wanted) {
+            print_error("way %u: %s\n", static_cast<unsigned>(round % 12), wh_status_name(status));
+        }
+        assert_int_equal(status, wanted);
+        assert_memory_equal(&circle, &before, sizeof circle);
+    }
+}
+
+/* A field, and one value on each side of what it may be. */
+struct Field {
+    double *value;
+    const char *name;
+    int32_t index;
+    double below, above;
+};
+
+template <class Thing>
+void each_field_is_looked_at(Thing &thing, const std::vector<Field> &fields,
+                             wh_status_t (*validate)(const Thing *, wh_bad_field_t *)) {
+    assert_int_equal(validate(&thing, nullptr), WH_OK);
+    assert_int_equal(validate(nullptr, nullptr), WH_STATUS_NULL_ARGUMENT);
+    for (const Field &field : fields) {
+        const double good = *field.value;
+        for (const double wrong :
+             {field.below, field.above, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+            *field.value = wrong;
+            wh_bad_field_t bad = {nullptr, -7};
+            assert_int_equal(validate(&thing, &bad),
+                             std::isfinite(wrong) ? WH_STATUS_OUT_OF_RANGE : WH_STATUS_NOT_FINITE);
+            assert_string_equal(bad.name, field.name);
+            assert_int_equal(bad.index, field.index);
+        }
+        *field.value = good;
+    }
+    assert_int_equal(validate(&thing, nullptr), WH_OK);
+}
+
+void wrong_rims_and_sensors_are_named(void **) {
+    wh_rim_t rim = wh_rim_nominal(150);
+    rim.chip_count = 2;
+    rim.chips[0] = rim.chips[1] = {1, 2, 1};
+    each_field_is_looked_at<wh_rim_t>(rim,
+                                      {{&rim.radius, "radius", WH_NONE, 9.9, 300.1},
+                                       {&rim.notch.depth, "notch.depth", WH_NONE, 0.19, 3.1},
+                                       {&rim.notch.direction, "notch.direction", WH_NONE, -6.3, 6.3},
+                                       {&rim.notch.opening, "notch.opening", WH_NONE, 0.99, 2.11},
+                                       {&rim.notch.bottom, "notch.bottom", WH_NONE, -0.1, 2.1},
+                                       {&rim.notch.corner, "notch.corner", WH_NONE, -0.1, 1.1},
+                                       {&rim.flats[0].length, "flats.length", 0, 1.9, 210.1},
+                                       {&rim.flats[1].direction, "flats.direction", 1, -6.3, 6.3},
+                                       {&rim.chips[0].direction, "chips.direction", 0, -6.3, 6.3},
+                                       {&rim.chips[0].width, "chips.width", 0, 0, 30.1},
+                                       {&rim.chips[1].depth, "chips.depth", 1, -0.1, 2.1},
+                                       {&rim.bow, "bow", WH_NONE, -2.1, 2.1},
+                                       {&rim.saddle, "saddle", WH_NONE, -2.1, 2.1},
+                                       {&rim.saddle_direction, "saddle_direction", WH_NONE, -6.3, 6.3},
+                                       {&rim.transmission, "transmission", WH_NONE, -0.1, 0.91}},
+                                      wh_rim_validate);
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    sensor.hidden_count = 2;
+    sensor.hidden[0] = sensor.hidden[1] = {0, 1};
+    each_field_is_looked_at<wh_sensor_t>(sensor,
+                                         {{&sensor.direction, "direction", WH_NONE, -6.3, 6.3},
+                                          {&sensor.middle, "middle", WH_NONE, 9.9, 300.1},
+                                          {&sensor.length, "length", WH_NONE, 1.9, 100.1},
+                                          {&sensor.pixel, "pixel", WH_NONE, 0.0009, 0.11},
+                                          {&sensor.noise, "noise", WH_NONE, -0.01, 0.11},
+                                          {&sensor.tilt, "tilt", WH_NONE, -0.51, 0.51},
+                                          {&sensor.error.offset, "error.offset", WH_NONE, -1.1, 1.1},
+                                          {&sensor.error.zero, "error.zero", WH_NONE, -1.1, 1.1},
+                                          {&sensor.error.gain, "error.gain", WH_NONE, -0.011, 0.011},
+                                          {&sensor.error.latency, "error.latency", WH_NONE, -0.0011, 0.0011},
+                                          {&sensor.hidden[0].from, "hidden.from", 0, -6.3, 6.3},
+                                          {&sensor.hidden[1].width, "hidden.width", 1, 0, 6.3}},
+                                         wh_sensor_validate);
+}
+
+} // namespace
+
+int main() {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_centre_is_as_near_as_it_says), cmocka_unit_test(the_fit_is_eigens),
+        cmocka_unit_test(a_verdict_is_right_or_not_sure),   cmocka_unit_test(what_is_no_scan_is_refused),
+        cmocka_unit_test(wrong_rims_and_sensors_are_named),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

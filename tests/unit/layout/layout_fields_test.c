@@ -1,0 +1,243 @@
+/* The lists of fields are what the reader of layouts reads: each field of each table is tried where it may
+ * stand, with a value of no type, and left out; the reader must name it, and expect the type that the list
+ * has. `waferhand definitions` prints these lists. */
+#include "support/layout.h"
+
+#include "layout/layout_fields.h"
+
+/* A cell with every table in it, so that each field has a place. */
+static const char base[] =
+    "local cell = { wafer = { notch = {} }, tolerance = {}, near = {}, placing = {}, vacuum = {}, chuck = {},"
+    " pads = { friction = 0.5, force = 10 }, corrections = {}, clearance = {},"
+    " robot = { theta = {}, r = {}, z = {}, yaw = {} },"
+    " grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },"
+    " stations = { A = { at = { 700, 0, 900 }, slots = 2 }, B = { at = { 0, 700, 900 } },"
+    "   P = { kind = 'prealigner', at = { -600, 0, 950 }, sensor = { hidden = { { from = 1, width = 2 } } } "
+    "} },"
+    " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, flats = { { at = 0, length = 50 "
+    "} },"
+    "   chips = { { at = 90, width = 1, depth = 0.5 } } } }, { name = 'W2', station = 'B', slot = 1 } },"
+    " shapes = { blade = {}, arm = {}, ledge = {}, foup = {}, chuck = {} },"
+    " obstacles = { { at = { 0, 0, -500 }, box = { 1, 1, 1 } },"
+    "   { at = { 0, 0, -600 }, cylinder = { radius = 1, height = 1 } },"
+    "   { at = { 0, 0, -700 }, capsule = { radius = 1, height = 1 } } },"
+    " faults = { { kind = 'no_vacuum' }, { kind = 'slow_vacuum', value = 1 }, { kind = 'leak', value = 0.1 },"
+    "   { kind = 'command_lost' }, { kind = 'wafer_missing', wafer = 'W1' },"
+    "   { kind = 'wafer_doubled', wafer = 'W1', onto = 'W2' }, { kind = 'wafer_crossed', wafer = 'W1' },"
+    "   { kind = 'wafer_shifted', wafer = 'W1' }, { kind = 'wafer_tilted', wafer = 'W1', rpy = { 1, 0, 0 } } "
+    "},"
+    " study = { placement = {}, teaching = {}, timing = {}, wafers = { W1 = {} }, stations = { A = {} },"
+    "   grippers = { EE = {} } } }\n";
+
+/* The fault tables follow one another in the list as the base's faults do. */
+static const char first_fault[] = "fault.gripper";
+
+/* Room for the path of a field. */
+#define PATH_BYTES 300
+
+static size_t tried;
+
+/* False if the base, changed by this statement, is refused. */
+static bool is_read(const char *statement) {
+    lua_State *L = wh_sandbox_state(sandbox);
+    char text[4096];
+    lua_settop(L, 0);
+    const int length = snprintf(text, sizeof text, "%s%s return cell", base, statement);
+    assert_in_range(length, 1, (int)sizeof text - 1);
+    wh_sandbox_renew(sandbox);
+    lua_pushcfunction(L, read_here);
+    if (!wh_sandbox_evaluate_text(L, "cell.lua", text, (size_t)length, &result)) {
+        fail_msg("%s", result.message);
+    }
+    return wh_sandbox_call(L, 1, 1, &result);
+}
+
+/* What was expected of the field at a path, as the refusal of this statement says; in `result`. */
+static const char *find_expected(const char *statement, const char *path) {
+    char begin[300];
+    (void)snprintf(begin, sizeof begin, "cell.lua: %s: ", path);
+    if (is_read(statement)) {
+        fail_msg("accepted: %s", statement);
+    }
+    if (strncmp(result.message, begin, strlen(begin)) != 0) {
+        fail_msg("\"%s\" does not begin with \"%s\"", result.message, begin);
+    }
+    const char *expected = strstr(result.message, "(expected ");
+    assert_non_null(expected);
+    return expected + strlen("(expected ");
+}
+
+static const wh_layout_class_t *find_class(const char *name, size_t length) {
+    const wh_layout_class_t *class = wh_layout_classes;
+    while (class->name && (strlen(class->name) != length || strncmp(class->name, name, length) != 0)) {
+        ++class;
+    }
+    return class;
+}
+
+/* Each "word" of the type is in the text, and there are as many in both unless there may be more. */
+static void expect_choices(const char *type, const char *expected, bool may_be_more) {
+    size_t given = 0, known = 0;
+    for (const char *at = type; (at = strchr(at, '"')) != NULL;) {
+        const char *end = strchr(at + 1, '"');
+        char word[60];
+        (void)snprintf(word, sizeof word, "%.*s", (int)(end - at) + 1, at);
+        if (!strstr(expected, word)) {
+            fail_msg("%s is not in \"%s\"", word, expected);
+        }
+        ++given;
+        at = end + 1;
+    }
+    for (const char *at = expected; (at = strchr(at, '"')) != NULL; ++at) {
+        ++known;
+    }
+    assert_true(may_be_more || known == 2 * given);
+}
+
+static void expect_type(const wh_reader_field_t *field, const char *expected) {
+    static const char *const plain[][2] = {{"number", "a number from "},
+                                           {"integer", "a whole number from "},
+                                           {"boolean", "true or false"},
+                                           {"string", "text of 1 to "},
+                                           {"number[]", "a list of three numbers"}};
+    const char *wanted = NULL;
+    if (field->type[0] == '"') {
+        const bool is_kind_of_fault = strstr(expected, "command_lost") != NULL;
+        expect_choices(field->type, expected, is_kind_of_fault);
+        wanted = strstr(field->type, "waferhand.") ? "{" : "\"";
+    } else if (strstr(field->type, "waferhand.")) {
+        wanted = "a table";
+    }
+    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; ++i) {
+        wanted = strcmp(field->type, plain[i][0]) == 0 ? plain[i][1] : wanted;
+    }
+    if (!wanted || !strstr(expected, wanted)) {
+        fail_msg("%s: the list says %s, the reader expects %s", field->name, field->type, expected);
+    }
+}
+
+static void join(char path[PATH_BYTES], const char *before, const char *name) {
+    assert_in_range(strlen(before) + strlen(name), 1, PATH_BYTES - 2);
+    (void)snprintf(path, PATH_BYTES, "%.150s%s%.140s", before, before[0] ? "." : "", name);
+}
+
+/* The obstacle that a shape's field belongs to, and the station that has a sensor; the others have their own. */
+static const char *mend_path(const char *path, const char *field) {
+    if (strcmp(path, "stations.A") == 0 && strcmp(field, "sensor") == 0) {
+        return "stations.P";
+    }
+    if (strcmp(path, "obstacles[1]") == 0) {
+        return strcmp(field, "cylinder") == 0                             ? "obstacles[2]"
+               : strcmp(field, "capsule") == 0                            ? "obstacles[3]"
+               : strcmp(field, "mesh") == 0 || strcmp(field, "unit") == 0 ? "obstacles[4]"
+                                                                          : path;
+    }
+    return path;
+}
+
+static void try_field(const char *in, const wh_reader_field_t *field) {
+    char path[PATH_BYTES];
+    char statement[700];
+    char missed[PATH_BYTES + 30];
+    const char *mesh = "cell.obstacles[4] = { at = { 0, 0, 0 }, mesh = 'none.stl', unit = 'mm' } ";
+    in = mend_path(in, field->name);
+    mesh = strcmp(in, "obstacles[4]") == 0 ? mesh : "";
+    join(path, in, field->name);
+    (void)snprintf(statement, sizeof statement, "%scell.%s = print", mesh, path);
+    expect_type(field, find_expected(statement, path));
+    (void)snprintf(statement, sizeof statement, "%scell.%s = nil", mesh, path);
+    /* Without it something else may be missed that names it. One of an obstacle's shapes must be there. */
+    const bool is_shape = strncmp(path, "obstacles", 9) == 0 && !field->required;
+    (void)snprintf(missed, sizeof missed, "cell.lua: %s: nothing ", path);
+    const bool is_missed = !is_read(statement) && strncmp(result.message, missed, strlen(missed)) == 0;
+    if (!is_shape && is_missed != field->required) {
+        fail_msg("%s: the list says required: %d; %s", path, (int)field->required, result.message);
+    }
+    ++tried;
+}
+
+/* The key of a table's only entry of this class. */
+static const char *key_of(const char *class) {
+    return strcmp(class, "placement") == 0 ? "W1" : strcmp(class, "valve") == 0 ? "EE" : "A";
+}
+
+static void try_class(const char *path, const wh_layout_class_t *class);
+
+/* Goes on into the tables that a field of this type has. */
+static void try_tables(const char *path, const char *type) {
+    char inner[PATH_BYTES];
+    const char *name = strstr(type, "waferhand.");
+    if (!name) {
+        return;
+    }
+    name += strlen("waferhand.");
+    const wh_layout_class_t *class = find_class(name, strcspn(name, ">[|"));
+    if (strstr(type, "table<")) {
+        join(inner, path, key_of(class->name));
+        try_class(inner, class);
+    } else if (strcmp(type, "waferhand.fault[]") == 0) {
+        class = find_class(first_fault, strlen(first_fault));
+        for (int i = 1; strncmp(class->name, "fault.", 6) == 0; ++i, ++class) {
+            (void)snprintf(inner, sizeof inner, "%.200s[%d]", path, i);
+            try_class(inner, class);
+        }
+    } else {
+        (void)snprintf(inner, sizeof inner, "%.200s%s", path, strstr(type, "[]") ? "[1]" : "");
+        try_class(inner, class);
+    }
+}
+
+static void try_class(const char *path, const wh_layout_class_t *class) {
+    char inner[PATH_BYTES];
+    char statement[400];
+    assert_non_null(class->name);
+    for (const wh_reader_field_t *field = class->fields; field->name; ++field) {
+        try_field(path, field);
+        join(inner, mend_path(path, field->name), field->name);
+        try_tables(inner, field->type);
+    }
+    join(inner, path, "nothing_like_it");
+    (void)snprintf(statement, sizeof statement, "cell.%s = 1", inner);
+    const char *expected = find_expected(statement, inner);
+    assert_ptr_equal(strstr(expected, "one of the fields "), expected);
+}
+
+static void every_field_of_the_lists_is_read_and_has_its_type(void **state) {
+    (void)state;
+    size_t listed = 0;
+    if (!is_read("")) {
+        fail_msg("%s", result.message);
+    }
+    tried = 0;
+    try_class("", &wh_layout_classes[0]);
+    for (const wh_layout_class_t *class = wh_layout_classes; class->name; ++class) {
+        for (const wh_reader_field_t *field = class->fields; field->name; ++field) {
+            ++listed;
+        }
+    }
+    assert_true(tried >= listed); /* an axis, a cylinder, ... stand in several places */
+}
+
+static void every_kind_of_fault_is_in_one_list(void **state) {
+    (void)state;
+    for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
+        char word[60];
+        size_t found = 0;
+        (void)snprintf(word, sizeof word, "\"%s\"", wh_fault_name((wh_fault_kind_t)kind));
+        for (const wh_layout_class_t *class = wh_layout_classes; class->name; ++class) {
+            if (strncmp(class->name, "fault.", 6) == 0 && strstr(class->fields[0].type, word)) {
+                assert_ptr_equal(class->fields, wh_layout_fault_fields[kind]);
+                ++found;
+            }
+        }
+        assert_int_equal(found, 1);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_field_of_the_lists_is_read_and_has_its_type),
+        cmocka_unit_test(every_kind_of_fault_is_in_one_list),
+    };
+    return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
+}

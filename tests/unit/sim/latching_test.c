@@ -1,0 +1,545 @@
+/* Beams at a door: when a wafer or a blade that is carried through breaks and frees them, against closed forms and dense samples;
+ * what becomes of that as latches; and from latches back to the wafer's centre. */
+#include "support/heap.h"
+#include "support/support.h"
+
+#include "grasp/sweep_internal.h"
+#include "math/rotation.h"
+#include "sim/latching.h"
+
+#define PI 3.14159265358979323846
+
+/* What a coordinate of base is good to, mm, and a part of a slice of 1 mm. */
+static const double exact = sizeof(wh_real_t) == sizeof(double) ? 1e-7 : 1e-3;
+
+/* One gripper with one wafer. */
+static wh_gripper_t grippers[1];
+static wh_wafer_t wafers[1];
+static const wh_grasp_t table = {
+    .storage = {.wafers = wafers, .wafer_count = 1, .grippers = grippers, .gripper_count = 1}};
+static wh_rim_t rim;
+static const wh_rim_t *const rims[1] = {&rim};
+static wh_blade_outline_t blade;
+static wh_door_beam_t beams[2];
+static const wh_latch_order_t keep = {WH_LATCH_KEEP, 0, 0};
+static const wh_latch_order_t arm = {WH_LATCH_ARM, 0, 2};
+
+static wh_pose_t at_x(double x) {
+    wh_pose_t pose = wh_pose_identity();
+    pose.r = wh_vec3((wh_real_t)x, 0, 50);
+    return pose;
+}
+
+/* Beams at x = 0 and y = +60 and -110; the wafer lies on the gripper as `lies` says. */
+static wh_latching_t set_up(const wh_pose_t *lies) {
+    const wh_pose_t base = wh_pose_identity();
+    const double y[2] = {60, -110};
+    memset(beams, 0, sizeof beams);
+    for (size_t b = 0; b < 2; ++b) {
+        beams[b].beam = wh_beam_at(&base, 0, y[b], 0, 100);
+    }
+    rim = wh_rim_nominal(150);
+    rim.notch.direction = PI / 2;
+    memset(&blade, 0, sizeof blade);
+    memset(grippers, 0, sizeof grippers);
+    grippers[0].wafer = 0;
+    grippers[0].gripper_from_wafer = *lies;
+    const wh_latching_t latching = {beams, 2, rims, &blade, 7};
+    return latching;
+}
+
+static void step(const wh_latching_t *latching, const wh_pose_t *from, const wh_pose_t *to, double slice_s,
+                 const wh_latch_order_t *order, wh_latches_t *latches) {
+    grippers[0].base_from_gripper = *to;
+    wh_latching_step(latching, from, &table, (wh_real_t)slice_s, order, latches);
+}
+
+/* A drive along x from `from` on, `speed` mm/s: latches with their time since the begin, s, in `part`. */
+static size_t drive(const wh_latching_t *latching, double from, double speed, double slice_s, int slices,
+                    wh_latch_t *list) {
+    wh_latches_t latches = {0};
+    size_t count = 0;
+    wh_pose_t before = at_x(from);
+    step(latching, &before, &before, slice_s, &arm, &latches);
+    for (int i = 1; i <= slices; ++i) {
+        const wh_pose_t after = at_x(from + speed * slice_s * i);
+        step(latching, &before, &after, slice_s, &keep, &latches);
+        for (int32_t k = 0; k < latches.latch_count; ++k) {
+            assert_int_equal(latches.latches[k].slice, i);
+            list[count] = latches.latches[k];
+            list[count].part = (i - 1 + latches.latches[k].part) * slice_s;
+            assert_true(count == 0 || list[count].part >= list[count - 1].part);
+            ++count;
+        }
+        before = after;
+    }
+    assert_int_equal(latches.lost, 0);
+    assert_int_equal(latches.waiting_count, 0);
+    return count;
+}
+
+/* ------------------------------------------------------------------------------------------- closed forms */
+
+static void latches_come_when_the_rim_does_and_their_delay_later(void **state) {
+    (void)state;
+    wh_pose_t lies = wh_pose_identity();
+    lies.r = wh_vec3(2, -1, 0);
+    const wh_latching_t latching = set_up(&lies);
+    beams[0].delay_on = 50e-6;
+    beams[1].delay_off = 0.0071;
+    wh_latch_t list[WH_LATCHES];
+#if defined(WH_TEST_COUNTS_HEAP)
+    const unsigned long before = calls;
+#endif
+    const size_t count = drive(&latching, -200, 1000, 0.001, 400, list);
+#if defined(WH_TEST_COUNTS_HEAP)
+    assert_int_equal(calls - before, 0);
+#endif
+    const double h0 = sqrt(150 * 150 - 61 * 61);
+    const double h1 = sqrt(150 * 150 - 109 * 109);
+    const struct {
+        int32_t beam;
+        wh_crossing_edge_t edge;
+        double time;
+    } wanted[4] = {{0, WH_CROSSING_IN, (198 - h0) / 1000 + 50e-6},
+                   {1, WH_CROSSING_IN, (198 - h1) / 1000},
+                   {1, WH_CROSSING_OUT, (198 + h1) / 1000 + 0.0071},
+                   {0, WH_CROSSING_OUT, (198 + h0) / 1000}};
+    assert_int_equal(count, 4);
+    for (size_t i = 0; i < 4; ++i) {
+        assert_int_equal(list[i].beam, wanted[i].beam);
+        assert_int_equal(list[i].edge, wanted[i].edge);
+        assert_near(list[i].part * 1000, wanted[i].time * 1000, exact);
+    }
+}
+
+static void slices_of_any_length_give_the_same_latches(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    rim.notch.direction = -47.2 * PI / 180; /* a beam goes into it */
+    beams[0].delay_on = beams[1].delay_off = 0.0015;
+    wh_latch_t fine[WH_LATCHES];
+    wh_latch_t coarse[WH_LATCHES];
+    const size_t count = drive(&latching, -200, 500, 0.001, 900, fine);
+    assert_int_equal(drive(&latching, -200, 500, 0.05, 18, coarse), count);
+    for (size_t i = 0; i < count; ++i) {
+        assert_int_equal(fine[i].beam, coarse[i].beam);
+        assert_int_equal(fine[i].edge, coarse[i].edge);
+        assert_near(500 * fine[i].part, 500 * coarse[i].part, exact);
+    }
+}
+
+/* A blade that reaches out of the wafer at its rear: the beam stays broken until the blade has passed. */
+static void a_blade_breaks_beams_as_well(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    const wh_blade_outline_t tail = {4, {-170, 20, 20, -170}, {50, 50, 70, 70}};
+    blade = tail;
+    wh_latch_t list[WH_LATCHES];
+    assert_int_equal(drive(&latching, -200, 1000, 0.001, 400, list), 4);
+    assert_int_equal(list[3].beam, 0);
+    assert_near(list[3].part * 1000, 370, exact);
+    grippers[0].wafer = WH_NONE;
+    assert_int_equal(drive(&latching, -200, 1000, 0.001, 400, list), 2);
+    assert_near(list[0].part * 1000, 180, exact);
+    assert_near(list[1].part * 1000, 370, exact);
+}
+
+/* Over the beam's end nothing is seen; what comes down into it is. */
+static void a_beam_has_two_ends(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    wh_latches_t latches = {0};
+    wh_pose_t before = at_x(0);
+    before.r.z = 101;
+    wh_pose_t after = before;
+    after.r.z = 98;
+    step(&latching, &before, &before, 0.001, &arm, &latches);
+    assert_int_equal(latches.broken, 0);
+    step(&latching, &before, &after, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 2);
+    assert_int_equal(latches.broken, 3);
+    assert_near(latches.latches[0].part, 1.0 / 3, exact);
+}
+
+static void orders_arm_and_disarm(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    wh_latches_t latches = {0};
+    const wh_pose_t out = at_x(-200);
+    const wh_pose_t in = at_x(0);
+    step(&latching, &out, &in, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 0);
+    step(&latching, &in, &in, 0.001, &arm, &latches); /* broken while it is armed: no latch */
+    step(&latching, &in, &in, 0.001, &keep, &latches);
+    assert_int_equal(latches.broken, 3);
+    assert_int_equal(latches.latch_count, 0);
+    beams[0].delay_off = 0.005;
+    step(&latching, &in, &out, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 1);
+    assert_int_equal(latches.waiting_count, 1);
+    wh_latches_t copy = latches; /* a copy goes on as the original does */
+    for (int i = 0; i < 5; ++i) {
+        step(&latching, &out, &out, 0.001, &keep, &latches);
+        step(&latching, &out, &out, 0.001, &keep, &copy);
+        assert_memory_equal(&copy, &latches, sizeof copy);
+    }
+    assert_int_equal(latches.latch_count, 1);
+    const wh_latch_order_t disarm = {WH_LATCH_DISARM, 0, 0};
+    step(&latching, &out, &in, 0.001, &disarm, &latches);
+    assert_false(latches.armed);
+    step(&latching, &in, &out, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 0);
+    assert_int_equal(latches.number, 1);
+}
+
+/* What finds no place is counted. */
+static void too_many_latches_are_lost_and_counted(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    beams[0].delay_on = beams[0].delay_off = beams[1].delay_on = beams[1].delay_off = 0.01;
+    const wh_pose_t ends[2] = {at_x(-200), at_x(0)};
+    wh_latches_t latches = {0};
+    uint32_t given = 0;
+    step(&latching, &ends[0], &ends[0], 0.001, &arm, &latches);
+    for (int i = 0; i < 100; ++i) {
+        step(&latching, &ends[i < 50 ? i % 2 : 0], &ends[i < 50 ? 1 - i % 2 : 0], 0.001, &keep, &latches);
+        given += (uint32_t)latches.latch_count;
+    }
+    assert_int_equal(latches.crossings, 100);
+    assert_true(latches.lost > 0);
+    assert_int_equal(given + latches.lost, 100);
+}
+
+/* A turn of half a radian in a slice, the rotation as a quaternion that grows evenly. */
+static void a_wide_turn_is_followed_and_a_steep_wafer_is_not_seen(void **state) {
+    (void)state;
+    wh_pose_t lies = wh_pose_identity();
+    lies.r.x = 120;
+    const wh_latching_t latching = set_up(&lies);
+    wh_latches_t latches = {0};
+    const wh_pose_t before = at_x(0);
+    wh_pose_t after = before;
+    const wh_mat3_t turn = {{{(wh_real_t)cos(0.5), (wh_real_t)sin(0.5), 0},
+                             {-(wh_real_t)sin(0.5), (wh_real_t)cos(0.5), 0},
+                             {0, 0, 1}}};
+    after.R = turn;
+    const double angle = asin((120. * 120 + 110. * 110 - 150. * 150) / (2 * 120 * 110));
+    const double part = tan(angle / 2) / (sin(0.25) + tan(angle / 2) * (1 - cos(0.25)));
+    step(&latching, &before, &before, 0.001, &arm, &latches);
+    step(&latching, &before, &after, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 2);
+    assert_int_equal(latches.latches[0].beam, 1);
+    assert_near(120 * latches.latches[0].part, 120 * part, exact);
+    assert_int_equal(latches.latches[1].beam, 0);
+    assert_int_equal(latches.latches[1].edge, WH_CROSSING_OUT);
+    const wh_mat3_t steep = {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}};
+    after.R = steep;
+    step(&latching, &before, &before, 0.001, &arm, &latches);
+    assert_int_equal(latches.broken, 1);
+    step(&latching, &before, &after, 0.001, &keep, &latches);
+    assert_int_equal(latches.broken, 0);
+}
+
+/* The same for the same seed; other numbers in each arming. */
+static void jitter_is_as_wide_as_it_says(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    beams[0].delay_on = 50e-6;
+    beams[0].jitter = 10e-6;
+    const wh_pose_t out = at_x(-138);
+    const wh_pose_t in = at_x(-137);
+    wh_latches_t latches = {0};
+    wh_latches_t again = {0};
+    double sum = 0;
+    double squares = 0;
+    const int rounds = 2000;
+    for (int i = 0; i < rounds; ++i) {
+        step(&latching, &out, &out, 0.001, &arm, &latches);
+        step(&latching, &out, &in, 0.001, &keep, &latches);
+        step(&latching, &out, &out, 0.001, &arm, &again);
+        step(&latching, &out, &in, 0.001, &keep, &again);
+        assert_int_equal(latches.latch_count, 1);
+        assert_memory_equal(&again, &latches, sizeof again);
+        const double delay = latches.latches[0].part * 1e-3 - (138 - sqrt(150 * 150 - 60 * 60)) * 1e-3;
+        sum += delay;
+        squares += delay * delay;
+    }
+    const double mean = sum / rounds;
+    assert_near(mean, 50e-6, 1e-6);
+    assert_near(sqrt(squares / rounds - mean * mean), 10e-6, 1e-6);
+}
+
+/* --------------------------------------------------------------------------------------------- dense samples */
+
+static bool is_broken(const wh_beam_t *beam, const wh_sweep_t *sweep, const wh_pose_t *lies, double part) {
+    wh_pose_t gripper;
+    wh_sweep_pose_at(sweep, (wh_real_t)part, &gripper);
+    const wh_pose_t wafer = wh_pose_compose(&gripper, lies);
+    const wh_vec3_t point = wh_vec3((wh_real_t)beam->x, (wh_real_t)beam->y, (wh_real_t)beam->z);
+    const wh_vec3_t along = wh_vec3((wh_real_t)beam->ex, (wh_real_t)beam->ey, (wh_real_t)beam->ez);
+    const wh_vec3_t from = wh_vec3_subtract(&point, &wafer.r);
+    const wh_vec3_t normal = wh_mat3_column(&wafer.R, 2);
+    const wh_real_t height = -wh_vec3_dot(&from, &normal) / wh_vec3_dot(&along, &normal);
+    const wh_vec3_t way = wh_vec3_scale(height, &along);
+    const wh_vec3_t met = wh_vec3_add(&from, &way);
+    const wh_vec3_t at = wh_mat3_transform_back(&wafer.R, &met);
+    const double distance = sqrt((double)(at.x * at.x + at.y * at.y));
+    return (double)height > beam->low && (double)height < beam->high &&
+           distance < wh_rim_radius(&rim, atan2((double)at.y, (double)at.x));
+}
+
+/* The instants of change, from as many samples; returns how many. */
+static size_t sample_changes(const wh_beam_t *beam, const wh_sweep_t *sweep, const wh_pose_t *lies,
+                             int samples, double *list, size_t most) {
+    size_t count = 0;
+    bool was = is_broken(beam, sweep, lies, 0);
+    for (int i = 1; i <= samples && count < most; ++i) {
+        double before = (i - 1.0) / samples;
+        double after = (double)i / samples;
+        if (is_broken(beam, sweep, lies, after) != was) {
+            for (int k = 0; k < 50; ++k) {
+                const double middle = (before + after) / 2;
+                if (is_broken(beam, sweep, lies, middle) == was) {
+                    before = middle;
+                } else {
+                    after = middle;
+                }
+            }
+            list[count++] = after;
+            was = !was;
+        }
+    }
+    return count;
+}
+
+/* A quaternion's vector is half of these. */
+static wh_pose_t turned(double roll, double pitch, double yaw) {
+    wh_pose_t pose = wh_pose_identity();
+    const wh_status_t status = wh_rotation_from_quaternion(
+        &pose.R, (wh_real_t)sqrt(1 - (roll * roll + pitch * pitch + yaw * yaw) / 4), (wh_real_t)roll / 2,
+        (wh_real_t)pitch / 2, (wh_real_t)yaw / 2);
+    assert_int_equal(status, WH_OK);
+    return pose;
+}
+
+/* A rim with a notch and chips about where the beam is, a body on its way. Notch and chips are drawn such that
+ * some slices have several changes. */
+static void draw(wh_beam_t *beam, wh_pose_t *lies, wh_pose_t poses[2]) {
+    rim = wh_rim_nominal(150);
+    rim.notch.opening = wh_test_uniform(1, 2);
+    rim.notch.bottom = wh_test_uniform(0, 0.3);
+    rim.notch.corner = wh_test_uniform(0, 0.2);
+    const double edge = wh_test_uniform(-PI, PI);
+    rim.notch.direction = remainder(edge + wh_test_uniform(-0.02, 0.02), 2 * PI);
+    rim.chip_count = 2;
+    for (size_t i = 0; i < 2; ++i) {
+        wh_chip_t chip = {remainder(edge + wh_test_uniform(-0.03, 0.03), 2 * PI), wh_test_uniform(0.3, 4), 0};
+        chip.depth = chip.width * wh_test_uniform(0.1, 1);
+        rim.chips[i] = chip;
+    }
+    *lies = turned(wh_test_uniform(-0.02, 0.02), wh_test_uniform(-0.02, 0.02), 0);
+    lies->r = wh_vec3((wh_real_t)wh_test_uniform(-5, 5), (wh_real_t)wh_test_uniform(-5, 5), 0);
+    poses[0] = turned(wh_test_uniform(-0.1, 0.1), wh_test_uniform(-0.1, 0.1), wh_test_uniform(-0.9, 0.9));
+    poses[0].r = wh_vec3(700, (wh_real_t)wh_test_uniform(-300, 300), 900);
+    const wh_pose_t turn =
+        turned(wh_test_uniform(-0.001, 0.001), wh_test_uniform(-0.001, 0.001), wh_test_uniform(-0.04, 0.04));
+    poses[1].R = wh_mat3_multiply(&poses[0].R, &turn.R);
+    const wh_pose_t wafer = wh_pose_compose(&poses[0], lies);
+    const double radius = 150 + wh_test_uniform(-2, 0.5);
+    const wh_vec3_t place = wh_vec3((wh_real_t)(radius * cos(edge)), (wh_real_t)(radius * sin(edge)), 0);
+    const wh_vec3_t in_base = wh_pose_point(&wafer, &place);
+    /* Every other way is along the rim. */
+    const double aside = wh_test_below(2) ? PI / 2 + wh_test_uniform(-0.3, 0.3) : wh_test_uniform(-PI, PI);
+    const double far = wh_test_uniform(0, 8);
+    const wh_vec3_t way =
+        wh_vec3((wh_real_t)(far * cos(edge + aside)), (wh_real_t)(far * sin(edge + aside)), 0);
+    const wh_vec3_t way_in_base = wh_mat3_transform(&wafer.R, &way);
+    poses[1].r = wh_vec3_add(&poses[0].r, &way_in_base);
+    poses[1].r.z += (wh_real_t)wh_test_uniform(-0.2, 0.2);
+    wh_pose_t station =
+        turned(wh_test_uniform(-0.03, 0.03), wh_test_uniform(-0.03, 0.03), wh_test_uniform(-1, 1));
+    station.r = in_base;
+    *beam = wh_beam_at(&station, 0, 0, -30, 30);
+    assert_int_equal(wh_beam_validate(beam), WH_OK);
+}
+
+enum { CHANGES = 32 };
+
+/* Without pairs that are so near to each other that the one side or the other may miss them. */
+static size_t drop_pairs(double *list, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (i + 1 < count && list[i + 1] - list[i] < 1e-3) {
+            ++i;
+        } else {
+            list[kept++] = list[i];
+        }
+    }
+    return kept;
+}
+
+static size_t find_changes(const wh_beam_t *beam, const wh_shade_t *shade, bool broken,
+                           double list[CHANGES]) {
+    size_t count = 0;
+    double part = 0;
+    while (wh_beam_next(beam, shade, 1, &part, &broken)) {
+        assert_true(count < CHANGES && (count == 0 || part > list[count - 1]));
+        list[count++] = part;
+    }
+    return count;
+}
+
+static void all_changes_are_where_dense_samples_find_them(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    if (sizeof(wh_real_t) < sizeof(double)) {
+        return; /* a float's own roundings are crossings */
+    }
+    size_t found = 0;
+    size_t several = 0;
+    double worst = 0;
+    for (int trial = 0; trial < 5000 / WH_TEST_SHARE; ++trial) {
+        wh_beam_t beam;
+        wh_pose_t lies;
+        wh_pose_t poses[2];
+        wh_sweep_t sweep;
+        double wanted[CHANGES];
+        double got[CHANGES];
+        draw(&beam, &lies, poses);
+        wh_sweep_between(&poses[0], &poses[1], &sweep);
+        const wh_shade_t shade = {wh_slice_motion_between(&poses[0], &poses[1]), &lies, &rim, NULL};
+        size_t count = sample_changes(&beam, &sweep, &lies, 2000, wanted, CHANGES);
+        const size_t other = find_changes(&beam, &shade, is_broken(&beam, &sweep, &lies, 0), got);
+        count = drop_pairs(wanted, count);
+        assert_int_equal(drop_pairs(got, other), count);
+        for (size_t k = 0; k < count; ++k) {
+            worst = fmax(worst, fabs(got[k] - wanted[k]));
+        }
+        found += count;
+        several += count > 1 ? 1 : 0;
+    }
+    printf("%zu changes, %zu slices with several; off by at most %.1e of a slice of up to 8 mm\n", found,
+           several, worst);
+    assert_true(worst <= 1e-9);
+    assert_true(found > 2000 / WH_TEST_SHARE);
+    assert_true(several > 500 / WH_TEST_SHARE);
+}
+
+/* -------------------------------------------------------------------------------- from latches to the centre */
+
+/* A controller that knows the delays and where its axes were, slice by slice. */
+static size_t collect(const wh_latching_t *latching, const wh_pose_t path[], int slices,
+                      wh_crossing_t *list) {
+    wh_latches_t latches = {0};
+    size_t count = 0;
+    step(latching, &path[0], &path[0], 0.001, &arm, &latches);
+    for (int i = 1; i <= slices; ++i) {
+        step(latching, &path[i - 1], &path[i], 0.001, &keep, &latches);
+        for (int32_t k = 0; k < latches.latch_count; ++k) {
+            const wh_latch_t *latch = &latches.latches[k];
+            const wh_door_beam_t *door = &beams[latch->beam];
+            const double delay = latch->edge == WH_CROSSING_IN ? door->delay_on : door->delay_off;
+            const double time = i - 1 + latch->part - delay / 0.001;
+            const int slice = (int)time;
+            const wh_slice_motion_t motion = wh_slice_motion_between(&path[slice], &path[slice + 1]);
+            assert_true(wh_beam_crossing(&door->beam, &motion, time - slice, 0.001, &list[count]));
+            list[count].beam = latch->beam;
+            list[count].edge = latch->edge;
+            ++count;
+        }
+    }
+    return count;
+}
+
+static void latches_give_back_the_wafers_centre(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    static wh_pose_t path[801];
+    for (int trial = 0; trial < 20; ++trial) {
+        wh_pose_t lies = turned(0, 0, wh_test_uniform(-1, 1));
+        lies.r = wh_vec3((wh_real_t)wh_test_uniform(-3, 3), (wh_real_t)wh_test_uniform(-3, 3), 0);
+        const wh_latching_t latching = set_up(&lies);
+        rim.notch.direction = wh_test_uniform(-PI, PI);
+        for (size_t b = 0; b < 2; ++b) {
+            beams[b].delay_on = wh_test_uniform(0, 100e-6);
+            beams[b].delay_off = wh_test_uniform(0, 3e-3);
+        }
+        for (int i = 0; i <= 800; ++i) { /* faster and slower, and the blade turns */
+            path[i] = turned(0, 0, 0.1 - 0.0002 * i);
+            path[i].r =
+                wh_vec3((wh_real_t)(-200 + 0.5 * i + 20 * sin(0.01 * i)), (wh_real_t)(3 - 0.005 * i), 50);
+        }
+        wh_crossing_t list[WH_CROSSINGS];
+        wh_centres_t centres;
+        const size_t count = collect(&latching, path, 800, list);
+        const wh_centring_t known = wh_centring_nominal(150);
+        assert_int_equal(wh_centring_solve(&known, list, count, &centres), WH_OK);
+        assert_near(centres.candidates[0].x, lies.r.x, exact);
+        assert_near(centres.candidates[0].y, lies.r.y, exact);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- bad input */
+
+static void what_is_no_beam_is_refused(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    wh_latching_t latching = set_up(&lies);
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_OK);
+    assert_int_equal(wh_latching_validate(NULL, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_latching_validate(&latching, WH_GRIPPERS + 1, 1), WH_STATUS_BAD_CAPACITY);
+    beams[1].jitter = (double)NAN;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_NOT_FINITE);
+    beams[1].jitter = 0;
+    beams[1].delay_on = -1e-6;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    beams[1].delay_on = 0;
+    beams[1].beam.ez = 0.9;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    beams[1].beam.ez = (double)INFINITY;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_NOT_FINITE);
+    beams[1].beam.ez = 1;
+    blade.count = 2;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    blade.count = 3;
+    blade.x[1] = (double)NAN;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_NOT_FINITE);
+    blade.count = 0;
+    rim.radius = 1;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    latching.rims = NULL;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    latching.beam_count = 0;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_OK);
+    assert_int_equal(wh_latching_check(&latching, &keep), WH_OK);
+    assert_int_equal(wh_latching_check(&latching, &arm), WH_STATUS_OUT_OF_RANGE);
+    latching.beam_count = 2;
+    assert_int_equal(wh_latching_check(&latching, &arm), WH_OK);
+    const wh_latch_order_t wild = {WH_LATCH_ARM, 1, INT32_MAX};
+    assert_int_equal(wh_latching_check(&latching, &wild), WH_STATUS_OUT_OF_RANGE);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_count_counts),
+        cmocka_unit_test(latches_come_when_the_rim_does_and_their_delay_later),
+        cmocka_unit_test(slices_of_any_length_give_the_same_latches),
+        cmocka_unit_test(a_blade_breaks_beams_as_well),
+        cmocka_unit_test(a_beam_has_two_ends),
+        cmocka_unit_test(orders_arm_and_disarm),
+        cmocka_unit_test(too_many_latches_are_lost_and_counted),
+        cmocka_unit_test(a_wide_turn_is_followed_and_a_steep_wafer_is_not_seen),
+        cmocka_unit_test(jitter_is_as_wide_as_it_says),
+        cmocka_unit_test(all_changes_are_where_dense_samples_find_them),
+        cmocka_unit_test(latches_give_back_the_wafers_centre),
+        cmocka_unit_test(what_is_no_beam_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
