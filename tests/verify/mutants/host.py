@@ -1,168 +1,318 @@
-"""host.py FOLDER: mutants of the host rooms and of collision, drawn from all their sources together. See
-tests/verify/host_mutation for what is asked, and the settings."""
+"""host.py FOLDER: mutants of the host rooms and of collision, drawn from all their sources together. tests/verify/host_mutation
+says what is asked and has the settings; it gives the names of sources and tests."""
 
-import glob
+import collections
+import contextlib
 import hashlib
+import json
+import math
 import os
-import queue
-import re
+import random
+import shutil
+import signal
+import subprocess
 import sys
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
-from random import Random
+import threading
+import time
 
-from lanes import Commands, Lane
-from lines import Lines
 from mutants import Source
-from results import Results
-from survivors import Survivors
+from records import Results, Survivors
 
 LEAST_RATE = 0.9
 LIST = "tests/verify/mutants/survivors"
-MEMORY = "/dev/shm"
+LONGEST_S = 60  # a test that takes longer is not used
+TESTS_S = 240  # as long as tests are begun against one mutant
+COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
+# What comes of C++ links without C++'s own library only where it is optimised.
+COUNTED = "-g1 --coverage -fprofile-update=atomic"
+COUNTED = [f"CFLAGS=-O0 {COUNTED}", f"CXXFLAGS=-O2 {COUNTED}"]
+# Compiled as the Makefile does it, so that a compiler's cache may have it; but linking is quicker without lines.
+PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
+CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
+CHECKED = ["B=build/sanitize", f"CFLAGS={CHECKED}", f"CXXFLAGS={CHECKED}", *PLAIN,
+           "EXTRA= -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all"]
 
 
-def host_sources():
-    with open("lib/build/rooms.mk", encoding="utf-8") as file:
-        rooms = " ".join(re.findall(r"^(?:COLLISION_ROOM|HOST_ROOMS) := (.*)$", file.read(), re.M)).split()
-    found = [path for room in rooms for path in glob.glob(f"lib/{room}/**/*.c", recursive=True)]
-    wanted = os.environ.get("FILES", "").split()
-    if set(wanted) - set(found):
-        sys.exit(f"mutation: no source of a host room: {' '.join(sorted(set(wanted) - set(found)))}")
-    return sorted(wanted or found)
+def digest_of(*contents):
+    total = hashlib.sha256()
+    for content in contents:
+        total.update(hashlib.sha256(content).digest())
+    return total.hexdigest()[:16]
 
 
-def draw(paths, seed):
-    """All mutants in an order of chance, each with its source."""
-    drawn = [(source, mutant) for source in map(Source, paths) for mutant in source.mutants()]
-    Random(seed).shuffle(drawn)
-    return drawn
+def bytes_of(path):
+    with open(path, "rb") as file:
+        return file.read()
 
 
-def builds_itself(test):
-    """True of a test that looks at other builds, or makes them: it does not see the changed program."""
-    with open(test, encoding="utf-8") as file:
-        return re.search(r"build/(sanitize|float|check|clang)|\bmake\b -|\bmake\b [a-z]|fresh", file.read()) is not None
+def tracked():
+    return subprocess.run(["git", "ls-files", "-z"], capture_output=True, check=True, text=True).stdout.split("\0")[:-1]
 
 
-class Run:
-    def __init__(self, folder):
-        self.folder = folder
-        self.sources = host_sources()
-        self.unit = os.environ["WH_MUTATION_TESTS"].split()
-        programs = os.environ["WH_MUTATION_PROGRAMS"].split()
-        self.end_to_end = [test for test in programs if not builds_itself(test)]
-        for test in sorted(set(programs) - set(self.end_to_end)):
-            print(f"not used: {test}: builds something itself")
-        self.memory = tempfile.TemporaryDirectory(prefix="mutation.", dir=MEMORY if os.path.isdir(MEMORY) else None)
-        self.results = Results(os.path.join(folder, "results"))
-        self.list = Survivors(LIST)
-        self.kills = {}
-        self.sound = {}
+def is_end_to_end(test):
+    return test.startswith("tests/end_to_end/")
 
-    def measure(self):
-        build = os.path.join(self.folder, "counted")
-        lane = Lane(os.path.join(self.memory.name, "counted"), None, build)
-        self.lines = Lines(os.path.join(self.folder, "lines"), lane, glob.glob("lib/**/*.[ch]", recursive=True))
-        for test in self.unit + self.end_to_end:
-            self.lines.measure(test)
 
-    def open_lanes(self, count):
-        build = os.path.join(self.folder, "sanitized")
-        commands = Commands(os.path.join(self.folder, "commands"), build)
-        self.lanes = queue.Queue()
-        for number in range(count):
-            lane = Lane(os.path.join(self.memory.name, str(number)), commands, build)
-            lane.finish(self.unit)
-            self.lanes.put(lane)
+def patience():
+    """How many times longer everything takes, as others use the machine."""
+    return max(1, os.getloadavg()[0] / os.cpu_count())
 
-    def limit(self, test):
-        return 10 + 6 * self.lines.seconds[test]
 
-    def is_sound(self, lane, test):
-        """Does the test pass under sanitizers with nothing changed?"""
-        if test not in self.sound:
-            self.sound[test] = lane.run(test, self.limit(test)) == 0
-            if not self.sound[test]:
-                print(f"not used: {test}: fails under sanitizers", flush=True)
-        return self.sound[test]
+class Tree:
+    """A copy of the tree and its build. What did not change keeps its time, so that make has little to do."""
 
-    def ordered(self, source, mutant):
-        def merit(test):
-            return (1 + self.kills.get(test, 0)) / (0.2 + self.lines.seconds[test])
+    def __init__(self, folder, jobs):
+        self.folder, self.jobs = folder, jobs
+        for path in tracked():
+            copy = self.place(path)
+            os.makedirs(os.path.dirname(copy), exist_ok=True)
+            if not os.path.lexists(copy) or not (os.path.islink(copy) or bytes_of(path) == bytes_of(copy)):
+                shutil.copy(path, copy, follow_symlinks=False)
 
-        return sorted(self.lines.running(source.path, mutant.number), key=merit, reverse=True)
+    def place(self, path):
+        return os.path.join(self.folder, path)
 
-    def killer_of(self, lane, source, mutant):
-        tests = [test for test in self.ordered(source, mutant) if self.is_sound(lane, test)]
-        if not lane.change(source.path, source.changed(mutant)):
-            lane.undo(source.path)
-            return "the linker"
+    def write(self, path, content):
+        with open(self.place(path), "wb") as file:
+            file.write(content)
+
+    def make(self, settings, targets):
+        """False if that cannot be built; what make says is in the folder's log."""
+        command = ["make", "-s", f"-j{self.jobs}", "-f", "lib/build/build.mk", "CC=gcc", "CXX=g++", *settings, *targets]
+        with open(self.folder + ".log", "wb") as log:
+            return subprocess.run(command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                  check=False).returncode == 0
+
+    def make_all(self, settings, targets):
+        if not self.make(settings, targets):
+            sys.exit(f"mutation: {self.folder}.log says what cannot be built")
+
+    def run(self, program, limit):
+        """The exit status, or None after so many seconds. What the program leaves behind is ended."""
+        more = {"ASAN_OPTIONS": "hard_rss_limit_mb=4000"}
+        command = ["prlimit", "--core=0", f"--fsize={1 << 30}", os.path.join(os.path.abspath(self.folder), program)]
+        with subprocess.Popen(command, cwd=self.folder, env={**os.environ, **more}, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(limit)
+            status = process.poll()
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        return status
+
+
+class Lines:
+    """Which test runs which line, by gcov: measured once for each test, as long as that itself does not change. Of a source
+    that has changed since every test counts that ran any line of it."""
+
+    def __init__(self, folder, sources, tests, tools):
+        self.folder, self.sources, self.tests, self.tools = folder, sources, tests, tools
+        self.digests = {source: digest_of(bytes_of(source)) for source in sources}
+        self.found = {}
+
+    def kept(self, test):
+        return os.path.join(self.folder, "lines", test.replace("/", "_"))
+
+    def stamp(self, test):
+        return digest_of(bytes_of(next(name for name in (test, test + ".c", test + ".cpp") if os.path.exists(name))))
+
+    def measure(self, jobs, seconds):
+        """Counts for so many seconds. Tests that there is no time for are not used."""
+        end = time.monotonic() + seconds
+        os.makedirs(os.path.join(self.folder, "lines"), exist_ok=True)
+        for test in self.tests:
+            if os.path.exists(self.kept(test)):
+                found = json.loads(bytes_of(self.kept(test)))
+                if found["stamp"] == self.stamp(test):
+                    self.found[test] = found
+        missing = [test for test in self.tests if test not in self.found]
+        if missing:
+            tree = Tree(os.path.join(self.folder, "counted"), jobs)
+            tree.make_all(COUNTED, ["all", *self.tools, *(f"build/{test}" for test in missing if not is_end_to_end(test))])
+            for test in (test for test in missing if time.monotonic() < end):
+                self.found[test] = self.count(tree, test)
+                with open(self.kept(test), "w", encoding="utf-8") as file:
+                    json.dump(self.found[test], file)
+        for test in self.tests:
+            status = self.found.get(test, {"status": "there was no time to count"})["status"]
+            if status != 0:
+                told = {None: f"it takes over {LONGEST_S} s", 77: "it is skipped"}
+                print(f"not used: {test}: {told.get(status, status)}", flush=True)
+        self.found = {test: found for test, found in self.found.items() if found["status"] == 0}
+
+    def count(self, tree, test):
+        counters = [tree.place(f"build/obj/{os.path.splitext(source)[0]}.gcda") for source in self.sources]
+        for path in filter(os.path.exists, counters):
+            os.remove(path)
+        begin = time.monotonic()
+        status = tree.run(test if is_end_to_end(test) else "build/" + test, LONGEST_S * patience())
+        seconds = time.monotonic() - begin
+        print(f"counted: {test}: {seconds:.1f} s", flush=True)
+        counters = [os.path.relpath(path, tree.folder) for path in counters if os.path.exists(path)]
+        lines = {}
+        if status == 0 and counters:
+            out = subprocess.run(["gcov", "--json-format", "--stdout", *counters], cwd=tree.folder, capture_output=True,
+                                 check=True, text=True).stdout
+            for file in (file for document in out.splitlines() for file in json.loads(document)["files"]):
+                if file["file"] in self.digests:
+                    counts = {line["line_number"]: line["count"] for line in file["lines"]}
+                    lines[file["file"]] = {"digest": self.digests[file["file"]],
+                                           "run": sorted(number for number in counts if counts[number]),
+                                           "not": sorted(number for number in counts if not counts[number])}
+        return {"stamp": self.stamp(test), "status": status, "seconds": seconds, "lines": lines}
+
+    def running(self, source, number):
+        """The tests that run this line, the end-to-end ones last, the shortest first. Of a line without code, as of a table,
+        those that run its file."""
+        of_file = {test: found["lines"][source] for test, found in self.found.items()
+                   if found["lines"].get(source, {}).get("run")}
+        same = [lines for lines in of_file.values() if lines["digest"] == self.digests[source]]
+        is_code = len(same) == len(of_file) and any(number in lines["run"] + lines["not"] for lines in same)
+        tests = [test for test, lines in of_file.items() if not is_code or number in lines["run"]]
+        return sorted(tests, key=lambda test: (is_end_to_end(test), self.found[test]["seconds"]))
+
+
+class Lane:
+    """A tree in which one source at a time is changed."""
+
+    def __init__(self, folder, jobs, lines):
+        self.tree, self.lines = Tree(folder, jobs), lines
+        self.program = ["all", *lines.tools]
+        self.tree.make_all(PLAIN, self.program)
+        self.sound, self.originals = {}, {}
+
+    def built(self, source):
+        """What the source compiles to, without lines; None if it does not."""
+        target = f"build/obj/{os.path.splitext(source)[0]}.o"
+        if not self.tree.make(PLAIN, [target]):
+            return None
+        bare = self.tree.folder + ".o"
+        subprocess.run(["strip", "--strip-debug", "-o", bare, self.tree.place(target)], check=True)
+        return bytes_of(bare)
+
+    def fails(self, test):
+        """With the source as it is now. An end-to-end test has to fail twice: some of them ask for time."""
+        limit = 20 + 5 * self.lines.found[test]["seconds"]
+        if not is_end_to_end(test):
+            program = f"build/sanitize/{test}"
+            return not self.tree.make(CHECKED, [program]) or self.tree.run(program, limit) != 0
+        if not self.tree.make(PLAIN, self.program):
+            return True
+        return self.tree.run(test, limit) != 0 and self.tree.run(test, limit) != 0
+
+    def killer_of(self, source, text, tests):
+        """The first of the tests that fails, or how many of them there was time for. A test that fails for the first time is
+        run without the change, too: one that fails then as well is not used."""
+        end, tried = time.monotonic() + TESTS_S * patience(), 0
         for test in tests:
-            if lane.run(test, self.limit(test)) != 0:
-                self.kills[test] = self.kills.get(test, 0) + 1
-                lane.undo(source.path)
-                return test
-        lane.undo(source.path)
-        return None
+            if time.monotonic() > end:
+                break
+            if not self.sound.get(test, True):
+                continue
+            if self.fails(test):
+                if test not in self.sound:
+                    self.tree.write(source, bytes_of(source))
+                    self.sound[test] = not self.fails(test)
+                    self.tree.write(source, text)
+                if self.sound[test]:
+                    return test, tried
+                print(f"not used: {test}: it fails without a change, too", flush=True)
+            tried += 1
+        return "", tried
 
-    def key(self, source, mutant):
-        tests = "".join(self.lines.stamp(test) for test in sorted(self.lines.running(source.path, mutant.number)))
-        words = source.digest("") + mutant.key + str(mutant.number)
-        return hashlib.sha256(words.encode()).hexdigest()[:24], hashlib.sha256(tests.encode()).hexdigest()[:16]
+    def judge(self, source, text, tests):
+        """None if it makes no difference or does not compile, else its killer or "", and how many tests passed."""
+        if source not in self.originals:
+            self.originals[source] = self.built(source)
+        self.tree.write(source, text)
+        try:
+            mutated = self.built(source)
+            return self.killer_of(source, text, tests) if mutated not in (None, self.originals[source]) else (None, 0)
+        finally:
+            self.tree.write(source, bytes_of(source))
 
-    def judge(self, drawn):
-        """The verdict on one mutant: None if it changes nothing, else its killer or "" and itself."""
-        source, mutant = drawn
-        key, tests = self.key(source, mutant)
-        entry = self.results.get(key)
-        if "killer" not in entry or (entry["killer"] == "" and entry["tests"] != tests):
-            lane = self.lanes.get()
-            try:
-                killer = (self.killer_of(lane, source, mutant) or "") if lane.differs(source.path, source.changed(mutant)) else None
-            finally:
-                self.lanes.put(lane)
-            entry = {"killer": killer, "tests": tests}
-            self.results.put(key, entry)
-        return entry["killer"], mutant
+
+class Sample:
+    """Mutants in an order of chance, judged until there are enough or the time is over."""
+
+    def __init__(self, folder, lines, wanted, seed, end):
+        self.lines, self.wanted, self.end = lines, wanted, end
+        drawn = [(source, mutant) for source in map(Source, lines.sources) for mutant in source.mutants()]
+        random.Random(seed).shuffle(drawn)
+        self.drawn, self.lock = iter(drawn), threading.Lock()
+        self.results, self.list = Results(os.path.join(folder, "results")), Survivors(LIST)
+        self.tests = digest_of(*(bytes_of(path) for path in tracked() if path.startswith(("tests/", "lua/"))))
+        self.judged, self.killed = collections.Counter(), collections.Counter()
 
     def is_listed(self, mutant):
-        listed = (mutant.line, mutant.text) in self.list.of(mutant.path)
-        return listed or self.list.part_of(mutant.line, mutant.text) is not None
+        return (mutant.line, mutant.text) in self.list.of(mutant.path) or self.list.part_of(mutant.line, mutant.text)
 
-    def sample(self, drawn, wanted, jobs):
-        """Judges mutants in the order drawn until so many differ."""
-        differing = listed = killed = 0
-        with ThreadPoolExecutor(jobs) as pool:
-            begin = 0
-            while begin < len(drawn) and differing - listed < wanted:
-                part = drawn[begin:begin + max(jobs, wanted - differing + listed)]
-                begin += len(part)
-                for killer, mutant in pool.map(self.judge, part):
-                    if killer is None or differing - listed == wanted:
-                        continue
-                    differing += 1
-                    killed += killer != ""
-                    if killer == "" and self.is_listed(mutant):
-                        listed += 1
-                    elif killer == "":
-                        print("survives: " + mutant.show(), flush=True)
-                    else:
-                        print(f"killed by {killer}: {mutant.path}:{mutant.number}", flush=True)
-        return differing, listed, killed
+    def take(self):
+        """The next one that is not listed, None when enough are judged."""
+        with self.lock:
+            if sum(self.judged.values()) >= self.wanted or time.monotonic() > self.end:
+                return None
+            return next((drawn for drawn in self.drawn if not self.is_listed(drawn[1])), None)
+
+    def verdict(self, lane, source, mutant):
+        """As found before, as long as the same source is changed and, of a survivor, the tests are the same."""
+        key = source.digest("") + mutant.key
+        entry = self.results.get(key)
+        if "killer" not in entry or (entry["killer"] == "" and entry["tests"] != self.tests):
+            tests = self.lines.running(mutant.path, mutant.number)
+            killer, tried = lane.judge(mutant.path, source.changed(mutant).encode(), tests)
+            entry = {"killer": killer, "tests": self.tests, "told": f"{tried} of {len(tests)} tests that run it pass"}
+            self.results.put(key, entry)
+        return entry
+
+    def work(self, lane):
+        while drawn := self.take():
+            source, mutant = drawn
+            entry = self.verdict(lane, source, mutant)
+            if entry["killer"] is None:
+                continue
+            with self.lock:
+                room = mutant.path.split("/")[1]
+                self.judged[room] += 1
+                self.killed[room] += entry["killer"] != ""
+                told = f"killed by {entry['killer']}" if entry["killer"] else f"survives ({entry['told']})"
+                print(f"{told}: {mutant.show()}", flush=True)
+
+
+def interval(killed, judged):
+    """Wilson's, of 95 %."""
+    z, rate = 1.96, killed / judged
+    middle, half = rate + z * z / (2 * judged), z * math.sqrt(rate * (1 - rate) / judged + z * z / (4 * judged * judged))
+    return [100 * (middle + side * half) / (1 + z * z / judged) for side in (-1, 1)]
 
 
 def main():
+    folder, of = sys.argv[1], {name: os.environ["WH_" + name].split() for name in ("SOURCES", "TESTS", "TOOLS")}
     wanted, seed = int(os.environ.get("SAMPLE", "60")), os.environ.get("SEED", "20240229")
-    jobs = int(os.environ.get("JOBS", os.cpu_count()))
-    run = Run(sys.argv[1])
+    seconds, jobs = float(os.environ.get("MUTATION_SECONDS", "inf")), int(os.environ.get("JOBS", os.cpu_count()))
+    chosen = os.environ.get("FILES", "").split() or of["SOURCES"]
+    if set(chosen) - set(of["SOURCES"]):
+        sys.exit(f"mutation: no source of the host rooms: {' '.join(sorted(set(chosen) - set(of['SOURCES'])))}")
+    lines = Lines(folder, of["SOURCES"], of["TESTS"], of["TOOLS"])
+    begin = time.monotonic()
+    lines.measure(jobs, COUNTING_SHARE * seconds)
+    lines.sources = chosen
+    lanes = [Lane(os.path.join(folder, f"lane{number}"), jobs, lines) for number in range(jobs)]
     print(f"SAMPLE={wanted} SEED={seed}", flush=True)
-    run.measure()
-    run.open_lanes(jobs)
-    differing, listed, killed = run.sample(draw(run.sources, seed), wanted, jobs)
-    rate = killed / (differing - listed) if differing > listed else 1
-    print(f"{differing} differ, {listed} of them listed, {killed} killed: {100 * rate:.1f} %")
-    if rate < LEAST_RATE:
+    sample = Sample(folder, lines, wanted, seed, begin + seconds)
+    workers = [threading.Thread(target=sample.work, args=(lane,)) for lane in lanes]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    for room in sorted(sample.judged):
+        print(f"{room:10} {sample.killed[room]:4} of {sample.judged[room]}")
+    judged, killed = sum(sample.judged.values()), sum(sample.killed.values())
+    if judged == 0:
+        sys.exit("mutation: no mutant was judged")
+    low, high = interval(killed, judged)
+    print(f"{killed} of {judged} killed: {100 * killed / judged:.1f} % (95 %: {low:.1f} to {high:.1f} %)")
+    if killed < LEAST_RATE * judged:
         sys.exit(f"mutation: less than {100 * LEAST_RATE:.0f} % are killed")
 
 
