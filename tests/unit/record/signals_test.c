@@ -8,6 +8,7 @@
 #include "record/quaternion.h"
 #include "report/document.h"
 #include "report/gnuplot.h"
+#include "view/gltf.h"
 #include "view/scene.h"
 
 /* A slice as it was. */
@@ -652,6 +653,22 @@ static void a_scene_is_made(void **state) {
     json_decref(moving);
 }
 
+/* Whatever was in its place before, an asset begins with nothing; and only lists that have something are written. */
+static void an_empty_scene(void **state) {
+    (void)state;
+    wh_gltf_t gltf;
+    memset(&gltf, 0xff, sizeof gltf);
+    wh_gltf_open(&gltf);
+    assert_null(gltf.bytes);
+    assert_int_equal(gltf.size, 0);
+    assert_int_equal(gltf.capacity, 0);
+    json_t *root = wh_gltf_finish(&gltf, "nothing", "a test");
+    assert_int_equal(json_object_size(root), 4);
+    assert_int_equal(json_array_size(json_object_get(root, "nodes")), 1);
+    assert_int_equal(json_array_size(json_object_get(node(root, "cell"), "children")), 0);
+    json_decref(root);
+}
+
 /* --------------------------------------------------------------------------------------------------- plots */
 
 /* Rows of a block as they were written; `breaks` of one that a gap is before. */
@@ -865,6 +882,7 @@ int main(void) {
         cmocka_unit_test_teardown(a_gripper_that_is_elsewhere, close_run),
         cmocka_unit_test_teardown(a_near_miss_is_told_late, close_run),
         cmocka_unit_test_teardown(a_scene_is_made, close_run),
+        cmocka_unit_test(an_empty_scene),
         cmocka_unit_test_teardown(plots_have_rows_of_the_curves, close_run),
         cmocka_unit_test_teardown(a_document_is_made, close_run),
     };

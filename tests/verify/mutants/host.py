@@ -23,9 +23,7 @@ LIST = "tests/verify/mutants/survivors"
 LONGEST_S = 60  # a test that takes longer is not used
 TESTS_S = 240  # as long as tests are begun against one mutant
 COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
-# What comes of C++ links without C++'s own library only where it is optimised.
-COUNTED = "-g1 --coverage -fprofile-update=atomic"
-COUNTED = [f"CFLAGS=-O0 {COUNTED}", f"CXXFLAGS=-O2 {COUNTED}"]
+COUNTED = ["CFLAGS=-O0 -g1 --coverage -fprofile-update=atomic"]  # C alone: C++ has to be optimised, which takes long
 # Compiled as the Makefile does it, so that a compiler's cache may have it; but linking is quicker without lines.
 PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
 CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
@@ -163,12 +161,14 @@ class Lines:
 
     def running(self, source, number):
         """The tests that run this line, the end-to-end ones last, the shortest first. Of a line without code, as of a table,
-        those that run its file."""
+        those that run its file; of a file that is not counted those that are named after its room."""
         of_file = {test: found["lines"][source] for test, found in self.found.items()
                    if found["lines"].get(source, {}).get("run")}
         same = [lines for lines in of_file.values() if lines["digest"] == self.digests[source]]
         is_code = len(same) == len(of_file) and any(number in lines["run"] + lines["not"] for lines in same)
         tests = [test for test, lines in of_file.items() if not is_code or number in lines["run"]]
+        if source.endswith(".cpp"):
+            tests = [test for test in self.found if f"/{source.split('/')[1]}" in test]
         return sorted(tests, key=lambda test: (is_end_to_end(test), self.found[test]["seconds"]))
 
 
