@@ -392,6 +392,9 @@ void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_co
     add_signals(signals, state);
     add_wafers(signals, state);
     add_proximity(signals, state);
+    if (state->physics) {
+        wh_edge_scans_hear(&signals->scans, state->seq, &state->physics->scan);
+    }
     if (state->event_count > 0) {
         add_marks(signals, state);
         wh_signals_mark(signals);
@@ -418,6 +421,7 @@ void wh_signals_close(wh_signals_t *signals) {
     free(signals->stays);
     free(signals->stay_of);
     free(signals->marks);
+    wh_edge_scans_close(&signals->scans);
     memset(signals, 0, sizeof *signals);
 }
 

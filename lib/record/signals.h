@@ -15,6 +15,7 @@
 #include "../layout/layout.h"
 #include "../sim/slice.h"
 #include "path.h"
+#include "scans.h"
 #include "thin.h"
 
 /* Tolerances to begin with. A signal's tolerance grows if it has more points than it may. */
@@ -99,6 +100,7 @@ typedef struct {
     int32_t *stay_of; /* each wafer's last one */
     wh_mark_t *marks;
     size_t mark_count, mark_capacity;
+    wh_edge_scans_t scans;
     int64_t first, last; /* slices */
     wh_neighbours_t vicinity[WH_GRIPPERS];
 } wh_signals_t;

@@ -8,6 +8,7 @@
 #include "../text/array.h"
 #include "../text/json.h"
 #include "../view/scene.h"
+#include "scans_document.h"
 
 #define FORMAT 2
 
@@ -489,6 +490,7 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     put_thinning(&text, signals);
     put_tracks(&text, document);
     put_each(&text, document, "marks", signals->mark_count, put_mark);
+    wh_scans_document_put(&text, signals);
     wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);

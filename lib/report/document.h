@@ -37,6 +37,14 @@
  *                near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
+ *   scans        what edge sensors saw (record/scans.h), in the chuck's frame: [{ number, begin_s, end_s,
+ *                gripper, station (or null), count (ordered; below 0 clockwise), taken, missed (of them),
+ *                verdict (math/status.def; 0: sure), sure, words [text], circle { x, y, radius, sd_centre,
+ *                sd_radius } (null: none), mark { kind, at (where the axis sees it), turn, sd_turn } (null:
+ *                none), and for each sample that was taken theta (in which the sensor looked), rho (null:
+ *                missing, or no rim), residual (rho less the circle's; null: no circle), counts (1; 0: not for
+ *                the circle) }]
+ *   scans_left_out   how many scans more there were than a document holds
  *   scene        glTF 2.0 (view/scene.h), without animation
  */
 #ifndef WH_REPORT_DOCUMENT_H

@@ -151,7 +151,10 @@ static void pass_time(stream_t *stream, int64_t *value) {
 }
 
 static void pass_bool(stream_t *stream, bool *value) {
-    uint64_t word = stream->to && *value ? 1 : 0; /* what is read into may be no bool yet */
+    uint64_t word = 0;
+    if (stream->to && *value) { /* what is read into may be no bool yet */
+        word = 1;
+    }
     pass_bytes(stream, &word, 1);
     stream->is_bad = stream->is_bad || word > 1;
     *value = word == 1;

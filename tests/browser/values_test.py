@@ -192,6 +192,38 @@ class Values(unittest.TestCase):
         self.assertEqual(told, ["1", "0.99998", "1 \u2212 2e\u22127", "900.0000001", "900.0000002", "3599.999981", "3599.999982", "0",
                                 "0.3", "\u2212250"])
 
+    def test_scans(self):
+        """Each scan is reached; plot and words are the document's; what is missing is a gap; not sure is shown as such."""
+        document = documents.example("09_edge_scan")[0]
+        self.assertEqual(len(document["scans"]), 1)
+        second = documents.copy.deepcopy(document["scans"][0])
+        second.update(number=2, sure=False, missed=40, words=["not sure: the scan does not tell the notch or flat (76)", "a", "b"])
+        for key in ("rho", "residual"):
+            second[key][1000:1040] = [None] * 40
+        document["scans"].append(second)
+        page.open(documents.page_of(document, "scans"))
+        shown = """const W = Waferhand; return [document.querySelector('#scans .verdict').className,
+            document.querySelector('#scans .words').innerText, W.scans.graphs.map((graph) => Array.from(
+                { length: graph.numRows() }, (_, i) => Array.from({ length: graph.numColumns() }, (_, k) => graph.getValue(i, k))))]"""
+        for scan, kind in zip(document["scans"], ("good", "warn")):
+            style, words, (rim, residuals) = page.js(shown)
+            self.assertEqual(style, "verdict " + kind)
+            for line in scan["words"]:
+                self.assertIn(line, words)
+            self.assertEqual(len(rim), 3600)
+            self.assertEqual(sum(row[1] is None for row in rim), scan["missed"])
+            self.assertEqual(sum(row[1] is not None for row in residuals), sum(
+                counts and each is not None for counts, each in zip(scan["counts"], scan["residual"])))
+            for theta, rho, circle in rim:
+                self.assertLess(abs((rho or circle) - circle), 1.3, theta)
+            for (_, rho, circle), (_, counts, _) in zip(rim, residuals):
+                if counts is not None:
+                    self.assertAlmostEqual(rho - circle, counts / 1000, delta=2e-4)
+            page.js("document.querySelector('#scans button[title=\"The next scan\"]').click()")
+        page.js("Waferhand.scans.graphs[0].updateOptions({ dateWindow: [30, 45] })")
+        self.assertEqual(page.js("return Waferhand.scans.graphs[1].xAxisRange()"), [30, 45])
+        self.assertEqual(page.faults(), [])
+
     def test_tables(self):
         document, path = documents.example("01_transfer")
         page.open(path)

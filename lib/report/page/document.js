@@ -35,9 +35,14 @@
     const NOTHING = { begin_s: 0, duration_s: 0, slice_s: 0.001, title: '', source: '', version: '', reproduce: '',
         thinning: null, scene: null };
 
+    const SCAN = { number: 0, begin_s: 0, end_s: 0, gripper: 0, station: null, sure: false, words: ['no estimate'], circle: null,
+        mark: null, theta: [], rho: [], residual: [], counts: [] };
+
+    const scans = (from) => list(from.scans).map((scan) => Object.assign({}, SCAN, object(scan)));
+
     function lists(from, run) {
-        return { notes: list(from.notes), slots: list(from.slots), marks: list(from.marks), commands: list(run.commands),
-            events: events(run), expectations: list(run.expectations) };
+        return { notes: list(from.notes), slots: list(from.slots), marks: list(from.marks), scans: scans(from),
+            commands: list(run.commands), events: events(run), expectations: list(run.expectations) };
     }
 
     function complete(given) {
@@ -48,7 +53,7 @@
             reproduce: from.reproduce, parameters: object(from.parameters), run, names: names(object(from.names)),
             wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),
             thinning: from.thinning, tracks: tracks(object(from.tracks), object(from.machine)),
-            scene: from.scene, slices: from.slices,
+            scene: from.scene, scansLeftOut: from.scans_left_out || 0, slices: from.slices,
             slice: from.slice_s > 0 ? from.slice_s : 0.001, begin: Math.max(from.begin_s, 0),
         });
         doc.duration = from.duration_s > 0 ? from.duration_s : lastTime(doc);

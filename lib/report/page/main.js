@@ -22,6 +22,7 @@
         const bars = W.bars.groups(doc);
         host('plots').append(W.plots.section(curves[0]), ...bars.map(W.lanes.section),
             ...curves.slice(1).map(W.plots.section));
+        W.scans.start(doc, host('plots'));
         W.plots.fill(false);
     }
 

@@ -10,6 +10,7 @@
         W.clock.flush();
         W.plots.showAll();
         W.lanes.showAll();
+        W.scans.resize();
         if (W.stage.view) {
             W.stage.view.paint();
             still = W.element('img', { id: 'still', src: W.stage.view.still(), alt: 'The cell at the shown time' });

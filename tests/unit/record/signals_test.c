@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "math/trig.h"
 #include "mcs/script_run.h"
 #include "record/quaternion.h"
 #include "report/document.h"
@@ -873,6 +874,131 @@ static void a_document_is_made(void **state) {
     json_decref(object);
 }
 
+/* ---------------------------------------------------------------------------------------------------- scans */
+
+static wh_edge_sample_t samples[4000];
+
+/* What the estimate says of the only scan, in words. */
+static wh_scan_words_t words_of(const wh_edge_scan_t *scan, wh_align_result_t *result) {
+    wh_scan_words_t words;
+    assert_true((size_t)scan->taken <= sizeof samples / sizeof *samples);
+    const wh_status_t status = wh_edge_scan_estimate(scan, signals.layout, samples, result);
+    wh_edge_scan_words(scan, status, result, &words);
+    return words;
+}
+
+/* The layout has the wafer at (1.5, -0.8), turned by 37 degrees, of the radius 150.025. */
+static void an_edge_scan(void **state) {
+    (void)state;
+    play("lua/examples/09_edge_scan.lua");
+    assert_int_equal(signals.scans.count, 1);
+    assert_int_equal(signals.scans.left_out, 0);
+    const wh_edge_scan_t *scan = &signals.scans.list[0];
+    assert_int_equal(scan->number, 1);
+    assert_int_equal(scan->gripper, 1);
+    assert_int_equal(scan->taken, 3600);
+    assert_int_equal(scan->missed, 0);
+    assert_true(scan->first_slice > 4000 && scan->last_slice > scan->first_slice + 1000);
+    wh_align_result_t result;
+    const wh_scan_words_t words = words_of(scan, &result);
+    assert_true(words.is_sure);
+    assert_string_equal(words.lines[0], "sure");
+    assert_near(result.circle.x, 1.5, 1e-3);
+    assert_near(result.circle.y, -0.8, 1e-3);
+    assert_near(result.turn, wh_rad_from_deg(37), 1e-4);
+    assert_memory_equal(words.lines[1], "centre: 1.", strlen("centre: 1."));
+    assert_memory_equal(words.lines[2], "notch: towards 3", strlen("notch: towards 3"));
+    size_t counting = 0;
+    for (int32_t i = 0; i < scan->taken; ++i) {
+        const wh_edge_sample_t *sample = &samples[i];
+        const double rho =
+            wh_circle_radius(&result.circle, 0, cos(sample->angle), sin(sample->angle)) + sample->residual;
+        assert_near(sample->radius, rho, 1e-9);
+        counting += sample->counts ? 1 : 0;
+    }
+    assert_int_equal(counting, result.circle.used);
+}
+
+/* Where the axis sees the notch, samples are deepest below the circle. */
+static void the_mark_is_where_the_notch_is_seen(void **state) {
+    (void)state;
+    play("lua/examples/09_edge_scan.lua");
+    wh_align_result_t result;
+    (void)words_of(&signals.scans.list[0], &result);
+    size_t deepest = 0;
+    for (size_t i = 0; i < 3600; ++i) {
+        deepest = samples[i].residual < samples[deepest].residual ? i : deepest;
+    }
+    assert_near(wh_edge_scan_mark_at(&result), samples[deepest].angle, 2 * WH_PI / 3600);
+}
+
+/* A scan of `seen` samples of a round wafer without a notch, then `gap` that never came, then one more. */
+static void hear_scan(uint32_t number, int32_t seen, int32_t gap) {
+    const int32_t all = seen + gap + 1;
+    wh_scan_t scan = {.number = number, .armed = true, .gripper = 1, .count = 3600};
+    for (int64_t slice = 1; scan.taken < all; ++slice) {
+        scan.taken += scan.taken == seen ? gap + 1 : 1;
+        scan.sample_count = 1;
+        scan.samples[0] = 2000;
+        wh_edge_scans_hear(&signals.scans, slice, &scan);
+        wh_edge_scans_hear(&signals.scans, slice, &scan); /* once more adds nothing */
+    }
+}
+
+static void samples_that_never_came_are_counted(void **state) {
+    (void)state;
+    play("lua/examples/09_edge_scan.lua");
+    hear_scan(2, 100, 7);
+    assert_int_equal(signals.scans.count, 2);
+    const wh_edge_scan_t *scan = &signals.scans.list[1];
+    assert_int_equal(scan->taken, 108);
+    assert_int_equal(scan->missed, 7);
+    for (int32_t i = 0; i < scan->taken; ++i) {
+        assert_int_equal(scan->samples[i], i >= 100 && i < 107 ? WH_NONE : 2000);
+    }
+    wh_align_result_t result;
+    const wh_scan_words_t words = words_of(scan, &result);
+    assert_false(words.is_sure);
+    assert_string_equal(words.lines[0],
+                        "no estimate: no scan: NaN, angles out of order, or all the same (77 BAD_SCAN)");
+    assert_string_equal(words.lines[1], "centre: not told");
+    assert_string_equal(words.lines[4], "samples: 108 of 3600 taken, 7 of them missing");
+    assert_true(isnan(samples[103].radius) && !isnan(samples[99].radius) && isnan(samples[99].residual));
+}
+
+/* Samples of the true scan but for an arc of which nothing came: the centre may be sure, the notch is not. */
+static void what_is_not_sure_says_so(void **state) {
+    (void)state;
+    play("lua/examples/09_edge_scan.lua");
+    wh_edge_scan_t *scan = &signals.scans.list[0];
+    const int32_t notch = 3600 - 370; /* of 37 degrees: the chuck turns, the sensor stands */
+    for (int32_t i = notch - 100; i < notch + 100; ++i) {
+        scan->samples[(i - (int32_t)scan->first % 3600 + 3600) % 3600] = WH_NONE;
+        ++scan->missed;
+    }
+    wh_align_result_t result;
+    const wh_scan_words_t words = words_of(scan, &result);
+    assert_int_equal(result.verdict, WH_STATUS_NOTCH_NOT_SURE);
+    assert_false(words.is_sure);
+    assert_string_equal(words.lines[0],
+                        "not sure: the scan does not tell the notch or flat (76 NOTCH_NOT_SURE)");
+    assert_memory_equal(words.lines[1], "centre: 1.", strlen("centre: 1."));
+    assert_string_equal(words.lines[2], "notch or flat: not told");
+    assert_non_null(strstr(words.lines[4], "200 of them missing"));
+}
+
+/* More than a run keeps are counted, and none of them half. */
+static void scans_beyond_the_limit_are_counted(void **state) {
+    (void)state;
+    wh_scan_t scan = {.gripper = 1, .count = -WH_SENSOR_SAMPLES};
+    for (scan.number = 1; scan.number <= 20; ++scan.number) {
+        wh_edge_scans_hear(&signals.scans, scan.number, &scan);
+    }
+    assert_int_equal(signals.scans.count, WH_SCANS_SAMPLES / WH_SENSOR_SAMPLES);
+    assert_int_equal(signals.scans.left_out, 20 - WH_SCANS_SAMPLES / WH_SENSOR_SAMPLES);
+    wh_edge_scans_close(&signals.scans);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(transfer, close_run),
@@ -885,6 +1011,11 @@ int main(void) {
         cmocka_unit_test(an_empty_scene),
         cmocka_unit_test_teardown(plots_have_rows_of_the_curves, close_run),
         cmocka_unit_test_teardown(a_document_is_made, close_run),
+        cmocka_unit_test_teardown(an_edge_scan, close_run),
+        cmocka_unit_test_teardown(the_mark_is_where_the_notch_is_seen, close_run),
+        cmocka_unit_test_teardown(samples_that_never_came_are_counted, close_run),
+        cmocka_unit_test_teardown(what_is_not_sure_says_so, close_run),
+        cmocka_unit_test(scans_beyond_the_limit_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
