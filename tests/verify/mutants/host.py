@@ -139,7 +139,8 @@ class Lines:
         self.found = {test: found for test, found in self.found.items() if found["status"] == 0}
 
     def count(self, tree, test):
-        counters = [tree.place(f"build/obj/{os.path.splitext(source)[0]}.gcda") for source in self.sources]
+        counters = [tree.place(f"build/{kind}/{os.path.splitext(source)[0]}.gcda")
+                    for source in self.sources for kind in ("obj", "pic")]
         for path in filter(os.path.exists, counters):
             os.remove(path)
         begin = time.monotonic()
@@ -153,10 +154,9 @@ class Lines:
                                  check=True, text=True).stdout
             for file in (file for document in out.splitlines() for file in json.loads(document)["files"]):
                 if file["file"] in self.digests:
-                    counts = {line["line_number"]: line["count"] for line in file["lines"]}
-                    lines[file["file"]] = {"digest": self.digests[file["file"]],
-                                           "run": sorted(number for number in counts if counts[number]),
-                                           "not": sorted(number for number in counts if not counts[number])}
+                    found = lines.setdefault(file["file"], {"digest": self.digests[file["file"]], "run": [], "not": []})
+                    for line in file["lines"]:
+                        found["run" if line["count"] > 0 else "not"].append(line["line_number"])
         return {"stamp": self.stamp(test), "status": status, "seconds": seconds, "lines": lines}
 
     def running(self, source, number):
