@@ -23,7 +23,8 @@ LIST = "tests/verify/mutants/survivors"
 LONGEST_S = 60  # a test that takes longer is not used
 TESTS_S = 240  # as long as tests are begun against one mutant
 COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
-COUNTED = ["CFLAGS=-O0 -g1 --coverage -fprofile-update=atomic"]  # C alone: C++ has to be optimised, which takes long
+# C alone is counted: C++ has to be optimised, which takes long.
+COUNTED = ["CFLAGS=-O0 -g1 --coverage -fprofile-update=atomic", "LDFLAGS=--coverage"]
 # Compiled as the Makefile does it, so that a compiler's cache may have it; but linking is quicker without lines.
 PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
 CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
