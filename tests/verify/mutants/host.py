@@ -173,6 +173,10 @@ class Lines:
         return sorted(tests, key=lambda test: (is_end_to_end(test), self.found[test]["seconds"]))
 
 
+class NotBuilt(Exception):
+    """A source that compiles, but with which nothing can be linked."""
+
+
 class Lane:
     """A tree in which one source at a time is changed."""
 
@@ -194,12 +198,10 @@ class Lane:
     def fails(self, test):
         """With the source as it is now. An end-to-end test has to fail twice: some of them ask for time."""
         limit = 20 + 5 * self.lines.found[test]["seconds"]
-        if not is_end_to_end(test):
-            program = f"build/sanitize/{test}"
-            return not self.tree.make(CHECKED, [program]) or self.tree.run(program, limit) != 0
-        if not self.tree.make(PLAIN, self.program):
-            return True
-        return self.tree.run(test, limit) != 0 and self.tree.run(test, limit) != 0
+        program = test if is_end_to_end(test) else f"build/sanitize/{test}"
+        if not (self.tree.make(PLAIN, self.program) if is_end_to_end(test) else self.tree.make(CHECKED, [program])):
+            raise NotBuilt
+        return self.tree.run(program, limit) != 0 and (not is_end_to_end(test) or self.tree.run(program, limit) != 0)
 
     def killer_of(self, source, text, tests):
         """The first of the tests that fails, or how many of them there was time for. A test that fails for the first time is
@@ -222,13 +224,15 @@ class Lane:
         return "", tried
 
     def judge(self, source, text, tests):
-        """None if it makes no difference or does not compile, else its killer or "", and how many tests passed."""
+        """None if it makes no difference or cannot be built, else its killer or "", and how many tests passed."""
         if source not in self.originals:
             self.originals[source] = self.built(source)
         self.tree.write(source, text)
         try:
             mutated = self.built(source)
             return self.killer_of(source, text, tests) if mutated not in (None, self.originals[source]) else (None, 0)
+        except NotBuilt:
+            return None, 0
         finally:
             self.tree.write(source, bytes_of(source))
 
