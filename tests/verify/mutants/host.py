@@ -1,6 +1,7 @@
 """host.py FOLDER: mutants of the host rooms and of collision, drawn from all their sources together. tests/verify/host_mutation
 says what is asked and has the settings; it gives the names of sources and tests."""
 
+import atexit
 import collections
 import contextlib
 import hashlib
@@ -30,6 +31,15 @@ PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
 CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
 CHECKED = ["B=build/sanitize", f"CFLAGS={CHECKED}", f"CXXFLAGS={CHECKED}", *PLAIN,
            "EXTRA= -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all"]
+
+
+RUNNING = set()  # process groups of tests
+
+
+def end_tests():
+    for group in list(RUNNING):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(group, signal.SIGKILL)
 
 
 def digest_of(*contents):
@@ -92,11 +102,13 @@ class Tree:
         command = ["prlimit", "--core=0", f"--fsize={1 << 30}", os.path.join(os.path.abspath(self.folder), program)]
         with subprocess.Popen(command, cwd=self.folder, env={**os.environ, **more}, stdin=subprocess.DEVNULL,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+            RUNNING.add(process.pid)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(limit)
             status = process.poll()
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
+            RUNNING.remove(process.pid)
         return status
 
 
@@ -305,7 +317,7 @@ def main():
     lanes = [Lane(os.path.join(folder, f"lane{number}"), jobs, lines) for number in range(jobs)]
     print(f"SAMPLE={wanted} SEED={seed}", flush=True)
     sample = Sample(folder, lines, wanted, seed, begin + seconds)
-    workers = [threading.Thread(target=sample.work, args=(lane,)) for lane in lanes]
+    workers = [threading.Thread(target=sample.work, args=(lane,), daemon=True) for lane in lanes]
     for worker in workers:
         worker.start()
     for worker in workers:
@@ -322,4 +334,6 @@ def main():
 
 
 if __name__ == "__main__":
+    atexit.register(end_tests)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("mutation: stopped"))
     main()
