@@ -34,6 +34,8 @@
 #include "motion/move.h"
 #include "motion/robot.h"
 #include "motion/line.h"
+#include "motion/chain.h"
+#include "motion/chain_line.h"
 #include "motion/machine.h"
 #include "motion/track.h"
 
@@ -44,6 +46,7 @@
 #include "align/circle.h"
 #include "align/marks.h"
 #include "align/align.h"
+#include "align/calibration.h"
 #include "align/centring.h"
 #include "align/beam.h"
 #include "align/teaching.h"

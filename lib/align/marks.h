@@ -2,8 +2,13 @@
  *
  * A notch is a V: its axis, the depth of its apex and its opening are fitted to the samples from 0.08 to 0.70
  * of its depth, on both flanks together, so that neither the roundings of its corners nor its bottom count.
- * The opening is known beforehand: the nominal one and 1.5 degrees, give or take 1.5. A dent is a notch only
- * if all of it is as the V says. A flat is a chord: rho(a) = h / cos(a), of the length 2 sqrt(R^2 - h^2).
+ * The opening is known beforehand: the nominal one and 1.5 degrees, give or take 1.5. Then flanks and bottom
+ * are held against one V with a rounded bottom (the nominal radius, give or take 0.08): a chip in a flank may
+ * look like a flank, but the bottom is not where that says. If they are off together by more than the noise,
+ * the standard deviation is enlarged by as much, and where it cannot be chance it is no notch. A dent is none
+ * if its rim stands where a notch, chipped or not, would have none; what remains, such as a chip wider and
+ * deeper than a notch, leaves the verdict open, unless the notch was seen so well (a scatter up to 8 um) that
+ * it cannot be a chip itself. A flat is a chord: rho(a) = h / cos(a), of the length 2 sqrt(R^2 - h^2).
  */
 #ifndef WH_ALIGN_MARKS_H
 #define WH_ALIGN_MARKS_H

@@ -1,6 +1,7 @@
 /* A notch's V by Gauss and Newton's steps, then each sample of the dent held against it. */
 #include "angle_internal.h"
 #include "marks.h"
+#include "mismatch_internal.h"
 #include "rays_internal.h"
 #include "solve_internal.h"
 
@@ -10,16 +11,22 @@
 /* What is known of the opening's half: more than the nominal one by this, give or take as much. */
 #define HALF_OPENING_MORE (0.75 * WH_ALIGN_PI / 180)
 #define HALF_OPENING_SD (0.75 * WH_ALIGN_PI / 180)
+#define HALF_OPENING_LESS (0.5 * WH_ALIGN_PI / 180)
 /* A dent less deep than this part of the nominal depth is no notch; by so much a notch's depth may be off,
  * mm, and half of its opening. */
 #define DEEP 0.8
 #define SHALLOWER 0.15
 #define DEEPER 0.4
 #define OPENING_OFF (2.2 * WH_ALIGN_PI / 180)
-/* The bottom is seen where the flanks and its rounding say, to this and noise, mm. */
-#define BOTTOM_OFF 0.1
-/* A dent whose flanks are off by so many standard deviations is none. */
-#define CLEARLY_OFF 5
+/* The bottom's radius is the nominal one, give or take this, mm. If the squares of flanks and bottom are so
+ * many times noise's, that is no chance any more; if they are as seldom as so many deviations, a chip. */
+#define BOTTOM_SD 0.08
+#define CHANCE 1.5
+#define CHIPPED 3.7
+/* With samples so good, mm, no chip's curved sides pass for flanks, if it is as deep as a notch but for
+ * this. */
+#define SHARP 0.008
+#define SHARP_SHALLOWER 0.03
 /* Tukey's cut, in standard deviations, and how far a sample may be off the V. */
 #define CUT 6
 #define MAY_BE_OFF 4.5
@@ -42,6 +49,7 @@ typedef struct {
     wh_normal_t normal;
     double step;
     size_t used;
+    double inflation; /* of the squares of its deviations: more than 1 if the samples are off by more */
 } vee_t;
 
 /* What does not change: the scan, what is known beforehand. */
@@ -199,20 +207,136 @@ static bool fit(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
     return false;
 }
 
-/* ------------------------------------------------------------------------------------ is it the notch */
+/* ---------------------------------------------------------------------------------- does the bottom agree */
 
-/* As wide at half of its depth as a notch is, to two samples and a part. */
-static bool is_as_wide(const vee_search_t *search, const wh_dent_t *dent) {
-    size_t wide = 0;
+/* A sample against the arc that rounds the V's bottom and touches both flanks. */
+typedef struct {
+    double residual;
+    double by[4]; /* the arc's derivatives there: axis, apex, half, its radius */
+} against_arc_t;
+
+/* On the arc, not beside it on a flank. */
+static bool is_on_arc(const vee_search_t *search, const vee_t *vee, double across) {
+    return fabs(across) < search->nominal->bottom * vee->cosine;
+}
+
+static against_arc_t hold_against_arc(const vee_search_t *search, const vee_t *vee, size_t i) {
+    const wh_rim_ray_t *ray = &search->of.rays[i];
+    const double radius = search->nominal->bottom;
+    double x;
+    double y;
+    wh_scanned_place(&search->of, i, &x, &y);
+    const double across = y * vee->axis_x - x * vee->axis_y;
+    const double centre = vee->apex + radius / vee->sine;
+    const double from_centre = x * vee->axis_x + y * vee->axis_y - centre;
+    const double distance = sqrt(from_centre * from_centre + across * across);
+    against_arc_t against;
+    if (!is_on_arc(search, vee, across)) {
+        const against_t flank = hold_against(search, vee, i);
+        against.residual = flank.residual;
+        for (size_t p = 0; p < 3; ++p) {
+            against.by[p] = flank.by[p];
+        }
+        against.by[3] = 0;
+        return against;
+    }
+    /* Towards the centre of the arc, and the ray along that. */
+    const double in = 0 - from_centre / distance;
+    const double aside = 0 - across / distance;
+    const double slope = in * (ray->cosine * vee->axis_x + ray->sine * vee->axis_y) +
+                         aside * (ray->sine * vee->axis_x - ray->cosine * vee->axis_y);
+    const double opens = radius * vee->cosine / (vee->sine * vee->sine);
+    against.residual = (radius - distance) / slope;
+    against.by[0] = aside * centre / slope;
+    against.by[1] = in / slope;
+    against.by[2] = 0 - in * opens / slope;
+    against.by[3] = (in / vee->sine - 1) / slope;
+    return against;
+}
+
+/* One sample more for the fit that has the bottom, too, unless light fell through there. */
+static bool add_rounded(const vee_search_t *search, const vee_t *vee, size_t i, wh_normal_t *normal,
+                        double *squares) {
+    const double sigma = search->of.circle->scatter;
+    if (!wh_scanned_counts(&search->of, i) ||
+        hold_against(search, vee, i).depth < FLANK_FROM * depth_of(search, vee)) {
+        return false;
+    }
+    const against_arc_t against = hold_against_arc(search, vee, i);
+    if (search->glass && against.residual < -CUT * sigma) {
+        return false;
+    }
+    wh_normal_add(normal, against.by, against.residual, 1);
+    *squares += against.residual * against.residual;
+    return true;
+}
+
+/* Flanks and bottom by one V, all samples alike: a chip that looks like a flank leaves the bottom elsewhere.
+ * Sets the inflation; false if it cannot be chance. What is known of opening and radius counts as two samples
+ * more. */
+static bool has_bottom(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
+    static const double opening[4] = {0, 0, 1, 0};
+    static const double bottom[4] = {0, 0, 0, 1};
+    const double sigma = search->of.circle->scatter;
+    const double part = sigma / HALF_OPENING_SD * sigma / HALF_OPENING_SD;
+    const double more = search->half - vee->half;
+    double squares = part * more * more;
+    size_t count = 0;
+    wh_normal_t normal;
+    wh_normal_begin(&normal, 4);
+    wh_normal_add(&normal, opening, more, part);
+    wh_normal_add(&normal, bottom, 0, sigma / BOTTOM_SD * sigma / BOTTOM_SD);
     for (size_t k = 0; k < dent->count; ++k) {
         const size_t i = place_of(search->of.scan, dent, k, 0);
-        wide += wh_scanned_counts(&search->of, i) && search->of.rays[i].residual < -dent->depth / 2 ? 1 : 0;
+        count += add_rounded(search, vee, i, &normal, &squares) ? 1 : 0;
     }
+    double right[4];
+    for (size_t p = 0; p < 4; ++p) {
+        right[p] = normal.right[p];
+    }
+    if (count < 3 || !wh_normal_solve(&normal)) {
+        return false;
+    }
+    for (size_t p = 0; p < 4; ++p) {
+        squares -= normal.right[p] * right[p];
+    }
+    const double spare = (double)(count - 2);
+    const double times = squares / (sigma * sigma * spare);
+    vee->inflation = times > CHANCE ? times : 1;
+    return times * spare <= wh_mismatch_limit(spare, CHIPPED);
+}
+
+/* ------------------------------------------------------------------------------------ is it the notch */
+
+/* How wide the smallest notch is at a depth. */
+static double least_width(const vee_search_t *search, double depth) {
+    const wh_notch_shape_t *notch = search->nominal;
+    const double above = notch->depth - depth;
     vee_t vee;
-    set_half(&vee, search->half);
-    const double half_way = dent->depth / 2 + below_bottom(&vee, search->nominal);
-    const double wanted = 2 * half_way * vee.sine / vee.cosine / search->spacing;
-    return fabs((double)wide - wanted) <= 2 + 0.15 * wanted;
+    set_half(&vee, notch->opening / 2 - HALF_OPENING_LESS);
+    if (above > notch->bottom * (1 - vee.sine)) {
+        return 2 * (above + below_bottom(&vee, notch)) * vee.sine / vee.cosine;
+    }
+    return 2 * sqrt(above * (2 * notch->bottom - above));
+}
+
+/* A notch may be in there, with chips at it or without: nowhere is the rim where a notch would have none. */
+static bool may_hold_notch(const vee_search_t *search, const wh_dent_t *dent) {
+    static const double levels[] = {0.25, 0.5, 0.75};
+    const double may_be = 1 + 2 * MAY_BE_OFF * search->of.circle->scatter / search->spacing;
+    for (size_t l = 0; l < sizeof levels / sizeof levels[0]; ++l) {
+        const double depth = levels[l] * search->nominal->depth;
+        size_t wide = 0;
+        for (size_t k = 0; k < dent->count; ++k) {
+            const size_t i = place_of(search->of.scan, dent, k, 0);
+            const bool is_rim = search->of.scan->points[i].sight == WH_SIGHT_RIM;
+            wide += is_rim && search->of.rays[i].residual > -depth ? 0 : 1;
+        }
+        if ((double)wide + may_be < least_width(search, depth) / search->spacing) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* What was seen of the samples of a dent and beside it. */
@@ -220,8 +344,6 @@ typedef struct {
     size_t on_side[2]; /* on a flank, as it should be */
     size_t light;      /* further in than it should be: through glass */
     size_t off;        /* elsewhere than it should be */
-    double squares;    /* of the flanks' residuals */
-    size_t flank;
 } vee_look_t;
 
 /* A sample's deviation and that of the V there. */
@@ -257,11 +379,6 @@ static void look_at(const vee_search_t *search, const vee_t *vee, size_t i, vee_
     double below;
     double above;
     allow(&against, depth, may_be_off(search, vee, &against), &below, &above);
-    if (is_flank(&against, depth)) {
-        const double most = 20 * search->of.circle->scatter;
-        look->squares += fabs(off) < most ? off * off : most * most;
-        ++look->flank;
-    }
     if (off < -below && search->glass) {
         ++look->light;
     } else if (off < -below || off > above) {
@@ -272,7 +389,7 @@ static void look_at(const vee_search_t *search, const vee_t *vee, size_t i, vee_
 }
 
 static vee_look_t look_around(const vee_search_t *search, const wh_dent_t *dent, const vee_t *vee) {
-    vee_look_t look = {{0, 0}, 0, 0, 0, 0};
+    vee_look_t look = {{0, 0}, 0, 0};
     const size_t beside = (size_t)(BESIDE / search->spacing) + 2;
     for (size_t k = 0; k < dent->count + 2 * beside; ++k) {
         look_at(search, vee, place_of(search->of.scan, dent, k, beside), &look);
@@ -288,29 +405,24 @@ static bool has_flanks(const vee_search_t *search, const vee_look_t *look) {
     return search->glass ? least >= 1 && look->on_side[0] + look->on_side[1] >= 3 : least >= 2;
 }
 
-/* As deep and as open as a notch, and its bottom where that belongs. */
-static bool has_shape(const vee_search_t *search, const wh_dent_t *dent, const vee_t *vee) {
-    const double depth = depth_of(search, vee);
-    const double more = depth - search->nominal->depth;
-    const double bottom = BOTTOM_OFF + MAY_BE_OFF * search->of.circle->scatter;
-    return more > -SHALLOWER && more < DEEPER && fabs(vee->half - search->half) < OPENING_OFF &&
-           fabs(dent->depth - depth) < bottom;
+/* As deep and as open as a notch. */
+static bool has_shape(const vee_search_t *search, const vee_t *vee) {
+    const double more = depth_of(search, vee) - search->nominal->depth;
+    return more > -SHALLOWER && more < DEEPER && fabs(vee->half - search->half) < OPENING_OFF;
 }
 
 static finding_t judge(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
-    if (!is_as_wide(search, dent)) {
+    if (!may_hold_notch(search, dent)) {
         return IS_NONE;
     }
     if (!fit(search, dent, vee)) {
-        return search->glass ? IS_DOUBTFUL : IS_NONE;
+        return IS_DOUBTFUL;
     }
     const vee_look_t look = look_around(search, dent, vee);
-    if (has_flanks(search, &look) && has_shape(search, dent, vee)) {
+    if (has_flanks(search, &look) && has_shape(search, vee) && has_bottom(search, dent, vee)) {
         return IS_NOTCH;
     }
-    const double most = CLEARLY_OFF * search->of.circle->scatter;
-    const bool is_off = look.squares > most * most * (double)look.flank;
-    return is_off && !search->glass ? IS_NONE : IS_DOUBTFUL;
+    return IS_DOUBTFUL;
 }
 
 /* ------------------------------------------------------------------------------------------ the whole */
@@ -318,7 +430,7 @@ static finding_t judge(const vee_search_t *search, const wh_dent_t *dent, vee_t 
 static void tell(const vee_search_t *search, const vee_t *vee, wh_notch_t *notch) {
     const wh_circle_t *circle = search->of.circle;
     const double aside = circle->sd_centre / vee->apex;
-    const double own = circle->scatter * circle->scatter * vee->normal.matrix[0][0];
+    const double own = circle->scatter * circle->scatter * vee->normal.matrix[0][0] * vee->inflation;
     notch->direction = wh_align_atan2(vee->axis_y, vee->axis_x);
     notch->sd_direction = sqrt(own + aside * aside);
     notch->depth = depth_of(search, vee);
@@ -352,18 +464,19 @@ static tally_t judge_all(const vee_search_t *search, const wh_dents_t *dents) {
 
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch) {
-    vee_search_t search = {{scan, rays, circle, nominal->depth + DEEPER + CUT * circle->scatter},
-                           nominal,
-                           nominal->opening / 2 + HALF_OPENING_MORE,
-                           0,
-                           glass};
+    const double deepest = glass ? nominal->depth + DEEPER + CUT * circle->scatter : circle->radius;
+    vee_search_t search = {
+        {scan, rays, circle, deepest}, nominal, nominal->opening / 2 + HALF_OPENING_MORE, 0, glass};
     search.spacing = wh_scanned_spacing(&search.of);
     const wh_dents_t dents = wh_dents_find(&search.of);
     const tally_t tally = judge_all(&search, &dents);
     if (tally.counts[IS_NOTCH] > 1) {
         return WH_STATUS_TWO_NOTCHES;
     }
-    if (tally.counts[IS_NOTCH] == 1 && tally.counts[IS_DOUBTFUL] == 0 && dents.whole) {
+    /* What may be a chipped notch is a chip if the notch cannot be one. */
+    const bool is_sharp = circle->scatter <= SHARP && tally.first.depth >= nominal->depth - SHARP_SHALLOWER;
+    const bool is_one = tally.counts[IS_DOUBTFUL] == 0 || is_sharp;
+    if (tally.counts[IS_NOTCH] == 1 && is_one && dents.whole) {
         *notch = tally.first;
         return WH_OK;
     }

@@ -85,8 +85,12 @@ static void lengthen(walk_t *walk, const wh_scanned_t *of, size_t i) {
 }
 
 static void meet(walk_t *walk, const wh_scanned_t *of, size_t i, double least) {
-    if (wh_scanned_counts(of, i) && of->rays[i].residual < -least) {
+    const bool is_in = of->scan->points[i].sight == WH_SIGHT_RIM && of->rays[i].residual < -least;
+    if (is_in && wh_scanned_counts(of, i)) {
         lengthen(walk, of, i);
+    } else if (is_in && walk->dent.count > 0) { /* light, or a dent that is deeper than a mark */
+        ++walk->dent.count;
+        walk->bridge = 0;
     } else if (walk->dent.count > 0) {
         ++walk->dent.count;
         ++walk->bridge;

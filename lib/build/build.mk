@@ -221,6 +221,7 @@ $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
 # The firmware under test stands beside its tests.
 $(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o
+$(B)/tests/property/chain_random: LIBS = $(shell pkg-config --libs orocos-kdl)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libwaferhand.a
 	@mkdir -p $(@D)

@@ -177,7 +177,8 @@ static void set_up_movers(wh_world_t *world) {
 /* Movers that stand for a held wafer may meet anything, whichever wafer it is. */
 static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mover_t *b) {
     return a->part != WH_NONE && b->part != WH_NONE &&
-           wh_world_belong_together(&world->config->parts[a->part], &world->config->parts[b->part]);
+           (wh_world_is_known(world, a->part, b->part) ||
+            wh_world_belong_together(&world->config->parts[a->part], &world->config->parts[b->part]));
 }
 
 static void set_up_pairs(wh_world_t *world) {
@@ -202,7 +203,9 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     }
     lay_out(config, &block);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        world->clearances[kind].gap = WH_CLEARANCE_RANGE;
+        const wh_real_t gap = config->known ? config->limits[kind] : WH_CLEARANCE_RANGE;
+        world->range = gap > world->range ? gap : world->range;
+        world->clearances[kind].gap = gap;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
     world->curves.first = input->slice;

@@ -14,7 +14,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     least[kind] = found < least[kind] ? found : least[kind];
 }
 
-static void measure_rest(const wh_look_t *look, const wh_mover_t *mover, wh_real_t least[]) {
+static void measure_rest(const wh_look_t *look, wh_mover_t *mover, wh_real_t least[]) {
     int32_t found[WH_NEAR_CAPACITY];
     if (mover->part == WH_NONE) {
         return;
@@ -30,8 +30,8 @@ static void measure_rest(const wh_look_t *look, const wh_mover_t *mover, wh_real
 }
 
 static void measure_pair(const wh_look_t *look, const wh_mover_pair_t *pair, wh_real_t least[]) {
-    const wh_mover_t *a = &look->world->movers[pair->a];
-    const wh_mover_t *b = &look->world->movers[pair->b];
+    wh_mover_t *a = &look->world->movers[pair->a];
+    wh_mover_t *b = &look->world->movers[pair->b];
     if (a->part != WH_NONE && b->part != WH_NONE && pair->near.slack < WH_CLEARANCE_RANGE) {
         const wh_side_t one = wh_world_side_of_mover(look->world, a);
         const wh_side_t two = wh_world_side_of_mover(look->world, b);

@@ -34,11 +34,12 @@ typedef struct {
 typedef struct {
     int32_t part;          /* WH_NONE: this gripper holds none */
     int32_t body;          /* index in world->bodies */
-    wh_pose_t before, now; /* base_from_shape */
-    wh_real_t radius;      /* of a ball about the body's origin that holds the part */
-    wh_real_t motion;      /* the most that a point of it moved in this slice, mm */
-    wh_real_t bulge;       /* the most that a point left its straight way */
-    wh_pair_t *near;       /* things that rest, room for WH_NEAR_CAPACITY */
+    wh_pose_t before, now; /* base_from_shape, once someone has asked in this slice: is_placed */
+    bool is_placed;
+    wh_real_t radius; /* of a ball about the body's origin that holds the part */
+    wh_real_t motion; /* the most that a point of it moved in this slice, mm */
+    wh_real_t bulge;  /* the most that a point left its straight way */
+    wh_pair_t *near;  /* things that rest, room for WH_NEAR_CAPACITY */
     size_t near_count;
     wh_real_t reach; /* how much farther it may move before the list must be made again */
     bool crowded;    /* more things are near than the list can hold */
@@ -74,6 +75,7 @@ struct wh_world {
     wh_clearance_t clearances[WH_CLEARANCES];
     bool too_close[WH_CLEARANCES]; /* reported */
     bool struck;                   /* contact was reported and is no longer judged */
+    wh_real_t range;               /* a gap above it comes to nothing */
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
@@ -106,7 +108,7 @@ const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) WH_SYM
 int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
 int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);
 
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover)
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
     WH_SYMBOL(wh_world_side_of_mover);
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);
 
@@ -131,6 +133,9 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 
 /* Keeps the smallest gaps at the end of a bin. Changes nothing else. */
 void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
+
+/* True if the pair need not be judged: config->known. */
+bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) WH_SYMBOL(wh_world_is_known);
 
 /* True for parts that never move against each other, or are neighbours by design. */
 bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b) WH_SYMBOL(wh_world_belong_together);

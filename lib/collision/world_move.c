@@ -54,9 +54,7 @@ static void move_mover(wh_world_t *world, wh_mover_t *mover) {
     if (mover->part == WH_NONE) {
         return;
     }
-    const wh_convex_t *convex = wh_world_convex(world, mover->part);
-    mover->before = wh_pose_compose(&body->before, &convex->body_from_shape);
-    mover->now = wh_pose_compose(&body->now, &convex->body_from_shape);
+    mover->is_placed = false;
     mover->motion = body->way + body->turn * mover->radius;
     mover->bulge = body->turn * body->turn * mover->radius / 8;
     mover->reach -= mover->motion;

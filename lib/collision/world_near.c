@@ -14,8 +14,19 @@ static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
     return side;
 }
 
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
+static void place(const wh_world_t *world, wh_mover_t *mover) {
+    const wh_body_t *body = &world->bodies[mover->body];
+    const wh_convex_t *convex = wh_world_convex(world, mover->part);
+    if (!mover->is_placed) {
+        mover->before = wh_pose_compose(&body->before, &convex->body_from_shape);
+        mover->now = wh_pose_compose(&body->now, &convex->body_from_shape);
+        mover->is_placed = true;
+    }
+}
+
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
     wh_side_t side = side_of_part(world->config, mover->part);
+    place(world, mover);
     side.body = &world->bodies[mover->body];
     side.before = mover->before;
     side.now = mover->now;
@@ -51,8 +62,9 @@ static wh_real_t box_gap(const wh_box_t *a, const wh_box_t *b, wh_vec3_t *axis) 
     return gaps[best];
 }
 
-static wh_box_t box_before(const wh_world_t *world, const wh_mover_t *mover) {
+static wh_box_t box_before(const wh_world_t *world, wh_mover_t *mover) {
     wh_box_t box;
+    place(world, mover);
     wh_convex_bounds(wh_world_convex(world, mover->part), &mover->before, &box.low, &box.high);
     return box;
 }
@@ -96,9 +108,13 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
     for (size_t i = 0; i < known_count; ++i) {
         known[i] = mover->near[i];
     }
-    mover->near_count = find_near(world, mover, &box, found);
-    for (size_t i = 0; i < mover->near_count; ++i) {
-        wh_pair_t *near = &mover->near[i];
+    const size_t count = find_near(world, mover, &box, found);
+    mover->near_count = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (wh_world_is_known(world, mover->part, wh_world_part_of_item(world, found[i]))) {
+            continue;
+        }
+        wh_pair_t *near = &mover->near[mover->near_count++];
         near->other = found[i];
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);

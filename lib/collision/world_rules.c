@@ -21,6 +21,11 @@ bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b) {
     return apart >= -1 && apart <= 1;
 }
 
+bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) {
+    const bool *known = world->config->known;
+    return known && known[one] && known[other];
+}
+
 static bool is_gripper(const wh_side_t *side) {
     return side->kind == WH_PART_BLADE || side->kind == WH_PART_CHUCK;
 }

@@ -7,37 +7,66 @@
 /* --------------------------------------------------------------------------------------------- in a slice */
 
 /* A pair that was so far apart needs no check: no result could come of it. */
-static bool is_far(wh_pair_t *near, wh_real_t motion) {
+static bool is_far(const wh_world_t *world, wh_pair_t *near, wh_real_t motion) {
     near->slack -= motion;
-    return near->slack > WH_CLEARANCE_RANGE;
+    return near->slack > world->range;
 }
 
-static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
-    wh_world_t *world = look->world;
-    if (mover->part == WH_NONE || !(mover->motion > 0)) {
-        return;
-    }
-    wh_world_list_near(world, mover);
-    const wh_side_t a = wh_world_side_of_mover(world, mover);
+static void judge_near(const wh_look_t *look, wh_mover_t *mover) {
+    const wh_side_t a = wh_world_side_of_mover(look->world, mover);
     if (mover->crowded) {
         wh_world_report_crowd(look, &a);
     }
-    world->counters.pairs += mover->near_count;
     for (size_t i = 0; i < mover->near_count; ++i) {
         wh_pair_t *near = &mover->near[i];
-        if (!is_far(near, mover->motion)) {
-            const wh_side_t b = wh_world_side_of_item(world, near->other);
+        if (!(near->slack > look->world->range)) {
+            const wh_side_t b = wh_world_side_of_item(look->world, near->other);
             wh_world_judge(look, &a, &b, near);
         }
     }
 }
 
+static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
+    wh_world_t *world = look->world;
+    bool is_near = false;
+    if (mover->part == WH_NONE || !(mover->motion > 0)) {
+        return;
+    }
+    wh_world_list_near(world, mover);
+    world->counters.pairs += mover->near_count;
+    for (size_t i = 0; i < mover->near_count; ++i) {
+        is_near = !is_far(world, &mover->near[i], mover->motion) || is_near;
+    }
+    if (is_near || mover->crowded) {
+        judge_near(look, mover);
+    }
+}
+
+/* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of them. */
+static bool hold_each_other(const wh_look_t *look, const wh_mover_t *a, const wh_mover_t *b) {
+    const wh_world_config_t *config = look->world->config;
+    const bool a_hangs = (size_t)a->part < config->part_count;
+    const bool b_hangs = (size_t)b->part < config->part_count;
+    const int32_t wafer = (a_hangs ? b : a)->part - (int32_t)config->part_count;
+    const int32_t hung = (a_hangs ? a : b)->part;
+    return a_hangs != b_hangs &&
+           (config->parts[hung].kind == WH_PART_BLADE || config->parts[hung].kind == WH_PART_CHUCK) &&
+           look->input->wafers[wafer].holder == config->parts[hung].owner;
+}
+
+/* Of known pairs and, where events alone count, of holder and wafer no event can come. */
+static bool needs_no_look(const wh_look_t *look, const wh_mover_t *a, const wh_mover_t *b) {
+    const wh_world_t *world = look->world;
+    return world->config->known &&
+           (wh_world_is_known(world, a->part, b->part) || hold_each_other(look, a, b));
+}
+
 static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_t *world = look->world;
-    const wh_mover_t *a = &world->movers[pair->a];
-    const wh_mover_t *b = &world->movers[pair->b];
+    wh_mover_t *a = &world->movers[pair->a];
+    wh_mover_t *b = &world->movers[pair->b];
     if (a->part == WH_NONE || b->part == WH_NONE || !(a->motion + b->motion > 0) ||
-        is_far(&pair->near, a->motion + b->motion)) {
+        is_far(world, &pair->near, a->motion + b->motion) || needs_no_look(look, a, b)) {
         return;
     }
     const wh_side_t one = wh_world_side_of_mover(world, a);
@@ -56,7 +85,9 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
         judge_movers(&look, &world->pairs[i]);
     }
     wh_world_settle(&look);
-    wh_world_draw_curves(&look);
+    if (!world->config->known) {
+        wh_world_draw_curves(&look);
+    }
 }
 
 /* ------------------------------------------------------------------------------------------- before a run */
@@ -98,8 +129,8 @@ static void add_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, co
 }
 
 static void add_pair(const wh_look_t *look, const wh_mover_pair_t *pair, contacts_t *contacts) {
-    const wh_mover_t *a = &look->world->movers[pair->a];
-    const wh_mover_t *b = &look->world->movers[pair->b];
+    wh_mover_t *a = &look->world->movers[pair->a];
+    wh_mover_t *b = &look->world->movers[pair->b];
     if (a->part == WH_NONE || b->part == WH_NONE) {
         return;
     }

@@ -156,6 +156,10 @@ wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, 
  * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
 void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell);
 
+/* The same by itself, where nothing but stations is elsewhere. `parts` and `names` are room for the world's
+ * parts and one more for each station; they and the copy must outlive the world. */
+void wh_layout_move_world(wh_layout_t *copy, wh_part_t *parts, char (*names)[WH_PART_NAME_SIZE]);
+
 /* Reads `study` from the table on top of the stack and replaces the layout's own. Errors name the script
  * `path`. */
 void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);

@@ -258,12 +258,16 @@ size_t wh_layout_count_parts(const wh_layout_t *layout) {
     return count;
 }
 
-/* Fixed parts come first, then those that hang on something: wh_world_validate asks for that order. */
-static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
+static void add_stations(const wh_layout_t *layout, wh_part_list_t *list) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_shapes_add_station(list, &layout->shapes, &layout->places[s], (int32_t)s,
                               stand_of(&layout->stations[s]), layout->stations[s].name);
     }
+}
+
+/* Fixed parts come first, then those that hang on something: wh_world_validate asks for that order. */
+static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
+    add_stations(layout, list);
     add_obstacles(list, obstacles, true);
     wh_shapes_add_robot(list, &layout->shapes);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
@@ -277,18 +281,38 @@ static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles
     layout->hung_count = list->count - layout->hung_count;
 }
 
-static void set_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
+static void take_list(wh_layout_t *layout, const wh_part_list_t *list) {
     wh_world_config_t *world = &layout->world;
-    add_parts(layout, list, obstacles);
     layout->part_names = (const char(*)[WH_PART_NAME_SIZE])list->names;
     world->parts = list->parts;
     world->part_count = list->count;
+    world->cell = &layout->cell;
+    world->grasp = &layout->grasp;
+}
+
+static void set_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
+    wh_world_config_t *world = &layout->world;
+    add_parts(layout, list, obstacles);
+    take_list(layout, list);
     world->wafer = wh_shapes_wafer(&layout->shapes);
     world->arm = layout->shapes.arm;
     world->gripper_count = layout->machine.gripper_count;
     world->wafer_count = layout->wafer_count;
-    world->cell = &layout->cell;
-    world->grasp = &layout->grasp;
+}
+
+void wh_layout_move_world(wh_layout_t *copy, wh_part_t *parts, char (*names)[WH_PART_NAME_SIZE]) {
+    const wh_world_config_t *world = &copy->world;
+    wh_part_list_t list = {
+        .parts = parts, .names = names, .capacity = world->part_count + copy->station_count};
+    add_stations(copy, &list);
+    for (size_t i = 0; i < world->part_count; ++i) {
+        const wh_part_t *part = &world->parts[i];
+        const bool is_fixed = part->kind == WH_PART_FIXED || part->kind == WH_PART_LEDGE;
+        if (!is_fixed || part->owner == WH_NONE) { /* not of a station */
+            wh_shapes_add(&list, part, "%s", copy->part_names[i]);
+        }
+    }
+    take_list(copy, &list);
 }
 
 void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list) {

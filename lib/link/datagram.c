@@ -17,7 +17,8 @@
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
-#define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 2 * 8 + 3 * 4)
+#define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 3 * 8 + 4 + 4 * 8 + 4 + 3 * 8 + 3 * 4)
+#define SAMPLE (4 + 4 + 1)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
@@ -194,7 +195,8 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
 bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message) {
     walk_t walk = {data, size, 0, true};
     skip(&walk, EDGE_SCAN_FIXED);
-    skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * 4);
+    skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * SAMPLE);
+    skip_texts(&walk, take_count(&walk, WH_LINK_LINES));
     return ends(&walk) && waferhand_edge_scan_decode(data, 0, (int)size, message) == (int)size;
 }
 

@@ -92,45 +92,6 @@ static void cycle(void *user, const wh_mcs_t *mcs) {
     tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
 }
 
-/* One part of a scan that has ended, from sample `begin` on. */
-static void tell_part(wh_mcs_process_t *control, waferhand_edge_scan *message, const wh_mcs_edge_t *edge,
-                      int32_t begin) {
-    const int32_t left = edge->taken - begin;
-    message->part = begin / WH_LINK_SAMPLES + 1;
-    message->begin = begin;
-    message->sample_count = left < WH_LINK_SAMPLES ? left : WH_LINK_SAMPLES;
-    message->samples = &edge->samples[begin];
-    const int size = waferhand_edge_scan_encode(control->encoded, 0, (int)sizeof control->encoded, message);
-    if (size > 0) {
-        (void)wh_node_publish(control->node, WH_CHANNEL_EDGE_SCAN, control->encoded, (size_t)size);
-    }
-}
-
-static void tell_edge(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_mcs_edge_t *edge = &mcs->edge;
-    const wh_sensor_t *sensor = &wh_layout_scanner(mcs->layout, edge->order.gripper)->sensor;
-    const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
-    waferhand_edge_scan message = {.utime = edge->seq * mcs->layout->slice_us,
-                                   .seq = edge->seq,
-                                   .run = now.run,
-                                   .layout_hash = now.layout_hash,
-                                   .number = (int32_t)edge->number,
-                                   .gripper = edge->order.gripper,
-                                   .count = edge->order.count,
-                                   .first = edge->order.first,
-                                   .taken = edge->taken,
-                                   .missed = edge->missed,
-                                   .turn_samples = sensor->samples,
-                                   .pixels = wh_sensor_pixels(sensor),
-                                   .pixel = sensor->pixel,
-                                   .inner = sensor->middle - sensor->length / 2,
-                                   .parts = edge->taken > 0 ? (edge->taken - 1) / WH_LINK_SAMPLES + 1 : 1};
-    for (int32_t i = 0; i < message.parts; ++i) {
-        tell_part(control, &message, edge, i * WH_LINK_SAMPLES);
-    }
-}
-
 static void finished(void *user, const wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
     const wh_record_t *record = mcs->recorder.record;
@@ -342,7 +303,7 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .explain = explain,
                                .expected = expected,
                                .cycle = cycle,
-                               .edge = tell_edge,
+                               .edge = wh_mcs_process_tell_edge,
                                .finished = finished,
                                .user = control};
 }

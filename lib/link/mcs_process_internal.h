@@ -15,6 +15,10 @@ void wh_mcs_process_publish(wh_mcs_process_t *control, const waferhand_mcs *mess
 void wh_mcs_process_tell(wh_mcs_process_t *control, int64_t request, int32_t phase, int line,
                          wh_status_t error, const char *command, const char *text);
 
+/* The scan in mcs->edge has ended: on WAFERHAND_EDGE_SCAN, with what the estimate says; `user` is the
+ * control. */
+void wh_mcs_process_tell_edge(void *user, const wh_mcs_t *mcs);
+
 /* A datagram on WAFERHAND_REQUEST; `user` is the control. */
 wh_node_handler_t wh_mcs_process_on_request;
 

@@ -34,7 +34,9 @@
 /* LCM sends what is longer in fragments, which get lost one by one. */
 #define WH_LINK_DATAGRAM 65499
 /* The most samples of a part of a whole scan. */
-#define WH_LINK_SAMPLES 16000
+#define WH_LINK_SAMPLES 7000
+/* The most lines of words about it. */
+#define WH_LINK_LINES 8
 
 /* More slices than any run has: 285 years of 1 ms, and sums of times stay exact. */
 #define WH_LINK_SLICES (INT64_C(1) << 53)

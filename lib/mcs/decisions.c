@@ -181,7 +181,8 @@ static void step(player_t *player, int64_t slice) {
     player->broken = wh_simulator_step(player->simulator, &player->command, &player->state) != WH_OK;
     player->stepped = slice;
     if (player->state.event_count > 0) {
-        player->watch(player->user, player->state.events, player->state.event_count);
+        player->broken =
+            !player->watch(player->user, player->state.events, player->state.event_count) || player->broken;
     }
 }
 

@@ -1,14 +1,6 @@
 #include "robot.h"
 
-#include "../math/exact_internal.h"
-#include "../math/trig.h"
-
-/* 2 pi as the sum of two numbers. */
-#if defined(WH_FLOAT)
-static const wh_exact_t turn = {0x1.921fb6p+2F, -0x1.777a5cp-23F};
-#else
-static const wh_exact_t turn = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
-#endif
+#include "turns_internal.h"
 
 void wh_robot_default(wh_robot_t *robot) {
     const wh_robot_t standard = {
@@ -32,15 +24,14 @@ static bool is_angle(size_t axis) {
 static bool is_in_travel(const wh_robot_t *robot, size_t axis, wh_real_t position) {
     static const wh_real_t slacks[] = {WH_SLACK_MM, WH_SLACK_RAD};
     const wh_real_t slack = slacks[is_angle(axis) ? 1 : 0];
-    return position >= robot->travel[axis].min - slack && position <= robot->travel[axis].max + slack;
+    return wh_travel_has(&robot->travel[axis], slack, position);
 }
 
-/* The comparisons also fail for NaN. */
 static bool axis_is_sound(const wh_robot_t *robot, size_t axis) {
     const wh_travel_t *travel = &robot->travel[axis];
     const wh_real_t widest = is_angle(axis) ? WH_TRIG_MAX_RAD / 2 : (wh_real_t)FLT_MAX;
-    return wh_limits_validate(&robot->limits[axis]) == WH_OK && travel->min < travel->max &&
-           travel->min >= -widest && travel->max <= widest && is_in_travel(robot, axis, robot->home[axis]);
+    return wh_limits_validate(&robot->limits[axis]) == WH_OK && wh_travel_is_sound(travel, widest) &&
+           is_in_travel(robot, axis, robot->home[axis]);
 }
 
 wh_status_t wh_robot_validate(const wh_robot_t *robot) {
@@ -79,36 +70,6 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
     base_from_effector->R = wh_mat3_about_z(q[WH_AXIS_THETA] + q[WH_AXIS_YAW]);
 }
 
-/* How many turns to add to `angle` to bring it into (-pi, pi]. */
-static int32_t turns_to_half(wh_real_t angle) {
-    const int32_t turns = -wh_nearest_whole(angle / turn.hi);
-    const wh_real_t rest = angle + (wh_real_t)turns * turn.hi;
-    return rest <= WH_SLACK_RAD - WH_PI ? turns + 1 : turns;
-}
-
-static wh_real_t add_turns(wh_exact_t angle, int32_t turns) {
-    const wh_real_t n = (wh_real_t)turns;
-    const wh_exact_t sum = wh_exact_sum(angle.hi, n * turn.hi);
-    return sum.hi + (sum.lo + (angle.lo + n * turn.lo));
-}
-
-/* The shorter way round from `now` to the direction `there`, or the other way if only that one is within
- * travel. */
-static wh_real_t choose_theta(const wh_robot_t *robot, wh_real_t there, wh_real_t now) {
-    const wh_exact_t direction = {there, 0};
-    const int32_t turns = turns_to_half(there - now);
-    const wh_real_t shorter = add_turns(direction, turns);
-    const wh_real_t longer = add_turns(direction, shorter > now ? turns - 1 : turns + 1);
-    const bool detour =
-        !is_in_travel(robot, WH_AXIS_THETA, shorter) && is_in_travel(robot, WH_AXIS_THETA, longer);
-    return detour ? longer : shorter;
-}
-
-static wh_real_t yaw_for(wh_real_t heading, wh_real_t theta) {
-    const wh_exact_t between = wh_exact_sum(heading, -theta);
-    return add_turns(between, turns_to_half(between.hi));
-}
-
 /* Checks that the input is finite and within the range of the angle reductions. */
 static wh_status_t check_target(wh_real_t x, wh_real_t y, wh_real_t z, wh_real_t heading, wh_real_t now) {
     if (!wh_real_is_finite(x) || !wh_real_is_finite(y) || !wh_real_is_finite(z) ||
@@ -133,8 +94,9 @@ wh_status_t wh_robot_inverse(const wh_robot_t *robot, wh_real_t x, wh_real_t y, 
     if (!(R > 0) || !is_in_travel(robot, WH_AXIS_R, R)) {
         return WH_STATUS_OUT_OF_REACH;
     }
-    const wh_real_t theta = choose_theta(robot, wh_atan2(y, x), near_q[WH_AXIS_THETA]);
-    const wh_real_t found[WH_ROBOT_AXES] = {theta, R, z, yaw_for(heading, theta)};
+    const wh_real_t theta =
+        wh_turns_nearest(&robot->travel[WH_AXIS_THETA], wh_atan2(y, x), near_q[WH_AXIS_THETA]);
+    const wh_real_t found[WH_ROBOT_AXES] = {theta, R, z, wh_turns_between(theta, heading)};
     status = wh_robot_check_travel(robot, found);
     for (size_t axis = 0; status == WH_OK && axis < WH_ROBOT_AXES; ++axis) {
         q[axis] = found[axis];

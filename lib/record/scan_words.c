@@ -110,7 +110,7 @@ void wh_edge_scan_words(const wh_edge_scan_t *scan, wh_status_t status, const wh
 /* The mark lies on the wafer; the axis sees it under another angle than the wafer's centre does. */
 double wh_edge_scan_mark_at(const wh_align_result_t *result) {
     if (result->mark == WH_ALIGN_MARK_NONE) {
-        return NAN;
+        return (double)NAN;
     }
     const bool is_notch = result->mark == WH_ALIGN_MARK_NOTCH;
     const wh_flat_t *flat = &result->flats[result->mark == WH_ALIGN_MARK_PRIMARY_FLAT ? 0 : 1];

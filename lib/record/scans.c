@@ -122,9 +122,10 @@ static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_layout_t *layou
 wh_status_t wh_edge_scan_estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout,
                                   wh_edge_sample_t samples[], wh_align_result_t *result) {
     const wh_scanner_t *scanner = wh_layout_scanner(layout, scan->gripper);
+    const double none = (double)NAN;
     memset(result, 0, sizeof *result);
     for (int32_t i = 0; i < scan->taken; ++i) {
-        samples[i] = (wh_edge_sample_t){NAN, NAN, NAN, false};
+        samples[i] = (wh_edge_sample_t){none, none, none, false};
     }
     return scanner ? estimate(scan, layout, &scanner->sensor, samples, result) : WH_STATUS_OUT_OF_RANGE;
 }

@@ -4,6 +4,7 @@
 
 #include "../grasp/restore.h"
 #include "../math/hash.h"
+#include "description_internal.h"
 
 static bool is_initialised(const wh_simulator_t *simulator) {
     return simulator->mark == WH_SIMULATOR_MARK && simulator->table.mark == WH_GRASP_MARK;
@@ -58,59 +59,6 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
         simulator->observer = (wh_observer_t){NULL, NULL, NULL};
     }
     return status;
-}
-
-/* -------------------------------------------------------------------------------------------- description */
-
-static uint64_t hash_tolerance(uint64_t hash, const wh_tolerance_t *tolerance) {
-    hash = wh_hash_real(hash, tolerance->projz);
-    hash = wh_hash_real(hash, tolerance->projxy);
-    return wh_hash_real(hash, tolerance->planar);
-}
-
-static uint64_t hash_config(uint64_t hash, const wh_grasp_config_t *config) {
-    hash = hash_tolerance(hash, &config->tolerance);
-    hash = wh_hash_int(hash, (int32_t)config->check);
-    hash = wh_hash_int(hash, config->seat ? 1 : 0);
-    hash = wh_hash_real(hash, config->near_projz);
-    return wh_hash_real(hash, config->near_projxy);
-}
-
-static uint64_t hash_physics(uint64_t hash, const wh_simulator_t *simulator) {
-    const wh_vacuum_config_t *vacuum = &simulator->vacuum;
-    const wh_pads_t *pads = &simulator->pads;
-    const wh_real_t values[] = {simulator->slice_s, vacuum->build, vacuum->vent,    vacuum->idle,
-                                vacuum->on,         vacuum->off,   vacuum->release, pads->friction,
-                                pads->force,        pads->mass,    pads->gravity};
-    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
-        hash = wh_hash_real(hash, values[i]);
-    }
-    return hash;
-}
-
-static uint64_t hash_cell(uint64_t hash, const wh_cell_t *cell) {
-    hash = hash_tolerance(hash, &cell->tolerance);
-    hash = wh_hash_real(hash, cell->off_centre);
-    hash = wh_hash_real(hash, cell->askew);
-    hash = wh_hash_int(hash, cell->settle ? 1 : 0);
-    for (size_t s = 0; s < cell->count; ++s) {
-        hash = wh_hash_pose(hash, &cell->stations[s].base_from_station);
-        hash = wh_hash_int(hash, cell->stations[s].slots);
-        hash = wh_hash_real(hash, cell->stations[s].pitch);
-        hash = wh_hash_int(hash, cell->stations[s].chuck);
-    }
-    return hash;
-}
-
-/* Over all that does not change during a run. */
-static uint64_t describe(const wh_simulator_t *simulator) {
-    const wh_grasp_storage_t *storage = &simulator->table.storage;
-    uint64_t hash = hash_config(WH_HASH_START, &simulator->table.config);
-    hash = hash_physics(hash, simulator);
-    hash = hash_cell(hash, &simulator->cell);
-    hash = wh_hash_word(hash, (uint64_t)storage->wafer_count);
-    hash = wh_hash_word(hash, (uint64_t)storage->gripper_count);
-    return simulator->scans ? simulator->scans->hash(&simulator->scanning, storage->wafer_count, hash) : hash;
 }
 
 /* ------------------------------------------------------------------------------------- one way in and out */
@@ -327,7 +275,7 @@ static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
     uint64_t mark = MARK;
     uint64_t version = WH_SNAPSHOT_VERSION;
     uint64_t number = sizeof(wh_real_t);
-    uint64_t description = describe(simulator);
+    uint64_t description = wh_simulator_describe(simulator);
     pass_bytes(stream, &mark, MARK_SIZE);
     pass_bytes(stream, &version, 1);
     pass_bytes(stream, &number, 1);
@@ -434,7 +382,7 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
     if (read_bytes(&bytes[size - SUM_SIZE], SUM_SIZE) != sum_of(bytes, size - SUM_SIZE)) {
         return WH_STATUS_DAMAGED;
     }
-    if (read_bytes(&bytes[8], 8) != describe(simulator)) {
+    if (read_bytes(&bytes[8], 8) != wh_simulator_describe(simulator)) {
         return WH_STATUS_OTHER_SNAPSHOT;
     }
     return size >= size_with(&simulator->table.storage, 0) ? WH_OK : WH_STATUS_DAMAGED;

@@ -219,7 +219,7 @@ static bool confirm(const wh_budget_t *budget, search_t *search) {
     wh_budget_player_t *player = search->player;
     wh_budget_why_t ignored;
     bool sound = true;
-    if (!budget->study->whole) { /* else all trials were the script */
+    if (budget->two_ways || !budget->study->whole) { /* else all trials were the script */
         player->point[search->at] = search->sign * side->inside;
         sound = wh_budget_run(player, player->point, &ignored);
     }
@@ -228,6 +228,22 @@ static bool confirm(const wh_budget_t *budget, search_t *search) {
         sound = !wh_budget_run(player, player->point, &side->why) && sound;
     }
     player->point[search->at] = 0;
+    return sound;
+}
+
+/* What is replayed with collisions may end otherwise than the script where a contact is as deep as is still
+ * allowed, to rounding. Then the script alone decides. */
+static bool search_soundly(const wh_budget_t *budget, search_t *search, int32_t most, const int32_t hints[],
+                           size_t hint_count) {
+    search_side(budget, search, most, hints, hint_count);
+    bool sound = confirm(budget, search);
+    if (!sound && budget->two_ways) {
+        *search->side = (wh_budget_side_t){.trials = search->side->trials};
+        search->player->by_script = true;
+        search_side(budget, search, most, hints, hint_count);
+        sound = confirm(budget, search);
+        search->player->by_script = false;
+    }
     return sound;
 }
 
@@ -246,9 +262,9 @@ static void search_error(wh_budget_player_t *player, void *user, size_t index) {
                            .side = &error->sides[way]};
         const int32_t hints[] = {error->sides[0].outside, model ? model->sides[0].outside : 0,
                                  model ? model->sides[1].outside : 0};
-        search_side(budget, &search, budget->options.most[axis < 3 ? 0 : 1], hints, 3);
+        const int32_t most = budget->options.most[axis < 3 ? 0 : 1];
+        errors->sound[index] = search_soundly(budget, &search, most, hints, 3) && errors->sound[index];
         error->has_effect = error->has_effect || search.differs;
-        errors->sound[index] = errors->sound[index] && confirm(budget, &search);
     }
     error->width =
         error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside : error->sides[1].inside;

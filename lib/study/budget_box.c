@@ -32,6 +32,7 @@ typedef struct {
     const int32_t **width;      /* of each error; null: not looked at */
     int8_t *signs;              /* of the corner that failed last */
     wh_budget_level_t level;    /* of the list that is tried */
+    bool stuck;                 /* there were no threads */
     /* A batch. */
     size_t first;
     int32_t *points;
@@ -197,20 +198,41 @@ static void put_on_ray(const boxing_t *boxing, const int32_t end[], int64_t at, 
     }
 }
 
-/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`. */
-static void go_back(boxing_t *boxing, int32_t end[]) {
+/* A ray, and which of its places pass. */
+typedef struct {
+    const boxing_t *boxing;
+    const int32_t *end;
+    int64_t length;
+    bool passes[PLACES];
+} ray_t;
+
+static void try_place(wh_budget_player_t *player, void *user, size_t index) {
+    ray_t *ray = user;
+    const boxing_t *boxing = ray->boxing;
     int32_t *point = wh_array_new(boxing->size, sizeof *point);
-    int64_t length = 0;
+    put_on_ray(boxing, ray->end, ray->length * (int64_t)(index + 1) / PLACES, ray->length, point);
+    ray->passes[index] = wh_budget_passes(player, point, boxing->level);
+    free(point);
+}
+
+/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`. False
+ * if there are no threads. */
+static bool go_back(boxing_t *boxing, int32_t end[]) {
+    ray_t ray = {.boxing = boxing, .end = end};
     for (size_t i = 0; i < boxing->size; ++i) {
-        length = llabs(end[i]) > length ? llabs(end[i]) : length;
+        ray.length = llabs(end[i]) > ray.length ? llabs(end[i]) : ray.length;
     }
-    int64_t inside = 0;
-    int64_t outside = length;
-    for (int64_t place = 1; place < PLACES && outside == length; ++place) {
-        put_on_ray(boxing, end, length * place / PLACES, length, point);
-        *(wh_budget_passes(boxing->player, point, boxing->level) ? &inside : &outside) =
-            length * place / PLACES;
+    if (!wh_budget_share_out(boxing->crew, PLACES - 1, try_place, &ray, NULL)) {
+        return false;
     }
+    int64_t place = 1;
+    while (place < PLACES && ray.passes[place - 1]) {
+        ++place;
+    }
+    const int64_t length = ray.length;
+    int64_t inside = length * (place - 1) / PLACES;
+    int64_t outside = length * place / PLACES;
+    int32_t *point = wh_array_new(boxing->size, sizeof *point);
     while (outside - inside > 1) {
         const int64_t middle = inside + (outside - inside) / 2;
         put_on_ray(boxing, end, middle, length, point);
@@ -219,6 +241,7 @@ static void go_back(boxing_t *boxing, int32_t end[]) {
     put_on_ray(boxing, end, outside, length, point);
     memcpy(end, point, boxing->size * sizeof *end);
     free(point);
+    return true;
 }
 
 static void note_corner(boxing_t *boxing) {
@@ -238,7 +261,10 @@ static void shrink(boxing_t *boxing, const int32_t failing[]) {
     memcpy(box->inside, failing, bytes);
     do {
         memcpy(box->outside, box->inside, bytes);
-        go_back(boxing, box->outside);
+        if (!go_back(boxing, box->outside)) {
+            boxing->stuck = true;
+            return;
+        }
         note_corner(boxing);
         set_share(boxing, share_of(boxing, box->outside) - 1);
         for (size_t i = 0; i < boxing->size; ++i) {
@@ -277,10 +303,13 @@ static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
             shrink(boxing, boxing->points + failed * boxing->size);
             *clean = false;
         }
+        if (boxing->stuck) {
+            break;
+        }
         boxing->first += failed < batch ? failed + 1 : batch;
     }
     free(ignored);
-    return true;
+    return !boxing->stuck;
 }
 
 static void tell_round(const boxing_t *boxing, size_t round) {
@@ -351,10 +380,11 @@ static bool settle(boxing_t *boxing) {
 static bool confirm(boxing_t *boxing) {
     wh_budget_box_t *box = boxing->box;
     wh_budget_why_t ignored;
-    if (!box->outside || (wh_budget_run(boxing->player, box->inside, &ignored) &&
-                          !wh_budget_run(boxing->player, box->outside, &box->why))) {
-        return true;
-    }
+    return !box->outside || (wh_budget_run(boxing->player, box->inside, &ignored) &&
+                             !wh_budget_run(boxing->player, box->outside, &box->why));
+}
+
+static bool tell_unsound(void) {
     fputs(
         "waferhand budget: all errors together: the script alone does not end as its trials did (expected a "
         "script that does the same each time)\n",
@@ -394,21 +424,44 @@ static void open(boxing_t *boxing) {
     }
 }
 
+/* Begins with the largest box. */
+static bool find(boxing_t *boxing) {
+    wh_budget_box_t *box = boxing->box;
+    bool found = true;
+    bool settled = false;
+    free(box->inside);
+    free(box->outside);
+    box->inside = box->outside = NULL;
+    set_share(boxing, box->whole);
+    while (found && !settled) {
+        found = try_lists(boxing);
+        settled = !found || settle(boxing);
+        found = found && !boxing->stuck;
+    }
+    count_tried(boxing);
+    return found;
+}
+
+/* If a replay has ended otherwise than the script, as for an error alone, the script alone decides. */
+static bool find_soundly(boxing_t *boxing) {
+    wh_budget_crew_t *crew = boxing->crew;
+    bool found = find(boxing);
+    bool sound = !found || confirm(boxing);
+    if (!sound && crew->budget->two_ways) {
+        for (size_t i = 0; i < crew->budget->options.threads; ++i) {
+            crew->players[i].by_script = true;
+        }
+        found = find(boxing);
+        sound = !found || confirm(boxing);
+    }
+    return found && (sound || tell_unsound());
+}
+
 bool wh_budget_find_box(wh_budget_crew_t *crew) {
     boxing_t boxing = {
         .crew = crew, .budget = crew->budget, .box = &crew->budget->box, .player = &crew->players[0]};
     open(&boxing);
-    bool found = true;
-    if (boxing.box->whole > 0) {
-        bool settled = false;
-        set_share(&boxing, boxing.box->whole);
-        while (found && !settled) {
-            found = try_lists(&boxing);
-            settled = !found || settle(&boxing);
-        }
-        count_tried(&boxing);
-        found = found && confirm(&boxing);
-    }
+    const bool found = boxing.box->whole == 0 || find_soundly(&boxing);
     free(boxing.order);
     free(boxing.width);
     free(boxing.signs);

@@ -67,6 +67,7 @@ void wh_budget_player_open(wh_budget_player_t *player, const wh_study_t *study) 
     player->worker.options.errors = player->errors_by_name;
     player->worker.options.listener =
         (wh_mcs_listener_t){.slice = end_at_complaint, .user = &player->worker.run};
+    player->worker.ends_at_complaint = true;
     wh_tally_init(&player->tally, study->wafer_count);
     count_events(player);
     player->caught_nominally = count_caught(&study->nominal.record);
@@ -115,9 +116,9 @@ static bool ends_alike(const wh_study_wafer_t *one, const wh_study_wafer_t *othe
            (a->station == WH_NONE || (a->slot == b->slot && off <= SAME));
 }
 
-static bool is_as_without_errors(const wh_budget_player_t *player) {
+static bool ends_as_without_errors(const wh_budget_player_t *player) {
     const wh_outcome_t *outcome = &player->worker.outcome;
-    bool alike = outcome->met && memcmp(outcome->events, player->events, sizeof player->events) == 0;
+    bool alike = true;
     for (size_t i = 0; i < player->shared->wafer_count; ++i) {
         alike = alike && ends_alike(&outcome->wafers[i], &player->shared->wafers[i]);
     }
@@ -128,13 +129,17 @@ static bool passes_at(wh_budget_player_t *player, const int32_t point[], wh_budg
     char message[WH_SANDBOX_MESSAGE_BYTES];
     const bool without = level == WH_BUDGET_WITHOUT;
     give(player, point);
-    player->own.whole = without ? player->shared->decisions.unfit : player->shared->whole;
+    const bool replays = without || (player->two_ways && !player->by_script);
+    player->own.whole = replays ? player->shared->decisions.unfit : player->shared->whole;
     player->worker.options.without_collisions = without;
+    player->worker.looks_for_collisions = replays && !without;
+    player->worker.grips_alike = !player->events_differ;
     wh_tally_free(&player->tally);
     wh_tally_init(&player->tally, player->shared->wafer_count);
     const bool usable = wh_worker_play(&player->worker, 0, &player->tally, message);
     const bool passes = usable && player->worker.outcome.met;
-    player->differs = !passes || !is_as_without_errors(player);
+    player->events_differ = memcmp(player->worker.outcome.events, player->events, sizeof player->events) != 0;
+    player->differs = !passes || player->events_differ || !ends_as_without_errors(player);
     player->caught = player->caught || (passes && player->tally.errors.count > player->caught_nominally);
     return passes;
 }

@@ -33,7 +33,9 @@ typedef struct {
     size_t caught_nominally; /* errors of commands, by line and number, of the run without errors */
     bool caught;             /* a trial passed that had more of them */
     bool two_ways;
-    bool differs; /* the last trial had another event than that run, or left a wafer elsewhere */
+    bool by_script;     /* set by the caller: trials with collisions are the script itself, not replayed */
+    bool differs;       /* the last trial had another event than that run, or left a wafer elsewhere */
+    bool events_differ; /* it had another event */
 } wh_budget_player_t;
 
 /* To be closed. `study` must outlive it. If there is no memory, the program ends. */

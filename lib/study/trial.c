@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../math/hash.h"
 #include "../text/array.h"
 
 void wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
@@ -20,6 +21,10 @@ void wh_worker_close(wh_worker_t *worker) {
     free(worker->places);
     free(worker->start);
     free(worker->wafers);
+    free(worker->world.parts);
+    free(worker->world.names);
+    free(worker->world.known);
+    free(worker->world.memory);
 }
 
 static void begin(wh_worker_t *worker, uint64_t trial) {
@@ -31,12 +36,72 @@ static void begin(wh_worker_t *worker, uint64_t trial) {
 
 /* ------------------------------------------------------------------------------------------ the decisions */
 
-static void watch(void *user, const wh_event_t events[], size_t count) {
-    wh_outcome_t *outcome = user;
+static bool watch(void *user, const wh_event_t events[], size_t count) {
+    wh_worker_t *worker = user;
+    wh_outcome_t *outcome = &worker->outcome;
     for (size_t i = 0; i < count; ++i) {
         ++outcome->events[events[i].kind];
         outcome->complained = outcome->complained || wh_record_is_complaint(events[i].kind);
     }
+    return !outcome->complained || !worker->ends_at_complaint;
+}
+
+/* True if the station is where the layout has it, to the last bit. */
+static bool stands_as_taught(const wh_worker_t *worker, int32_t station) {
+    const wh_pose_t *real = &worker->places[station].base_from_station;
+    const wh_pose_t *taught = &worker->study->layout->places[station].base_from_station;
+    return wh_hash_pose(WH_HASH_START, real) == wh_hash_pose(WH_HASH_START, taught);
+}
+
+static bool part_is_known(const wh_worker_t *worker, const wh_part_t *part) {
+    const wh_layout_t *layout = &worker->trial_cell.layout;
+    const bool is_chuck = part->kind == WH_PART_CHUCK;
+    const bool is_fixed = part->kind == WH_PART_FIXED || part->kind == WH_PART_LEDGE;
+    const int32_t station = is_chuck   ? layout->grippers[part->owner].station
+                            : is_fixed ? part->owner
+                                       : WH_NONE;
+    return station == WH_NONE || stands_as_taught(worker, station);
+}
+
+/* Where a wafer is let go it stays, unless it is moved there: then what is off goes on with it. */
+static bool wafers_stay(const wh_layout_t *layout) {
+    const wh_physics_t *physics = &layout->physics;
+    return !layout->grasp.seat && !layout->cell.settle && physics->vacuum.vent <= 0 &&
+           physics->pads.mass <= 0;
+}
+
+static void find_known(wh_worker_t *worker) {
+    const wh_layout_t *layout = &worker->trial_cell.layout;
+    const wh_world_config_t *world = &layout->world;
+    const bool stay = worker->grips_alike && !worker->trial_cell.chucks_moved && wafers_stay(layout);
+    for (size_t i = 0; i < world->part_count; ++i) {
+        worker->world.known[i] = part_is_known(worker, &world->parts[i]);
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        worker->world.known[world->part_count + w] =
+            stay && stands_as_taught(worker, layout->wafers[w].station);
+    }
+}
+
+static void set_up_world(wh_worker_t *worker) {
+    wh_trial_world_t *room = &worker->world;
+    wh_layout_t *layout = &worker->trial_cell.layout;
+    const size_t most = layout->world.part_count + layout->station_count;
+    if (!room->parts) {
+        room->parts = wh_array_new(most, sizeof *room->parts);
+        room->names = wh_array_new(most, sizeof *room->names);
+        room->known = wh_array_new(most + layout->wafer_count, sizeof *room->known);
+    }
+    wh_layout_move_world(layout, room->parts, room->names);
+    find_known(worker);
+    layout->world.known = room->known;
+    const size_t bytes = wh_collision_bytes(layout);
+    if (bytes > room->bytes) {
+        free(room->memory);
+        room->memory = wh_array_new(bytes, 1);
+        room->bytes = bytes;
+    }
+    wh_collision_attach(&room->collision, layout, &worker->simulator, room->memory);
 }
 
 static bool set_up(wh_worker_t *worker) {
@@ -75,8 +140,15 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_trial_t name = {study->seed, trial};
     begin(worker, trial);
     wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, worker->places, worker->start);
-    if (!set_up(worker) || !wh_decisions_play(&study->decisions, &worker->trial_cell, &worker->simulator,
-                                              watch, &worker->outcome)) {
+    if (!set_up(worker)) {
+        return false;
+    }
+    if (worker->looks_for_collisions) {
+        set_up_world(worker);
+    }
+    const bool played =
+        wh_decisions_play(&study->decisions, &worker->trial_cell, &worker->simulator, watch, worker);
+    if (!played && !(worker->outcome.complained && worker->ends_at_complaint)) {
         return false;
     }
     worker->outcome.record = record;

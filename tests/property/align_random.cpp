@@ -11,6 +11,7 @@
 #include "support/support.h"
 
 #include "align/align.h"
+#include "align/calibration.h"
 
 namespace {
 
@@ -38,15 +39,17 @@ struct Scan {
     std::vector<wh_rim_point_t> points;
     std::vector<wh_rim_ray_t> rays;
     wh_rim_scan_t scan;
-    explicit Scan(const Chuck &chuck) : points(samples), rays(samples) {
+    explicit Scan(const Chuck &chuck) : Scan(chuck, chuck.sensor.error) {
+    }
+    Scan(const Chuck &chuck, const wh_sensor_error_t &believed) : points(samples), rays(samples) {
         for (size_t i = 0; i < samples; ++i) {
             const double turn =
                 wh_sensor_angle(&chuck.sensor, chuck.first + chuck.way * static_cast<int64_t>(i));
             const wh_glance_t glance = {turn, chuck.way * 2 * pi, chuck.trial, static_cast<uint32_t>(i)};
             const int32_t sample = wh_sensor_read(&chuck.sensor, &chuck.rim, &chuck.placement, &glance);
-            points[i] = wh_sensor_point(&chuck.sensor, &chuck.sensor.error, &glance, sample);
+            points[i] = wh_sensor_point(&chuck.sensor, &believed, &glance, sample);
         }
-        scan = {points.data(), points.size(), chuck.sensor.error.offset, chuck.sensor.pixel};
+        scan = {points.data(), points.size(), believed.offset, chuck.sensor.pixel};
     }
     Scan(const Scan &) = delete;
     Scan &operator=(const Scan &) = delete;
@@ -282,10 +285,30 @@ void chip(wh_rim_t &rim) {
     }
 }
 
+/* Wider and deeper than a notch, some of them. */
+void chip_deeply(wh_rim_t &rim) {
+    chip(rim);
+    for (int32_t i = 0; i < rim.chip_count; ++i) {
+        rim.chips[i].width = wh_test_uniform(0.5, 5);
+        rim.chips[i].depth = wh_test_uniform(0.2, 1) * std::min(rim.chips[i].width, 2.5);
+    }
+}
+
+/* One chip, where it takes away some of the notch. */
+void chip_the_notch(wh_rim_t &rim) {
+    chip(rim);
+    rim.chip_count = 1;
+    rim.chips[0].direction = rim.notch.direction + wh_test_uniform(-2.5, 2.5) / rim.radius;
+}
+
+void leave(wh_rim_t &) {
+}
+
 struct Crowd {
     const char *name;
     double noise, glass, degrees;
-    bool chipped, flat;
+    void (*spoil)(wh_rim_t &);
+    bool flat;
     double unsure; /* at most, a part */
 };
 
@@ -335,15 +358,20 @@ wh_align_result_t estimate(const Chuck &chuck, Scan &scan) {
 /* Never wrong: the centre off by 10 um, the turn by 0.05 degrees, or one of them by 6 of its deviations. */
 void a_verdict_is_right_or_not_sure(void **) {
     static const Crowd crowds[] = {
-        {"clean", 5 * um, 0, 0, false, false, 0.001},
-        {"flats", 5 * um, 0, 0, false, true, 0.001},
-        {"chipped", 5 * um, 0, 0, true, false, 0.05},
-        {"20 um of noise", 20 * um, 0, 0, false, false, 0.001},
-        {"noise, chipped", 20 * um, 0, 0, true, false, 0.05},
-        {"glass", 5 * um, 0.5, 0, false, false, 0.02},
-        {"glass, chipped", 5 * um, 0.5, 0, true, false, 0.1},
-        {"half hidden", 5 * um, 0, 180, false, false, 0.6},
-        {"half hidden, chipped", 5 * um, 0, 180, true, false, 0.7},
+        {"clean", 5 * um, 0, 0, leave, false, 0.001},
+        {"flats", 5 * um, 0, 0, leave, true, 0.001},
+        {"chipped", 5 * um, 0, 0, chip, false, 0.02},
+        {"20 um of noise", 20 * um, 0, 0, leave, false, 0.001},
+        {"noise, chipped", 20 * um, 0, 0, chip, false, 0.02},
+        {"glass", 5 * um, 0.5, 0, leave, false, 0.02},
+        {"glass, chipped", 5 * um, 0.5, 0, chip, false, 0.02},
+        {"glass, noise", 20 * um, 0.5, 0, leave, false, 0.5},
+        {"glass, noise, chipped", 20 * um, 0.5, 0, chip, false, 0.5},
+        {"deeply chipped", 5 * um, 0, 0, chip_deeply, false, 0.05},
+        {"a chipped notch", 5 * um, 0, 0, chip_the_notch, false, 0.6},
+        {"noise, a chipped notch", 20 * um, 0, 0, chip_the_notch, false, 0.5},
+        {"half hidden", 5 * um, 0, 180, leave, false, 0.6},
+        {"half hidden, chipped", 5 * um, 0, 180, chip, false, 0.6},
     };
     for (const Crowd &crowd : crowds) {
         wh_test_seed();
@@ -355,13 +383,163 @@ void a_verdict_is_right_or_not_sure(void **) {
             chuck.rim.transmission = crowd.glass;
             chuck.sensor.noise = crowd.noise;
             hide(chuck, crowd.degrees);
-            if (crowd.chipped) {
-                chip(chuck.rim);
-            }
+            crowd.spoil(chuck.rim);
             Scan scan(chuck);
             verdicts.see(estimate(chuck, scan), chuck);
         }
         verdicts.finish(crowd);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------- calibration */
+
+/* Scans of a known wafer in two places, both ways of turning, as a controller has them that believes in no error. */
+struct Reference {
+    Chuck chuck;
+    std::vector<std::vector<wh_rim_point_t>> points;
+    std::vector<wh_calibration_scan_t> scans;
+    wh_rim_point_t work[samples];
+    wh_rim_ray_t rays[samples];
+
+    /* The second place is 14 mm from the first one, the axis about half way; `off` is how wrong the way is. */
+    Reference(const Chuck &with, double off) : chuck(with), points(4) {
+        static const wh_sensor_error_t none = {0, 0, 0, 0};
+        const double to = wh_test_uniform(-pi, pi);
+        const double wrong = wh_test_uniform(-pi, pi);
+        for (size_t i = 0; i < 4; ++i) {
+            Chuck at = chuck;
+            const double along = i < 2 ? 0 : 14;
+            at.way = i % 2 ? -1 : 1;
+            at.trial.trial += i;
+            at.placement.x += (along - 7) * std::cos(to) + (i < 2 ? 0 : off * std::cos(wrong));
+            at.placement.y += (along - 7) * std::sin(to) + (i < 2 ? 0 : off * std::sin(wrong));
+            const Scan scan(at, none);
+            points[i] = scan.points;
+            scans.push_back({points[i].data(), points[i].size(), at.way * 2 * pi, along * std::cos(to),
+                             along * std::sin(to)});
+        }
+    }
+    wh_status_t solve(double sd_way, wh_calibration_t &found, int32_t *bad) {
+        return wh_calibration_solve(&chuck.sensor, chuck.rim.radius, sd_way, scans.data(), scans.size(), work,
+                                    rays, &found, bad);
+    }
+};
+
+/* A sensor off by 0.1 mm, 20 us and 0.1 %, and a known wafer about 1 mm from the axis. */
+Chuck draw_off_sensor() {
+    Chuck chuck = draw(0);
+    chuck.sensor.error = {wh_test_uniform(-0.1, 0.1), wh_test_uniform(-0.2, 0.2),
+                          wh_test_uniform(-1e-3, 1e-3), wh_test_uniform(-20e-6, 20e-6)};
+    chuck.rim.chip_count = 0;
+    chuck.rim.bow = 0;
+    chuck.placement.x /= 10;
+    chuck.placement.y /= 10;
+    return chuck;
+}
+
+/* By how many of its deviations it is off at most. */
+double off_by(const wh_calibration_t &found, const wh_sensor_error_t &truth) {
+    return std::max({std::fabs(found.error.offset - truth.offset) / found.sd_offset,
+                     std::fabs(found.error.zero - truth.zero) / found.sd_zero,
+                     std::fabs(found.error.gain - truth.gain) / found.sd_gain,
+                     std::fabs(found.error.latency - truth.latency) / found.sd_latency});
+}
+
+/* How far the centre of another wafer, 10 mm off, is from the truth. */
+double centre_off(const Chuck &of, const wh_sensor_error_t &believed) {
+    Chuck chuck = of;
+    const double phi = wh_test_uniform(-pi, pi);
+    chuck.placement = {10 * std::cos(phi), 10 * std::sin(phi), wh_test_uniform(-pi, pi)};
+    chuck.rim.radius = 150 + wh_test_uniform(-0.1, 0.1);
+    Scan scan(chuck, believed);
+    wh_circle_t circle;
+    assert_int_equal(scan.fit(circle), WH_OK);
+    return std::hypot(circle.x - chuck.placement.x, circle.y - chuck.placement.y);
+}
+
+/* With a way that is known to 0, and to 0.5 um: the worst of all centres. */
+void a_calibrated_sensor_tells_the_centre(void **) {
+    for (const double sd_way : {0.0, 0.5 * um}) {
+        wh_test_seed();
+        double before = 0;
+        double after = 0;
+        double deviations = 0;
+        for (int round = 0; round < wafers() / 5 + 1; ++round) {
+            const Chuck chuck = draw_off_sensor();
+            Reference reference(chuck, wh_test_uniform(-2, 2) * sd_way);
+            wh_calibration_t found;
+            int32_t bad = 7;
+            assert_int_equal(reference.solve(sd_way, found, &bad), WH_OK);
+            deviations = std::max(deviations, off_by(found, chuck.sensor.error));
+            before = std::max(before, centre_off(chuck, {0, 0, 0, 0}));
+            after = std::max(after, centre_off(chuck, found.error));
+        }
+        std::printf("way known to %.1f um: centre off by at most %.2f um, %.3f um calibrated; errors by %.2f "
+                    "deviations\n",
+                    sd_way / um, before / um, after / um, deviations);
+        assert_true(before > 7 * um);
+        assert_true(after <= 2 * um);
+        assert_true(deviations <= 6);
+    }
+}
+
+/* What it has to say of scans that are wrong in one way; nothing has changed. */
+void what_calibrates_nothing_is_refused(void **) {
+    wh_test_seed();
+    static const wh_status_t wanted[] = {
+        WH_STATUS_TOO_FEW_SAMPLES, WH_STATUS_OUT_OF_RANGE,    WH_STATUS_NOT_FINITE,
+        WH_STATUS_OUT_OF_RANGE,    WH_STATUS_NULL_ARGUMENT,   WH_STATUS_CENTRE_NOT_SURE,
+        WH_STATUS_CENTRE_NOT_SURE, WH_STATUS_CENTRE_NOT_SURE, WH_STATUS_BAD_SCAN,
+        WH_STATUS_CENTRE_NOT_SURE, WH_STATUS_CENTRE_NOT_SURE};
+    static const int32_t wanted_bad[] = {WH_NONE, 1, 2, 3, 1, WH_NONE, WH_NONE, WH_NONE, 2, WH_NONE, WH_NONE};
+    for (size_t way = 0; way < sizeof wanted / sizeof wanted[0]; ++way) {
+        Reference reference(draw_off_sensor(), 0);
+        std::vector<wh_calibration_scan_t> &scans = reference.scans;
+        switch (way) {
+        case 0:
+            scans.pop_back();
+            break;
+        case 1:
+            scans[1].speed = -101;
+            break;
+        case 2:
+            scans[2].way_x = NAN;
+            break;
+        case 3:
+            scans[3].count = WH_SENSOR_SAMPLES + 1;
+            break;
+        case 4:
+            scans[1].points = nullptr;
+            break;
+        case 5: /* not moved */
+            scans[2].way_x = scans[3].way_x = scans[2].way_y = scans[3].way_y = 0;
+            break;
+        case 6: /* the chuck turned one way only */
+            scans[1].speed = scans[3].speed = scans[0].speed;
+            break;
+        case 7: /* moved by 10 % less than it says */
+            scans[2].way_x *= 1.1, scans[3].way_x *= 1.1, scans[2].way_y *= 1.1, scans[3].way_y *= 1.1;
+            break;
+        case 8:
+            reference.points[2][7].radius = NAN;
+            break;
+        case 9: /* another wafer */
+            reference.chuck.rim.radius += 1.5;
+            break;
+        default: /* one of two scans of a place is of another place */
+            scans[3].way_x += 0.1;
+        }
+        wh_calibration_t found;
+        std::memset(&found, 0x5a, sizeof found);
+        const wh_calibration_t before = found;
+        int32_t bad = 7;
+        const wh_status_t status = reference.solve(1 * um, found, &bad);
+        if (status != wanted[way] || bad != wanted_bad[way]) {
+            print_error("way %u: %s, scan %d\n", static_cast<unsigned>(way), wh_status_name(status), bad);
+        }
+        assert_int_equal(status, wanted[way]);
+        assert_int_equal(bad, wanted_bad[way]);
+        assert_memory_equal(&found, &before, sizeof found);
     }
 }
 
@@ -514,8 +692,12 @@ void wrong_rims_and_sensors_are_named(void **) {
 
 int main() {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_centre_is_as_near_as_it_says), cmocka_unit_test(the_fit_is_eigens),
-        cmocka_unit_test(a_verdict_is_right_or_not_sure),   cmocka_unit_test(what_is_no_scan_is_refused),
+        cmocka_unit_test(the_centre_is_as_near_as_it_says),
+        cmocka_unit_test(the_fit_is_eigens),
+        cmocka_unit_test(a_calibrated_sensor_tells_the_centre),
+        cmocka_unit_test(what_calibrates_nothing_is_refused),
+        cmocka_unit_test(a_verdict_is_right_or_not_sure),
+        cmocka_unit_test(what_is_no_scan_is_refused),
         cmocka_unit_test(wrong_rims_and_sensors_are_named),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -5,7 +5,7 @@
 
 #include "layout/errors.h"
 #include "math/trig.h"
-#include "study/budget.h"
+#include "study/budget_player.h"
 
 #include <unistd.h>
 
@@ -248,6 +248,85 @@ static void what_passes_behind_a_hole_is_not_safe(void **state) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------- collisions */
+
+/* A FOUP, ledges and a prealigner, wafers that rest and one that is moved over all of them; at times wafers
+ * come to rest on their slots. */
+static const char colliding_layout[] =
+    "return {\n"
+    "  tolerance = { projz = 0.5, projxy = 5, planar = 0.999 }, collision = true, settle = params.settle,\n"
+    "  clearance = { blade_wafer_above = params.clearance },\n"
+    "  grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },\n"
+    "  stations = {\n"
+    "    A = { at = { 700, 0, 900 }, kind = 'foup', slots = 3 },\n"
+    "    B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 2 },\n"
+    "    P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } },\n"
+    "  },\n"
+    "  wafers = { { name = 'W', station = 'A', slot = 2 }, { name = 'V', station = 'A', slot = 1 },\n"
+    "             { name = 'U', station = 'B', slot = 1 } },\n"
+    "}\n";
+
+static void open_colliding(cell_t *cell) {
+    FILE *layout = create(cell->layout);
+    FILE *script = create(cell->script);
+    fputs(colliding_layout, layout);
+    fprintf(script,
+            "cell '%s'\nget('A', 2) put('P', 1) rotate('P', 40) get('P', 1) put('B', 2)\n"
+            "get('A', 1) put('A', 2)\n",
+            cell->layout);
+    assert_int_equal(fclose(layout) + fclose(script), 0);
+    snprintf(cell->texts[0], sizeof cell->texts[0], "settle=%s", wh_test_below(3) == 0 ? "true" : "false");
+    snprintf(cell->texts[1], sizeof cell->texts[1], "clearance=%.1f", 0.5 * wh_test_below(3));
+    cell->parameters[0] = cell->texts[0];
+    cell->parameters[1] = cell->texts[1];
+    cell->study =
+        (wh_study_t){.run = {.script = cell->script, .parameters = cell->parameters, .parameter_count = 2},
+                     .trials = 1,
+                     .draws_nothing = true};
+    cell->study.run.limits.print_to = stderr;
+    assert_true(wh_study_open(&cell->study));
+    assert_true(cell->study.nominal.record.ok);
+}
+
+/* One station's error, several of one station, or of all. */
+static void draw_point(int32_t point[], size_t size) {
+    const uint32_t kind = wh_test_below(3);
+    const size_t station = wh_test_below((uint32_t)(size / WH_SPREADS));
+    const size_t only = station * WH_SPREADS + wh_test_below(WH_SPREADS);
+    for (size_t i = 0; i < size; ++i) {
+        const bool is_length = i % WH_SPREADS < 3;
+        const int32_t most = is_length ? (i % WH_SPREADS == 2 ? 3000 : 5000) : 1500;
+        const bool chosen = kind == 2 || (kind == 1 ? i / WH_SPREADS == station : i == only);
+        const int32_t value = (int32_t)wh_test_below((uint32_t)(2 * most)) - most;
+        point[i] = !chosen ? 0 : kind == 0 ? value : value / 3;
+    }
+}
+
+/* A trial that is replayed, with collisions looked for where something is off, ends as the script does. */
+static void replays_hit_what_the_script_hits(void **state) {
+    (void)state;
+    int failed = 0;
+    for (int round = 0; round < 2; ++round) {
+        cell_t *cell = calloc(1, sizeof *cell);
+        wh_budget_player_t player;
+        wh_budget_why_t why;
+        assert_non_null(cell);
+        open_colliding(cell);
+        wh_budget_player_open(&player, &cell->study);
+        assert_true(player.two_ways);
+        for (int trial = 0; trial < POINTS; ++trial) {
+            int32_t point[3 * WH_SPREADS];
+            draw_point(point, 3 * WH_SPREADS);
+            const bool passes = wh_budget_passes(&player, point, WH_BUDGET_WITH);
+            assert_int_equal(wh_budget_run(&player, point, &why), passes);
+            failed += !passes && (strcmp(why.name, "hit") == 0 || strcmp(why.name, "too_close") == 0) ? 1 : 0;
+        }
+        wh_budget_player_close(&player);
+        close_cell(cell);
+    }
+    assert_in_range(failed, POINTS / 10, 2 * POINTS);
+}
+
 /* ------------------------------------------------------------------------------------------------- threads */
 
 static void threads_change_nothing(void **state) {
@@ -275,6 +354,7 @@ int main(void) {
         cmocka_unit_test(every_point_of_the_box_passes),
         cmocka_unit_test(two_stations_share_a_limit),
         cmocka_unit_test(what_passes_behind_a_hole_is_not_safe),
+        cmocka_unit_test(replays_hit_what_the_script_hits),
         cmocka_unit_test(threads_change_nothing),
     };
     (void)wh_test_seed();

@@ -1,6 +1,7 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles in float as well. Prints a hash of
- * each: the lines of tests/target/golden.txt for its number type, but for the last, "transfer", which tests/verify/bits makes.
+ * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles
+ * in float as well. Prints a hash of each: the lines of tests/target/golden.txt for its number type, but for the last,
+ * "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
 #include <stdio.h>
@@ -271,6 +272,41 @@ static bool scan(int32_t samples) {
     return good && (samples < 3600 || result.verdict == WH_OK);
 }
 
+/* A known wafer in two places, the chuck turning either way: what the sensor is off by. False if they do not tell. */
+static bool calibrate(void) {
+    static wh_rim_point_t points[5][180];
+    static wh_rim_ray_t rays[180];
+    const wh_rim_t rim = wh_rim_nominal(150);
+    const wh_trial_t trial = {20240229, 7};
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_calibration_scan_t scans[4];
+    wh_calibration_t found = {{0, 0, 0, 0}, 0, 0, 0, 0, 0, 0, 0};
+    sensor.samples = 180;
+    sensor.noise = 0.005;
+    sensor.error.offset = 0.0625;
+    sensor.error.gain = -0.0005;
+    sensor.error.latency = 0.00001;
+    for (uint32_t k = 0; k < 4; ++k) {
+        const double speed = k % 2 == 0 ? 6 : -6;
+        const wh_placement_t placement = {k < 2 ? -7 : 5, k < 2 ? 2 : -3, 0.5};
+        for (uint32_t i = 0; i < 180; ++i) {
+            const wh_glance_t glance = {wh_sensor_angle(&sensor, speed > 0 ? i : 179 - i), speed, trial,
+                                        180 * k + i};
+            points[k][i] =
+                wh_sensor_point(&sensor, NULL, &glance, wh_sensor_read(&sensor, &rim, &placement, &glance));
+        }
+        const wh_calibration_scan_t one = {points[k], 180, speed, k < 2 ? 0 : 12, k < 2 ? 0 : -5};
+        scans[k] = one;
+    }
+    const wh_status_t status = wh_calibration_solve(&sensor, 150, 0, scans, 4, points[4], rays, &found, NULL);
+    add_double(found.error.offset);
+    add_double(found.error.zero);
+    add_double(found.error.gain);
+    add_double(found.error.latency);
+    add_double(found.sd_gain);
+    return status == WH_OK && fabs(found.error.offset - 0.0625) < 0.05;
+}
+
 /* A wafer on a gripper goes through two beams; when, and the centre that this tells. False if it tells none. */
 static bool pass_beams(void) {
     const double across[2] = {60, -110};
@@ -323,6 +359,65 @@ static bool scans(void) {
     for (int wafer = 0; wafer < 10; ++wafer) {
         good = scan(wafer == 0 ? 3600 : 180) && good;
     }
+    return calibrate() && good;
+}
+
+/* A robot of each kind with all that it may have. */
+static wh_chain_t chain_of(wh_chain_kind_t kind) {
+    const wh_limits_t limits = {uniform(1, 9), uniform(10, 90), uniform(100, 900)};
+    wh_chain_t chain;
+    memset(&chain, 0, sizeof chain);
+    chain.kind = kind;
+    chain.has_rail = chain.has_tilt = chain.has_flip = chain.is_placed = true;
+    chain.base_from_robot = somewhere(900, 100);
+    chain.base_from_robot.R = turn_about(2, uniform(-3, 3));
+    chain.flip_height = uniform(-10, 10);
+    chain.links[0] = uniform(200, 400);
+    chain.links[1] = uniform(200, 400);
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        const bool is_tilt = axis == WH_CHAIN_TILT_X || axis == WH_CHAIN_TILT_Y;
+        const wh_real_t most = is_tilt ? WH_REAL(0.1) : WH_REAL(3.0);
+        const wh_travel_t travel = {-most, most};
+        chain.travel[axis] = travel;
+        chain.limits[axis] = limits;
+    }
+    if (kind != WH_CHAIN_SCARA) {
+        const wh_travel_t reach = {100, 900};
+        chain.travel[WH_CHAIN_REACH] = reach;
+        chain.home[WH_CHAIN_REACH] = 100;
+    }
+    return chain;
+}
+
+static bool chains(uint32_t call) {
+    static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZY, WH_CHAIN_TRZ, WH_CHAIN_SCARA};
+    static const wh_line_caps_t caps = {300, 0};
+    const wh_chain_t chain = chain_of(kinds[call % 3]);
+    wh_real_t q[WH_CHAIN_AXES];
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        q[axis] = uniform(chain.travel[axis].min, chain.travel[axis].max);
+        q[axis] = wh_chain_has(&chain, axis) ? q[axis] : 0;
+    }
+    wh_pose_t pose;
+    wh_chain_forward(&chain, q, &pose);
+    hash = wh_hash_pose(hash, &pose);
+    const wh_chain_choice_t choice = {q[WH_CHAIN_RAIL], q[WH_CHAIN_FLIP], WH_ELBOW_NEAR};
+    bool good = wh_chain_validate(&chain) == WH_OK;
+    good = wh_chain_inverse(&chain, &pose, &choice, q, q) == WH_OK && good;
+    wh_vec3_t step;
+    step.x = uniform(-50, 50);
+    step.y = uniform(-50, 50);
+    step.z = uniform(-1, 1);
+    wh_chain_line_t line;
+    const wh_status_t status = wh_chain_line_plan(&line, &chain, q, &step, &caps);
+    hash = wh_hash_int(hash, (int32_t)status);
+    if (status == WH_OK) {
+        add(wh_chain_line_duration(&line));
+        wh_chain_line_at(&line, wh_chain_line_duration(&line) * uniform(0, 1), q);
+    }
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        add(q[axis]);
+    }
     return good;
 }
 
@@ -362,5 +457,11 @@ int main(void) {
         good = pass_beams() && good;
     }
     failed += report("beams", good);
+    hash = WH_HASH_START;
+    good = true;
+    for (uint32_t call = 0; call < 300; ++call) {
+        good = chains(call) && good;
+    }
+    failed += report("chains", good);
     return failed;
 }

@@ -1,11 +1,6 @@
 package waferhand;
 
-import java.awt.BorderLayout;
-import java.awt.Dimension;
-import java.awt.Window;
 import java.awt.event.ActionEvent;
-import java.awt.event.WindowAdapter;
-import java.awt.event.WindowEvent;
 import java.io.IOException;
 import java.nio.ByteBuffer;
 import java.util.HashMap;
@@ -15,9 +10,6 @@ import java.util.regex.Pattern;
 import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
-import javax.swing.JFrame;
-import javax.swing.SwingUtilities;
-import javax.swing.WindowConstants;
 import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
@@ -113,29 +105,8 @@ public final class ProximityPlugin implements SpyPlugin {
         @Override
         public void actionPerformed(ActionEvent event) {
             final ProximityView view = new ProximityView(collector.history(channel.name));
-            final JFrame frame = frame();
-            frame.setTitle("Proximity: " + channel.name);
-            frame.getContentPane().removeAll();
-            frame.getContentPane().setLayout(new BorderLayout());
-            frame.getContentPane().add(view);
-            frame.setDefaultCloseOperation(WindowConstants.DISPOSE_ON_CLOSE);
-            frame.addWindowListener(new WindowAdapter() {
-                @Override
-                public void windowClosed(WindowEvent closed) {
-                    view.stop();
-                }
-            });
-            frame.setMinimumSize(new Dimension(480, 420));
-            frame.setSize(1100, 760);
-            frame.setVisible(true);
-            frame.validate();
+            SpyWindow.open(desktop, "Proximity: " + channel.name, view, view::stop);
             view.start();
-        }
-
-        /** The window that lcm-spy has opened around its desktop, else one of our own. */
-        private JFrame frame() {
-            final Window window = desktop == null ? null : SwingUtilities.getWindowAncestor(desktop);
-            return window instanceof JFrame ? (JFrame)window : new JFrame();
         }
     }
 }

@@ -19,7 +19,7 @@ import lcm.logging.Log;
 import lcm.spy.SpyPlugin;
 import lcm.util.ClassDiscoverer;
 
-/** What tests/end_to_end/spy runs: lcm-spy's view without lcm-spy and without a display. */
+/** What tests/end_to_end/spy runs: lcm-spy's views without lcm-spy and without a display. */
 final class SpyTest {
     private static final long RUN = 0x1234;
     private static final double AT_END = Double.MAX_VALUE;
@@ -125,12 +125,134 @@ final class SpyTest {
                 }
             }
         });
-        check(found.size() == 1, "one plugin, not " + found);
-        final SpyPlugin plugin = (SpyPlugin)found.get(0).getConstructor().newInstance();
+        found.sort(java.util.Comparator.comparing(Class::getName));
+        check(found.size() == 2, "two plugins, not " + found);
+        findsEdgeScans((EdgeScanPlugin)found.get(0).getConstructor().newInstance());
+        final SpyPlugin plugin = (SpyPlugin)found.get(1).getConstructor().newInstance();
         check(plugin.canHandle(proximity.LCM_FINGERPRINT), "takes proximity");
         check(!plugin.canHandle(state.LCM_FINGERPRINT) && !plugin.canHandle(0), "takes nothing else");
         check(plugin.getAction(null, null).getValue(Action.NAME) != null, "says its name");
         collectsFromTheStart((ProximityPlugin)plugin);
+    }
+
+    private static void findsEdgeScans(EdgeScanPlugin plugin) throws IOException, InterruptedException {
+        check(plugin.canHandle(edge_scan.LCM_FINGERPRINT), "takes edge scans");
+        check(!plugin.canHandle(proximity.LCM_FINGERPRINT) && !plugin.canHandle(0), "and nothing else");
+        check(plugin.getAction(null, null).getValue(Action.NAME) != null, "says its name, too");
+        LCM.getSingleton().publish("WAFERHAND_EDGE_SCAN", part(1, 1, 1, 10));
+        for (int k = 0; k < 500 && plugin.history("WAFERHAND_EDGE_SCAN").scans().isEmpty(); k++) {
+            Thread.sleep(10);
+        }
+        check(plugin.history("WAFERHAND_EDGE_SCAN").scans().size() == 1,
+              "collects scans before a view is opened");
+    }
+
+    /** A part of a scan whose parts all have so many samples. */
+    private static edge_scan part(int number, int part, int parts, int samples) {
+        final edge_scan message = new edge_scan();
+        message.run = RUN;
+        message.number = number;
+        message.part = part;
+        message.parts = parts;
+        message.begin = (part - 1) * samples;
+        message.taken = parts * samples;
+        message.count = message.taken;
+        message.turn_samples = message.taken;
+        message.pixels = 4000;
+        message.pixel = 0.007;
+        message.inner = 136;
+        message.verdict = 76;
+        message.mark_at = Double.NaN;
+        message.sample_count = samples;
+        message.samples = new int[samples];
+        message.residual = new float[samples];
+        message.counts = new byte[samples];
+        java.util.Arrays.fill(message.samples, 2000);
+        message.samples[samples - 1] = -1;
+        message.residual[samples - 1] = Float.NaN;
+        message.line_count = 1;
+        message.lines = new String[] {"not sure: of 3 \u00c2\u00b5m"};
+        return message;
+    }
+
+    private static void putsScansTogether() {
+        final EdgeScan.History history = new EdgeScan.History();
+        history.add(part(1, 2, 2, 50));
+        check(history.scans().isEmpty(), "half a scan is none");
+        history.add(part(1, 1, 2, 50));
+        check(history.scans().size() == 1, "parts come in any order");
+        final EdgeScan scan = history.scans().get(0);
+        check(!scan.sure && scan.lines.get(0).equals("not sure: of 3 \u00b5m"),
+              "the words as they are meant");
+        check(scan.taken == 100 && Double.isNaN(scan.rho[49]) && !Double.isNaN(scan.rho[50]),
+              "what is missing is a gap");
+        check(Math.abs(scan.rho[0] - (136 + 2000.5 * 0.007)) < 1e-12, "rho is the sensor's");
+        history.add(part(2, 1, 2, 50));
+        history.add(part(3, 1, 1, 50));
+        check(history.scans().size() == 2 && history.lost().startsWith("1 scans came in part"),
+              "half a scan is told");
+        for (int number = 4; number < 200; number++) {
+            history.add(part(number, 1, 1, 10));
+        }
+        check(history.scans().size() == EdgeScan.History.MOST && history.scans().get(99).number == 199,
+              "the last ones stay");
+        final edge_scan bad = part(5, 3, 2, 10);
+        check(!history.add(bad), "a part beyond the parts is refused");
+        bad.part = 1;
+        bad.begin = Integer.MAX_VALUE;
+        check(!history.add(bad) && history.lost().endsWith("2 messages refused"),
+              "so is a place beyond the samples");
+    }
+
+    /** A scan of the log 09_edge_scan.lua, whose wafer lies at (1.5, -0.8), turned by 37 degrees. */
+    private static void showsAScan(String path) throws IOException {
+        final EdgeScan.History history = new EdgeScan.History();
+        final EdgeScanView view = new EdgeScanView(history);
+        for (final int size : new int[] {0, 1, 50, 700}) {
+            picture(view, size, size);
+        }
+        final Log log = new Log(path, "r");
+        try {
+            while (true) {
+                final Log.Event event = log.readNext();
+                if (event.channel.equals("WAFERHAND_EDGE_SCAN")) {
+                    history.add(new edge_scan(new LCMDataInputStream(event.data)));
+                }
+            }
+        } catch (EOFException end) {
+            log.close();
+        }
+        check(history.scans().size() == 1, "the log has a scan");
+        final EdgeScan scan = history.scans().get(0);
+        check(scan.sure && scan.lines.get(0).equals("sure") && scan.lines.size() == 5,
+              "which is sure: " + scan.lines);
+        check(scan.lines.get(2).matches("notch: towards 3[67]\\.\\d+\u00b0, .*"), scan.lines.get(2));
+        check(scan.isNotch && Math.abs(scan.markAt - 37) < 1, "its notch");
+        for (int i = 0; i < scan.taken; i++) {
+            check(Math.abs(scan.rho[i] - scan.residual[i] / 1000 - scan.circle(scan.theta[i])) < 1e-6,
+                  "residuals are of the circle");
+        }
+        check(count(picture(view, 1000, 700), ProximityChart.LINE) > 2000, "samples are drawn");
+        check(count(picture(view, 1000, 700), ProximityChart.LIMIT) > 50, "and the circle");
+        final BufferedImage sure = picture(view, 1000, 700);
+        history.add(part(7, 1, 1, 50));
+        final BufferedImage unsure = picture(view, 1000, 700);
+        check(!same(sure, unsure), "the newest is shown");
+        view.step(-1);
+        check(!same(unsure, picture(view, 1000, 700)), "an older one can be");
+        view.step(1);
+        check(same(unsure, picture(view, 1000, 700)), "and the newest again");
+        view.dispatchEvent(new MouseEvent(view, MouseEvent.MOUSE_MOVED, 0, 0, 500, 300, 0, false));
+        check(!same(unsure, picture(view, 1000, 700)), "the mouse tells a sample");
+        for (final int size : new int[] {0, 1, 10, 100, 800}) {
+            picture(view, size, 900);
+            picture(view, 900, size);
+        }
+    }
+
+    private static boolean same(BufferedImage a, BufferedImage b) {
+        return java.util.Arrays.equals(a.getRGB(0, 0, 1000, 700, null, 0, 1000),
+                                       b.getRGB(0, 0, 1000, 700, null, 0, 1000));
     }
 
     /** No view has been opened. */
@@ -482,6 +604,10 @@ final class SpyTest {
 
     // ------------------------------------------------------------------------------------------ the view
     private static BufferedImage paint(ProximityView view, int width, int height) {
+        return picture(view, width, height);
+    }
+
+    private static BufferedImage picture(javax.swing.JPanel view, int width, int height) {
         final BufferedImage image =
             new BufferedImage(Math.max(1, width), Math.max(1, height), BufferedImage.TYPE_INT_RGB);
         view.setSize(width, height);
@@ -618,6 +744,8 @@ final class SpyTest {
         marksCommands();
         believesTheSimulator();
         takesARecordedRun(arguments[0]);
+        putsScansTogether();
+        showsAScan(arguments[1]);
         formats();
         System.out.println(checks + " checks passed");
     }
