@@ -89,6 +89,9 @@ typedef struct {
 double wh_rim_distance(const wh_rim_t *rim, const wh_placement_t *placement, double aside, double look)
     WH_SYMBOL(wh_rim_distance);
 
+/* Continues a hash (math/hash.h) with the rim. Nothing is checked. Cost: 15 words, three more a chip. */
+uint64_t wh_rim_hash(const wh_rim_t *rim, uint64_t hash) WH_SYMBOL(wh_rim_hash);
+
 WH_HEADER_END
 
 #endif

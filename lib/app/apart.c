@@ -125,6 +125,21 @@ bool wh_file_is_free(const char *option, const char *path) {
     return is_free;
 }
 
+bool wh_file_is_writable(const char *option, const char *path) {
+    struct stat status;
+    wh_output_t output = {0};
+    const bool is_special = stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+    if (!wh_file_is_free(option, path)) {
+        return false;
+    }
+    const bool opened = is_special || wh_output_open(&output, path);
+    if (!opened) {
+        wh_output_tell(option, path, errno);
+    }
+    wh_output_drop(&output);
+    return opened;
+}
+
 bool wh_file_write(const char *option, const char *path, bool (*write)(void *user, FILE *out), void *user,
                    const char *message) {
     wh_output_t output = {0};

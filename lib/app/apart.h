@@ -24,6 +24,10 @@ bool wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints
  * false, and standard error says so of the `option`'s file. */
 bool wh_file_is_free(const char *option, const char *path);
 
+/* The same, and a file can be made there: for outputs of what takes long. Nothing is left behind. A pipe or a
+ * terminal is not tried. */
+bool wh_file_is_writable(const char *option, const char *path);
+
 /* Writes the `option`'s output by `write`, to which it hands `user`, if it may be put there: whole, or it is
  * as it was. Then it is kept (wh_output_keep). True if `path` is null: it is not wanted. False if it was not
  * written, and standard error says why: `message`, which `write` may fill in, or if that is null or empty

@@ -7,7 +7,9 @@
 #include "../study/budget_player.h"
 #include "../study/study_play.h"
 #include "../text/array.h"
+#include "../text/clock.h"
 #include "../text/guard.h"
+#include "../text/interrupt.h"
 #include "../text/nearest.h"
 #include "apart.h"
 #include "app.h"
@@ -61,15 +63,36 @@ static const wh_command_line_t command_line = {
 
 /* ----------------------------------------------------------------------------------------------- progress */
 
-static void tell(void *user, const char *what, size_t done, size_t total) {
-    FILE *out = user;
-    fputs("\r\033[K", out);
-    if (total > 0) {
-        fprintf(out, "%zu of %zu %s", done, total, what);
-    } else {
-        fprintf(out, "%zu %s", done, what);
+/* A file or a pipe gets a line every so many seconds, a terminal one that changes. */
+#define LINE_S 10
+
+typedef struct {
+    FILE *terminal; /* null: standard error is none */
+    double told;    /* s */
+} teller_t;
+
+static void tell_in_lines(teller_t *teller, const char *text) {
+    const double now = wh_clock_seconds();
+    if (now - teller->told >= LINE_S) {
+        fprintf(stderr, "waferhand budget: %s\n", text);
+        teller->told = now;
     }
-    fflush(out);
+}
+
+static void tell(void *user, const char *what, size_t done, size_t total) {
+    teller_t *teller = user;
+    char text[100];
+    if (total > 0) {
+        (void)snprintf(text, sizeof text, "%zu of %zu %s", done, total, what);
+    } else {
+        (void)snprintf(text, sizeof text, "%zu %s", done, what);
+    }
+    if (teller->terminal) {
+        fprintf(teller->terminal, "\r\033[K%s", text);
+        fflush(teller->terminal);
+    } else {
+        tell_in_lines(teller, text);
+    }
 }
 
 static void clear(FILE *out) {
@@ -85,13 +108,33 @@ static int32_t thousandths(double value) {
     return (int32_t)lround(value * WH_BUDGET_UNIT);
 }
 
+/* So many names are told. */
+#define TOLD 20
+
+static void tell_no_station(const wh_layout_t *layout, const char *name) {
+    const char **names = wh_array_new(layout->station_count + 1, sizeof *names);
+    char meant[WH_NEAREST_TEXT];
+    fprintf(stderr, "--station %s: no such station (expected", name);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        names[s] = layout->stations[s].name;
+        if (s < TOLD) {
+            fprintf(stderr, "%s %s", s == 0 ? "" : s + 1 == layout->station_count ? " or" : ",", names[s]);
+        }
+    }
+    if (layout->station_count > TOLD) {
+        fprintf(stderr, " or one of %zu others of %s", layout->station_count - TOLD, layout->path);
+    }
+    fprintf(stderr, "%s)\n",
+            wh_text_did_you_mean(meant, "; ", "", wh_text_nearest(name, names, layout->station_count)));
+    free(names);
+}
+
 /* Marks the stations that were named. False, and standard error says so, if there is none of a name. */
 static bool choose_stations(const arguments_t *arguments, const wh_layout_t *layout, bool wanted[]) {
     for (size_t i = 0; i < arguments->stations.count; ++i) {
         const int32_t station = wh_layout_find_station(layout, arguments->stations.items[i]);
         if (station == WH_NONE) {
-            fprintf(stderr, "--station %s: no such station (expected one of %s)\n",
-                    arguments->stations.items[i], layout->path);
+            tell_no_station(layout, arguments->stations.items[i]);
             return false;
         }
         wanted[station] = true;
@@ -100,7 +143,7 @@ static bool choose_stations(const arguments_t *arguments, const wh_layout_t *lay
 }
 
 static int find(const arguments_t *arguments, const wh_study_t *study, const bool wanted[]) {
-    FILE *terminal = isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL;
+    teller_t teller = {isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL, wh_clock_seconds()};
     const wh_style_t style = wh_style_of(stdout);
     const wh_budget_options_t how = {
         .threads = wh_study_threads((size_t)arguments->threads),
@@ -109,16 +152,18 @@ static int find(const arguments_t *arguments, const wh_study_t *study, const boo
         .samples = arguments->samples,
         .seed = arguments->seed,
         .wanted = arguments->stations.count > 0 ? wanted : NULL,
-        .tell = terminal ? tell : NULL,
-        .user = terminal};
+        .tell = tell,
+        .user = &teller,
+        .is_enough = wh_interrupt_came};
     wh_budget_t budget;
     int status = WH_EXIT_USAGE;
+    wh_interrupt_catch();
     const bool found = wh_budget_find(&budget, study, &how);
-    clear(terminal);
-    if (found) {
+    clear(teller.terminal);
+    if (found || budget.incomplete) {
         const int printed = arguments->run.json ? wh_budget_print_json(&budget, stdout)
                                                 : wh_budget_print_table(&budget, stdout, &style);
-        status = wh_app_is_printed(printed) ? WH_EXIT_MET : WH_EXIT_USAGE;
+        status = !wh_app_is_printed(printed) ? WH_EXIT_USAGE : found ? WH_EXIT_MET : WH_EXIT_FAILED;
     }
     wh_budget_free(&budget);
     return status;

@@ -7,6 +7,7 @@
 #include <lauxlib.h>
 
 #include "../log/slice_fields.h"
+#include "../math/hash.h"
 #include "../print/record_print.h"
 #include "../script/sandbox.h"
 #include "../text/array.h"
@@ -17,14 +18,8 @@
 
 typedef struct {
     wh_log_arguments_t log; /* its path is the first operand */
-    wh_option_list_t paths, parameters;
+    wh_option_list_t paths;
 } arguments_t;
-
-static const wh_option_t options[] = {{"set", 0, "NAME=VALUE",
-                                       "Hand the checks a parameter, params.NAME: a number if VALUE is one, "
-                                       "true, false or text",
-                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, parameters)},
-                                      {0}};
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
@@ -34,8 +29,7 @@ static void check(const void *given, struct argp_state *state) {
     }
 }
 
-static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check}, {wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {{wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "check",
@@ -45,38 +39,73 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "file",
     .operand_variable = offsetof(arguments_t, paths),
-    .operands = 2};
+    .operands = 2,
+    .check = check};
 
 /* What the checks see of the run. */
 typedef struct {
     const char *path; /* of the checks */
     wh_log_run_t run;
     json_t *result; /* the record, as `run --json` has it */
+    /* Each slice has what is other than in the one before; each KEY-th one has all. */
     struct {
         int64_t seq;
-        double *values;
+        size_t changes; /* so many, of it and of all before it */
     } * slices;
     size_t count, capacity;
+    struct {
+        uint32_t field;
+        double value;
+    } * changes;
+    size_t change_count, change_capacity;
+    double *values; /* of the slice that was read or asked for last */
     wh_sandbox_t *sandbox;
     size_t expected, unmet;
 } checked_t;
 
 /* --------------------------------------------------------------------------------------------- the slices */
 
+/* So far apart are slices of which all is kept. */
+#define KEY 256
+
+static void add_change(checked_t *checked, size_t field, double value) {
+    checked->changes = wh_array_grow(checked->changes, checked->change_count, &checked->change_capacity,
+                                     sizeof *checked->changes);
+    checked->changes[checked->change_count].field = (uint32_t)field;
+    checked->changes[checked->change_count++].value = value;
+}
+
 static void keep(void *user, const wh_layout_t *layout, const double axes[], const wh_state_t *state,
                  uint64_t hash) {
     checked_t *checked = user;
-    double *values = wh_array_new(wh_slice_field_count(layout), sizeof *values);
+    const size_t count = wh_slice_field_count(layout);
+    double *values = wh_array_new(count, sizeof *values);
     (void)hash;
     wh_slice_fields(layout, axes, state, values);
+    for (size_t i = 0; i < count; ++i) {
+        if (checked->count % KEY == 0 || wh_double_bits(values[i]) != wh_double_bits(checked->values[i])) {
+            add_change(checked, i, values[i]);
+        }
+    }
+    free(checked->values);
+    checked->values = values;
     checked->slices =
         wh_array_grow(checked->slices, checked->count, &checked->capacity, sizeof *checked->slices);
     checked->slices[checked->count].seq = state->seq;
-    checked->slices[checked->count++].values = values;
+    checked->slices[checked->count++].changes = checked->change_count;
 }
 
-/* The last slice that ends at this number or before; null: there is none. Cost: log n. */
-static const double *find_slice(const checked_t *checked, int64_t seq) {
+/* All of slice number `index` of those that are kept. */
+static const double *values_of(checked_t *checked, size_t index) {
+    const size_t key = index - index % KEY;
+    for (size_t i = key > 0 ? checked->slices[key - 1].changes : 0; i < checked->slices[index].changes; ++i) {
+        checked->values[checked->changes[i].field] = checked->changes[i].value;
+    }
+    return checked->values;
+}
+
+/* The last slice that ends at this number or before; null: there is none. Cost: log n, and KEY slices. */
+static const double *find_slice(checked_t *checked, int64_t seq) {
     size_t low = 0;
     size_t high = checked->count;
     while (low < high) {
@@ -87,7 +116,7 @@ static const double *find_slice(const checked_t *checked, int64_t seq) {
             high = middle;
         }
     }
-    return low > 0 ? checked->slices[low - 1].values : NULL;
+    return low > 0 ? values_of(checked, low - 1) : NULL;
 }
 
 /* ---------------------------------------------------------------------------------------------------- Lua */
@@ -224,7 +253,7 @@ static void set_field(lua_State *L, const char *name, const char *word, double v
 
 /* at(seconds): the slice that ends then, as a table from the names of its fields to their values. */
 static int at(lua_State *L) {
-    const checked_t *checked = checked_of(L);
+    checked_t *checked = checked_of(L);
     const wh_layout_t *layout = checked->run.cell.layout;
     const double *values = find_slice(checked, slice_at(L, checked));
     if (!values) {
@@ -317,8 +346,8 @@ static const char events_text[] =
 
 static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox_result_t *result) {
     const wh_sandbox_limits_t limits = {0};
-    checked->sandbox =
-        wh_sandbox_new_with(&limits, arguments->parameters.items, arguments->parameters.count, result);
+    checked->sandbox = wh_sandbox_new_with(&limits, arguments->log.parameters.items,
+                                           arguments->log.parameters.count, result);
     if (!checked->sandbox) {
         return false;
     }
@@ -359,7 +388,7 @@ static int play(const arguments_t *arguments, checked_t *checked) {
         fprintf(stderr, "%s\n", result.message);
         return WH_EXIT_USAGE;
     }
-    if (wh_sandbox_find_unread(checked->sandbox, unread)) {
+    if (wh_sandbox_find_unread(checked->sandbox, unread) && !wh_log_arguments_are_set_read(&checked->run)) {
         fprintf(stderr, "%s: %s\n", checked->path, unread);
         return WH_EXIT_USAGE;
     }
@@ -370,10 +399,9 @@ static int play(const arguments_t *arguments, checked_t *checked) {
 static void close_checked(checked_t *checked) {
     wh_sandbox_free(checked->sandbox);
     json_decref(checked->result);
-    for (size_t i = 0; i < checked->count; ++i) {
-        free(checked->slices[i].values);
-    }
     free(checked->slices);
+    free(checked->changes);
+    free(checked->values);
     wh_log_run_close(&checked->run);
 }
 
@@ -401,6 +429,6 @@ int wh_app_check(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = arguments.paths.count == 2 ? check_log(&arguments) : WH_EXIT_USAGE;
     wh_option_list_free(&arguments.paths);
-    wh_option_list_free(&arguments.parameters);
+    wh_option_list_free(&arguments.log.parameters);
     return status;
 }

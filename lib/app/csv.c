@@ -109,11 +109,12 @@ int wh_app_csv(int argc, char **argv) {
         perror("waferhand csv: no room for the table");
         return status;
     }
-    if (wh_log_arguments_read(&arguments.log, on_slice, &table, &run)) {
+    if (wh_log_arguments_read(&arguments.log, on_slice, &table, &run) && wh_log_arguments_check_set(&run)) {
         status = write_table(&arguments, &table, &run);
     }
     wh_log_run_close(&run);
     free(table.values);
     (void)fclose(table.out);
+    wh_option_list_free(&arguments.log.parameters);
     return status;
 }

@@ -112,8 +112,13 @@ typedef struct {
     wh_log_digests_t digests;
 } side_t;
 
-static bool is_result(const json_t *root) {
-    return json_is_object(root) && json_is_integer(json_object_get(root, "format"));
+/* There must be something to compare beside the format's number and what is put aside. */
+static bool is_result(json_t *root) {
+    size_t members = json_object_size(root);
+    for (size_t i = 0; aside[i]; ++i) {
+        members -= json_object_get(root, aside[i]) ? 1 : 0;
+    }
+    return json_is_integer(json_object_get(root, "format")) && members > 1;
 }
 
 static bool read_json(side_t *side, FILE *file) {

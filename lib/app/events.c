@@ -52,7 +52,8 @@ static void check_kinds(const void *given, struct argp_state *state) {
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
-    const bool of_log = arguments->log.layout || arguments->log.number > 0;
+    const bool of_log =
+        arguments->log.layout || arguments->log.number > 0 || arguments->log.parameters.count > 0;
     if (!arguments->lcm && !arguments->log.path) {
         argp_error(state, "of which log? (expected one, or --lcm)");
     } else if (arguments->lcm && (arguments->log.path || of_log)) {
@@ -133,7 +134,9 @@ static int print_log(const arguments_t *arguments) {
                                      {"the layout", arguments->log.layout, false}};
     int status = WH_EXIT_USAGE;
     if (wh_files_are_apart(named, 2, true)) {
-        status = wh_log_arguments_read(&arguments->log, NULL, NULL, &run) ? print(arguments, &run) : status;
+        const bool is_read =
+            wh_log_arguments_read(&arguments->log, NULL, NULL, &run) && wh_log_arguments_check_set(&run);
+        status = is_read ? print(arguments, &run) : status;
         wh_log_run_close(&run);
     }
     return status;
@@ -146,5 +149,6 @@ int wh_app_events(int argc, char **argv) {
     const int status = arguments.lcm ? wh_events_live(&live) : print_log(&arguments);
     wh_option_list_free(&arguments.wafers);
     wh_option_list_free(&arguments.kinds);
+    wh_option_list_free(&arguments.log.parameters);
     return status;
 }

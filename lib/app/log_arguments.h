@@ -10,16 +10,24 @@
 typedef struct {
     const char *path;
     const char *layout;
-    uint64_t number; /* 0: the last */
+    uint64_t number;             /* 0: the last */
+    wh_option_list_t parameters; /* for the layout's file; to be freed */
 } wh_log_arguments_t;
 
-/* --layout and --run, into a wh_log_arguments_t; the log is the subcommand's operand. */
+/* --layout, --run and --set, into a wh_log_arguments_t; the log is the subcommand's operand. */
 extern const wh_option_t wh_log_options[];
 
 /* Reads the run (wh_log_run_read), with a listener or null. False, and standard error says why, if there is
  * nothing to show. To be closed in any case, and freed. */
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
                            wh_log_run_t *run);
+
+/* True if parameters are given and the layout's file is the log's and reads some: then those that nobody
+ * reads may be the script's. */
+bool wh_log_arguments_are_set_read(const wh_log_run_t *run);
+
+/* The same for whom the layout alone reads them: true also if none are given. Else standard error says why. */
+bool wh_log_arguments_check_set(const wh_log_run_t *run);
 
 /* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay
  * says. */

@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../log/log_run.h"
 #include "app.h"
+#include "log_arguments.h"
 #include "run_arguments.h"
 #include "watch.h"
 
@@ -26,6 +26,7 @@ static const wh_option_t options[] = {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
+    {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -57,28 +58,6 @@ static const wh_command_line_t command_line = {
     .operand_may_lack = true,
     .check = check};
 
-/* A parameter goes to the layout's file, if that is the log's. Of a layout that reads some, the others may be
- * the script's. */
-static bool is_set_read(const wh_log_run_t *run) {
-    wh_sandbox_result_t result;
-    const wh_log_run_options_t *given = &run->options;
-    if (given->layout.parameter_count == 0) {
-        return true;
-    }
-    if (!run->cell.is_whole) {
-        fprintf(stderr, "--set %s: %s (expected the log's layout, which --layout FILE names)\n",
-                given->layout.parameters[0], run->cell.note);
-        return false;
-    }
-    wh_sandbox_t *sandbox = run->cell.sandbox;
-    const bool unread =
-        wh_sandbox_find_unread(sandbox, result.message) && !wh_sandbox_reads_parameters(sandbox);
-    if (unread) {
-        fprintf(stderr, "%s: %s\n", given->path, result.message);
-    }
-    return !unread;
-}
-
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;
     const wh_log_run_options_t wanted = {
@@ -92,7 +71,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     if (!wh_run_files_are_apart(&arguments->run, run->cell.layout->path)) {
         return false;
     }
-    if (!is_set_read(run)) {
+    if (!wh_log_arguments_check_set(run)) {
         return false;
     }
     if (run->worth.reason[0] != '\0') {
@@ -112,6 +91,7 @@ static const char *find_foreign(const wh_run_arguments_t *run) {
     return run->budget > 0         ? "--budget"
            : run->memory_mib > 0   ? "--memory"
            : run->run.limits.trust ? "--trust"
+           : run->errors.count > 0 ? "--error"
                                    : NULL;
 }
 

@@ -8,7 +8,6 @@
 typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
-    wh_option_list_t errors;
     const char *url;
     bool lcm, watch;
 } arguments_t;
@@ -18,42 +17,17 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
-    {"error", 0, "NAME.FIELD=VALUE",
-     "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's "
-     "dx, "
-     "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
-     WH_OPTION_LIST, .variable = offsetof(arguments_t, errors)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
-/* What is before the last equals sign. */
-static size_t name_length(const char *error) {
-    const char *equals = strrchr(error, '=');
-    return equals ? (size_t)(equals - error) : strlen(error);
-}
-
-static bool is_of_one(const char *error, const char *other) {
-    const size_t length = name_length(error);
-    return length == name_length(other) && strncmp(error, other, length) == 0;
-}
-
-/* The errors are in the simulator of this process, and in nothing that is published or written of a run. */
+/* The errors are in the simulator of this process, and in nothing that is published or recorded of a run. */
 static void check_errors(const arguments_t *arguments, struct argp_state *state) {
-    const wh_option_list_t *errors = &arguments->errors;
-    const char *other = arguments->lcm                 ? "--lcm"
-                        : arguments->record.slices     ? "--record"
-                        : arguments->record.all        ? "--record-all"
-                        : arguments->run.segments_path ? "--segments"
-                                                       : NULL;
-    if (errors->count > 0 && other) {
-        argp_error(state, "--error does not go with %s, which tells of the cell as its layout says", other);
-    }
-    for (size_t i = 1; i < errors->count; ++i) {
-        for (size_t j = 0; j < i; ++j) {
-            if (is_of_one(errors->items[i], errors->items[j])) {
-                argp_error(state, "--error %s: given twice", errors->items[i]);
-            }
-        }
+    const char *other = arguments->lcm             ? "--lcm"
+                        : arguments->record.slices ? "--record"
+                        : arguments->record.all    ? "--record-all"
+                                                   : NULL;
+    if (arguments->run.errors.count > 0 && other) {
+        argp_error(state, WH_RUN_ERRORS_ALONE, other);
     }
 }
 
@@ -72,6 +46,7 @@ static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
+    {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -176,6 +151,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
                                         .expected = told.expected,
                                         .cycle = told.cycle,
                                         .edge = told.edge,
+                                        .centring = told.centring,
                                         .finished = told.finished,
                                         .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
@@ -221,11 +197,8 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    arguments.run.run.errors = arguments.errors.items;
-    arguments.run.run.error_count = arguments.errors.count;
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
     const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);
-    wh_option_list_free(&arguments.errors);
     return status;
 }

@@ -106,6 +106,42 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- errors */
+
+const wh_option_t wh_run_error_options[] = {
+    {"error", 0, "NAME.FIELD=VALUE",
+     "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's "
+     "dx, "
+     "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
+     WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, errors)},
+    {0}};
+
+/* What is before the last equals sign. */
+static size_t name_length(const char *error) {
+    const char *equals = strrchr(error, '=');
+    return equals ? (size_t)(equals - error) : strlen(error);
+}
+
+static bool is_of_one(const char *error, const char *other) {
+    const size_t length = name_length(error);
+    return length == name_length(other) && strncmp(error, other, length) == 0;
+}
+
+void wh_run_errors_check(const void *filled, struct argp_state *state) {
+    const wh_run_arguments_t *arguments = filled;
+    const wh_option_list_t *errors = &arguments->errors;
+    if (errors->count > 0 && arguments->segments_path) {
+        argp_error(state, WH_RUN_ERRORS_ALONE, "--segments");
+    }
+    for (size_t i = 1; i < errors->count; ++i) {
+        for (size_t j = 0; j < i; ++j) {
+            if (is_of_one(errors->items[i], errors->items[j])) {
+                argp_error(state, "--error %s: given twice", errors->items[i]);
+            }
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ command */
 
 char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
@@ -310,12 +346,15 @@ static int hand_on(const wh_run_arguments_t *arguments, wh_script_run_t *run, wh
 void wh_run_arguments_take(wh_run_arguments_t *arguments) {
     arguments->run.parameters = arguments->parameters.items;
     arguments->run.parameter_count = arguments->parameters.count;
+    arguments->run.errors = arguments->errors.items;
+    arguments->run.error_count = arguments->errors.count;
     arguments->run.limits.instructions = (uint64_t)arguments->budget;
     arguments->run.limits.memory_bytes = (size_t)(arguments->memory_mib * 1048576);
 }
 
 void wh_run_arguments_free(wh_run_arguments_t *arguments) {
     wh_option_list_free(&arguments->parameters);
+    wh_option_list_free(&arguments->errors);
 }
 
 int wh_run_and_print(wh_run_arguments_t *arguments) {

@@ -25,6 +25,7 @@ bool wh_run_files_wanted(const wh_run_files_t *files);
 typedef struct {
     wh_script_run_options_t run; /* run.script is null when none was named */
     wh_option_list_t parameters;
+    wh_option_list_t errors;   /* that the cell has: of wh_run_error_options */
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
     const char *record, *outputs; /* what else is written, not by this; null: none */
@@ -40,6 +41,14 @@ typedef struct {
 
 /* All options but those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
+
+/* Why errors do not go with what tells of the cell. */
+#define WH_RUN_ERRORS_ALONE "--error does not go with %s, which tells of the cell as its layout says"
+
+/* Errors that are given, for a run in this process: also into a wh_run_arguments_t. The check refuses one that is
+ * given twice, and those beside --segments. */
+extern const wh_option_t wh_run_error_options[];
+void wh_run_errors_check(const void *filled, struct argp_state *state);
 
 /* A wh_option_table_t's check of them. */
 void wh_run_arguments_check(const void *filled, struct argp_state *state);

@@ -194,7 +194,7 @@ static void write_command(const writer_t *writer, int32_t index) {
 static void write_segment(const writer_t *writer, size_t index) {
     static const char *const kinds[] = {
         [WH_SEGMENT_AXES] = "AXES",   [WH_SEGMENT_LINE] = "LINE",     [WH_SEGMENT_VALVES] = "VALVES",
-        [WH_SEGMENT_DWELL] = "DWELL", [WH_SEGMENT_SENSOR] = "SENSOR",
+        [WH_SEGMENT_DWELL] = "DWELL", [WH_SEGMENT_SENSOR] = "SENSOR", [WH_SEGMENT_WAY] = "WAY",
     };
     static const wh_kept_segment_t none = {.segment.kind = WH_SEGMENT_DWELL, .command = WH_NONE};
     const wh_kept_segment_t *kept = writer->mcs->segment_count > 0 ? &writer->mcs->segments[index] : &none;
@@ -215,7 +215,9 @@ static void write_segment(const writer_t *writer, size_t index) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         fprintf(out, "%s%" PRId32, g > 0 ? ", " : ", {", segment->valves[g]);
     }
-    fprintf(out, "}, %" PRId32 "}, %" PRId64 "}", segment->gripper, kept->ended ? 0 : kept->slices);
+    fprintf(out, "}, %" PRId32 ", ", segment->gripper);
+    write_real(out, segment->reach);
+    fprintf(out, "}, %" PRId64 "}", kept->ended ? 0 : kept->slices);
 }
 
 /* ------------------------------------------------------------------------------------------------- faults */
@@ -311,6 +313,16 @@ static void write_cell(const writer_t *writer) {
     fprintf(writer->out, ", %s},\n", cell->settle ? "true" : "false");
 }
 
+/* A run without ways does not link what they need. */
+static const char *taker_of_ways(const wh_mcs_t *mcs) {
+    for (size_t i = 0; i < mcs->segment_count; ++i) {
+        if (mcs->segments[i].segment.kind == WH_SEGMENT_WAY) {
+            return "wh_track_take_ways";
+        }
+    }
+    return "NULL";
+}
+
 static void write_run(const writer_t *writer) {
     const wh_mcs_t *mcs = writer->mcs;
     const char *prefix = writer->prefix;
@@ -323,8 +335,8 @@ static void write_run(const writer_t *writer) {
     write_config(writer->out, &mcs->real->grasp);
     write_physics(writer->out, &mcs->real->physics);
     write_cell(writer);
-    fprintf(writer->out, "    %" PRId64 ", UINT64_C(0x%016" PRIx64 ")};\n\n#endif\n",
-            mcs->recorder.record->slices, mcs->recorder.record->hash);
+    fprintf(writer->out, "    %" PRId64 ", UINT64_C(0x%016" PRIx64 "), %s};\n\n#endif\n",
+            mcs->recorder.record->slices, mcs->recorder.record->hash, taker_of_ways(mcs));
 }
 
 /* Several file names give one C name. So the guard tells the contents: the same file may come twice, and of

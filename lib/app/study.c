@@ -170,8 +170,8 @@ static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_
 /* Before the trials are played: no output is the script, the layout, or what they read. */
 static bool are_free(const arguments_t *arguments) {
     return (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
-           (!arguments->csv || wh_file_is_free("--csv", arguments->csv)) &&
-           (!arguments->run.files.page || wh_file_is_free("--report", arguments->run.files.page));
+           (!arguments->csv || wh_file_is_writable("--csv", arguments->csv)) &&
+           (!arguments->run.files.page || wh_file_is_writable("--report", arguments->run.files.page));
 }
 
 /* Scripts print into /dev/null: the output of many trials would be mixed. */

@@ -1,6 +1,7 @@
 #include "frame.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "reason_internal.hpp"
@@ -15,6 +16,7 @@ struct moments_t {
     Vector3d touched, known; // centres
     Matrix3d products;       // sum of touched * known'
     Matrix3d spread;         // sum of known * known'
+    double used;             // points
 };
 
 Vector3d vector_of(const wh_vec3_t &v) {
@@ -22,16 +24,23 @@ Vector3d vector_of(const wh_vec3_t &v) {
 }
 
 moments_t moments_of(const wh_frame_point_t *points, size_t count) {
-    moments_t moments = {Vector3d::Zero(), Vector3d::Zero(), Matrix3d::Zero(), Matrix3d::Zero()};
+    moments_t moments = {Vector3d::Zero(), Vector3d::Zero(), Matrix3d::Zero(), Matrix3d::Zero(), 0};
     for (size_t i = 0; i < count; ++i) {
-        moments.touched += vector_of(points[i].touched) / static_cast<double>(count);
-        moments.known += vector_of(points[i].known) / static_cast<double>(count);
+        moments.used += points[i].is_set_aside ? 0 : 1;
     }
     for (size_t i = 0; i < count; ++i) {
-        const Vector3d touched = vector_of(points[i].touched) - moments.touched;
-        const Vector3d known = vector_of(points[i].known) - moments.known;
-        moments.products += touched * known.transpose();
-        moments.spread += known * known.transpose();
+        if (!points[i].is_set_aside) {
+            moments.touched += vector_of(points[i].touched) / moments.used;
+            moments.known += vector_of(points[i].known) / moments.used;
+        }
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (!points[i].is_set_aside) {
+            const Vector3d touched = vector_of(points[i].touched) - moments.touched;
+            const Vector3d known = vector_of(points[i].known) - moments.known;
+            moments.products += touched * known.transpose();
+            moments.spread += known * known.transpose();
+        }
     }
     return moments;
 }
@@ -57,31 +66,140 @@ void store(const Matrix3d &R, const Vector3d &r, wh_pose_t *pose) {
 double measure_residuals(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
     double squares = 0;
     estimate->largest = -1;
+    estimate->used = 0;
     for (size_t i = 0; i < count; ++i) {
         const wh_vec3_t off = wh_frame_residual(estimate, &points[i]);
         const double square = wh_vec3_dot(&off, &off);
-        squares += square;
-        if (std::sqrt(square) > estimate->largest) {
+        squares += points[i].is_set_aside ? 0 : square;
+        estimate->used += points[i].is_set_aside ? 0 : 1;
+        if (!points[i].is_set_aside && std::sqrt(square) > estimate->largest) {
             estimate->largest = std::sqrt(square);
             estimate->largest_index = i;
         }
     }
-    estimate->rms = std::sqrt(squares / static_cast<double>(count));
+    estimate->set_aside = count - estimate->used;
+    estimate->rms = std::sqrt(squares / static_cast<double>(estimate->used));
     return squares;
+}
+
+/* ---------------------------------------------------------------------------------------------- set aside */
+
+struct fit_t {
+    moments_t moments;
+    Matrix3d R;
+    Matrix3d turned; // covariance of a small turn about base's axes, where points have a deviation of 1
+    double squares;
+};
+
+constexpr double least_sd_mm = 1e-6;
+
+Matrix3d crossing(const Vector3d &arm) {
+    Matrix3d cross;
+    cross << 0, -arm(2), arm(1), arm(2), 0, -arm(0), -arm(1), arm(0), 0;
+    return cross;
+}
+
+fit_t fit(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
+    fit_t found;
+    found.moments = moments_of(points, count);
+    found.R = rotation_of(found.moments.products);
+    store(found.R, found.moments.touched - found.R * found.moments.known, &estimate->base_from_station);
+    found.squares = measure_residuals(points, count, estimate);
+    const Matrix3d spread = found.R * found.moments.spread * found.R.transpose();
+    found.turned = (spread.trace() * Matrix3d::Identity() - spread).inverse();
+    return found;
+}
+
+/* The squared distance of a point from where the others have it, in deviations of a point: its residual, less
+ * its pull on the fit if it is used, or more what the fit may be off. A direction that it alone tells does
+ * not count. */
+double distance_of(const fit_t &found, const wh_frame_estimate_t &estimate, const wh_frame_point_t &point) {
+    const Matrix3d cross = crossing(found.R * (vector_of(point.known) - found.moments.known));
+    const Matrix3d pull =
+        Matrix3d::Identity() / found.moments.used + cross * found.turned * cross.transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> own(pull);
+    const wh_vec3_t off = wh_frame_residual(&estimate, &point);
+    const Vector3d along = own.eigenvectors().transpose() * vector_of(off);
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double size = own.eigenvalues()(k);
+        const double variance = point.is_set_aside ? 1 + size : 1 - size;
+        square += variance > 1e-6 ? along(k) * along(k) / variance : 0;
+    }
+    return square;
+}
+
+/* By how much, squared, a point may be off as seen from others with so many degrees of freedom, in units of
+ * their variance (D. L. Wallace, 1959). */
+double rare_square(double freedom) {
+    constexpr double most = WH_FRAME_ASIDE_SDS * WH_FRAME_ASIDE_SDS;
+    const double part = (freedom - 5.0 / 6) / ((freedom - 2.0 / 3) * (freedom - 2.0 / 3));
+    return freedom > 2 ? freedom * std::expm1(std::min(most * part, 600.0)) : HUGE_VAL;
+}
+
+/* Sets aside the point that contradicts the others most. */
+void drop_worst(wh_frame_point_t *points, size_t count, const fit_t &found,
+                const wh_frame_estimate_t &estimate) {
+    double most = -1;
+    size_t worst = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const double off = points[i].is_set_aside ? -1 : distance_of(found, estimate, points[i]);
+        if (off > most) {
+            most = off;
+            worst = i;
+        }
+    }
+    points[worst].is_set_aside = true;
+}
+
+/* Takes back the point that the fit to the others agrees with best; false if it agrees with none. */
+bool take_back(wh_frame_point_t *points, size_t count, const fit_t &found,
+               const wh_frame_estimate_t &estimate) {
+    const double freedom = 3 * found.moments.used - 6;
+    const double variance = std::max(found.squares / std::max(freedom, 1.0), least_sd_mm * least_sd_mm);
+    double least = rare_square(freedom) * variance;
+    wh_frame_point_t *best = nullptr;
+    for (size_t i = 0; i < count; ++i) {
+        const double off = points[i].is_set_aside ? distance_of(found, estimate, points[i]) : HUGE_VAL;
+        if (off <= least && points[i].is_set_aside) {
+            least = off;
+            best = &points[i];
+        }
+    }
+    if (best != nullptr) {
+        best->is_set_aside = false;
+    }
+    return best != nullptr;
+}
+
+/* A quarter of the points is left out first, the worst ones one by one, so that several wrong ones do not
+ * hide one another. Then all are taken back that agree with the others. */
+fit_t fit_agreed(wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
+    const auto most = static_cast<size_t>(WH_FRAME_ASIDE * static_cast<double>(count));
+    for (size_t i = 0; i < count; ++i) {
+        points[i].is_set_aside = false;
+    }
+    fit_t found = fit(points, count, estimate);
+    for (size_t i = 0; i < most; ++i) {
+        drop_worst(points, count, found, *estimate);
+        found = fit(points, count, estimate);
+    }
+    while (take_back(points, count, found, *estimate)) {
+        found = fit(points, count, estimate);
+    }
+    return found;
 }
 
 /* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from
  * the centre, by w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin
  * moves with the centre, and with w. */
-void fill_in(const moments_t &moments, const Matrix3d &R, double variance, size_t count,
-             wh_frame_estimate_t *estimate) {
-    const Matrix3d spread = R * moments.spread * R.transpose();
-    const Matrix3d turned = variance * (spread.trace() * Matrix3d::Identity() - spread).inverse();
-    const Vector3d arm = R * moments.known;
-    Matrix3d cross;
-    cross << 0, -arm(2), arm(1), arm(2), 0, -arm(0), -arm(1), arm(0), 0;
+void fill_in(const fit_t &found, wh_frame_estimate_t *estimate) {
+    const Matrix3d &R = found.R;
+    const double variance = found.squares / (3 * found.moments.used - 6);
+    const Matrix3d turned = variance * found.turned;
+    const Matrix3d cross = crossing(R * found.moments.known);
     const Matrix3d shifted =
-        variance / static_cast<double>(count) * Matrix3d::Identity() + cross * turned * cross.transpose();
+        variance / found.moments.used * Matrix3d::Identity() + cross * turned * cross.transpose();
     const double roll = std::atan2(R(2, 1), R(2, 2));
     const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
     const double yaw = std::atan2(R(1, 0), R(0, 0));
@@ -118,7 +236,7 @@ wh_vec3_t wh_frame_residual(const wh_frame_estimate_t *estimate, const wh_frame_
     return wh_vec3_subtract(&point->touched, &there);
 }
 
-wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
+wh_status_t wh_frame_estimate(wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
     if (points == nullptr || estimate == nullptr) {
         return WH_STATUS_NULL_ARGUMENT;
     }
@@ -131,13 +249,10 @@ wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_f
         tell(estimate->reason, "a number is not finite");
         return refuse(estimate, WH_STATUS_NO_FIT);
     }
-    const moments_t moments = moments_of(points, count);
+    const fit_t found = fit_agreed(points, count, estimate);
+    const Matrix3d &R = found.R;
     const Vector3d widths = // rms distances from the centre, by direction, the largest first
-        (Eigen::JacobiSVD<Matrix3d>(moments.spread).singularValues() / static_cast<double>(count))
-            .cwiseSqrt();
-    const Matrix3d R = rotation_of(moments.products);
-    store(R, moments.touched - R * moments.known, &estimate->base_from_station);
-    const double squares = measure_residuals(points, count, estimate);
+        (Eigen::JacobiSVD<Matrix3d>(found.moments.spread).singularValues() / found.moments.used).cwiseSqrt();
     if (widths(1) <= WH_FRAME_SPREAD_PART * widths(0)) {
         tell(estimate->reason,
              "the points lie on a line (%.3g mm beside it, rms): touch one more that lies off it, far out",
@@ -162,6 +277,6 @@ wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_f
         tell(estimate->reason, "the station's x points up or down: rpy is not unique");
         return refuse(estimate, WH_STATUS_NOT_DETERMINED);
     }
-    fill_in(moments, R, squares / static_cast<double>(3 * count - 6), count, estimate);
+    fill_in(found, estimate);
     return estimate->status;
 }

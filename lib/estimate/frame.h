@@ -3,8 +3,10 @@
  *
  * The frame is the rotation and shift that bring the known points nearest to the touched ones, in the
  * sense of least squares: by the singular value decomposition of their products (W. Kabsch, 1976; S.
- * Umeyama, 1991, whose sign keeps it from mirroring). Every point counts alike. Standard deviations come
- * from the residuals, of which there are 3 count - 6 more than unknowns: of three points they are rough.
+ * Umeyama, 1991, whose sign keeps it from mirroring). A point that contradicts the others is set aside: one
+ * that lies farther from where they have it than WH_FRAME_ASIDE_SDS standard deviations, more where these are
+ * known from few points. The others count alike. Standard deviations come from their residuals, of which there
+ * are 3 used - 6 more than unknowns: of three points they are rough, and none can be set aside.
  *
  * Lengths in mm, angles in rad. */
 #ifndef WH_ESTIMATE_FRAME_H
@@ -22,6 +24,10 @@ WH_HEADER_BEGIN
  * distance from their centre: then points were mixed up, or units. */
 #define WH_FRAME_MISFIT 0.05
 
+/* The largest part of the points that may be set aside, and how far off they are then. */
+#define WH_FRAME_ASIDE 0.25
+#define WH_FRAME_ASIDE_SDS 6
+
 /* The points lie on a line, as far as anybody can tell, if their rms distance from it is below this many
  * rms of the residuals, or below this part of their rms distance along it. */
 #define WH_FRAME_SPREAD_RMS 10
@@ -30,6 +36,7 @@ WH_HEADER_BEGIN
 typedef struct {
     wh_vec3_t touched; /* in base */
     wh_vec3_t known;   /* on the station */
+    bool is_set_aside; /* written */
 } wh_frame_point_t;
 
 typedef struct {
@@ -37,8 +44,9 @@ typedef struct {
     wh_pose_t base_from_station;
     double rpy[3], rpy_sd[3]; /* R = Rz(rpy[2]) * Ry(rpy[1]) * Rx(rpy[0]), rad */
     double at_sd[3];          /* mm, in base */
-    double rms;               /* of the residuals: root of their mean square length over all points */
-    double largest;           /* the longest residual */
+    size_t used, set_aside;   /* points */
+    double rms;               /* of the residuals: root of their mean square length over the points used */
+    double largest;           /* the longest residual of them */
     size_t largest_index;
     char reason[WH_ESTIMATE_REASON]; /* of what is not WH_OK; else empty */
 } wh_frame_estimate_t;
@@ -49,8 +57,8 @@ typedef struct {
  *   WH_STATUS_NOT_DETERMINED  the known points lie on a line, or at one place; or the station is turned
  *                             about y by 90 degrees, where rpy is not unique
  *   WH_STATUS_NO_FIT          see WH_FRAME_MISFIT, or a number is not finite
- * Cost: linear in the points. */
-wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate);
+ * Cost: a quarter of the points' number, squared, of some 0.1 us. */
+wh_status_t wh_frame_estimate(wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate);
 
 /* The touched point less where the frame has it, mm in base. */
 wh_vec3_t wh_frame_residual(const wh_frame_estimate_t *estimate, const wh_frame_point_t *point);

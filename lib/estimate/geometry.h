@@ -25,7 +25,8 @@
  * are, once more with an axis turned or moved, and looks which of them would tell it.
  *
  * Scales that are off by more than five standard deviations are refused unless they are fitted, for they
- * would shift all other numbers.
+ * would shift all other numbers. Fitted ones are told by the touches alone; headings may go with an axis as
+ * far as the deviation of its scale allows, and the zero of yaw is what they say where the axis is at 0.
  *
  * Lengths in mm, angles in rad. */
 #ifndef WH_ESTIMATE_GEOMETRY_H

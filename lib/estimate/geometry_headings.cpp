@@ -17,6 +17,7 @@ double rare_of(double freedom) {
 namespace {
 
 constexpr double heading_misfit = 0.02; /* rad */
+constexpr double most_scale_sds = 6;
 
 /* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less
  * theta and yaw. */
@@ -31,6 +32,10 @@ double yaw_zero_of(const double *p, const wh_touch_t &touch) {
     return std::remainder(std::atan2(ahead(1), ahead(0)) - theta - yaw, full_turn);
 }
 
+/* The axes that turn the tool, and that the scales may still be off. */
+constexpr int turning[2] = {WH_AXIS_THETA, WH_AXIS_YAW};
+constexpr int slope_rounds = 3;
+
 /* What the headings say, each less the middle of all. */
 struct headings_t {
     double rests[WH_GEOMETRY_MOST_TOUCHES];
@@ -39,11 +44,24 @@ struct headings_t {
     bool is_used[WH_GEOMETRY_MOST_TOUCHES];
     size_t count, used;
     double middle, mean, sd;
+    double mean_sd;   /* of the middle and the mean together */
+    double slopes[2]; /* by which they go with the turning axes: taken out of the rests */
 };
 
 double middle_of(double *values, size_t count) {
     std::nth_element(values, values + count / 2, values + count);
     return values[count / 2];
+}
+
+/* Takes the middle out of the rests. */
+void centre_rests(headings_t *headings) {
+    std::copy(headings->rests, headings->rests + headings->count, headings->sizes);
+    const double middle = middle_of(headings->sizes, headings->count);
+    for (size_t i = 0; i < headings->count; ++i) {
+        headings->rests[i] -= middle;
+        headings->sizes[i] = std::abs(headings->rests[i]);
+    }
+    headings->middle += middle;
 }
 
 void read_headings(const touches_t &data, const double *p, headings_t *headings) {
@@ -61,14 +79,11 @@ void read_headings(const touches_t &data, const double *p, headings_t *headings)
     const double about = std::atan2(y, x);
     for (size_t i = 0; i < headings->count; ++i) {
         headings->rests[i] = std::remainder(headings->rests[i] - about, full_turn);
-        headings->sizes[i] = headings->rests[i];
     }
-    headings->middle = headings->count > 0 ? middle_of(headings->sizes, headings->count) : 0;
-    for (size_t i = 0; i < headings->count; ++i) {
-        headings->rests[i] -= headings->middle;
-        headings->sizes[i] = std::abs(headings->rests[i]);
+    headings->middle = about;
+    if (headings->count > 0) {
+        centre_rests(headings);
     }
-    headings->middle += about;
 }
 
 /* Sets aside, and takes the mean of the others. */
@@ -76,6 +91,7 @@ void average(headings_t *headings) {
     const auto count = static_cast<double>(headings->count);
     headings->sd = 1.4826 * (1 + 5 / count) * middle_of(headings->sizes, headings->count);
     headings->sd = std::max(headings->sd, 1e-9);
+    headings->mean = 0;
     for (int round = 0; round < 4; ++round) {
         const double most = WH_GEOMETRY_ASIDE_SDS * headings->sd;
         const double centre = headings->mean;
@@ -94,6 +110,54 @@ void average(headings_t *headings) {
         headings->sd = std::sqrt((squares - sum * headings->mean) / std::max(used - 1, 1.0));
         headings->sd = std::max(headings->sd, 1e-9);
     }
+    headings->mean_sd = headings->sd / std::sqrt(static_cast<double>(headings->used));
+}
+
+/* The scales of the turning axes are known as well as the touches tell them: what the headings have to add
+ * to a scale is a slope, and where yaw and theta are 0 is what the zero of yaw is of. Of a scale that the
+ * touches do not tell, the headings alone say the slope. */
+void take_slopes(const touches_t &data, const wh_geometry_estimate_t &estimate, headings_t *headings) {
+    Matrix3d products = Matrix3d::Zero();
+    Vector3d sums = Vector3d::Zero();
+    for (size_t i = 0; i < headings->count; ++i) {
+        const double *axes = data.touches[headings->touches[i]].axes;
+        const Vector3d by(1, axes[turning[0]], axes[turning[1]]);
+        products += headings->is_used[i] ? Matrix3d(by.lazyProduct(by.transpose())) : Matrix3d::Zero();
+        sums += headings->is_used[i] ? Vector3d(by * headings->rests[i]) : Vector3d::Zero();
+    }
+    const double variance = headings->sd * headings->sd;
+    for (int k = 0; k < 2; ++k) {
+        const double sd = std::max(estimate.values[WH_GEOMETRY_SCALE + turning[k]].sd, 1e-12);
+        const double weight = std::isfinite(sd) ? variance / (sd * sd) : 0;
+        products(k + 1, k + 1) += weight;
+        sums(k + 1) -= weight * headings->slopes[k];
+    }
+    const double size = products(0, 0) * products(1, 1) * products(2, 2);
+    if (!(products.determinant() > 1e-12 * size)) { /* an axis stood still */
+        headings->mean_sd = HUGE_VAL;
+        return;
+    }
+    const Matrix3d inverse = products.inverse();
+    const Vector3d step = inverse.lazyProduct(sums); /* a general product would link to the heap */
+    for (size_t i = 0; i < headings->count; ++i) {
+        const double *axes = data.touches[headings->touches[i]].axes;
+        headings->rests[i] -= step(1) * axes[turning[0]] + step(2) * axes[turning[1]];
+    }
+    headings->slopes[0] += step(1);
+    headings->slopes[1] += step(2);
+    centre_rests(headings);
+    average(headings);
+    headings->mean_sd = std::sqrt(variance * inverse(0, 0));
+}
+
+/* True if a slope is more than the touches leave to the scale of its axis. */
+bool contradicts_scale(const wh_geometry_estimate_t &estimate, const headings_t &headings) {
+    bool is_off = false;
+    for (int k = 0; k < 2; ++k) {
+        const double sd = estimate.values[WH_GEOMETRY_SCALE + turning[k]].sd;
+        is_off = is_off || (std::isfinite(sd) && std::abs(headings.slopes[k]) > most_scale_sds * sd + 1e-9);
+    }
+    return is_off;
 }
 
 /* True if the headings go with an axis, which the mean would not show. */
@@ -123,8 +187,10 @@ wh_status_t judge_headings(const touches_t &data, const headings_t &headings,
              headings.count);
         return WH_STATUS_NO_FIT;
     }
-    if (headings.sd > heading_misfit || goes_with(data, headings, WH_AXIS_YAW) ||
-        goes_with(data, headings, WH_AXIS_THETA)) {
+    const bool contradict = estimate->has_scales ? contradicts_scale(*estimate, headings)
+                                                 : goes_with(data, headings, WH_AXIS_YAW) ||
+                                                       goes_with(data, headings, WH_AXIS_THETA);
+    if (headings.sd > heading_misfit || contradict) {
         tell(estimate->reason,
              "the headings do not go with theta and yaw: residuals of %.3g degrees rms; is yaw told the "
              "other way round, or its scale off?",
@@ -145,6 +211,9 @@ wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate) {
         return WH_OK;
     }
     average(&headings);
+    for (int round = 0; estimate->has_scales && round < slope_rounds; ++round) {
+        take_slopes(data, *estimate, &headings);
+    }
     estimate->headings = headings.used;
     estimate->headings_aside = headings.count - headings.used;
     estimate->heading_rms = headings.sd;
@@ -153,7 +222,7 @@ wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate) {
     }
     const wh_status_t status = judge_headings(data, headings, estimate);
     zero.value = std::remainder(headings.middle + headings.mean, full_turn);
-    zero.sd = std::hypot(headings.sd / std::sqrt(static_cast<double>(headings.used)), theta.sd);
+    zero.sd = std::hypot(headings.mean_sd, theta.sd);
     zero.is_determined = theta.is_determined && zero.sd <= WH_GEOMETRY_ANGLE_SD;
     estimate->fitted[yaw_zero] = zero.value;
     return status;

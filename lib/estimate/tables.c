@@ -50,8 +50,8 @@ static bool add_point(wh_point_table_t *table) {
     const size_t i = station->count;
     station->points = wh_array_grow(station->points, i, &station->capacity, sizeof *station->points);
     station->lines = wh_array_grow(station->lines, i, &station->line_capacity, sizeof *station->lines);
-    station->points[i] =
-        (wh_frame_point_t){{n[TOUCHED_X], n[TOUCHED_Y], n[TOUCHED_Z]}, {n[KNOWN_X], n[KNOWN_Y], n[KNOWN_Z]}};
+    station->points[i] = (wh_frame_point_t){.touched = {n[TOUCHED_X], n[TOUCHED_Y], n[TOUCHED_Z]},
+                                            .known = {n[KNOWN_X], n[KNOWN_Y], n[KNOWN_Z]}};
     station->lines[i] = table->csv.line;
     ++station->count;
     return true;

@@ -30,12 +30,9 @@ static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spre
 
 /* ------------------------------------------------------------------------------------------------- timing */
 
-/* A normal deviate stays below this many standard deviations: see math/deviate.h. */
-#define MOST_DEVIATIONS 8.6
-
 static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread_t *valve) {
     valve->width = wh_reader_number(reader, "valve", valve->width, 0, WH_ERRORS_MOST_S);
-    const double most = (valve->shape == WH_SHAPE_NORMAL ? MOST_DEVIATIONS : 1) * valve->width;
+    const double most = wh_spread_reach(valve);
     if (most * 1e6 / (double)layout->slice_us > WH_STUDY_LAG_SLICES) {
         lua_pushnumber(reader->L, valve->width);
         wh_reader_fail(reader, "valve", "delays of at most %d slices of %lld us, %s", WH_STUDY_LAG_SLICES,
@@ -54,6 +51,64 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
     }
 }
 
+/* --------------------------------------------------------------------------------------------------- rims */
+
+static void refuse_width(const wh_reader_t *reader, const wh_spread_t *spread, wh_rim_draw_t draw,
+                         const char *wafer) {
+    lua_pushnumber(reader->L, spread->width);
+    wh_reader_fail(reader, wh_rim_draw_name(draw),
+                   "a width that leaves %s a rim, whatever is drawn: %s of it either way", wafer,
+                   spread->shape == WH_SHAPE_NORMAL ? "8.6 standard deviations" : "all");
+}
+
+/* The widths, which no draw may take out of what rims can be. */
+static void check_rim(const wh_reader_t *reader, const wh_layout_t *layout, size_t wafer,
+                      const wh_rim_spreads_t *spreads) {
+    const wh_rim_draw_t wide = wh_rim_draw_too_wide(spreads, layout->rims[wafer]);
+    if (wide != WH_RIM_DRAWS) {
+        refuse_width(reader, &spreads->of[wide], wide, layout->wafers[wafer].name);
+    }
+}
+
+/* True if one of these wafers has what the draw changes. */
+static bool concerns_any(const wh_layout_t *layout, size_t first, size_t end, wh_rim_draw_t draw) {
+    bool any = false;
+    for (size_t w = first; w < end; ++w) {
+        any = any || wh_rim_draw_concerns(draw, layout->rims[w]);
+    }
+    return any;
+}
+
+/* Reads the table of widths for the wafers from `first` on; none of them means anything without a sensor. */
+static void read_rim_widths(wh_reader_t *reader, const wh_layout_t *layout, size_t first, size_t end,
+                            wh_rim_spreads_t *spreads) {
+    if (layout->scanner_count == 0) {
+        wh_reader_fail(reader, NULL,
+                       "nothing: no prealigner of this layout has a `sensor` that would see it");
+    }
+    for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
+        const wh_rim_draw_t draw = (wh_rim_draw_t)i;
+        const char *name = wh_rim_draw_name(draw);
+        wh_spread_t *spread = &spreads->of[i];
+        spread->shape = read_shape(reader, spread->shape);
+        spread->width = wh_reader_number(reader, name, spread->width, 0, (wh_real_t)wh_rim_draw_most(draw));
+        if (wh_reader_has(reader, name) && spread->width > 0 && !concerns_any(layout, first, end, draw)) {
+            lua_pushnumber(reader->L, spread->width);
+            wh_reader_fail(reader, name, "0: no wafer here has %s",
+                           draw == WH_RIM_CHIP_DEPTH || draw == WH_RIM_CHIP_WIDTH ? "room for a chip more"
+                           : draw == WH_RIM_FLAT || draw == WH_RIM_SECOND_FLAT    ? "such a flat"
+                                                                                  : "a notch");
+        }
+    }
+    if (spreads->of[WH_RIM_CHIP_WIDTH].width > 0 && !(spreads->of[WH_RIM_CHIP_DEPTH].width > 0)) {
+        lua_pushnumber(reader->L, spreads->of[WH_RIM_CHIP_DEPTH].width);
+        wh_reader_fail(reader, "chip_depth", "a width above 0 beside chip_width");
+    }
+    for (size_t w = first; w < end; ++w) {
+        check_rim(reader, layout, w, spreads);
+    }
+}
+
 /* ------------------------------------------------------------------------------------- one by one by name */
 
 /* A table whose keys are names of the layout's wafers, stations or grippers. */
@@ -68,6 +123,10 @@ typedef struct {
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     read_spreads(reader, placement_names, &layout->errors->wafers[index]);
+}
+
+static void read_own_rim(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
+    read_rim_widths(reader, layout, index, index + 1, &layout->errors->rims[index]);
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
@@ -119,6 +178,20 @@ static void read_section(wh_reader_t *reader, wh_layout_t *layout, const section
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
+static void read_rims_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
+    wh_rim_spreads_t rims;
+    for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
+        rims.of[i] = (wh_spread_t){0, shape};
+    }
+    if (wh_reader_open(reader, "rim", wh_layout_rim_width_fields)) {
+        read_rim_widths(reader, layout, 0, layout->wafer_count, &rims);
+        wh_reader_leave(reader);
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        layout->errors->rims[w] = rims;
+    }
+}
+
 static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
     wh_spreads_t placement = {{{0, shape}}};
     for (size_t i = 1; i < WH_SPREADS; ++i) {
@@ -149,6 +222,8 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
          layout->wafer_count, wh_layout_find_wafer, read_wafer},
         {"stations", "station", wh_layout_teaching_fields, layout->stations, sizeof *layout->stations,
          layout->station_count, wh_layout_find_station, read_station},
+        {"rims", "wafer", wh_layout_rim_width_fields, layout->wafers, sizeof *layout->wafers,
+         layout->wafer_count, wh_layout_find_wafer, read_own_rim},
         {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {
@@ -157,8 +232,11 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     wh_errors_t *errors = wh_layout_memory(reader->L, 1, sizeof *errors);
     errors->wafers = wh_layout_memory(reader->L, layout->wafer_count, sizeof *errors->wafers);
     errors->stations = wh_layout_memory(reader->L, layout->station_count, sizeof *errors->stations);
+    errors->rims = wh_layout_memory(reader->L, layout->wafer_count, sizeof *errors->rims);
     layout->errors = errors;
-    read_for_all(reader, layout, read_shape(reader, WH_SHAPE_NORMAL));
+    const wh_shape_t shape = read_shape(reader, WH_SHAPE_NORMAL);
+    read_for_all(reader, layout, shape);
+    read_rims_for_all(reader, layout, shape);
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; ++i) {
         read_section(reader, layout, &sections[i]);
     }
@@ -167,9 +245,11 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* -------------------------------------------------------------------------------------------------- drawn */
 
-/* `field` says what the number is drawn for: the first word of its counter. Never renumber them: the same
- * seeds would give other trials. */
-static wh_real_t draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32_t field, size_t index) {
+double wh_spread_reach(const wh_spread_t *spread) {
+    return (spread->shape == WH_SHAPE_NORMAL ? WH_SPREAD_DEVIATIONS : 1) * (double)spread->width;
+}
+
+wh_real_t wh_spread_draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32_t field, size_t index) {
     if (!(spread->width > 0)) {
         return 0;
     }
@@ -189,7 +269,7 @@ static wh_displacement_t draw_components(const wh_spreads_t *spreads, const comp
                                          const wh_trial_t *trial, size_t index) {
     wh_real_t drawn[6];
     for (size_t i = 0; i < 6; ++i) {
-        drawn[i] = draw(&spreads->of[components[i].spread], trial, components[i].field, index);
+        drawn[i] = wh_spread_draw(&spreads->of[components[i].spread], trial, components[i].field, index);
     }
     return (wh_displacement_t){{drawn[0], drawn[1], drawn[2]}, {drawn[3], drawn[4], drawn[5]}};
 }
@@ -214,11 +294,21 @@ wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_tri
 
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper) {
     return errors->given ? errors->given->valves[gripper]
-                         : wh_real_abs(draw(&errors->valves[gripper], trial, 0x300, gripper));
+                         : wh_real_abs(wh_spread_draw(&errors->valves[gripper], trial, 0x300, gripper));
 }
 
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial) {
-    return errors->given ? errors->given->vacuum : wh_real_abs(draw(&errors->vacuum, trial, 0x400, 0));
+    return errors->given ? errors->given->vacuum
+                         : wh_real_abs(wh_spread_draw(&errors->vacuum, trial, 0x400, 0));
+}
+
+void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer, const wh_rim_t *rim,
+                        double drawn[WH_RIM_DRAWS]) {
+    if (errors->given || !errors->rims) {
+        memset(drawn, 0, WH_RIM_DRAWS * sizeof *drawn);
+        return;
+    }
+    wh_rim_draw_all(&errors->rims[wafer], trial, wafer, rim, drawn);
 }
 
 bool wh_displacement_is_any(const wh_displacement_t *displacement) {

@@ -1,25 +1,15 @@
 /* The errors of a study: how wide each is, and what a trial draws of it.
  *
  * Placement says where a wafer lies in its slot. Teaching says how far a station stands from where it was
- * taught. Timing says how late valves and vacuum act. Lengths in mm, angles in degrees, times in s. A width
- * of 0 draws 0.
+ * taught. Timing says how late valves and vacuum act. Rims are what edge sensors see of wafers. Lengths in
+ * mm, angles in degrees, times in s. A width of 0 draws 0.
  */
 #ifndef WH_LAYOUT_ERRORS_H
 #define WH_LAYOUT_ERRORS_H
 
-#include "../math/deviate.h"
 #include "../math/pose.h"
 #include "../motion/machine.h"
-
-typedef enum {
-    WH_SHAPE_NORMAL, /* the width is the standard deviation */
-    WH_SHAPE_UNIFORM /* evenly from -width to +width */
-} wh_shape_t;
-
-typedef struct {
-    wh_real_t width; /* at least 0 */
-    wh_shape_t shape;
-} wh_spread_t;
+#include "rim_errors.h"
 
 /* In this order, where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x
  * and y (one draw each), turn about z. Or where a station stands: moved along base's x, y, z, and turned by
@@ -46,6 +36,7 @@ typedef struct {
 typedef struct {
     const wh_given_t *given; /* what each trial then draws, whatever the widths; null: it goes by them */
     wh_spreads_t *wafers, *stations;
+    wh_rim_spreads_t *rims;          /* of each wafer */
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
 } wh_errors_t;
@@ -54,6 +45,8 @@ typedef struct {
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer);
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper);
+void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer, const wh_rim_t *rim,
+                        double drawn[WH_RIM_DRAWS]);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
 
 /* True if any of it is not 0. */

@@ -92,6 +92,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 25, 1000);
     layout->wafer_thickness =
         wh_layout_sized(reader, layout, "thickness", size_of(layout)->thickness, 0.01, 100);
+    layout->wafer_spread = wh_reader_number(reader, "spread", 0, 0, 2);
     read_notch(reader, layout);
     wh_reader_leave(reader);
 }
@@ -204,6 +205,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_wafers(&reader, layout);
     wh_layout_read_sensing(&reader, layout);
     wh_layout_read_shapes(&reader, layout);
+    wh_layout_read_blades(layout);
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);
     wh_layout_read_study(&reader, layout);

@@ -78,6 +78,7 @@ typedef struct {
     int32_t retries;               /* how often a GET that took nothing repeats its stroke */
     /* the gripper on the robot that serves the station unless a command names another one */
     int32_t effector;
+    bool centre; /* a PUT corrects by what the station's beams say */
 } wh_layout_station_t;
 
 typedef struct {
@@ -90,6 +91,15 @@ typedef struct {
     double x, y, z, turn_deg;
 } wh_corrections_t;
 
+/* A beam of light at a station's door, as motion control believes in it, and how it truly is. In the
+ * station's frame, upright. */
+typedef struct {
+    int32_t station;
+    double x, y, low, high;     /* mm; from `low` to `high` over the station's z = 0 */
+    double delay_on, delay_off; /* s */
+    double dx, dy, late;        /* truly it stands there beside, and both delays are longer by `late` */
+} wh_layout_beam_t;
+
 /* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
 typedef struct {
     const char *path;        /* as the caller named it */
@@ -97,12 +107,14 @@ typedef struct {
     /* of "own": the layout does not give projz, projxy, planar, and the paper's stands */
     bool tolerance_default[WH_TOLERANCE_LIMITS];
     double wafer_diameter, wafer_thickness;
+    double wafer_spread; /* standard deviation of true diameters, by which centring goes; 0: they are exact */
     /* direction of the notch, rad about e3 from e1, and its depth, mm; depth 0: no notch */
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
     wh_physics_t physics;         /* vacuum, pads, faults at the start */
     wh_machine_t machine;         /* machine.gripper_count is the number of grippers */
+    wh_real_t transit;            /* mm, see transit.h; 0: the arm turns as it stands */
     bool homed;                   /* false: commands that rely on the arm's position need a HOME first */
     wh_corrections_t corrections; /* the largest ones that a command may ask for */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
@@ -112,8 +124,14 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
-    /* The edge sensors, and by wafer the rims that they see: without sensors these mean nothing. Wafers of
-     * which the layout says nothing have the nominal one. */
+    /* The beams at stations' doors, those of a station one after another, with their electronics as they
+     * truly are, and by gripper the blades that break them. */
+    wh_layout_beam_t beams[WH_BEAMS];
+    wh_door_beam_t doors[WH_BEAMS];
+    size_t beam_count;
+    wh_blade_outline_t blades[WH_GRIPPERS];
+    /* The edge sensors, and by wafer the rims that they and beams see: without either these mean nothing.
+     * Wafers of which the layout says nothing have the nominal one. */
     wh_scanner_t scanners[WH_GRIPPERS];
     size_t scanner_count;
     const wh_rim_t *nominal_rim;
@@ -173,9 +191,18 @@ wh_scanning_t wh_layout_scanning(const wh_layout_t *layout);
 /* The edge sensor at a gripper's chuck; null if it has none. */
 const wh_scanner_t *wh_layout_scanner(const wh_layout_t *layout, int32_t gripper);
 
+/* The beams as a simulator takes them: a view of the layout. */
+wh_latching_t wh_layout_latching(const wh_layout_t *layout);
+
+/* The order that arms a station's beams; count 0 if it has none. */
+wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
+
+/* Sets up doors[b] anew, where its station stands. */
+void wh_layout_place_beam(wh_layout_t *layout, size_t b);
+
 /* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
- * sensors and rims, machine, and the names and places of stations, grippers and wafers. The path is left out.
- * Cost: linear. */
+ * sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The path is
+ * left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* The name of a part of the collision world, wafers included; null if there is no such part. */

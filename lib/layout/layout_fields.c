@@ -38,6 +38,10 @@ const wh_reader_field_t wh_layout_top_fields[] = {
 
 const wh_reader_field_t wh_layout_wafer_size_fields[] = {{"diameter", NUMBER, "mm", false},
                                                          {"thickness", NUMBER, "mm", false},
+                                                         {"spread", NUMBER,
+                                                          "mm: standard deviation of true diameters, which "
+                                                          "centring allows for; 0: none",
+                                                          false},
                                                          {"notch", "waferhand.notch", "the notch", false},
                                                          END};
 
@@ -89,6 +93,8 @@ const wh_reader_field_t wh_layout_robot_fields[] = {
     {"r", "waferhand.straight_axis", "the way out", false},
     {"z", "waferhand.straight_axis", "the height", false},
     {"yaw", "waferhand.turning_axis", "the turn of the wrist", false},
+    {"transit", NUMBER,
+     "mm: blades and wafers stay within this circle about theta's axis while the robot turns", false},
     END};
 
 const wh_reader_field_t wh_layout_turning_axis_fields[] = {
@@ -148,6 +154,8 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"handover", "\"new_first\"|\"same_slice\"", "at a chuck: the order of the two valves", false},
     {"counts", SWITCH, "true: a wafer that is put here is done, for wafers per hour", false},
     {"sensor", "waferhand.sensor", "at a prealigner: what sees the wafer's edge", false},
+    {"beams", "waferhand.beam[]", "light at the door, which wafers break on their way", false},
+    {"centre", SWITCH, "true: a PUT corrects by what the beams say of the wafer", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_fields[] = {
@@ -158,10 +166,24 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
     {"dy", NUMBER, "mm off the slot's centre, along its y", false},
     {"dz", NUMBER, "mm above the slot", false},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
-    {"rim", "waferhand.rim", "its true rim, which edge sensors see", false},
+    {"rim", "waferhand.rim", "its true rim, which edge sensors and beams see", false},
     END};
 
-/* --------------------------------------------------------------------------------- edge sensors and rims */
+/* ------------------------------------------------------------------------- edge sensors, beams and rims */
+
+const wh_reader_field_t wh_layout_beam_fields[] = {
+    {"x", NUMBER, "mm along the way in from the slot's centre, below 0 before it", false},
+    {"y", NUMBER, "mm across the way, to the left", true},
+    {"low", NUMBER, "mm above slot 1 where it begins", false},
+    {"high", NUMBER, "mm above slot 1 where it ends", false},
+    {"delay_on", NUMBER, "s from being broken to the latch", false},
+    {"delay_off", NUMBER, "s from being free to the latch", false},
+    {"jitter", NUMBER, "s: standard deviation of both delays", false},
+    {"seed", "integer", "names the jitter, with the number of the arming", false},
+    {"dx", NUMBER, "mm by which it truly stands farther in than motion control believes", false},
+    {"dy", NUMBER, "mm by which it truly stands farther to the left", false},
+    {"late", NUMBER, "s by which both delays are truly longer", false},
+    END};
 
 const wh_reader_field_t wh_layout_sensor_fields[] = {
     {"samples", "integer", "how many in a turn", false},
@@ -376,7 +398,9 @@ const wh_reader_field_t wh_layout_study_fields[] = {
     {"placement", "waferhand.placement", "of every wafer in its slot", false},
     {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
     {"timing", "waferhand.timing", "of valves and vacuum", false},
+    {"rim", "waferhand.rim_width", "of every wafer's rim, which edge sensors see", false},
     {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
+    {"rims", "table<string, waferhand.rim_width>", "of one wafer's rim alone, by the wafer's name", false},
     {"stations", "table<string, waferhand.teaching>", "of one station alone, by name", false},
     {"grippers", "table<string, waferhand.valve>", "of one gripper's valve alone, by name", false},
     END};
@@ -390,6 +414,21 @@ const wh_reader_field_t wh_layout_timing_fields[] = {
     END};
 const wh_reader_field_t wh_layout_valve_fields[] = {
     {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
+const wh_reader_field_t wh_layout_rim_width_fields[] = {
+    {"diameter", NUMBER, "mm, of the true diameter", false},
+    {"notch_depth", NUMBER, "mm", false},
+    {"notch_angle", NUMBER, "degrees, between the notch's flanks", false},
+    {"notch_bottom", NUMBER, "mm, of the radius of its bottom", false},
+    {"notch_corner", NUMBER, "mm, of the radii of its corners", false},
+    {"flat", NUMBER, "mm, of the primary flat's length", false},
+    {"second_flat", NUMBER, "mm, of the secondary flat's length", false},
+    {"chip_depth", NUMBER, "mm, of a chip more, somewhere", false},
+    {"chip_width", NUMBER, "mm, of that chip along the rim", false},
+    {"bow", NUMBER, "mm", false},
+    {"saddle", NUMBER, "mm, high in some direction", false},
+    {"glass", NUMBER, "part of the light that comes through", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};
 
 /* --------------------------------------------------------------------------------------------- the list */
 
@@ -413,6 +452,7 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"wafer", "A wafer, where it lies when a run begins.", wh_layout_wafer_fields},
     {"sensor", "A line sensor beside a prealigner's chuck.", wh_layout_sensor_fields},
     {"arc", "A part of a turn.", wh_layout_arc_fields},
+    {"beam", "A beam of light at a station's door.", wh_layout_beam_fields},
     {"rim", "A wafer's true rim.", wh_layout_rim_fields},
     {"rim_notch", "A notch with its roundings.", wh_layout_rim_notch_fields},
     {"flat", "A flat.", wh_layout_flat_fields},
@@ -440,4 +480,5 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"teaching", "Widths of errors of a station's place.", wh_layout_teaching_fields},
     {"timing", "Widths of errors of times.", wh_layout_timing_fields},
     {"valve", "The width of a valve's delay.", wh_layout_valve_fields},
+    {"rim_width", "Widths of errors of a wafer's rim.", wh_layout_rim_width_fields},
     {NULL, NULL, NULL}};

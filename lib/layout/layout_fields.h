@@ -37,6 +37,7 @@ extern const wh_reader_field_t wh_layout_station_fields[];
 extern const wh_reader_field_t wh_layout_wafer_fields[];
 extern const wh_reader_field_t wh_layout_sensor_fields[];
 extern const wh_reader_field_t wh_layout_arc_fields[];
+extern const wh_reader_field_t wh_layout_beam_fields[];
 extern const wh_reader_field_t wh_layout_rim_fields[];
 extern const wh_reader_field_t wh_layout_rim_notch_fields[];
 extern const wh_reader_field_t wh_layout_flat_fields[];
@@ -55,5 +56,6 @@ extern const wh_reader_field_t wh_layout_placement_fields[];
 extern const wh_reader_field_t wh_layout_teaching_fields[];
 extern const wh_reader_field_t wh_layout_timing_fields[];
 extern const wh_reader_field_t wh_layout_valve_fields[];
+extern const wh_reader_field_t wh_layout_rim_width_fields[];
 
 #endif

@@ -37,6 +37,9 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         hash = hash_limits(hash, &machine->robot.limits[axis]);
     }
     hash = hash_limits(hash, &machine->chuck_limits);
+    if (layout->transit > 0) {
+        hash = wh_hash_real(hash_text(hash, "transit"), layout->transit);
+    }
     hash = wh_hash_word(hash, machine->axis_count);
     hash = wh_hash_word(hash, machine->gripper_count);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
@@ -127,6 +130,11 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     if (layout->scanner_count > 0) {
         const wh_scanning_t scanning = wh_layout_scanning(layout);
         hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
+    }
+    if (layout->beam_count > 0) {
+        const wh_latching_t latching = wh_layout_latching(layout);
+        hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
+                                hash_text(hash, "beams"));
     }
     return hash;
 }

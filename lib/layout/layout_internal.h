@@ -41,6 +41,16 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);
 
+/* Wafers that sensors and beams can see, mm. */
+#define WH_SENSED_LEAST 20
+#define WH_SENSED_MOST 600
+
+/* Reads the beams of the station at which the reader is. */
+void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s);
+
+/* Fills in `blades`, once grippers and shapes are read. */
+void wh_layout_read_blades(wh_layout_t *layout);
+
 void wh_layout_read_faults(wh_reader_t *reader, wh_layout_t *layout);
 
 #endif

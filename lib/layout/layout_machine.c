@@ -54,7 +54,7 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
     wh_reader_leave(reader);
 }
 
-static void read_robot(wh_reader_t *reader, wh_robot_t *robot) {
+static void read_robot(wh_reader_t *reader, wh_robot_t *robot, wh_real_t *transit) {
     static const char *const kinds[] = {"TRZY", NULL};
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     wh_reader_open_section(reader, "robot", wh_layout_robot_fields);
@@ -65,6 +65,7 @@ static void read_robot(wh_reader_t *reader, wh_robot_t *robot) {
     if (wh_robot_validate(robot) != WH_OK) {
         wh_reader_fail(reader, NULL, "axes whose min is below max and whose home is between them");
     }
+    *transit = wh_reader_has(reader, "transit") ? wh_reader_number(reader, "transit", 0, 1, 1e5) : 0;
     wh_reader_leave(reader);
 }
 
@@ -73,7 +74,7 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     wh_robot_default(&machine->robot);
     machine->axis_count = WH_ROBOT_AXES;
     machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
-    read_robot(reader, &machine->robot);
+    read_robot(reader, &machine->robot, &layout->transit);
     layout->homed = wh_reader_boolean(reader, "homed", true);
     wh_reader_open_section(reader, "chuck", wh_layout_chuck_fields);
     read_axis_limits(reader, true, &machine->chuck_limits);

@@ -1,13 +1,9 @@
-/* The edge sensors of a layout's prealigners, and the true rims of its wafers, which they alone see. */
+/* The edge sensors of a layout's prealigners, and the true rims of its wafers, which they and beams see. */
 #include <math.h>
 #include <string.h>
 
 #include "../math/trig.h"
 #include "layout_internal.h"
-
-/* Wafers that a sensor can see, mm. */
-#define LEAST_DIAMETER 20
-#define MOST_DIAMETER 600
 
 /* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder
  * steps. */
@@ -106,9 +102,9 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     if (!layout->stations[s].prealigner) {
         wh_reader_fail(reader, NULL, "nothing: only a station of kind \"prealigner\" has an edge sensor");
     }
-    if (layout->wafer_diameter < LEAST_DIAMETER || layout->wafer_diameter > MOST_DIAMETER) {
+    if (layout->wafer_diameter < WH_SENSED_LEAST || layout->wafer_diameter > WH_SENSED_MOST) {
         wh_reader_fail(reader, NULL, "nothing: an edge sensor sees wafers from %d to %d mm, these have %.12g",
-                       LEAST_DIAMETER, MOST_DIAMETER, layout->wafer_diameter);
+                       WH_SENSED_LEAST, WH_SENSED_MOST, layout->wafer_diameter);
     }
     wh_scanner_t *scanner = &layout->scanners[layout->scanner_count];
     scanner->gripper = layout->places[s].chuck;
@@ -133,7 +129,8 @@ static wh_rim_t nominal_rim(wh_reader_t *reader, const wh_layout_t *layout) {
     rim.flats[0].direction = layout->notch;
     if (wh_rim_validate(&rim, &bad) != WH_OK) {
         lua_pushnumber(reader->L, layout->notch_depth);
-        wh_reader_fail(reader, "wafer.notch.depth", "0, or a depth from 0.27 to 3 mm for an edge sensor");
+        wh_reader_fail(reader, "wafer.notch.depth",
+                       "0, or a depth from 0.27 to 3 mm for an edge sensor or beams");
     }
     return rim;
 }
@@ -198,7 +195,7 @@ static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
 static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *rim) {
     wh_bad_field_t bad = {NULL, WH_NONE};
     rim->radius =
-        wh_reader_number(reader, "diameter", layout->wafer_diameter, LEAST_DIAMETER, MOST_DIAMETER) / 2;
+        wh_reader_number(reader, "diameter", layout->wafer_diameter, WH_SENSED_LEAST, WH_SENSED_MOST) / 2;
     read_notch(reader, &rim->notch);
     read_flats(reader, rim);
     read_chips(reader, rim);
@@ -218,9 +215,10 @@ static const wh_rim_t *read_wafer(wh_reader_t *reader, const wh_layout_t *layout
     if (!wh_reader_open(reader, "rim", wh_layout_rim_fields)) {
         return nominal;
     }
-    if (layout->scanner_count == 0) {
+    if (layout->scanner_count + layout->beam_count == 0) {
         wh_reader_fail(reader, NULL,
-                       "nothing: no prealigner of this layout has a `sensor` that would see it");
+                       "nothing: no prealigner of this layout has a `sensor` that would see it, no station "
+                       "`beams`");
     }
     wh_rim_t *rim = wh_layout_memory(reader->L, 1, sizeof *rim);
     *rim = *nominal;
@@ -232,7 +230,7 @@ static const wh_rim_t *read_wafer(wh_reader_t *reader, const wh_layout_t *layout
 static void read_rims(wh_reader_t *reader, wh_layout_t *layout) {
     wh_rim_t *nominal = wh_layout_memory(reader->L, 1, sizeof *nominal);
     const wh_rim_t **rims = wh_layout_memory(reader->L, layout->wafer_count, sizeof *rims);
-    if (layout->scanner_count > 0) {
+    if (layout->scanner_count + layout->beam_count > 0) {
         *nominal = nominal_rim(reader, layout);
     }
     layout->nominal_rim = nominal;
@@ -253,6 +251,7 @@ void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_reader_enter(reader, layout->stations[s].name);
         read_station(reader, layout, s);
+        wh_layout_read_beams(reader, layout, s);
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);

@@ -174,6 +174,40 @@ void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int3
     wh_shapes_add(list, &part, "%s chuck", name);
 }
 
+static void add_corner(wh_blade_outline_t *outline, wh_real_t x, wh_real_t y) {
+    const wh_real_t most = 1000;
+    outline->x[outline->count] = x < -most ? -most : x > most ? most : x;
+    outline->y[outline->count] = y < -most ? -most : y > most ? most : y;
+    ++outline->count;
+}
+
+wh_blade_outline_t wh_shapes_outline(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper) {
+    const wh_blade_t *b = &shapes->blade;
+    const wh_real_t inner = b->half_width - b->finger;
+    const wh_vec3_t wrist = wrist_of(shapes, effector_from_gripper);
+    const wh_real_t dx = wrist.x + b->palm;
+    const wh_real_t length = wh_real_sqrt(dx * dx + wrist.y * wrist.y);
+    wh_blade_outline_t outline = {.count = 0};
+    add_corner(&outline, -b->palm, -b->half_width);
+    add_corner(&outline, b->length, -b->half_width);
+    add_corner(&outline, b->length, -inner);
+    add_corner(&outline, b->finger - b->palm, -inner);
+    add_corner(&outline, b->finger - b->palm, inner);
+    add_corner(&outline, b->length, inner);
+    add_corner(&outline, b->length, b->half_width);
+    add_corner(&outline, -b->palm, b->half_width);
+    if (dx < -NECK_STRAIGHT) {
+        /* Half the neck's width, across it. */
+        const wh_real_t x = b->half_width / 2 * wrist.y / length;
+        const wh_real_t y = b->half_width / 2 * -dx / length;
+        add_corner(&outline, -b->palm, b->half_width / 2);
+        add_corner(&outline, wrist.x + x, wrist.y + y);
+        add_corner(&outline, wrist.x - x, wrist.y - y);
+        add_corner(&outline, -b->palm, -b->half_width / 2);
+    }
+    return outline;
+}
+
 /* ----------------------------------------------------------------------------------------------- stations */
 
 size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {

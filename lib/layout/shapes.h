@@ -6,6 +6,7 @@
 #ifndef WH_LAYOUT_SHAPES_H
 #define WH_LAYOUT_SHAPES_H
 
+#include "../align/beam.h"
 #include "../collision/world.h"
 
 #define WH_PART_NAME_SIZE 96
@@ -81,6 +82,9 @@ void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes);
  * hand; without a pose (null) the chuck of a prealigner. The pose turns about z alone. */
 void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
                            const wh_pose_t *effector_from_gripper, const char *name);
+
+/* A gripper's blade with its neck from above, as beams see it: within 1 m of the gripper's origin. */
+wh_blade_outline_t wh_shapes_outline(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper);
 
 /* Adds a part, for which there must be room. Its name is cut to fit. */
 void wh_shapes_add(wh_part_list_t *list, const wh_part_t *part, const char *name, ...)

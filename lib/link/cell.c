@@ -90,17 +90,49 @@ static void put_rim(const wh_rim_t *rim, int32_t wafer, double chips[3][WH_RIM_C
     }
 }
 
-static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
+static void put_vector(double x, double y, double z, double out[3]) {
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+static void put_beam(const wh_layout_t *layout, size_t b, waferhand_door_beam *out) {
+    const wh_door_beam_t *door = &layout->doors[b];
+    const wh_beam_t *beam = &door->beam;
+    *out = (waferhand_door_beam){.station = layout->beams[b].station,
+                                 .seed = (int64_t)door->seed,
+                                 .low = beam->low,
+                                 .high = beam->high,
+                                 .delay_on = door->delay_on,
+                                 .delay_off = door->delay_off,
+                                 .jitter = door->jitter};
+    put_vector(beam->x, beam->y, beam->z, out->point);
+    put_vector(beam->ex, beam->ey, beam->ez, out->direction);
+}
+
+static void put_beams(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
-    message->sensors = room->sensors;
+    message->beams = room->beams;
+    message->outlines = room->outlines;
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        put_beam(layout, b, &room->beams[b]);
+    }
+    message->beam_count = (int32_t)layout->beam_count;
+    message->outline_count = layout->beam_count > 0 ? (int32_t)layout->machine.gripper_count : 0;
+    for (int32_t g = 0; g < message->outline_count; ++g) {
+        const wh_blade_outline_t *blade = &layout->blades[g];
+        memcpy(room->corners[g][0], blade->x, sizeof blade->x);
+        memcpy(room->corners[g][1], blade->y, sizeof blade->y);
+        room->outlines[g] = (waferhand_outline){blade->count, room->corners[g][0], room->corners[g][1]};
+    }
+}
+
+static void put_rims(const wh_layout_t *layout, wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
     message->rims = room->rims;
-    if (layout->scanner_count == 0) {
+    if (layout->scanner_count + layout->beam_count == 0) {
         return;
     }
-    for (size_t i = 0; i < layout->scanner_count; ++i) {
-        put_sensor(&layout->scanners[i], room->hidden[i], &room->sensors[i]);
-    }
-    message->sensor_count = (int32_t)layout->scanner_count;
     put_rim(layout->nominal_rim, WH_NONE, room->chips[0], &room->rims[0]);
     message->rim_count = 1;
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -109,6 +141,15 @@ static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
             put_rim(layout->rims[w], (int32_t)w, room->chips[i], &room->rims[i]);
         }
     }
+}
+
+static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
+    message->sensors = room->sensors;
+    for (size_t i = 0; i < layout->scanner_count; ++i) {
+        put_sensor(&layout->scanners[i], room->hidden[i], &room->sensors[i]);
+    }
+    message->sensor_count = (int32_t)layout->scanner_count;
 }
 
 static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
@@ -152,6 +193,8 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     put_physics(&layout->physics, message);
     put_lists(layout, room);
     put_scanning(layout, room);
+    put_beams(layout, room);
+    put_rims(layout, room);
     return true;
 }
 
@@ -304,21 +347,56 @@ static bool take_rims(const waferhand_cell *cell, wh_layout_t *layout, const wh_
 }
 
 static bool take_scanning(const waferhand_cell *cell, wh_layout_t *layout) {
-    if (cell->sensor_count == 0) {
-        return cell->rim_count == 0;
-    }
-    wh_rim_t *rims = wh_array_new((size_t)cell->rim_count + 1, sizeof *rims);
-    const wh_rim_t **by_wafer = wh_array_new(layout->wafer_count, sizeof *by_wafer);
-    layout->nominal_rim = rims;
-    layout->rims = by_wafer;
     layout->scanner_count = (size_t)cell->sensor_count;
     for (int32_t i = 0; i < cell->sensor_count; ++i) {
         layout->scanners[i] = take_sensor(&cell->sensors[i], layout);
     }
     const wh_scanning_t scanning = wh_layout_scanning(layout);
+    return wh_scanning_validate(&scanning, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+}
+
+static wh_door_beam_t take_beam(const waferhand_door_beam *in) {
+    const wh_door_beam_t door = {.beam = {in->point[0], in->point[1], in->point[2], in->direction[0],
+                                          in->direction[1], in->direction[2], in->low, in->high},
+                                 .delay_on = in->delay_on,
+                                 .delay_off = in->delay_off,
+                                 .jitter = in->jitter,
+                                 .seed = (uint64_t)in->seed};
+    return door;
+}
+
+static bool take_beams(const waferhand_cell *cell, wh_layout_t *layout) {
+    bool sound = cell->outline_count == (cell->beam_count > 0 ? cell->gripper_count : 0);
+    layout->beam_count = (size_t)cell->beam_count;
+    for (int32_t b = 0; b < cell->beam_count; ++b) {
+        const int32_t station = cell->beams[b].station;
+        layout->doors[b] = take_beam(&cell->beams[b]);
+        layout->beams[b].station = station;
+        sound = sound && wh_is_index(station, layout->station_count) &&
+                (b == 0 || station >= layout->beams[b - 1].station);
+    }
+    for (int32_t g = 0; sound && g < cell->outline_count; ++g) {
+        const waferhand_outline *in = &cell->outlines[g];
+        layout->blades[g].count = in->count;
+        memcpy(layout->blades[g].x, in->x, (size_t)in->count * sizeof(double));
+        memcpy(layout->blades[g].y, in->y, (size_t)in->count * sizeof(double));
+    }
+    const wh_latching_t latching = wh_layout_latching(layout);
+    return sound &&
+           wh_latching_validate(&latching, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+}
+
+/* What sees wafers' rims, and these. */
+static bool take_sensing(const waferhand_cell *cell, wh_layout_t *layout) {
+    if (cell->sensor_count + cell->beam_count == 0) {
+        return cell->rim_count == 0 && cell->outline_count == 0;
+    }
+    wh_rim_t *rims = wh_array_new((size_t)cell->rim_count + 1, sizeof *rims);
+    const wh_rim_t **by_wafer = wh_array_new(layout->wafer_count, sizeof *by_wafer);
+    layout->nominal_rim = rims;
+    layout->rims = by_wafer;
     return cell->rim_count > 0 && take_rims(cell, layout, by_wafer, rims) &&
-           wh_rim_validate(rims, NULL) == WH_OK &&
-           wh_scanning_validate(&scanning, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+           wh_rim_validate(rims, NULL) == WH_OK && take_scanning(cell, layout) && take_beams(cell, layout);
 }
 
 static wh_layout_t *make_layout(const waferhand_cell *cell) {
@@ -337,7 +415,7 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = make_layout(cell);
     if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_lists(cell, layout) ||
-        !take_physics(cell, layout) || !take_scanning(cell, layout)) {
+        !take_physics(cell, layout) || !take_sensing(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }

@@ -13,15 +13,21 @@
 #define EVENT 156
 #define FAULT 132
 #define FAULT_SLOT 328
+#define LATCHING_FIXED (4 + 1 + 2 * 4 + 8 + 3 * 4)
+#define LATCH 24
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
 #define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 3 * 8 + 4 + 4 * 8 + 4 + 3 * 8 + 3 * 4)
 #define SAMPLE (4 + 4 + 1)
+#define CENTRING_FIXED (FINGERPRINT + HEADER + 5 * 4)
+#define CROSSING (3 * 4 + 5 * 8)
+#define CENTRE (6 * 8 + 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
+#define BEAM_FIXED (4 + 8 + 11 * 8)
 #define RIM_FIXED (4 + 14 * 8)
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
@@ -127,7 +133,10 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t samples = take_count(&walk, WH_SCAN_SLICE);
     skip(&walk, STATE_FIXED - STATE_COUNTS - 5 * 4);
     skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT);
-    skip(&walk, samples * 4 + CHECK);
+    skip(&walk, samples * 4);
+    const size_t waiting = take_count(&walk, WH_LATCHES);
+    const size_t latches = take_count(&walk, WH_LATCHES);
+    skip(&walk, LATCHING_FIXED + (waiting + latches) * LATCH + CHECK);
     return ends(&walk) && is_intact(data, size) &&
            waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }
@@ -179,6 +188,8 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
     const size_t faults = take_count(&walk, WH_FAULTS);
     const size_t sensors = take_count(&walk, WH_GRIPPERS);
+    const size_t beams = take_count(&walk, WH_BEAMS);
+    const size_t outlines = take_count(&walk, WH_GRIPPERS);
     const size_t rims = take_count(&walk, WH_LINK_RIMS);
     skip_texts(&walk, 2 * grippers);
     for (size_t i = 0; i < stations && walk.good; ++i) {
@@ -188,6 +199,8 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     skip_texts(&walk, wafers);
     skip(&walk, wafers * WAFER + faults * FAULT);
     skip_entries(&walk, sensors, SENSOR_FIXED, WH_SENSOR_ARCS, 2);
+    skip(&walk, beams * BEAM_FIXED);
+    skip_entries(&walk, outlines, 0, WH_OUTLINE_POINTS, 2);
     skip_entries(&walk, rims, RIM_FIXED, WH_RIM_CHIPS, 3);
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
 }
@@ -198,6 +211,15 @@ bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan
     skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * SAMPLE);
     skip_texts(&walk, take_count(&walk, WH_LINK_LINES));
     return ends(&walk) && waferhand_edge_scan_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_centring(const void *data, size_t size, waferhand_centring *message) {
+    walk_t walk = {data, size, 0, true};
+    skip(&walk, CENTRING_FIXED);
+    const size_t crossings = take_count(&walk, WH_CROSSINGS);
+    const size_t centres = take_count(&walk, 2);
+    skip(&walk, crossings * CROSSING + centres * CENTRE);
+    return ends(&walk) && waferhand_centring_decode(data, 0, (int)size, message) == (int)size;
 }
 
 /* --------------------------------------------------------------------------------------------- recordings */

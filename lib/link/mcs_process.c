@@ -256,7 +256,8 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* An edge scan has samples in each state, and a free run takes several from one exchange to the next. */
+/* States have samples of an edge scan and latches of beams, and a free run takes several from one exchange
+ * to the next. */
 static void hear_state(void *user, const wh_state_t *state) {
     const wh_mcs_process_t *control = user;
     if (control->mcs) {
@@ -304,6 +305,7 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .expected = expected,
                                .cycle = cycle,
                                .edge = wh_mcs_process_tell_edge,
+                               .centring = wh_mcs_process_tell_centring,
                                .finished = finished,
                                .user = control};
 }

@@ -18,6 +18,8 @@ void wh_mcs_process_tell(wh_mcs_process_t *control, int64_t request, int32_t pha
 /* The scan in mcs->edge has ended: on WAFERHAND_EDGE_SCAN, with what the estimate says; `user` is the
  * control. */
 void wh_mcs_process_tell_edge(void *user, const wh_mcs_t *mcs);
+/* What mcs->centring is: on WAFERHAND_LATCH; likewise. */
+void wh_mcs_process_tell_centring(void *user, const wh_mcs_t *mcs);
 
 /* A datagram on WAFERHAND_REQUEST; `user` is the control. */
 wh_node_handler_t wh_mcs_process_on_request;

@@ -110,6 +110,9 @@ void wh_link_command_to_message(const wh_command_t *command, const wh_link_ident
     message->scan_gripper = command->scan.gripper;
     message->scan_count = command->scan.count;
     message->scan_first = command->scan.first;
+    message->latch_order = (int32_t)command->latch.kind;
+    message->latch_first = command->latch.first;
+    message->latch_beams = command->latch.count;
 }
 
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command) {
@@ -130,6 +133,8 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
     memcpy(command->axes, message->axis_position, sizeof command->axes);
     command->scan = (wh_scan_order_t){(wh_scan_order_kind_t)message->scan_order, message->scan_gripper,
                                       message->scan_count, message->scan_first};
+    command->latch = (wh_latch_order_t){(wh_latch_order_kind_t)message->latch_order, message->latch_first,
+                                        message->latch_beams};
     command->fault_count = (size_t)message->fault_count;
     for (size_t i = 0; i < command->fault_count; ++i) {
         command->faults[i].index = message->fault_index[i];
@@ -217,9 +222,34 @@ static void put_scan(const wh_scan_t *scan, wh_link_state_t *room) {
     memcpy(room->samples, scan->samples, sizeof room->samples);
 }
 
+static void put_latch_list(const wh_latch_t latches[], int32_t count, waferhand_latch out[]) {
+    for (int32_t i = 0; i < count; ++i) {
+        out[i] =
+            (waferhand_latch){latches[i].beam, (int32_t)latches[i].edge, latches[i].slice, latches[i].part};
+    }
+}
+
+static void put_latches(const wh_latches_t *latches, wh_link_state_t *room) {
+    room->message.latching = (waferhand_latching){.waiting_count = latches->waiting_count,
+                                                  .latch_count = latches->latch_count,
+                                                  .number = (int32_t)latches->number,
+                                                  .armed = latches->armed ? 1 : 0,
+                                                  .first = latches->first,
+                                                  .beams = latches->count,
+                                                  .slice = latches->slice,
+                                                  .crossings = (int32_t)latches->crossings,
+                                                  .lost = (int32_t)latches->lost,
+                                                  .broken = (int32_t)latches->broken,
+                                                  .waiting = room->waiting,
+                                                  .latches = room->latches};
+    put_latch_list(latches->waiting, latches->waiting_count, room->waiting);
+    put_latch_list(latches->latches, latches->latch_count, room->latches);
+}
+
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *room) {
     static const wh_scan_t none;
+    static const wh_latches_t unarmed;
     waferhand_state *message = &room->message;
     message->utime = state->utime;
     message->seq = state->seq;
@@ -240,6 +270,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->samples = room->samples;
     message->check = 0;
     put_scan(state->physics ? &state->physics->scan : &none, room);
+    put_latches(state->physics ? &state->physics->latches : &unarmed, room);
     put_arrays(state, room);
 }
 
@@ -309,6 +340,28 @@ static void take_scan(const waferhand_state *message, wh_scan_t *scan) {
     }
 }
 
+static void take_latch_list(const waferhand_latch in[], int32_t count, wh_latch_t latches[]) {
+    for (int32_t i = 0; i < count; ++i) {
+        latches[i] = (wh_latch_t){in[i].beam, (wh_crossing_edge_t)in[i].edge, in[i].slice, in[i].part};
+    }
+}
+
+static void take_latches(const waferhand_latching *message, wh_latches_t *latches) {
+    memset(latches, 0, sizeof *latches);
+    latches->number = (uint32_t)message->number;
+    latches->armed = message->armed != 0;
+    latches->first = message->first;
+    latches->count = message->beams;
+    latches->slice = message->slice;
+    latches->crossings = (uint32_t)message->crossings;
+    latches->lost = (uint32_t)message->lost;
+    latches->broken = (uint32_t)message->broken;
+    latches->waiting_count = message->waiting_count;
+    latches->latch_count = message->latch_count;
+    take_latch_list(message->waiting, message->waiting_count, latches->waiting);
+    take_latch_list(message->latches, message->latch_count, latches->latches);
+}
+
 /* True if `other` is what this kind of event has there. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
@@ -360,6 +413,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
         sound = event_fits(&message->events[e], message) && sound;
     }
     take_scan(message, &arrays->physics.scan);
+    take_latches(&message->latching, &arrays->physics.latches);
     wh_faults_clear(&arrays->physics.faults);
     arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {

@@ -3,6 +3,7 @@
 #define WH_LINK_MESSAGES_H
 
 #include <waferhand_cell.h>
+#include <waferhand_centring.h>
 #include <waferhand_command.h>
 #include <waferhand_edge_scan.h>
 #include <waferhand_mcs.h>
@@ -23,6 +24,7 @@
 #define WH_CHANNEL_REQUEST "WAFERHAND_REQUEST"
 #define WH_CHANNEL_CELL "WAFERHAND_CELL"
 #define WH_CHANNEL_EDGE_SCAN "WAFERHAND_EDGE_SCAN"
+#define WH_CHANNEL_LATCH "WAFERHAND_LATCH"
 
 /* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
@@ -80,6 +82,7 @@ typedef struct {
     waferhand_event events[WH_LINK_EVENTS];
     waferhand_fault_slot faults[WH_FAULTS];
     int32_t samples[WH_SCAN_SLICE];
+    waferhand_latch waiting[WH_LATCHES], latches[WH_LATCHES];
 } wh_link_state_t;
 
 /* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
@@ -92,6 +95,9 @@ typedef struct {
     waferhand_fault faults[WH_FAULTS];
     waferhand_edge_sensor sensors[WH_GRIPPERS];
     double hidden[WH_GRIPPERS][2][WH_SENSOR_ARCS];
+    waferhand_door_beam beams[WH_BEAMS];
+    waferhand_outline outlines[WH_GRIPPERS];
+    double corners[WH_GRIPPERS][2][WH_OUTLINE_POINTS];
     waferhand_rim rims[WH_LINK_RIMS];
     double chips[WH_LINK_RIMS][3][WH_RIM_CHIPS];
 } wh_link_cell_t;
@@ -162,6 +168,7 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message);
+bool wh_link_decode_centring(const void *data, size_t size, waferhand_centring *message);
 
 /* The number of a request that cannot be decoded, if it has a request's fingerprint and is long enough to
  * carry one; else 0. */

@@ -1,11 +1,14 @@
 #include "node.h"
 
 #include <errno.h>
+#include <netdb.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "../text/clock.h"
 
@@ -74,6 +77,29 @@ static bool open_multicast(wh_receiver_t *receiver, const url_t *url) {
     return false;
 }
 
+/* True if a server listens where LCM's tcpq:// would look for one, which tries for ever without a word. */
+static bool is_answered(const char *text) {
+    char host[256];
+    const struct addrinfo wanted = {.ai_family = AF_INET, .ai_socktype = SOCK_STREAM};
+    struct addrinfo *found = NULL;
+    (void)snprintf(host, sizeof host, "%.*s", (int)strcspn(text, "?"), text);
+    char *port = strrchr(host, ':');
+    if (port) {
+        *port = '\0';
+    }
+    bool answered = false;
+    if (getaddrinfo(host[0] ? host : "127.0.0.1", port && port[1] ? port + 1 : "7700", &wanted, &found) ==
+        0) {
+        const int fd = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        answered = fd >= 0 && connect(fd, found->ai_addr, found->ai_addrlen) == 0;
+        if (fd >= 0) {
+            (void)close(fd);
+        }
+        freeaddrinfo(found);
+    }
+    return answered;
+}
+
 static bool connect_to(wh_node_t *node, const url_t *url) {
     static const char *const schemes[] = {"udpm://", "mpudpm://", "tcpq://", "memq://", "file://"};
     if (!begins_with(url->text, schemes, sizeof schemes / sizeof schemes[0])) {
@@ -81,6 +107,10 @@ static bool connect_to(wh_node_t *node, const url_t *url) {
         return false;
     }
     if (wh_multicast_is(url->text) && !open_multicast(&node->receiver, url)) {
+        return false;
+    }
+    if (begins_with(url->text, &schemes[2], 1) && !is_answered(url->text + strlen(schemes[2]))) {
+        refuse_url(url, "nobody answers there (expected a running server, such as lcm-tcpq-server)");
         return false;
     }
     node->lcm = lcm_create(url->text);

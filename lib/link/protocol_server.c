@@ -21,6 +21,8 @@ static void start_run(wh_protocol_server_t *server, int64_t run) {
     (void)wh_simulator_set_physics(&server->simulator, &layout->physics);
     const wh_scanning_t scanning = wh_layout_scanning(layout);
     (void)wh_simulator_set_scanning(&server->simulator, &scanning);
+    const wh_latching_t latching = wh_layout_latching(layout);
+    (void)wh_simulator_set_latching(&server->simulator, &latching);
     if (server->collision.memory) {
         wh_collision_attach(&server->collision, layout, &server->simulator, server->collision.memory);
     }

@@ -167,6 +167,17 @@ static void on_edge_scan(void *user, const void *data, size_t size) {
     (void)waferhand_edge_scan_decode_cleanup(&message);
 }
 
+/* Subscribed only so that the record holds what beams told. */
+static void on_latch(void *user, const void *data, size_t size) {
+    wh_sim_process_t *simulation = user;
+    waferhand_centring message;
+    if (!wh_link_decode_centring(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_LATCH, size);
+        return;
+    }
+    (void)waferhand_centring_decode_cleanup(&message);
+}
+
 /* Subscribed only so that the record holds requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
@@ -180,6 +191,20 @@ static void on_request(void *user, const void *data, size_t size) {
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
+static bool subscribe(wh_sim_process_t *simulation) {
+    static const struct {
+        const char *channel;
+        void (*hear)(void *user, const void *data, size_t size);
+    } heard[] = {{WH_CHANNEL_COMMAND, on_command}, {WH_CHANNEL_RESTORE, on_restore},
+                 {WH_CHANNEL_MCS, on_mcs},         {WH_CHANNEL_EDGE_SCAN, on_edge_scan},
+                 {WH_CHANNEL_LATCH, on_latch},     {WH_CHANNEL_REQUEST, on_request}};
+    bool good = true;
+    for (size_t i = 0; good && i < sizeof heard / sizeof heard[0]; ++i) {
+        good = wh_node_subscribe(simulation->node, heard[i].channel, heard[i].hear, simulation);
+    }
+    return good;
+}
+
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                 bool listens) {
     memset(simulation, 0, sizeof *simulation);
@@ -189,12 +214,7 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
         waferhand_cell_encoded_size(&simulation->cell.message) > WH_LINK_DATAGRAM) {
         return WH_STATUS_BAD_CAPACITY;
     }
-    const bool heard = !listens || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
-                                    wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
-                                    wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
-                                    wh_node_subscribe(node, WH_CHANNEL_EDGE_SCAN, on_edge_scan, simulation) &&
-                                    wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
-    if (!heard) {
+    if (listens && !subscribe(simulation)) {
         return WH_STATUS_NO_NETWORK;
     }
     tell_cell(simulation);

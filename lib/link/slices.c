@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "../math/hash.h"
+
 #define SIGN (UINT64_C(1) << 63)
 /* No time of a run is near to what 64 bits hold. */
 #define FARTHEST (INT64_C(1) << 62)
@@ -144,7 +146,7 @@ static uint64_t predict(prediction_t *prediction) {
         prediction->guesses[order] = prediction->last;
         /* Which of many bits a sum that is no number has, differs from machine to machine. */
         if (guess == guess) {
-            memcpy(&prediction->guesses[order], &guess, sizeof guess);
+            prediction->guesses[order] = wh_double_bits(guess);
         }
         if (order < prediction->seen && prediction->scores[order] < prediction->scores[best]) {
             best = order;
@@ -290,6 +292,13 @@ static bool is_no_fault(const waferhand_fault *fault) {
            is_zero(fault->rotation, sizeof fault->rotation);
 }
 
+/* True if sensors and beams are told nothing. */
+static bool is_without_orders(const waferhand_command *command) {
+    return (command->scan_order | command->scan_gripper | command->scan_count) == 0 &&
+           command->scan_first == 0 &&
+           (command->latch_order | command->latch_first | command->latch_beams) == 0;
+}
+
 /* True if the entries of arrays that do not count are all zero, as wh_link_command_to_message leaves them. */
 static bool is_plain(const waferhand_command *command) {
     const size_t grippers = WH_GRIPPERS - (size_t)command->gripper_count;
@@ -300,8 +309,7 @@ static bool is_plain(const waferhand_command *command) {
                          grippers * sizeof *command->gripper_rotation) &&
                  is_zero(command->valve + command->gripper_count, grippers * sizeof *command->valve) &&
                  is_zero(command->axis_position + command->axis_count, axes * sizeof(double)) &&
-                 (command->scan_order | command->scan_gripper | command->scan_count) == 0 &&
-                 command->scan_first == 0 && command->fault_count == 0 &&
+                 is_without_orders(command) && command->fault_count == 0 &&
                  is_zero(command->fault_index, sizeof command->fault_index);
     for (size_t i = 0; plain && i < WH_COMMAND_FAULTS; ++i) {
         plain = is_no_fault(&command->faults[i]);

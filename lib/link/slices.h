@@ -24,7 +24,7 @@
 #define WH_SLICES_COLUMNS (WH_AXES + 12 * WH_GRIPPERS)
 
 /* waferhand_recording.version: what this program writes. Logs without that message are of version 1. */
-#define WH_RECORDING_VERSION 3
+#define WH_RECORDING_VERSION 4
 
 /* waferhand_recording.mode. */
 enum { WH_RECORDING_SLICES, WH_RECORDING_ALL };
@@ -50,8 +50,8 @@ typedef struct {
 /* Adds a slice: its command, the `valve_told` of its state for each of the command's grippers, and its
  * state's hash. False, and nothing has changed, if the slice does not fit: the block is full; it is no
  * successor of the block's last slice, of the same run, layout, lockstep and counts, by the same step of
- * utime; the command has faults or an order to an edge sensor, a valve that is neither 0 nor 1, or anything
- * in an entry that does not count. Cost: 0.1 us. */
+ * utime; the command has faults or an order to an edge sensor or to beams, a valve that is neither 0 nor 1,
+ * or anything in an entry that does not count. Cost: 0.1 us. */
 bool wh_slices_add(wh_slices_t *slices, const waferhand_command *command, const int32_t told[],
                    uint64_t hash);
 

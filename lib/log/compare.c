@@ -11,10 +11,9 @@
 
 /* ------------------------------------------------------------------------------------------------ digests */
 
+/* Of every NaN the same. */
 static uint64_t bits_of(double value) {
-    uint64_t bits = 0;
-    memcpy(&bits, &value, sizeof bits);
-    return isnan(value) ? UINT64_C(0x7FF8000000000000) : bits;
+    return wh_double_bits(isnan(value) ? (double)NAN : value);
 }
 
 static void keep(void *user, const wh_layout_t *layout, const double axes[], const wh_state_t *state,

@@ -299,14 +299,35 @@ static void on_edge_scan(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_edge_scan_decode_cleanup(&message);
 }
 
+/* It follows from its slices' states, and from what motion control believes of the beams. */
+static void on_latch(wh_replay_t *replay, const void *data, size_t size) {
+    const wh_protocol_server_t *server = &replay->server;
+    waferhand_centring message;
+    if (!wh_link_decode_centring(data, size, &message)) {
+        wh_replay_lose(replay, WH_REPLAY_GARBAGE);
+        return;
+    }
+    if (is_wanted(replay, message.run)) {
+        const wh_latches_t *latches = &server->simulator.physics.latches;
+        ++replay->messages;
+        if (replay->is_synchronous && server->identity.run == message.run && server->seq == message.seq &&
+            (message.number != (int32_t)latches->number ||
+             (int64_t)message.crossing_count + message.missed < (int64_t)latches->crossings)) {
+            wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
+        }
+    }
+    (void)waferhand_centring_decode_cleanup(&message);
+}
+
 /* ---------------------------------------------------------------------------------------------- the whole */
 
 /* True if a datagram begins with the fingerprint of one of our messages. */
 static bool is_ours(const void *data, size_t size) {
-    const int64_t fingerprints[] = {
-        __waferhand_command_get_hash(),   __waferhand_state_get_hash(),     __waferhand_cell_get_hash(),
-        __waferhand_proximity_get_hash(), __waferhand_mcs_get_hash(),       __waferhand_request_get_hash(),
-        __waferhand_slices_get_hash(),    __waferhand_recording_get_hash(), __waferhand_edge_scan_get_hash()};
+    const int64_t fingerprints[] = {__waferhand_command_get_hash(),   __waferhand_state_get_hash(),
+                                    __waferhand_cell_get_hash(),      __waferhand_proximity_get_hash(),
+                                    __waferhand_mcs_get_hash(),       __waferhand_request_get_hash(),
+                                    __waferhand_slices_get_hash(),    __waferhand_recording_get_hash(),
+                                    __waferhand_edge_scan_get_hash(), __waferhand_centring_get_hash()};
     uint64_t first = 0;
     bool ours = false;
     memcpy(&first, data, size < sizeof first ? 0 : sizeof first);
@@ -324,7 +345,8 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
                     {WH_CHANNEL_STATE, on_state},         {WH_CHANNEL_MCS, on_mcs},
                     {WH_CHANNEL_RESTORE, on_restore},     {WH_CHANNEL_REQUEST, on_request},
                     {WH_CHANNEL_PROXIMITY, on_proximity}, {WH_CHANNEL_SLICES, on_slices},
-                    {WH_CHANNEL_RECORDING, on_recording}, {WH_CHANNEL_EDGE_SCAN, on_edge_scan}};
+                    {WH_CHANNEL_RECORDING, on_recording}, {WH_CHANNEL_EDGE_SCAN, on_edge_scan},
+                    {WH_CHANNEL_LATCH, on_latch}};
     const bool ours = strncmp(channel, WH_LINK_OURS, strlen(WH_LINK_OURS)) == 0;
     ++replay->events;
     if (ours && replay->recording.closed != WH_RECORDING_BEGINS) {

@@ -45,6 +45,24 @@ static const field_t scan_fields[] = {
     {"first sample", AT(state, scan_first), INT64}, {"samples taken", AT(state, scan_taken), INT32},
     {"turn", AT(state, scan_turn), REAL},           {0}};
 
+static const field_t latches_fields[] = {{"latches to come", AT(latching, waiting_count), INT32},
+                                         {"latches", AT(latching, latch_count), INT32},
+                                         {"number", AT(latching, number), INT32},
+                                         {"armed", AT(latching, armed), INT8},
+                                         {"first beam", AT(latching, first), INT32},
+                                         {"beams", AT(latching, beams), INT32},
+                                         {"slices", AT(latching, slice), INT64},
+                                         {"crossings", AT(latching, crossings), INT32},
+                                         {"lost latches", AT(latching, lost), INT32},
+                                         {"broken beams", AT(latching, broken), INT32},
+                                         {0}};
+
+static const field_t latch_fields[] = {{"beam", AT(latch, beam), INT32},
+                                       {"edge", AT(latch, edge), INT32},
+                                       {"slice", AT(latch, slice), INT64},
+                                       {"part", AT(latch, part), REAL},
+                                       {0}};
+
 static const field_t tail_fields[] = {
     {"sensors", AT(state, sensors), INT32}, {"hash", AT(state, hash), INT64}, {0}};
 
@@ -241,6 +259,19 @@ static bool scans_differ(const waferhand_state *recorded, const waferhand_state 
     return false;
 }
 
+static bool latches_differ(const waferhand_latching *recorded, const waferhand_latching *replayed,
+                           wh_replay_difference_t *difference) {
+    bool found = differ(latches_fields, "beams", recorded, replayed, difference);
+    for (int32_t i = 0; !found && i < recorded->waiting_count; ++i) {
+        found =
+            differ(latch_fields, "a latch to come", &recorded->waiting[i], &replayed->waiting[i], difference);
+    }
+    for (int32_t i = 0; !found && i < recorded->latch_count; ++i) {
+        found = differ(latch_fields, "a latch", &recorded->latches[i], &replayed->latches[i], difference);
+    }
+    return found;
+}
+
 /* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
  * `difference` then says where; else it is unchanged. */
 static bool states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
@@ -263,6 +294,7 @@ static bool states_differ(const wh_layout_t *layout, const waferhand_state *reco
     }
     return events_differ(recorded, replayed, difference) || faults_differ(recorded, replayed, difference) ||
            scans_differ(recorded, replayed, difference) ||
+           latches_differ(&recorded->latching, &replayed->latching, difference) ||
            differ(tail_fields, "", recorded, replayed, difference);
 }
 

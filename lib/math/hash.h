@@ -27,6 +27,14 @@ static inline uint64_t wh_hash_real(uint64_t hash, wh_real_t value) {
     return wh_hash_word(hash, bits);
 }
 
+/* A double's bits as a word, also where wh_real_t is float. Which of the NaNs an operation gives differs from
+ * machine to machine. */
+static inline uint64_t wh_double_bits(double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
 static inline uint64_t wh_hash_vec3(uint64_t hash, const wh_vec3_t *v) {
     hash = wh_hash_real(hash, v->x);
     hash = wh_hash_real(hash, v->y);

@@ -48,9 +48,11 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
         return layout;
     }
     wh_trial_cell_t *trial_cell = lua_memory(L, sizeof *trial_cell);
-    wh_trial_cell_fill(trial_cell, layout, mcs->trial,
-                       lua_memory(L, layout->station_count * sizeof *layout->places),
-                       lua_memory(L, layout->wafer_count * sizeof *layout->start));
+    const wh_trial_room_t room = {lua_memory(L, layout->station_count * sizeof *room.places),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.start),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.rims),
+                                  lua_memory(L, layout->wafer_count * sizeof(const wh_rim_t *))};
+    wh_trial_cell_fill(trial_cell, layout, mcs->trial, &room);
     if (layout->collision) {
         wh_layout_read_trial_world(L, &trial_cell->layout);
     }
@@ -78,9 +80,11 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
         memcpy(storage.wafers, real->start, bytes);
     }
     const wh_scanning_t scanning = wh_layout_scanning(real);
+    const wh_latching_t latching = wh_layout_latching(real);
     wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
     status = status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
-    return status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
+    status = status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
+    return status == WH_OK ? wh_simulator_set_latching(simulator, &latching) : status;
 }
 
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
@@ -133,8 +137,8 @@ static void set_up_listeners(wh_mcs_t *mcs) {
     mcs->recorder.layout = mcs->layout;
     mcs->recorder.cell = &mcs->real->cell;
     wh_mcs_listen(mcs, hear_record, &mcs->recorder);
-    if (mcs->layout->scanner_count > 0) {
-        wh_mcs_listen(mcs, wh_mcs_hear_edge, mcs);
+    if (mcs->layout->scanner_count + mcs->layout->beam_count > 0) {
+        wh_mcs_listen(mcs, wh_mcs_hear_slice, mcs);
     }
     if (mcs->decisions) {
         wh_mcs_listen(mcs, hear_decisions, mcs->decisions);
@@ -151,6 +155,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
+    wh_track_take_ways(&mcs->track);
     set_up_look_ahead(L, mcs, layout, real);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
@@ -171,7 +176,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
     static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 26);
+    lua_createtable(L, 0, 30);
     wh_lua_set_number(L, "pitch", place->pitch);
     wh_lua_set_number(L, "stroke", station->stroke);
     wh_lua_set_number(L, "offset", station->offset);
@@ -192,6 +197,10 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
+    wh_lua_set_boolean(L, "centre", station->centre);
+    wh_lua_set_number(L, "radius", layout->wafer_diameter / 2);
+    wh_lua_set_number(L, "notch", layout->notch);
+    wh_lua_set_integer(L, "beams", wh_layout_beams_at(layout, index).count);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
     const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
@@ -208,15 +217,16 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
-/* { path, slice, sampled, homed, tolerance, home: the robot's axes, corrections: the largest ones by the
- * field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other angles
- * in rad, times in s. */
+/* { path, slice, sampled, homed, seat, tolerance, home: the robot's axes, corrections: the largest ones by
+ * the field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other
+ * angles in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);
     wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
     wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
     wh_lua_set_boolean(L, "homed", layout->homed);
+    wh_lua_set_boolean(L, "seat", layout->grasp.seat);
     wh_lua_push_tolerance(L, &layout->grasp.tolerance);
     lua_setfield(L, -2, "tolerance");
     lua_createtable(L, 0, (int)layout->station_count);
@@ -257,6 +267,10 @@ static int set_study(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (mcs->layout) {
         lua_pushfstring(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
+        return lua_error(L);
+    }
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) != LUA_TNIL) {
+        lua_pushliteral(L, "study: given twice (expected one study a script)");
         return lua_error(L);
     }
     lua_settop(L, 1);

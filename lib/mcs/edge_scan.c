@@ -43,6 +43,7 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     const bool was_armed = edge->armed;
     edge->seq = state->seq;
     edge->number = scan->number;
+    wh_mcs_hear_pass(&mcs->pass, state);
     if (is_of(edge, scan)) {
         collect(edge, scan);
         if (was_armed && !edge->armed && mcs->partners.edge) {
@@ -51,9 +52,10 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     }
 }
 
-void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state) {
-    (void)command;
-    wh_mcs_hear(user, state);
+void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_mcs_t *mcs = user;
+    wh_mcs_follow_pass(&mcs->pass, command);
+    wh_mcs_hear(mcs, state);
 }
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge) {

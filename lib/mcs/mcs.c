@@ -177,7 +177,7 @@ static int open_words(lua_State *L) {
         wh_mcs_fault_functions,  wh_mcs_describe_functions,   wh_mcs_plan_functions,
         wh_mcs_play_functions,   wh_mcs_query_functions,      wh_mcs_scan_functions,
         wh_mcs_survey_functions, wh_mcs_definition_functions, wh_mcs_saved_functions,
-        wh_mcs_edge_functions};
+        wh_mcs_edge_functions,   wh_mcs_centring_functions,   wh_mcs_teaching_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -279,5 +279,6 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     mcs->kept_faults = NULL;
     mcs->segment_count = 0;
     wh_mcs_free_edge(&mcs->edge);
+    wh_mcs_free_pass(&mcs->pass);
     wh_rehearsal_free(&mcs->rehearsal);
 }

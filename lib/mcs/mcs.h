@@ -8,6 +8,7 @@
 #ifndef WH_MCS_MCS_H
 #define WH_MCS_MCS_H
 
+#include "../align/teaching.h"
 #include "../layout/collision.h"
 #include "../record/recorder.h"
 #include "../script/sandbox.h"
@@ -53,6 +54,8 @@ typedef struct {
     void (*cycle)(void *user, const wh_mcs_t *mcs);
     /* The scan in mcs->edge has ended. */
     void (*edge)(void *user, const wh_mcs_t *mcs);
+    /* mcs->centring is what a pass through beams has told. */
+    void (*centring)(void *user, const wh_mcs_t *mcs);
     /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
      * prompt. */
     void (*finished)(void *user, const wh_mcs_t *mcs);
@@ -130,6 +133,45 @@ typedef struct {
     bool armed;              /* more are to come */
 } wh_mcs_edge_t;
 
+/* A blade's pass through the beams at a door, as the states have brought it. */
+typedef struct {
+    wh_latch_order_t order; /* count 0: none was armed */
+    int32_t station, gripper;
+    int64_t seq;             /* of the last state that was heard */
+    uint32_t number, before; /* of the last arming that was heard of, now and when this one was ordered */
+    int64_t armed_seq;       /* the slice whose command carried the order; 0: none yet */
+    bool goes_on;            /* the blade's way is remembered */
+    wh_pose_t *places;       /* where the gripper was commanded to, from the end of that slice on */
+    size_t place_count, place_capacity;
+    wh_latch_t latches[WH_CROSSINGS]; /* of these the first latch_count, as far as there is room */
+    int64_t latch_count;
+    int64_t missed; /* latches that no state brought */
+    bool skipped;   /* the simulator has not had all slices */
+} wh_mcs_pass_t;
+
+/* A latch as a point of the blade. */
+typedef struct {
+    wh_crossing_t crossing;
+    double time; /* of the crossing, s of the run */
+} wh_mcs_crossing_t;
+
+/* What the last pass told. */
+typedef struct {
+    int32_t station, gripper;
+    wh_status_t status; /* WH_OK: the centre is centres.candidates[0] */
+    int64_t missed;
+    size_t count;
+    wh_mcs_crossing_t crossings[WH_CROSSINGS];
+    wh_centres_t centres;
+} wh_mcs_centring_t;
+
+/* What a teaching has measured so far. */
+#define WH_MCS_LESSONS 64
+typedef struct {
+    wh_teach_measurement_t lessons[WH_MCS_LESSONS];
+    size_t count;
+} wh_mcs_teaching_t;
+
 /* How many commands of a prompt UNDO takes back at most. */
 #define WH_MCS_UNDONE 50
 
@@ -157,6 +199,9 @@ struct wh_mcs {
     wh_mcs_sent_t sent[WH_MCS_SENT]; /* and the last ones that were sent, by seq % WH_MCS_SENT */
 
     wh_mcs_edge_t edge;
+    wh_mcs_pass_t pass;
+    wh_mcs_centring_t centring;
+    wh_mcs_teaching_t teaching;
 
     wh_rehearsal_t rehearsal;
     wh_vacuum_watch_t watch;     /* of the running segment */

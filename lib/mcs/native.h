@@ -47,10 +47,16 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
     return 20 * (uint64_t)slices;
 }
 
-/* Hears of each slice for what `edge` collects; `user` is the wh_mcs_t. */
-void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state);
+/* Hears of each slice for what `edge` and `pass` collect; `user` is the wh_mcs_t. */
+void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state);
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
+
+/* A state that comes after all that were heard; and a command that was sent. */
+void wh_mcs_hear_pass(wh_mcs_pass_t *pass, const wh_state_t *state);
+void wh_mcs_follow_pass(wh_mcs_pass_t *pass, const wh_command_t *command);
+
+void wh_mcs_free_pass(wh_mcs_pass_t *pass);
 
 /* Pushes what motion control knows of an edge sensor: { samples: in a turn, pixels: of the line, pixel,
  * middle and length, mm }. Its errors are for a calibration to find. */
@@ -58,6 +64,7 @@ void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner);
 
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_cell_functions[];
+extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
 extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
@@ -69,6 +76,7 @@ extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_survey_functions[];
+extern const luaL_Reg wh_mcs_teaching_functions[];
 
 /* Pushes what looks at the stations of a layout for a survey, see lua/mcs/init.lua. */
 void wh_mcs_push_survey(lua_State *L);

@@ -1,7 +1,9 @@
 /* Planning: where slots are and where the axes must go, segments as Lua asks for them, and rehearsals. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "../layout/transit.h"
 #include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
@@ -109,6 +111,21 @@ static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *seg
     }
 }
 
+/* A turn with R beyond the layout's transit, at one of its ends, is a way that comes in first. */
+static void keep_within_transit(const wh_mcs_t *mcs, wh_segment_t *segment) {
+    const wh_real_t *from = mcs->track.axes;
+    const wh_real_t *to = segment->target;
+    const bool turns = wh_real_abs(to[WH_AXIS_THETA] - from[WH_AXIS_THETA]) > 0 ||
+                       wh_real_abs(to[WH_AXIS_YAW] - from[WH_AXIS_YAW]) > 0;
+    if (mcs->layout->transit > 0 && turns) {
+        const wh_real_t reach = wh_transit_reach(mcs->layout, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
+        if (from[WH_AXIS_R] > reach || to[WH_AXIS_R] > reach) {
+            segment->kind = WH_SEGMENT_WAY;
+            segment->reach = reach;
+        }
+    }
+}
+
 static void read_line_field(lua_State *L, wh_segment_t *segment) {
     wh_real_t *const parts[] = {&segment->travel.x, &segment->travel.y, &segment->travel.z};
     segment->kind = WH_SEGMENT_LINE;
@@ -155,6 +172,7 @@ static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
     switch (kind) {
     case 0:
         read_axes_field(L, mcs, &segment);
+        keep_within_transit(mcs, &segment);
         break;
     case 1:
         read_line_field(L, &segment);
@@ -186,12 +204,27 @@ static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
     return grippers;
 }
 
+static void say_way(const wh_mcs_t *mcs, const wh_segment_t *segment, char reason[WH_TRAVEL_BYTES]) {
+    wh_travel_say_axes(mcs->layout, segment->target, reason);
+    if (reason[0] == '\0') {
+        const wh_real_t least =
+            wh_transit_least(mcs->layout, mcs->track.axes[WH_AXIS_YAW], segment->target[WH_AXIS_YAW]);
+        snprintf(reason, WH_TRAVEL_BYTES,
+                 "`robot.transit` of %.10g mm leaves no room to turn: with r at %.10g mm, where its travel "
+                 "begins, blades and wafers need %.1f mm",
+                 mcs->layout->transit, mcs->layout->machine.robot.travel[WH_AXIS_R].min,
+                 ceil(10 * least) / 10);
+    }
+}
+
 static void refuse_segment(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const wh_segment_t *segment) {
     char reason[WH_TRAVEL_BYTES] = "";
     if (status == WH_STATUS_BAD_SEGMENT) {
         snprintf(reason, sizeof reason, "it would take more than 1e6 s");
     } else if (segment->kind == WH_SEGMENT_AXES) {
         wh_travel_say_axes(mcs->layout, segment->target, reason);
+    } else if (segment->kind == WH_SEGMENT_WAY) {
+        say_way(mcs, segment, reason);
     } else if (segment->kind == WH_SEGMENT_LINE) {
         wh_travel_say_line(mcs->layout, mcs->track.axes, &segment->travel, reason);
     }

@@ -35,6 +35,7 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     }
     mcs->command.fault_count = 0;
     mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_KEEP};
+    mcs->command.latch = (wh_latch_order_t){.kind = WH_LATCH_KEEP};
     return status;
 }
 

@@ -20,7 +20,8 @@ typedef struct {
     size_t fault_count;
     int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
     uint32_t edge_number;
-    size_t size; /* of `bytes` */
+    uint32_t pass_number; /* of the armings of beams, likewise */
+    size_t size;          /* of `bytes` */
     uint8_t bytes[];
 } saved_t;
 
@@ -39,6 +40,7 @@ static void keep(const wh_mcs_t *mcs, saved_t *saved) {
     saved->fault_count = mcs->fault_count;
     saved->edge_seq = mcs->edge.seq;
     saved->edge_number = mcs->edge.number;
+    saved->pass_number = mcs->pass.number;
 }
 
 static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
@@ -52,6 +54,8 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->fault_count = saved->fault_count;
     wh_mcs_free_edge(&mcs->edge);
     mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
+    wh_mcs_free_pass(&mcs->pass);
+    mcs->pass = (wh_mcs_pass_t){.seq = saved->edge_seq, .number = saved->pass_number};
     mcs->recorder.slice = saved->track.slice;
     /* The check begins anew: it would take what was put back for a motion. */
     mcs->local.collision.world = NULL;

@@ -65,6 +65,15 @@ static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *opti
     return true;
 }
 
+/* Which option allows more. */
+static void name_option(wh_sandbox_result_t *result) {
+    const size_t length = strlen(result->message);
+    if (result->status == WH_SANDBOX_BUDGET) {
+        (void)snprintf(result->message + length, sizeof result->message - length,
+                       " (expected fewer steps, or more with --budget)");
+    }
+}
+
 static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_run_options_t *options,
                                         wh_sandbox_result_t *result) {
     lua_State *L = wh_sandbox_state(run->sandbox);
@@ -72,6 +81,7 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_ru
     const bool is_unusable = ended && find_fault(run, options, result);
     const bool stopped = result->status == WH_SANDBOX_STOPPED;
     bool is_bad_input = false;
+    name_option(result);
     if (result->status != WH_SANDBOX_OK) {
         is_bad_input =
             !stopped && (is_unusable || result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(L));
@@ -99,6 +109,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
         return refuse(run, result.message);
     }
     if (!wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
+        name_option(&result);
         (void)refuse(run, "");
         (void)snprintf(run->message, sizeof run->message, "%.500s: %.500s", options->script, result.message);
         return WH_RUN_BAD_INPUT;
@@ -111,6 +122,8 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.trial = options->error_count > 0 && !options->trial ? &any_trial : options->trial;
     run->mcs.errors = options->errors;
     run->mcs.error_count = options->error_count;
+    run->record.errors = options->errors;
+    run->record.error_count = options->error_count;
     run->mcs.without_collisions = options->without_collisions;
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;

@@ -52,6 +52,16 @@ static void place_scanners(wh_trial_cell_t *trial_cell) {
     }
 }
 
+/* Beams go with their station, too. */
+static void place_beams(wh_trial_cell_t *trial_cell) {
+    wh_layout_t *layout = &trial_cell->layout;
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        wh_layout_place_beam(layout, b);
+        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.seed);
+        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.trial);
+    }
+}
+
 /* To the last bit. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
@@ -79,22 +89,35 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
     }
 }
 
+/* Only edge sensors see them. */
+static void place_rims(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_room_t *room) {
+    for (size_t w = 0; layout->scanner_count > 0 && w < layout->wafer_count; ++w) {
+        double drawn[WH_RIM_DRAWS];
+        room->rims[w] = *layout->rims[w];
+        wh_errors_draw_rim(layout->errors, &trial_cell->trial, w, &room->rims[w], drawn);
+        room->rim_of[w] = wh_rim_draw_apply(drawn, &room->rims[w]) ? &room->rims[w] : layout->rims[w];
+    }
+    trial_cell->layout.rims = layout->scanner_count > 0 ? room->rim_of : layout->rims;
+}
+
 static int64_t lag_of(const wh_trial_cell_t *trial_cell, wh_real_t seconds) {
     const double slices = ceil((double)seconds * 1e6 / (double)trial_cell->layout.slice_us);
     return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
 }
 
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
-                        wh_station_t *places, wh_wafer_t *start) {
+                        const wh_trial_room_t *room) {
     trial_cell->trial = *trial;
     trial_cell->layout = *layout;
     trial_cell->chucks_moved = false;
-    trial_cell->layout.places = places;
-    trial_cell->layout.start = start;
-    trial_cell->layout.cell.stations = places;
-    place_stations(trial_cell, layout, places);
+    trial_cell->layout.places = room->places;
+    trial_cell->layout.start = room->start;
+    trial_cell->layout.cell.stations = room->places;
+    place_stations(trial_cell, layout, room->places);
     place_scanners(trial_cell);
-    place_wafers(trial_cell, layout, places, start);
+    place_beams(trial_cell);
+    place_wafers(trial_cell, layout, room->places, room->start);
+    place_rims(trial_cell, layout, room);
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);
     *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;

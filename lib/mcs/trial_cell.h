@@ -1,8 +1,8 @@
 /* A trial's cell: what a layout describes, with the errors that the trial has drawn.
  *
  * Motion control goes by the layout, the simulator by this cell: stations, with the wafers in them, stand
- * beside where they were taught, wafers lie beside their places, valves and vacuum act late; each trial has
- * noise of its own in its edge sensors.
+ * beside where they were taught, wafers lie beside their places and have rims of their own, valves and vacuum
+ * act late; each trial has noise of its own in its edge sensors.
  */
 #ifndef WH_MCS_TRIAL_CELL_H
 #define WH_MCS_TRIAL_CELL_H
@@ -14,7 +14,16 @@
  * WH_STUDY_LAG_SLICES. */
 #define WH_TRIAL_CELL_PAST 8192
 
-/* `layout` shares all but places, start, machine, physics and cell with the layout that it was made of. */
+/* Room for what a trial's cell has of its own: of the layout's stations and wafers. */
+typedef struct {
+    wh_station_t *places;
+    wh_wafer_t *start;
+    wh_rim_t *rims;
+    const wh_rim_t **rim_of; /* by wafer: one of `rims`, or the layout's */
+} wh_trial_room_t;
+
+/* `layout` shares all but places, start, rims, machine, physics and cell with the layout that it was made
+ * of. */
 typedef struct {
     wh_trial_t trial;
     wh_layout_t layout;
@@ -23,12 +32,11 @@ typedef struct {
     uint8_t told[WH_TRIAL_CELL_PAST]; /* bit g of entry n: gripper g's valve was told to close in slice n */
 } wh_trial_cell_t;
 
-/* Fills in the cell of a trial. `places` and `start` are room for the layout's stations and wafers; they
- * and `layout`, which has `errors`, must outlive it. The collision world still is the layout's: see
- * wh_layout_read_trial_world. Deterministic: the same trial gives the same bits. Cost: linear in stations and
- * wafers. */
+/* Fills in the cell of a trial. The arrays of `room`, and `layout`, which has `errors`, must outlive it. The
+ * collision world still is the layout's: see wh_layout_read_trial_world. Deterministic: the same trial gives
+ * the same bits. Cost: linear in stations and wafers. */
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
-                        wh_station_t *places, wh_wafer_t *start);
+                        const wh_trial_room_t *room);
 
 /* Replaces what the valves are told in slice `command->seq` by what they do, late. To be called for each
  * slice in turn, from 1. */

@@ -133,6 +133,9 @@ static wh_status_t set_up(wh_tryout_t *tryout) {
     if (status == WH_OK) {
         status = wh_track_init(&tryout->mcs->track, &full->machine, full->slice_us);
     }
+    if (status == WH_OK) {
+        wh_track_take_ways(&tryout->mcs->track);
+    }
     return status;
 }
 
@@ -268,6 +271,7 @@ void wh_tryout_end(wh_tryout_t *tryout) {
     tryout->slices += mcs->track.slice;
     use_layout(mcs, tryout->layout);
     (void)wh_track_init(&mcs->track, &tryout->layout->machine, tryout->layout->slice_us);
+    wh_track_take_ways(&mcs->track);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
 }
 

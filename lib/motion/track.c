@@ -45,6 +45,7 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     segment.acceleration = 0;
     segment.seconds = 0;
     segment.gripper = WH_NONE;
+    segment.reach = 0;
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
         segment.target[axis] = track->axes[axis];
     }
@@ -135,6 +136,36 @@ static wh_status_t plan_wait(wh_track_t *track, const wh_segment_t *segment) {
     return WH_OK;
 }
 
+/* Chucks turn in segments of their own. */
+static bool chucks_stand(const wh_track_t *track, const wh_segment_t *segment) {
+    bool stand = true;
+    for (size_t axis = WH_ROBOT_AXES; axis < track->machine->axis_count; ++axis) {
+        stand = stand && !(wh_real_abs(segment->target[axis] - track->axes[axis]) > 0);
+    }
+    return stand;
+}
+
+static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
+    const wh_status_t travel = wh_machine_check_travel(track->machine, segment->target);
+    if (travel != WH_OK) {
+        return travel;
+    }
+    if (track->ways == NULL || !chucks_stand(track, segment)) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
+    wh_way_t way;
+    const wh_status_t status =
+        track->ways->plan(&way, &track->machine->robot, track->axes, segment->target, segment->reach);
+    if (status == WH_OK && wh_way_duration(&way) > MAX_SECONDS) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
+    if (status == WH_OK) {
+        track->plan.way = way;
+        track->segment_slices = slices_for(track, wh_way_duration(&way));
+    }
+    return status;
+}
+
 static wh_status_t plan(wh_track_t *track, const wh_segment_t *segment) {
     switch (segment->kind) {
     case WH_SEGMENT_AXES:
@@ -146,6 +177,8 @@ static wh_status_t plan(wh_track_t *track, const wh_segment_t *segment) {
     case WH_SEGMENT_DWELL:
     case WH_SEGMENT_SENSOR:
         return plan_wait(track, segment);
+    case WH_SEGMENT_WAY:
+        return plan_way(track, segment);
     }
     return WH_STATUS_BAD_SEGMENT;
 }
@@ -176,6 +209,9 @@ static void apply(wh_track_t *track) {
         wh_move_at(&track->plan.move, segment_time(track, wh_move_duration(&track->plan.move)), track->axes);
     } else if (kind == WH_SEGMENT_LINE) {
         wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
+    } else if (kind == WH_SEGMENT_WAY) {
+        track->ways->at(&track->plan.way, segment_time(track, wh_way_duration(&track->plan.way)),
+                        track->axes);
     } else if (kind == WH_SEGMENT_VALVES) {
         switch_valves(track);
     }

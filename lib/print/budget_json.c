@@ -48,7 +48,7 @@ static json_t *error(const void *subject, size_t i) {
     const size_t station = i / WH_SPREADS;
     const size_t axis = i % WH_SPREADS;
     const wh_budget_error_t *found = &budget->stations[station].errors[axis];
-    if (!budget->stations[station].wanted) {
+    if (!budget->stations[station].wanted || !found->known) {
         return NULL;
     }
     json_t *object = wh_json_set(
@@ -120,14 +120,17 @@ static json_t *station_of(const wh_budget_t *budget, int32_t station) {
 
 int wh_budget_print_json(const wh_budget_t *budget, FILE *out) {
     const wh_study_t *study = budget->study;
-    json_t *root = wh_json_set(json_object(), "format %d ok %i script %s layout %s trials %lld", 1, true,
+    const bool ok = !budget->incomplete;
+    json_t *root = wh_json_set(json_object(), "format %d ok %i script %s layout %s trials %lld", 1, ok,
                                study->run.script, study->layout->path, (json_int_t)budget->trials);
     (void)wh_json_set(root, "limit_mm %g limit_deg %g collision %i caught_errors %i",
                       number_of(budget->options.most[0]), number_of(budget->options.most[1]),
                       study->layout->collision, budget->caught);
+    (void)wh_json_set(root, "capped %lld", (json_int_t)wh_budget_capped(budget));
     (void)wh_json_add(root, "errors all tightest next",
-                      wh_json_list(error, budget, WH_SPREADS * study->layout->station_count), all_of(budget),
-                      station_of(budget, budget->tightest), station_of(budget, budget->next), NULL);
+                      wh_json_list(error, budget, WH_SPREADS * study->layout->station_count),
+                      ok ? all_of(budget) : json_null(), station_of(budget, ok ? budget->tightest : WH_NONE),
+                      station_of(budget, ok ? budget->next : WH_NONE), NULL);
     const int status = wh_json_print(root, out);
     json_decref(root);
     return status;

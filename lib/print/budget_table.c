@@ -63,7 +63,9 @@ static void add_error(const table_t *table, wh_grid_t *grid, size_t station, siz
     wh_grid_row(grid);
     wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", axis == 0 ? station_name(table, station) : "");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s %s", wh_errors_teaching_name(axis), unit_of(axis));
-    if (never) {
+    if (!error->known) {
+        wh_grid_text(grid, 2, WH_INK_DIM, "not known");
+    } else if (never) {
         wh_grid_text(grid, 2, WH_INK_DIM, "%s%g", error->has_effect ? "at least " : "no effect to ",
                      number_of(error->width));
     } else {
@@ -76,7 +78,7 @@ static void add_error(const table_t *table, wh_grid_t *grid, size_t station, siz
 static bool has_effect(const wh_budget_station_t *station) {
     bool any = false;
     for (size_t axis = 0; axis < WH_SPREADS; ++axis) {
-        any = any || station->errors[axis].has_effect;
+        any = any || station->errors[axis].has_effect || !station->errors[axis].known;
     }
     return any;
 }
@@ -336,17 +338,69 @@ static void print_answer(const table_t *table) {
     fputc('\n', out);
 }
 
+static void print_capped(const table_t *table) {
+    const size_t count = wh_budget_capped(table->budget);
+    if (count > 0) {
+        fprintf(
+            table->frame.out,
+            "\n! %zu error%s passed up to the limit, which is less than the least below, and may allow less: "
+            "--limit and --limit-deg go farther\n",
+            count, count == 1 ? "" : "s");
+    }
+}
+
+/* Errors without any width: the script has nothing to spare there. */
+static void print_zeros(const table_t *table) {
+    const wh_budget_t *budget = table->budget;
+    const char *before = "\n! no width at all, for it fails 0.001 beside where it was taught: ";
+    for (size_t i = 0; i < WH_SPREADS * budget->study->layout->station_count; ++i) {
+        const wh_budget_station_t *station = &budget->stations[i / WH_SPREADS];
+        const wh_budget_error_t *error = &station->errors[i % WH_SPREADS];
+        if (station->wanted && error->known && error->width == 0) {
+            fputs(before, table->frame.out);
+            wh_print_say(&table->frame, "%s of %s", wh_errors_teaching_name(i % WH_SPREADS),
+                         station_name(table, i / WH_SPREADS));
+            before = ", ";
+        }
+    }
+    if (strcmp(before, ", ") == 0) {
+        fputc('\n', table->frame.out);
+    }
+}
+
+static void print_incomplete(const table_t *table) {
+    const wh_budget_t *budget = table->budget;
+    size_t known = 0;
+    size_t wanted = 0;
+    for (size_t i = 0; i < WH_SPREADS * budget->study->layout->station_count; ++i) {
+        const wh_budget_station_t *station = &budget->stations[i / WH_SPREADS];
+        wanted += station->wanted ? 1 : 0;
+        known += station->wanted && station->errors[i % WH_SPREADS].known ? 1 : 0;
+    }
+    fprintf(
+        table->frame.out,
+        "\n! incomplete, for it was interrupted: %zu of %zu errors are known, and not how they go together\n",
+        known, wanted);
+}
+
 int wh_budget_print_table(const wh_budget_t *budget, FILE *out, const wh_style_t *style) {
     const table_t table = {budget, {&budget->study->nominal.record, style, out}};
     wh_print_say(&table.frame, "%s on %s", budget->study->run.script, budget->study->layout->path);
     fputc('\n', out);
     print_errors(&table);
+    if (budget->incomplete) {
+        print_zeros(&table);
+        print_incomplete(&table);
+        return ferror(out) ? -1 : 0;
+    }
     print_how(&table);
     print_first(&table);
     print_half(&table);
     print_tried(&table);
     print_witnesses(&table);
     print_warnings(&table);
+    print_zeros(&table);
+    print_capped(&table);
     print_answer(&table);
     return ferror(out) ? -1 : 0;
 }

@@ -39,6 +39,16 @@ static json_t *residual(const void *subject, size_t i) {
                        off.y, off.z);
 }
 
+static json_t *points_aside(const wh_station_points_t *station) {
+    json_t *lines = json_array();
+    for (size_t i = 0; i < station->count; ++i) {
+        if (station->points[i].is_set_aside) {
+            wh_json_append(lines, json_integer((json_int_t)station->lines[i]));
+        }
+    }
+    return lines;
+}
+
 static json_t *station(const void *subject, size_t i) {
     const wh_point_table_t *table = subject;
     const wh_station_points_t *from = &table->stations[i];
@@ -54,6 +64,7 @@ static json_t *station(const void *subject, size_t i) {
                       numbers(frame->rpy_sd, 3, deg), NULL);
     (void)wh_json_set(object, "rms %g largest %g largest_line %lld", frame->rms, frame->largest,
                       (long long)from->lines[frame->largest_index]);
+    wh_json_put(object, "set_aside_lines", points_aside(from));
     wh_json_put(object, "residuals", wh_json_list(residual, from, from->count));
     return object;
 }

@@ -31,6 +31,25 @@ static int finish(FILE *out) {
     return fflush(out) != 0 || ferror(out) ? -1 : 0;
 }
 
+/* Names a line that was set aside, the first with a text before it. Returns how many are named. */
+static size_t name_line(const wh_printer_t *printer, const char *name, size_t line, size_t named) {
+    if (named == NAMED_LINES) {
+        return named;
+    }
+    if (named == 0) {
+        fprintf(printer->out, "%s, set aside: lines ", name);
+    }
+    fprintf(printer->out, "%s%zu", named == 0 ? "" : ", ", line);
+    return named + 1;
+}
+
+static void end_lines(const wh_printer_t *printer, size_t all, size_t named) {
+    if (all > named) {
+        fprintf(printer->out, " and %zu more", all - named);
+    }
+    fputs(named > 0 ? "\n" : "", printer->out);
+}
+
 /* ------------------------------------------------------------------------------------------------- frames */
 
 static void print_frames(const wh_printer_t *printer, const wh_point_table_t *table) {
@@ -53,15 +72,17 @@ static void print_frames(const wh_printer_t *printer, const wh_point_table_t *ta
 }
 
 static void print_fits(const wh_printer_t *printer, const wh_point_table_t *table) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1, "station;points{0};rms mm{4};largest mm{4};in line{0}");
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 1, "station;points{0};set aside{0};rms mm{4};largest mm{4};in line{0}");
     for (size_t s = 0; s < table->count; ++s) {
         const wh_station_points_t *station = &table->stations[s];
         wh_grid_named_row(grid, station->name);
         wh_grid_number(grid, 1, WH_INK_PLAIN, (double)station->count);
         if (station->estimate.status == WH_OK) {
-            wh_grid_number(grid, 2, WH_INK_PLAIN, station->estimate.rms);
-            wh_grid_number(grid, 3, WH_INK_PLAIN, station->estimate.largest);
-            wh_grid_number(grid, 4, WH_INK_PLAIN, (double)station->lines[station->estimate.largest_index]);
+            wh_grid_number(grid, 2, WH_INK_PLAIN, (double)station->estimate.set_aside);
+            wh_grid_number(grid, 3, WH_INK_PLAIN, station->estimate.rms);
+            wh_grid_number(grid, 4, WH_INK_PLAIN, station->estimate.largest);
+            wh_grid_number(grid, 5, WH_INK_PLAIN, (double)station->lines[station->estimate.largest_index]);
         }
     }
     wh_print_titled(printer, "Residuals", grid);
@@ -82,10 +103,26 @@ static void print_points(const wh_printer_t *printer, const wh_point_table_t *ta
     wh_print_titled(printer, "Points touched, less where the frame has them", grid);
 }
 
+/* Which lines were set aside. */
+static void print_points_aside(const wh_printer_t *printer, const wh_station_points_t *station) {
+    size_t named = 0;
+    for (size_t i = 0; i < station->count; ++i) {
+        if (station->points[i].is_set_aside) {
+            named = name_line(printer, station->name, station->lines[i], named);
+        }
+    }
+    end_lines(printer, station->estimate.set_aside, named);
+}
+
 static void print_wrong_stations(const wh_printer_t *printer, const wh_point_table_t *table) {
     const char *before = "\n";
     for (size_t s = 0; s < table->count; ++s) {
         const wh_frame_estimate_t *frame = &table->stations[s].estimate;
+        if (frame->status == WH_OK && frame->set_aside > 0) {
+            fputs(before, printer->out);
+            print_points_aside(printer, &table->stations[s]);
+            before = "";
+        }
         if (frame->status != WH_OK) {
             fputs(before, printer->out);
             say(printer, table->stations[s].name, frame->status, frame->reason);
@@ -156,25 +193,6 @@ static void print_moves(const wh_printer_t *printer, const wh_move_table_t *tabl
         }
     }
     wh_print_titled(printer, "Moves", grid);
-}
-
-/* Names a line that was set aside, the first with a text before it. Returns how many are named. */
-static size_t name_line(const wh_printer_t *printer, const char *name, size_t line, size_t named) {
-    if (named == NAMED_LINES) {
-        return named;
-    }
-    if (named == 0) {
-        fprintf(printer->out, "%s, set aside: lines ", name);
-    }
-    fprintf(printer->out, "%s%zu", named == 0 ? "" : ", ", line);
-    return named + 1;
-}
-
-static void end_lines(const wh_printer_t *printer, size_t all, size_t named) {
-    if (all > named) {
-        fprintf(printer->out, " and %zu more", all - named);
-    }
-    fputs(named > 0 ? "\n" : "", printer->out);
 }
 
 /* Which lines were set aside. */

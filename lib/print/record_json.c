@@ -352,6 +352,10 @@ static json_t *log_of(const wh_record_log_t *log) {
     return object;
 }
 
+static json_t *given_error(const void *subject, size_t i) {
+    return wh_json_text(((const wh_record_t *)subject)->errors[i]);
+}
+
 static void put_head(const wh_record_t *record, json_t *root) {
     (void)wh_json_set(root, "format %d", FORMAT);
     const bool moved_nothing = wh_record_moved_nothing(record);
@@ -361,6 +365,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
     }
     if (record->failure) {
         (void)wh_json_set(root, "failure %s", record->failure);
+    }
+    if (record->error_count > 0) {
+        wh_json_put(root, "errors", wh_json_list(given_error, record, record->error_count));
     }
     if (record->log) {
         wh_json_put(root, "log", log_of(record->log));

@@ -1,6 +1,7 @@
 /* A run's record, for people and for programs.
  *
- * As tables, in this order, with what has nothing to say left out: what ran and with which tolerance; the
+ * As tables, in this order, with what has nothing to say left out: what ran and with which tolerance, and by
+ * which errors the cell was off; the
  * commands, each with the wafers that it took and the values (2)-(5) of each pick beside their limits; what
  * the commands that failed said; each hand-over as the chuck saw it; misses and complaints in plain words;
  * where the wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour; and
@@ -12,7 +13,8 @@
  *
  * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if a
  * log does not show it, and if no command came), nothing_moved (true, only when no command came), failure
- * (only when the run ended in one), log (only when the run was read from one: { verdict, reason (null if it
+ * (only when the run ended in one), errors (only when the cell
+ * was given some: [NAME.FIELD=VALUE]), log (only when the run was read from one: { verdict, reason (null if it
  * is the same), id (16 hex digits; null: it is no recording of ours), part, notes [text] }), script, layout
  * (path or null), slices, missed, simulated_s, wall_s,
  * hash (16 hex digits),

@@ -37,6 +37,12 @@ static void print_heading(const wh_printer_t *printer) {
     if (record->layout) {
         print_tolerance(printer);
     }
+    for (size_t i = 0; i < record->error_count; ++i) {
+        wh_print_say(printer, "%s%s", i == 0 ? "! off by " : ", ", record->errors[i]);
+    }
+    if (record->error_count > 0) {
+        fputc('\n', printer->out);
+    }
 }
 
 /* --------------------------------------------------------------------------------------------- complaints */

@@ -25,17 +25,13 @@ static void find_end(const wh_study_result_t *result, wh_cause_told_t *told) {
     }
 }
 
-static bool is_delay(const wh_cause_t *cause) {
-    return cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM;
-}
-
 static wh_cause_told_t look(const wh_study_result_t *result, size_t i) {
     const wh_tally_t *tally = result->tally;
     const uint64_t failed = tally->trials - tally->met;
     wh_cause_told_t told = {.cause = &result->study->causes[i], .index = i};
     if (tally->relations.cause_count > i) {
         told.by_size = wh_relations_failing(&tally->relations, i, true, tally->trials, failed);
-        if (!is_delay(told.cause)) {
+        if (wh_cause_has_sign(told.cause)) {
             told.by_value = wh_relations_failing(&tally->relations, i, false, tally->trials, failed);
         }
         find_end(result, &told);
@@ -72,7 +68,9 @@ void wh_cause_name(const wh_cause_t *cause, const wh_layout_t *layout, char name
     const char *of = wh_cause_of(cause, layout);
     char what[20];
     wh_text_words(what, sizeof what, wh_cause_what(cause));
-    (void)snprintf(name, WH_CAUSE_NAME, "%s%s%s %s", of ? of : "", of ? " " : "", what, wh_cause_unit(cause));
+    const char *unit = wh_cause_unit(cause);
+    (void)snprintf(name, WH_CAUSE_NAME, "%s%s%s%s%s", of ? of : "", of ? " " : "", what, *unit ? " " : "",
+                   unit);
 }
 
 /* --------------------------------------------------------------------------------------------------- JSON */
@@ -107,7 +105,7 @@ static json_t *drawn(const void *subject, size_t i) {
     const subject_t *of = subject;
     const wh_cause_told_t *told = &of->told[i];
     const wh_cause_t *cause = told->cause;
-    static const char *const kinds[] = {"wafer", "station", "gripper", "vacuum"};
+    static const char *const kinds[] = {"wafer", "station", "gripper", "vacuum", "rim"};
     const subject_t one = {of->result, told};
     json_t *object = wh_json_set(json_object(), "kind %s of %s what %s unit %s width %g", kinds[cause->kind],
                                  wh_cause_of(cause, of->result->study->layout), wh_cause_what(cause),

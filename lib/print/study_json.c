@@ -130,14 +130,34 @@ static json_t *drawn_valve(const void *subject, size_t g) {
                        (json_int_t)ceil(late * 1e6 / (double)layout->slice_us));
 }
 
+static json_t *drawn_rim(const void *subject, size_t w) {
+    const draw_t *draw = subject;
+    const wh_layout_t *layout = draw->layout;
+    double drawn[WH_RIM_DRAWS];
+    wh_errors_draw_rim(layout->errors, &draw->trial, w, layout->rims[w], drawn);
+    json_t *rim = json_object();
+    for (int i = 0; i < (int)WH_RIM_DRAWS; ++i) {
+        if (drawn[i] != 0) {
+            wh_json_put(rim, wh_rim_draw_name((wh_rim_draw_t)i), wh_json_real(drawn[i]));
+        }
+    }
+    if (json_object_size(rim) == 0) {
+        json_decref(rim);
+        return NULL;
+    }
+    wh_json_put(rim, "name", wh_json_text(layout->wafers[w].name));
+    return rim;
+}
+
 static json_t *worst_trial(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_trial_t *worst = &result->tally->worst[i];
     const wh_layout_t *layout = result->study->layout;
     const draw_t draw = {layout, {result->study->seed, worst->trial}};
-    json_t *drawn = wh_json_add(json_object(), "wafers stations valves vacuum_s",
+    json_t *drawn = wh_json_add(json_object(), "wafers stations rims valves vacuum_s",
                                 wh_json_list(drawn_wafer, &draw, layout->wafer_count),
                                 wh_json_list(drawn_station, &draw, layout->station_count),
+                                wh_json_list(drawn_rim, &draw, layout->wafer_count),
                                 wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
                                 wh_json_real(wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
     return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g", (json_int_t)worst->trial,

@@ -18,14 +18,15 @@
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
  *   drawn:        the errors that are drawn, the one that goes with failing most strongly first: kind
- *                 (wafer, station, gripper, vacuum), of (a name; null: of all), what, unit, width, failing:
- *                 { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }. Each is
- *                 { r, low, high }, a correlation with its interval (study/relations.h), or null: not
+ *                 (wafer, station, gripper, vacuum, rim), of (a name; null: of all), what, unit, width,
+ *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }.
+ *                 Each is { r, low, high }, a correlation with its interval (study/relations.h), or null: not
  *                 determined
  *   worst:        trial, ok, off (of the wafer farthest off; null: one is elsewhere), drawn: { wafers,
- *                 stations, valves, vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz,
+ *                 stations, rims, valves, vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz,
  *                 tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
- *                 degrees), of each valve { gripper, slices }, which act so late; only of what is drawn.
+ *                 degrees), of each rim { name, diameter, ... } (layout/rim_errors.h: mm, degrees), of each
+ *                 valve { gripper, slices }, which act so late; only of what is drawn.
  *                 Failed trials come first, then the farther off.
  * Equal studies give equal bytes, whatever threads, ranks and interruptions; reading a number back gives
  * the same double.

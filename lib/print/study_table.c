@@ -181,7 +181,7 @@ static void add_cause(const table_t *table, wh_grid_t *grid, const wh_cause_told
     wh_grid_row(grid);
     wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
     put_correlation(grid, 1, &told->by_size);
-    if (told->cause->kind == WH_CAUSE_WAFER || told->cause->kind == WH_CAUSE_STATION) {
+    if (wh_cause_has_sign(told->cause)) {
         put_correlation(grid, 2, &told->by_value);
     }
     put_correlation(grid, 3, &told->end);
@@ -202,6 +202,10 @@ static void print_causes(const table_t *table) {
     }
     free(told);
     wh_print_titled(&table->frame, "Which error costs most: correlations, all together 95 % sure", grid);
+    if (table->tally->met == table->tally->trials || table->tally->met == 0) {
+        fprintf(table->frame.out, "%s of the trials failed, so nothing tells what failing goes with\n",
+                table->tally->met == 0 ? "all" : "none");
+    }
     if (count > MOST_CAUSES) {
         fprintf(table->frame.out, "and %zu more, which --json tells\n", count - MOST_CAUSES);
     }

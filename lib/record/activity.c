@@ -32,7 +32,7 @@ static wh_share_t share_standing(const wh_segment_t *segment, bool for_vacuum) {
 
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum) {
     const bool is_line = segment->kind == WH_SEGMENT_LINE;
-    const bool is_motion = is_line || segment->kind == WH_SEGMENT_AXES;
+    const bool is_motion = is_line || segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_WAY;
     bool moving[WH_AXES] = {false};
     for (size_t axis = 0; is_motion && axis < WH_AXES; ++axis) {
         moving[axis] =

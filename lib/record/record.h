@@ -75,6 +75,8 @@ typedef struct {
     bool ok;         /* no command failed uncaught, every expectation was met, the cell had no complaint */
     bool is_untold;  /* read from a log that does not show how the run ended: `ok` is then false */
     bool is_partial; /* read from a log that has not the whole run as it was */
+    const char *const *errors; /* that the cell was given, NAME.FIELD=VALUE; borrowed */
+    size_t error_count;
     const wh_record_log_t *log; /* null: not read from a log; borrowed */
     char *failure;              /* the uncaught error's message with file and line, or null */
     int64_t slices;

@@ -50,5 +50,8 @@ uint64_t wh_simulator_describe(const wh_simulator_t *simulator) {
     hash = hash_cell(hash, &simulator->cell);
     hash = wh_hash_word(hash, (uint64_t)storage->wafer_count);
     hash = wh_hash_word(hash, (uint64_t)storage->gripper_count);
-    return simulator->scans ? simulator->scans->hash(&simulator->scanning, storage->wafer_count, hash) : hash;
+    hash = simulator->scans ? simulator->scans->hash(&simulator->scanning, storage->wafer_count, hash) : hash;
+    return simulator->beams ? simulator->beams->hash(&simulator->latching, storage->gripper_count,
+                                                     storage->wafer_count, hash)
+                            : hash;
 }

@@ -1,5 +1,10 @@
 #include "latching.h"
 
+#include <string.h>
+
+#include "../math/hash.h"
+#include "simulator.h"
+
 /* What is drawn for a latch, by name. */
 #define DRAW_JITTER UINT32_C(0x4C410001)
 
@@ -109,7 +114,7 @@ static double delay_of(const wh_latching_t *latching, const wh_latches_t *latche
     const wh_door_beam_t *door = &latching->beams[b];
     double delay = broken ? door->delay_on : door->delay_off;
     if (door->jitter > 0) {
-        const wh_trial_t trial = {latching->seed, latches->number};
+        const wh_trial_t trial = {door->seed, latches->number};
         delay += door->jitter * wh_deviate_normal(&trial, DRAW_JITTER, latches->crossings);
     }
     return delay > 0 ? delay : 0;
@@ -202,4 +207,77 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
         latches->waiting_count = 0;
         note_broken(latching, shades, count, latches);
     }
+}
+
+/* --------------------------------------------------------------------------------------------------- hash */
+
+static uint64_t hash_doubles(uint64_t hash, const double values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        hash = wh_hash_word(hash, bits);
+    }
+    return hash;
+}
+
+uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count,
+                          uint64_t hash) {
+    for (size_t b = 0; b < latching->beam_count; ++b) {
+        const wh_door_beam_t *door = &latching->beams[b];
+        const wh_beam_t *beam = &door->beam;
+        const double values[] = {beam->x,        beam->y,         beam->z,     beam->ex,
+                                 beam->ey,       beam->ez,        beam->low,   beam->high,
+                                 door->delay_on, door->delay_off, door->jitter};
+        hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
+        hash = wh_hash_word(hash, door->seed);
+    }
+    for (size_t g = 0; latching->blades && g < gripper_count; ++g) {
+        const wh_blade_outline_t *blade = &latching->blades[g];
+        hash = wh_hash_int(hash, blade->count);
+        hash = hash_doubles(hash, blade->x, (size_t)blade->count);
+        hash = hash_doubles(hash, blade->y, (size_t)blade->count);
+    }
+    for (size_t w = 0; w < wafer_count; ++w) {
+        hash = wh_rim_hash(latching->rims[w], hash);
+    }
+    return hash;
+}
+
+/* ----------------------------------------------------------------------------------------- in a simulator */
+
+static wh_status_t step_around(void *of, const void *by,
+                               wh_status_t (*rest)(void *simulator, const void *command)) {
+    wh_simulator_t *simulator = of;
+    const wh_command_t *command = by;
+    wh_pose_t before[WH_GRIPPERS];
+    const wh_grasp_t *table = &simulator->table;
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        before[g] = table->storage.grippers[g].base_from_gripper;
+    }
+    const wh_status_t status = rest(simulator, command);
+    if (status == WH_OK) {
+        wh_latching_step(&simulator->latching, before, table, simulator->slice_s, &command->latch,
+                         &simulator->physics.latches);
+    }
+    return status;
+}
+
+wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latching_t *latching) {
+    static const wh_latching_calls_t calls = {wh_latching_check, step_around, wh_latching_hash};
+    if (!simulator || !latching) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
+    if (simulator->table.slice > 0) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    const wh_status_t status = wh_latching_validate(latching, storage->gripper_count, storage->wafer_count);
+    if (status == WH_OK) {
+        simulator->latching = *latching;
+        simulator->beams = latching->beam_count > 0 ? &calls : NULL;
+    }
+    return status;
 }

@@ -9,6 +9,9 @@
  * What breaks beams: wafers that grippers hold, by their true rims, and blades, by their outlines; both move
  * as their gripper does. A wafer that is taken within a slice counts as held from its begin on. Wafers that
  * nobody holds lie in slots, not in doors: they break no beam.
+ *
+ * A simulator has beams after wh_simulator_set_latching (simulator.h). A firmware that does not call it does
+ * not link this file, nor lib/align.
  */
 #ifndef WH_SIM_LATCHING_H
 #define WH_SIM_LATCHING_H
@@ -30,6 +33,7 @@ typedef struct {
     wh_beam_t beam;
     double delay_on, delay_off; /* from being broken, or free, to the latch, s, 0 to 0.01 */
     double jitter;              /* standard deviation of both, s, 0 to 0.001; no delay is below 0 */
+    uint64_t seed;              /* names the jitter, with the number of the arming and of the crossing */
 } wh_door_beam_t;
 
 /* What does not change during a run: the caller's arrays. */
@@ -38,7 +42,6 @@ typedef struct {
     size_t beam_count;                /* up to WH_BEAMS; none: no order is taken */
     const wh_rim_t *const *rims;      /* by wafer; many may have the same */
     const wh_blade_outline_t *blades; /* by gripper; null: none has an outline */
-    uint64_t seed;                    /* names the jitter, with the number of the arming and of the latch */
 } wh_latching_t;
 
 typedef enum WH_FOUR_BYTES {
@@ -94,6 +97,20 @@ wh_status_t wh_latching_check(const wh_latching_t *latching, const wh_latch_orde
 void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], const wh_grasp_t *table,
                       wh_real_t slice_s, const wh_latch_order_t *order, wh_latches_t *latches)
     WH_SYMBOL(wh_latching_step);
+
+/* Continues a hash (math/hash.h) with all that the latches of a run depend on. Nothing is checked. Cost: 12
+ * words for each beam, 50 for each wafer, and two for each point of an outline. */
+uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count,
+                          uint64_t hash) WH_SYMBOL(wh_latching_hash);
+
+/* How a simulator reaches the functions above, so that one without beams does not link them. */
+typedef struct {
+    wh_status_t (*check)(const wh_latching_t *latching, const wh_latch_order_t *order);
+    /* Steps the rest of a wh_simulator_t by a wh_command_t, then its beams. */
+    wh_status_t (*around)(void *simulator, const void *command,
+                          wh_status_t (*rest)(void *simulator, const void *command));
+    uint64_t (*hash)(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count, uint64_t hash);
+} wh_latching_calls_t;
 
 WH_HEADER_END
 

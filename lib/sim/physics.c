@@ -79,9 +79,10 @@ static bool is_sampled(const wh_scan_t *scan) {
     return good;
 }
 
-/* The magnitude of a scan's turn, as bits, which have the order of numbers: a processor without doubles needs
- * no function for them here. */
+/* The magnitude of a scan's turn and of a latch's part, as bits, which have the order of numbers: a processor
+ * without doubles needs no function for them here. */
 #define TURN_MOST UINT64_C(0x40c3880000000000)     /* 1e4 */
+#define PART_MOST UINT64_C(0x3ff0000000000000)     /* 1 */
 #define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* beyond are those that are no number */
 
 static uint64_t bits_of_turn(const wh_scan_t *scan) {
@@ -119,6 +120,43 @@ static wh_status_t check_scan(const wh_scan_t *scan, size_t gripper_count) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
+static bool are_latches(const wh_latch_t latches[], int32_t count, const wh_latches_t *all, bool waiting) {
+    bool good = true;
+    for (int32_t i = 0; good && i < count; ++i) {
+        const wh_latch_t *latch = &latches[i];
+        uint64_t part;
+        memcpy(&part, &latch->part, sizeof part);
+        good = is_between(latch->beam, all->first, (int64_t)all->first + all->count - 1) &&
+               (latch->edge == WH_CROSSING_IN || latch->edge == WH_CROSSING_OUT) && part <= PART_MOST &&
+               (waiting ? latch->slice > all->slice : is_between(latch->slice, 1, all->slice));
+    }
+    return good;
+}
+
+/* Before the first order all is zero. */
+static bool are_untouched(const wh_latches_t *latches) {
+    return !latches->armed && (latches->first | latches->count) == 0 && latches->slice == 0 &&
+           (latches->crossings | latches->lost | latches->broken) == 0 &&
+           (latches->waiting_count | latches->latch_count) == 0;
+}
+
+static bool are_beams(const wh_latches_t *latches) {
+    return is_between(latches->first, 0, WH_BEAMS - 1) &&
+           is_between(latches->count, 1, WH_BEAMS - latches->first) && latches->slice >= 0 &&
+           latches->broken >> (uint32_t)(latches->first + latches->count) == 0;
+}
+
+static wh_status_t check_latches(const wh_latches_t *latches) {
+    const bool good = latches->number == 0
+                          ? are_untouched(latches)
+                          : are_beams(latches) &&
+                                is_between(latches->waiting_count, 0, latches->armed ? WH_LATCHES : 0) &&
+                                is_between(latches->latch_count, 0, WH_LATCHES) &&
+                                are_latches(latches->waiting, latches->waiting_count, latches, true) &&
+                                are_latches(latches->latches, latches->latch_count, latches, false);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) {
     if (!state) {
@@ -133,7 +171,8 @@ wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gr
             return status;
         }
     }
-    const wh_status_t status = check_scan(&state->scan, gripper_count);
+    wh_status_t status = check_scan(&state->scan, gripper_count);
+    status = status == WH_OK ? check_latches(&state->latches) : status;
     return status == WH_OK ? wh_faults_validate(&state->faults, gripper_count, wafer_count) : status;
 }
 
@@ -221,6 +260,36 @@ static uint64_t hash_scan(uint64_t hash, const wh_scan_t *scan) {
     return hash_ints(hash, scan->samples, (size_t)scan->sample_count);
 }
 
+static uint64_t hash_latches(uint64_t hash, const wh_latches_t *all) {
+    const int32_t head[] = {5,
+                            (int32_t)all->number,
+                            all->armed ? 1 : 0,
+                            all->first,
+                            all->count,
+                            (int32_t)all->crossings,
+                            (int32_t)all->lost,
+                            (int32_t)all->broken,
+                            all->waiting_count,
+                            all->latch_count};
+    hash = hash_ints(hash, head, sizeof head / sizeof head[0]);
+    hash = hash_word(hash, (uint64_t)all->slice);
+    for (int32_t i = 0; i < all->waiting_count + all->latch_count; ++i) {
+        const wh_latch_t *latch =
+            i < all->waiting_count ? &all->waiting[i] : &all->latches[i - all->waiting_count];
+        uint64_t part;
+        memcpy(&part, &latch->part, sizeof part);
+        hash = hash_word(hash, (uint64_t)(2 * (int64_t)latch->beam + (int64_t)latch->edge));
+        hash = hash_word(hash, (uint64_t)latch->slice);
+        hash = hash_word(hash, part);
+    }
+    return hash;
+}
+
+static uint64_t hash_sensing(uint64_t hash, const wh_physics_state_t *state) {
+    hash = state->scan.number > 0 ? hash_scan(hash, &state->scan) : hash;
+    return state->latches.number > 0 ? hash_latches(hash, &state->latches) : hash;
+}
+
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
     const size_t gripper_count = table->storage.gripper_count;
     uint64_t hash = wh_grasp_hash(table);
@@ -239,5 +308,5 @@ uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t
             hash = hash_slot(hash, i, &state->faults.slots[i]);
         }
     }
-    return state->scan.number > 0 ? hash_scan(hash, &state->scan) : hash;
+    return hash_sensing(hash, state);
 }

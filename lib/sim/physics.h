@@ -6,17 +6,18 @@
  *     stack of wh_physics_default             2376   2376    1384   1408
  *     stack of wh_physics_validate              88    200      48    112
  *     stack of wh_physics_state_start          240    232     184    184
- *     stack of wh_physics_state_validate       128    236      80    144
+ *     stack of wh_physics_state_validate       128    240      80    144
  *     stack of wh_physics_state_sensors         16     20       8     24
- *     stack of wh_physics_state_hash           112    140     116    136
+ *     stack of wh_physics_state_hash           128    172     140    168
  *     size of wh_physics_t                    2272           1336
- *     size of wh_physics_state_t              6296           3640
+ *     size of wh_physics_state_t              7112           4456
  */
 #ifndef WH_SIM_PHYSICS_H
 #define WH_SIM_PHYSICS_H
 
 #include "../grasp/hold.h"
 #include "faults.h"
+#include "latching.h"
 #include "scanning.h"
 
 WH_HEADER_BEGIN
@@ -40,7 +41,8 @@ typedef struct {
     wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
     int32_t told[WH_GRIPPERS];     /* valves of the last command, before faults; no step depends on them */
     wh_faults_t faults;
-    wh_scan_t scan; /* of an edge sensor */
+    wh_scan_t scan;       /* of an edge sensor */
+    wh_latches_t latches; /* of the beams at doors */
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
@@ -79,10 +81,13 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - for each slot in use: 3, its index, phase, kind, target, other, value, offset, from, until, before,
  *     placed;
  *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count
- *     and so many samples.
- * So a run with ideal vacuum, without pads, faults and scans, has the table's hash. Nothing is checked;
- * grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10
- * for each with positions, 45 for each slot in use, and up to 73 for a scan.
+ *     and so many samples;
+ *   - once beams have been armed: 5, number, armed, first, count, crossings, lost, broken, waiting_count,
+ *     latch_count, slice, and of so many latches twice the beam plus the edge, slice and the part's bits.
+ * So a run with ideal vacuum, without pads, faults, scans and beams, has the table's hash. Nothing is
+ * checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with
+ * vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, and 11 for beams with
+ * three for each latch.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);

@@ -38,6 +38,9 @@ static wh_status_t check_run(const wh_played_t *run, const wh_grasp_storage_t *s
 static wh_status_t set_up(wh_player_t *player, const wh_grasp_storage_t *storage) {
     const wh_played_t *run = player->run;
     wh_status_t status = wh_track_init(&player->track, run->machine, run->slice_us);
+    if (status == WH_OK && run->take_ways != NULL) {
+        run->take_ways(&player->track);
+    }
     for (size_t w = 0; w < run->wafer_count; ++w) {
         storage->wafers[w].base_from_wafer = run->wafers[w];
     }

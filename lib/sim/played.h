@@ -48,8 +48,9 @@ typedef struct {
     wh_grasp_config_t config;
     wh_physics_t physics; /* with the faults at the start; slice_s is slice_us, to a millionth */
     wh_cell_t cell;
-    int64_t slices; /* of the whole run */
-    uint64_t hash;  /* wh_simulator_hash at its end, in double */
+    int64_t slices;                       /* of the whole run */
+    uint64_t hash;                        /* wh_simulator_hash at its end, in double */
+    void (*take_ways)(wh_track_t *track); /* wh_track_take_ways if a segment is a WAY; else it may be NULL */
 } wh_played_t;
 
 /* Callers read; the player writes. Do not move it once it is initialised. */

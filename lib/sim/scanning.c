@@ -288,23 +288,6 @@ static uint64_t hash_sensor(uint64_t hash, const wh_sensor_t *sensor) {
     return wh_hash_int(hash, sensor->hidden_count);
 }
 
-static uint64_t hash_rim(uint64_t hash, const wh_rim_t *rim) {
-    const double values[] = {rim->radius,        rim->notch.direction, rim->notch.depth,
-                             rim->notch.opening, rim->notch.bottom,    rim->notch.corner,
-                             rim->bow,           rim->saddle,          rim->saddle_direction,
-                             rim->transmission};
-    hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
-    for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
-        const double flat[] = {rim->flats[i].direction, rim->flats[i].length};
-        hash = hash_doubles(hash, flat, 2);
-    }
-    for (int32_t i = 0; i < rim->chip_count; ++i) {
-        const double chip[] = {rim->chips[i].direction, rim->chips[i].width, rim->chips[i].depth};
-        hash = hash_doubles(hash, chip, 3);
-    }
-    return wh_hash_int(hash, rim->chip_count);
-}
-
 uint64_t wh_scanning_hash(const wh_scanning_t *scanning, size_t wafer_count, uint64_t hash) {
     for (size_t i = 0; i < scanning->scanner_count; ++i) {
         const wh_scanner_t *scanner = &scanning->scanners[i];
@@ -314,7 +297,7 @@ uint64_t wh_scanning_hash(const wh_scanning_t *scanning, size_t wafer_count, uin
         hash = hash_sensor(hash, &scanner->sensor);
     }
     for (size_t w = 0; scanning->scanner_count > 0 && w < wafer_count; ++w) {
-        hash = hash_rim(hash, scanning->rims[w]);
+        hash = wh_rim_hash(scanning->rims[w], hash);
     }
     return hash;
 }

@@ -17,7 +17,7 @@
  *     stack of wh_scanning_validate            280    272     256    392
  *     stack of wh_scanning_check                 8     32       8     32
  *     stack of wh_scanning_step               1256   1224    1288   1440
- *     stack of wh_scanning_hash                168    188     184    188
+ *     stack of wh_scanning_hash                272    280     280    280
  *     size of wh_scan_t                        304            304
  *     size of wh_scanner_t                     336            288
  */

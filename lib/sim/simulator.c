@@ -35,6 +35,8 @@ static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
     simulator->observer = (wh_observer_t){NULL, NULL, NULL};
     simulator->scanning = (wh_scanning_t){NULL, 0, NULL};
     simulator->scans = NULL;
+    simulator->latching = (wh_latching_t){NULL, 0, NULL, NULL};
+    simulator->beams = NULL;
     simulator->mark = WH_SIMULATOR_MARK;
 }
 
@@ -288,6 +290,10 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
         (!simulator->scans || simulator->scans->check(&simulator->scanning, &command->scan) != WH_OK)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
+    if (command->latch.kind != WH_LATCH_KEEP &&
+        (!simulator->beams || simulator->beams->check(&simulator->latching, &command->latch) != WH_OK)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     if (command->fault_count == 0) {
         return WH_OK;
     }
@@ -297,20 +303,28 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
                                  storage->gripper_count, storage->wafer_count);
 }
 
-static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
-    wh_status_t status = check_command(simulator, command);
-    if (status != WH_OK) {
-        ++simulator->table.counters.refused;
-        simulator->event_count = 0;
-        return status;
-    }
-    status = is_direct(simulator, command) ? step_direct(simulator, command)
-                                           : step_with_faults(simulator, command);
+/* All but the beams. */
+static wh_status_t step_rest(void *of, const void *by) {
+    wh_simulator_t *simulator = of;
+    const wh_command_t *command = by;
+    const wh_status_t status = is_direct(simulator, command) ? step_direct(simulator, command)
+                                                             : step_with_faults(simulator, command);
     if (status == WH_OK && simulator->scans) {
         simulator->scans->step(&simulator->scanning, &simulator->table, simulator->slice_s, &command->scan,
                                &simulator->physics.scan);
     }
     return status;
+}
+
+static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
+    const wh_status_t status = check_command(simulator, command);
+    if (status != WH_OK) {
+        ++simulator->table.counters.refused;
+        simulator->event_count = 0;
+        return status;
+    }
+    return simulator->beams ? simulator->beams->around(simulator, command, step_rest)
+                            : step_rest(simulator, command);
 }
 
 static void view_nothing(wh_state_t *state) {

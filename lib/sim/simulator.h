@@ -6,11 +6,11 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               380    304     260    232
  *     stack of wh_simulator_set_physics        264    256     208    208
- *     stack of wh_simulator_step               944   1064     652    700
- *     stack of wh_simulator_step:sampled       944    904     624    632
+ *     stack of wh_simulator_step               952   1096     668    724
+ *     stack of wh_simulator_step:sampled       952    936     640    656
  *     stack of wh_simulator_view                32     36      24     40
- *     stack of wh_simulator_hash               112    140     116    136
- *     size of wh_simulator_t                 20264          12504
+ *     stack of wh_simulator_hash               128    172     140    168
+ *     size of wh_simulator_t                 21096          13336
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
@@ -45,6 +45,8 @@ typedef struct {
     wh_observer_t observer;           /* set by the caller after wh_simulator_init */
     wh_scanning_t scanning;           /* the edge sensors */
     const wh_scanning_calls_t *scans; /* null: there are none */
+    wh_latching_t latching;           /* the beams at doors */
+    const wh_latching_calls_t *beams; /* null: there are none */
     uint32_t mark;                    /* WH_SIMULATOR_MARK once wh_simulator_init has set it up */
 } wh_simulator_t;
 
@@ -76,18 +78,26 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
 wh_status_t wh_simulator_set_scanning(wh_simulator_t *simulator, const wh_scanning_t *scanning)
     WH_SYMBOL(wh_simulator_set_scanning);
 
+/* Gives the simulator beams at doors (latching.h), in place of those that it had: at first none. The arrays
+ * must outlive the simulator and its copies. Refuses what wh_latching_validate refuses, and what
+ * wh_simulator_set_scanning refuses beside; the simulator is then unchanged. Cost: wh_latching_validate. */
+wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latching_t *latching)
+    WH_SYMBOL(wh_simulator_set_latching);
+
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
- * the releases, vacuum, holding and edge sensors follow, and `state` is filled in. Returns state->status.
+ * the releases, vacuum, holding, edge sensors and beams follow, and `state` is filled in. Returns
+ * state->status.
  *
  * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper lets
  * go of it in the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check and wh_scanning_check refuse; without edge sensors any order. With a null pointer
+ * wh_faults_check, wh_scanning_check and wh_latching_check refuse; any order to sensors or beams that are not
+ * there. With a null pointer
  * (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a simulator that is not initialised nothing is
  * read or written, and `state` shows no wafer and no gripper. `seq` and `utime` are handed back; faults go by
- * `seq`. Cost: wh_grasp_step, wh_cell_judge and wh_scanning_step.
+ * `seq`. Cost: wh_grasp_step, wh_cell_judge, wh_scanning_step and wh_latching_step.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
     WH_SYMBOL(wh_simulator_step);

@@ -5,7 +5,7 @@
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_command_from_track           360    352     216    216
- *     size of wh_command_t                    1528            856
+ *     size of wh_command_t                    1544            872
  *     size of wh_state_t                        56             56
  */
 #ifndef WH_SIM_SLICE_H
@@ -35,10 +35,11 @@ typedef struct {
     size_t fault_count;
     wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin, or that get a new end */
     wh_scan_order_t scan;                         /* of the edge sensors */
+    wh_latch_order_t latch;                       /* of the beams at doors */
 } wh_command_t;
 
-/* Fills in poses, valves and axes of the track's current slice; leaves faults and edge sensors alone. Pass
- * the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
+/* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone.
+ * Pass the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
  * wh_machine_update. */
 void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
     WH_SYMBOL(wh_command_from_track);

@@ -234,6 +234,41 @@ static void pass_scan(stream_t *stream, wh_scan_t *scan) {
     scan->number = (uint32_t)number;
 }
 
+/* 21 bytes. */
+static void pass_latch(stream_t *stream, wh_latch_t *latch) {
+    uint64_t edge = latch->edge == WH_CROSSING_OUT ? 1 : 0;
+    pass_int(stream, &latch->beam);
+    pass_bytes(stream, &edge, 1);
+    pass_time(stream, &latch->slice);
+    pass_double(stream, &latch->part);
+    stream->is_bad = stream->is_bad || edge > 1;
+    latch->edge = edge == 1 ? WH_CROSSING_OUT : WH_CROSSING_IN;
+}
+
+static void pass_unsigned(stream_t *stream, uint32_t *value) {
+    uint64_t word = *value;
+    pass_bytes(stream, &word, 4);
+    *value = (uint32_t)word;
+}
+
+/* 713 bytes. */
+static void pass_latches(stream_t *stream, wh_latches_t *latches) {
+    pass_unsigned(stream, &latches->number);
+    pass_bool(stream, &latches->armed);
+    pass_int(stream, &latches->first);
+    pass_int(stream, &latches->count);
+    pass_time(stream, &latches->slice);
+    pass_unsigned(stream, &latches->crossings);
+    pass_unsigned(stream, &latches->lost);
+    pass_unsigned(stream, &latches->broken);
+    pass_int(stream, &latches->waiting_count);
+    pass_int(stream, &latches->latch_count);
+    for (size_t i = 0; i < WH_LATCHES; ++i) {
+        pass_latch(stream, &latches->waiting[i]);
+        pass_latch(stream, &latches->latches[i]);
+    }
+}
+
 /* --------------------------------------------------------------------------------------------------- ends */
 
 #define HEAD_SIZE 16 /* mark, version, number type, description */
@@ -320,6 +355,19 @@ static void save_table(stream_t *stream, const wh_grasp_t *table) {
     }
 }
 
+/* Latches that have gone say nothing: equal states have equal bytes. */
+static void save_latches(stream_t *stream, const wh_latches_t *from) {
+    wh_latches_t latches;
+    latches = *from;
+    for (int32_t i = latches.waiting_count; i < WH_LATCHES; ++i) {
+        memset(&latches.waiting[i], 0, sizeof latches.waiting[i]);
+    }
+    for (int32_t i = latches.latch_count; i < WH_LATCHES; ++i) {
+        memset(&latches.latches[i], 0, sizeof latches.latches[i]);
+    }
+    pass_latches(stream, &latches);
+}
+
 static void save_physics(stream_t *stream, const wh_physics_state_t *physics, size_t gripper_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
@@ -331,6 +379,7 @@ static void save_physics(stream_t *stream, const wh_physics_state_t *physics, si
     wh_scan_t scan;
     scan = physics->scan;
     pass_scan(stream, &scan);
+    save_latches(stream, &physics->latches);
     uint64_t count = physics->faults.count;
     pass_bytes(stream, &count, 4);
     for (size_t i = 0; i < physics->faults.count; ++i) {
@@ -399,6 +448,7 @@ static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t g
         physics->told[g] = share.told;
     }
     pass_scan(stream, &physics->scan);
+    pass_latches(stream, &physics->latches);
 }
 
 /* False if there are not as many bytes as these slots take. */

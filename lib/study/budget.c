@@ -30,6 +30,10 @@ typedef struct {
 static size_t take(queue_t *queue, bool done) {
     const wh_budget_options_t *options = &queue->crew->budget->options;
     pthread_mutex_lock(&queue->lock);
+    if (options->is_enough && options->is_enough()) {
+        queue->crew->budget->incomplete = true;
+        queue->next = queue->count;
+    }
     const size_t index = queue->next < queue->count ? queue->next++ : queue->count;
     queue->done += done ? 1 : 0;
     if (done && queue->what && options->tell) {
@@ -70,7 +74,7 @@ bool wh_budget_share_out(wh_budget_crew_t *crew, size_t count, wh_budget_work_t 
     if (begun == 0 && count > 0) {
         fputs("waferhand budget: no threads (expected fewer with --threads)\n", stderr);
     }
-    return begun > 0 || count == 0;
+    return !crew->budget->incomplete && (begun > 0 || count == 0);
 }
 
 /* ---------------------------------------------------------------------------------------- one error alone */
@@ -89,13 +93,18 @@ typedef struct {
     int32_t sign;
     wh_budget_level_t level;
     wh_budget_side_t *side;
-    bool differs;
+    bool (*is_enough)(void); /* null: nobody ends it */
+    bool differs, ended;
 } search_t;
 
-/* Tries a value above `inside`. */
+/* Tries a value above `inside`. A search that is ended tries nothing more. */
 static bool try(search_t *search, int32_t value) {
     wh_budget_side_t *side = search->side;
     int32_t *point = search->player->point;
+    search->ended = search->ended || (search->is_enough && search->is_enough());
+    if (search->ended) {
+        return false;
+    }
     point[search->at] = search->sign * value;
     const bool passes = wh_budget_passes(search->player, point, search->level);
     point[search->at] = 0;
@@ -133,7 +142,7 @@ static void bisect(search_t *search, const int32_t hints[], size_t hint_count) {
     for (size_t i = 0; i < hint_count; ++i) {
         take_hint(search, hints[i]);
     }
-    while (side->outside - side->inside > 1) {
+    while (!search->ended && side->outside - side->inside > 1) {
         (void)try(search, side->inside + (side->outside - side->inside) / 2);
     }
 }
@@ -236,12 +245,12 @@ static bool confirm(const wh_budget_t *budget, search_t *search) {
 static bool search_soundly(const wh_budget_t *budget, search_t *search, int32_t most, const int32_t hints[],
                            size_t hint_count) {
     search_side(budget, search, most, hints, hint_count);
-    bool sound = confirm(budget, search);
+    bool sound = search->ended || confirm(budget, search);
     if (!sound && budget->two_ways) {
         *search->side = (wh_budget_side_t){.trials = search->side->trials};
         search->player->by_script = true;
         search_side(budget, search, most, hints, hint_count);
-        sound = confirm(budget, search);
+        sound = search->ended || confirm(budget, search);
         search->player->by_script = false;
     }
     return sound;
@@ -254,17 +263,19 @@ static void search_error(wh_budget_player_t *player, void *user, size_t index) {
     const size_t station = errors->stations[index / WH_SPREADS];
     wh_budget_error_t *error = &budget->stations[station].errors[axis];
     const wh_budget_error_t *model = errors->model ? &errors->model->errors[axis] : NULL;
-    errors->sound[index] = true;
+    errors->sound[index] = error->known = true;
     for (int way = 0; way < 2; ++way) {
         search_t search = {.player = player,
                            .at = station * WH_SPREADS + axis,
                            .sign = way == 0 ? -1 : 1,
-                           .side = &error->sides[way]};
+                           .side = &error->sides[way],
+                           .is_enough = budget->options.is_enough};
         const int32_t hints[] = {error->sides[0].outside, model ? model->sides[0].outside : 0,
                                  model ? model->sides[1].outside : 0};
         const int32_t most = budget->options.most[axis < 3 ? 0 : 1];
         errors->sound[index] = search_soundly(budget, &search, most, hints, 3) && errors->sound[index];
         error->has_effect = error->has_effect || search.differs;
+        error->known = error->known && !search.ended;
     }
     error->width =
         error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside : error->sides[1].inside;
@@ -302,14 +313,34 @@ static bool find_errors(wh_budget_crew_t *crew, const size_t stations[], size_t 
 
 /* ------------------------------------------------------------------------------------- which allows least */
 
-double wh_budget_rim(const wh_budget_t *budget, size_t station, size_t axis) {
-    const wh_budget_error_t *error = &budget->stations[station].errors[axis];
-    const double width = (double)error->width / WH_BUDGET_UNIT;
+static bool never_fails(const wh_budget_error_t *error) {
+    return error->sides[0].outside == 0 && error->sides[1].outside == 0;
+}
+
+static double rim_of_width(const wh_budget_t *budget, size_t station, size_t axis) {
+    const double width = (double)budget->stations[station].errors[axis].width / WH_BUDGET_UNIT;
     const double radius = budget->study->layout->wafer_diameter / 2;
-    if (error->sides[0].outside == 0 && error->sides[1].outside == 0) {
-        return (double)INFINITY;
-    }
     return axis < 3 ? width : width * (double)WH_PI / 180 * radius;
+}
+
+double wh_budget_rim(const wh_budget_t *budget, size_t station, size_t axis) {
+    return never_fails(&budget->stations[station].errors[axis]) ? (double)INFINITY
+                                                                : rim_of_width(budget, station, axis);
+}
+
+size_t wh_budget_capped(const wh_budget_t *budget) {
+    size_t count = 0;
+    for (size_t i = 0; budget->tightest != WH_NONE && i < WH_SPREADS * budget->study->layout->station_count;
+         ++i) {
+        const wh_budget_station_t *station = &budget->stations[i / WH_SPREADS];
+        const wh_budget_error_t *error = &station->errors[i % WH_SPREADS];
+        const bool is_capped = station->wanted && error->has_effect && never_fails(error);
+        count += is_capped && rim_of_width(budget, i / WH_SPREADS, i % WH_SPREADS) <
+                                  wh_budget_tightness(budget, (size_t)budget->tightest)
+                     ? 1
+                     : 0;
+    }
+    return count;
 }
 
 size_t wh_budget_tightest_axis(const wh_budget_t *budget, size_t station) {

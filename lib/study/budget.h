@@ -30,6 +30,9 @@ typedef struct {
      * nobody. */
     void (*tell)(void *user, const char *what, size_t done, size_t total);
     void *user;
+    /* Asked before each piece of work, from any thread: true ends the search, and `incomplete` is then set. Null:
+     * it goes on to its end. */
+    bool (*is_enough)(void);
 } wh_budget_options_t;
 
 /* Why a run fails. */
@@ -55,6 +58,7 @@ typedef struct {
     int32_t width;             /* the smaller `inside` */
     /* In a trial something differed that is judged or told: an event, where a wafer ended. */
     bool has_effect;
+    bool known; /* it was looked for, up to the end */
 } wh_budget_error_t;
 
 /* In wh_errors_teaching_name's order. */
@@ -91,6 +95,7 @@ typedef struct {
     wh_budget_options_t options;
     wh_budget_station_t *stations; /* the layout's */
     wh_budget_box_t box;
+    bool incomplete;  /* it was ended: errors that are not known have no numbers, nor has the box */
     bool two_ways;    /* trials without collisions first, then with them */
     bool caught;      /* in a trial that passed the script caught an error that it else has not */
     uint64_t trials;  /* all in all */
@@ -99,7 +104,8 @@ typedef struct {
 } wh_budget_t;
 
 /* Finds the budget of an opened study whose run without errors is ok. To be freed. False, with the reason on
- * stderr, if there are no threads or if a witness does not do what was found. Deterministic: the same options
+ * stderr, if there are no threads or if a witness does not do what was found; and without one if it was ended,
+ * as `incomplete` says. Deterministic: the same options
  * but for threads give the same result. Cost: some 500 trials a station, and some thousand of the box. */
 bool wh_budget_find(wh_budget_t *budget, const wh_study_t *study, const wh_budget_options_t *options);
 void wh_budget_free(wh_budget_t *budget);
@@ -107,6 +113,10 @@ void wh_budget_free(wh_budget_t *budget);
 /* How far an error moves the rim of a wafer when it first fails, mm: of lengths the width, of angles the
  * width times the wafer's radius. Infinite if it does not fail. This makes lengths and angles comparable. */
 double wh_budget_rim(const wh_budget_t *budget, size_t station, size_t axis);
+
+/* How many errors passed up to the limit, which moves the rim less than the tightest error's width: they may
+ * allow less than that. 0 if nothing failed. */
+size_t wh_budget_capped(const wh_budget_t *budget);
 
 /* The error of a station for which that is least; and how much that is. */
 size_t wh_budget_tightest_axis(const wh_budget_t *budget, size_t station);

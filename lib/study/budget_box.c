@@ -32,7 +32,7 @@ typedef struct {
     const int32_t **width;      /* of each error; null: not looked at */
     int8_t *signs;              /* of the corner that failed last */
     wh_budget_level_t level;    /* of the list that is tried */
-    bool stuck;                 /* there were no threads */
+    bool stuck;                 /* there were no threads, or it was enough */
     /* A batch. */
     size_t first;
     int32_t *points;
@@ -335,6 +335,14 @@ static bool try_lists(boxing_t *boxing) {
 
 /* ---------------------------------------------------------------------------------------------- witnesses */
 
+static bool is_enough(boxing_t *boxing) {
+    const wh_budget_options_t *options = &boxing->budget->options;
+    if (options->is_enough && options->is_enough()) {
+        boxing->stuck = boxing->budget->incomplete = true;
+    }
+    return boxing->stuck;
+}
+
 /* Takes errors out of a point that fails as long as it fails: `count` in a row from each `first`. */
 static void take_out(boxing_t *boxing, int32_t point[], size_t count) {
     int32_t *less = wh_array_new(boxing->size, sizeof *less);
@@ -345,7 +353,7 @@ static void take_out(boxing_t *boxing, int32_t point[], size_t count) {
             is_any = is_any || less[i] != 0;
             less[i] = 0;
         }
-        if (is_any && !wh_budget_passes(boxing->player, less, WH_BUDGET_WITH)) {
+        if (is_any && !is_enough(boxing) && !wh_budget_passes(boxing->player, less, WH_BUDGET_WITH)) {
             memcpy(point, less, boxing->size * sizeof *less);
         }
     }

@@ -27,6 +27,14 @@ static void add_spreads(list_t *list, wh_cause_kind_t kind, size_t index, const 
     }
 }
 
+/* Only what the wafer's rim has. */
+static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
+    for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
+        const bool has = wh_rim_draw_concerns((wh_rim_draw_t)i, layout->rims[wafer]);
+        add(list, WH_CAUSE_RIM, wafer, i, has ? layout->errors->rims[wafer].of[i].width : 0);
+    }
+}
+
 wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
     const wh_errors_t *errors = layout->errors;
     list_t list = {wh_array_new(1, sizeof *list.causes), 0, 1};
@@ -40,6 +48,9 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
         add(&list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
     }
     add(&list, WH_CAUSE_VACUUM, 0, 0, errors ? errors->vacuum.width : 0);
+    for (size_t w = 0; errors && errors->rims && w < layout->wafer_count; ++w) {
+        add_rim(&list, layout, w);
+    }
     *count = list.count;
     return list.causes;
 }
@@ -47,6 +58,12 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
 static double component_of(const wh_displacement_t *drawn, size_t component) {
     const double moved[] = {drawn->moved.x, drawn->moved.y, drawn->moved.z};
     return component < 3 ? moved[component] : drawn->turn[component - 3];
+}
+
+static double draw_rim(const wh_layout_t *layout, const wh_trial_t *trial, const wh_cause_t *cause) {
+    double drawn[WH_RIM_DRAWS];
+    wh_errors_draw_rim(layout->errors, trial, cause->index, layout->rims[cause->index], drawn);
+    return drawn[cause->component];
 }
 
 /* A displacement is drawn once, for all of its components that follow each other. */
@@ -62,6 +79,8 @@ void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *
             drawn[i] = wh_errors_draw_valve(errors, trial, cause->index);
         } else if (cause->kind == WH_CAUSE_VACUUM) {
             drawn[i] = wh_errors_draw_vacuum(errors, trial);
+        } else if (cause->kind == WH_CAUSE_RIM) {
+            drawn[i] = draw_rim(layout, trial, cause);
         } else {
             last = goes_on                         ? last
                    : cause->kind == WH_CAUSE_WAFER ? wh_errors_draw_wafer(errors, trial, cause->index)
@@ -76,17 +95,30 @@ const char *wh_cause_what(const wh_cause_t *cause) {
     static const char *const station[COMPONENTS] = {"x", "y", "z", "roll", "pitch", "yaw"};
     return cause->kind == WH_CAUSE_WAFER     ? wafer[cause->component]
            : cause->kind == WH_CAUSE_STATION ? station[cause->component]
+           : cause->kind == WH_CAUSE_RIM     ? wh_rim_draw_name((wh_rim_draw_t)cause->component)
            : cause->kind == WH_CAUSE_VALVE   ? "valve"
                                              : "vacuum";
 }
 
+static bool is_delay(const wh_cause_t *cause) {
+    return cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM;
+}
+
+bool wh_cause_has_sign(const wh_cause_t *cause) {
+    const bool is_rim = cause->kind == WH_CAUSE_RIM;
+    return !is_delay(cause) && !(is_rim && wh_rim_draw_is_size((wh_rim_draw_t)cause->component));
+}
+
 const char *wh_cause_unit(const wh_cause_t *cause) {
-    const bool is_delay = cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM;
-    return is_delay ? "s" : cause->component < 3 ? "mm" : "deg";
+    if (cause->kind == WH_CAUSE_RIM) {
+        return wh_rim_draw_unit((wh_rim_draw_t)cause->component);
+    }
+    return is_delay(cause) ? "s" : cause->component < 3 ? "mm" : "deg";
 }
 
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
-    return cause->kind == WH_CAUSE_WAFER     ? layout->wafers[cause->index].name
+    const bool is_wafer = cause->kind == WH_CAUSE_WAFER || cause->kind == WH_CAUSE_RIM;
+    return is_wafer                          ? layout->wafers[cause->index].name
            : cause->kind == WH_CAUSE_STATION ? layout->stations[cause->index].name
            : cause->kind == WH_CAUSE_VALVE   ? layout->grippers[cause->index].name
                                              : NULL;

@@ -4,13 +4,21 @@
 
 #include "../layout/layout.h"
 
-typedef enum { WH_CAUSE_WAFER, WH_CAUSE_STATION, WH_CAUSE_VALVE, WH_CAUSE_VACUUM } wh_cause_kind_t;
+typedef enum {
+    WH_CAUSE_WAFER,
+    WH_CAUSE_STATION,
+    WH_CAUSE_VALVE,
+    WH_CAUSE_VACUUM,
+    WH_CAUSE_RIM
+} wh_cause_kind_t;
 
 typedef struct {
     wh_cause_kind_t kind;
-    size_t index;     /* of the wafer, station or gripper */
-    size_t component; /* of a wafer's or station's displacement: x, y, z, then the turns about them */
-    double width;     /* mm, degrees, s */
+    size_t index; /* of the wafer, station or gripper */
+    /* Of a wafer's or station's displacement: x, y, z, then the turns about them; of a rim a
+     * wh_rim_draw_t. */
+    size_t component;
+    double width; /* mm, degrees, s; of a part without a unit */
 } wh_cause_t;
 
 /* Those of a layout, in the order of `kind`, `index` and `component`. To be freed. Memory that runs out ends
@@ -21,10 +29,13 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count);
 void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
                     const wh_trial_t *trial, double drawn[]);
 
-/* What is drawn, as "dx", "tilt_x", "yaw", "valve" or "vacuum", and its unit: "mm", "deg" or "s". Both are
- * constant texts. */
+/* What is drawn, as "dx", "tilt_x", "yaw", "valve", "vacuum" or "notch_depth", and its unit: "mm", "deg", "s"
+ * or "". Both are constant texts. */
 const char *wh_cause_what(const wh_cause_t *cause);
 const char *wh_cause_unit(const wh_cause_t *cause);
+
+/* True if what is drawn may be below 0. */
+bool wh_cause_has_sign(const wh_cause_t *cause);
 
 /* Of whom: the name of the wafer, station or gripper; null for the vacuum, which is all grippers'. */
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout);

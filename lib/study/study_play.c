@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <math.h>
 #include <sched.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,7 @@
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "../text/guard.h"
+#include "../text/interrupt.h"
 #include "../text/output.h"
 #include "../text/style.h"
 #include "checkpoint.h"
@@ -80,11 +80,33 @@ static bool choose_lines(wh_study_t *study) {
     return true;
 }
 
+/* True if something of the cell was read that errors could change, or a gripper was told to take. */
+static bool asks_the_cell(const wh_decisions_t *decisions) {
+    bool asks = decisions->unfit || decisions->claim_count > 0;
+    for (size_t i = 0; i < decisions->entry_count; ++i) {
+        const wh_decisions_kind_t kind = decisions->entries[i].kind;
+        asks = asks || (kind != WH_DECISION_BEGIN && kind != WH_DECISION_END);
+    }
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        asks = asks || decisions->valve_count[g] > 0;
+    }
+    return asks;
+}
+
 /* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is looked at. */
 static bool checks_nothing(const wh_study_t *study) {
     const wh_record_t *record = &study->nominal.record;
-    return record->ok && record->event_count == 0 && record->expectation_count == 0 &&
+    return record->ok && record->event_count == 0 &&
+           (record->expectation_count == 0 || !asks_the_cell(&study->decisions)) &&
            (record->slices == 0 || !study->layout->collision);
+}
+
+/* Without widths all trials are alike, unless edge sensors have noise of their own. */
+static bool draws_something(const wh_study_t *study) {
+    return study->draws_nothing || study->cause_count > 0 || study->layout->scanner_count > 0 ||
+           refuse(study->layout->path,
+                  "study: nothing is drawn, so that all trials are alike (expected a width "
+                  "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
 }
 
 /* True if trials make sense; else standard error says why not. */
@@ -97,8 +119,9 @@ static bool is_fit(const wh_study_t *study) {
                                            "dx = 0.3 } }, here or in the script)");
     }
     if (checks_nothing(study)) {
-        return refuse(study->run.script, "takes no wafer and expects nothing, so that no trial could fail "
-                                         "(expected get, put or expect)");
+        return refuse(study->run.script,
+                      "takes no wafer and expects nothing of any, so that no trial could fail "
+                      "(expected get, put, or expect of where a wafer is)");
     }
     return true;
 }
@@ -117,7 +140,7 @@ bool wh_study_open(wh_study_t *study) {
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
     study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
-    if (!choose_lines(study)) {
+    if (!draws_something(study) || !choose_lines(study)) {
         return false;
     }
     return hash_file(study->run.script, &study->script_hash) &&
@@ -128,31 +151,6 @@ void wh_study_close(wh_study_t *study) {
     wh_decisions_free(&study->decisions);
     free(study->causes);
     wh_script_run_close(&study->nominal);
-}
-
-/* ------------------------------------------------------------------------------------------------ signals */
-
-static volatile sig_atomic_t caught;
-
-static void catch_signal(int number) {
-    caught = number;
-}
-
-static bool is_interrupted(void) {
-    return caught != 0;
-}
-
-/* A signal that was ignored stays ignored, as for a program in the background. */
-static void catch_signals(void) {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
-        struct sigaction before;
-        struct sigaction action = {.sa_handler = catch_signal};
-        sigemptyset(&action.sa_mask);
-        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-            sigaction(numbers[i], &action, NULL);
-        }
-    }
 }
 
 /* -------------------------------------------------------------------------------------------------- state */
@@ -286,7 +284,7 @@ static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper)
                  .start = wh_clock_seconds()};
     bool sound = true;
     queue_rest(pool);
-    while (sound && !wh_pool_look(pool).failed && !is_interrupted() && !is_over(pool, ranks)) {
+    while (sound && !wh_pool_look(pool).failed && !wh_interrupt_came() && !is_over(pool, ranks)) {
         sound = attend(pool, ranks, keeper);
         bar_show(&bar, wh_pool_look(pool).trials);
     }
@@ -295,7 +293,7 @@ static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper)
         fprintf(stderr, "%s\n", pool->message);
         sound = false;
     }
-    const bool left_off = is_interrupted() && !is_over(pool, ranks);
+    const bool left_off = wh_interrupt_came() && !is_over(pool, ranks);
     return !sound ? WH_STUDY_FAILED : left_off ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
 }
 
@@ -331,11 +329,11 @@ wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *
                              wh_progress_t *progress) {
     wh_pool_t pool;
     wh_study_end_t end = WH_STUDY_FAILED;
-    catch_signals();
+    wh_interrupt_catch();
     if (!wh_pool_open(&pool, study, wh_study_threads(options->threads))) {
         fprintf(stderr, "waferhand study: no memory or threads (expected fewer with --threads)\n");
     } else if (ranks->rank > 0) {
-        end = wh_ranks_help(ranks, &pool, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;
+        end = wh_ranks_help(ranks, &pool, wh_interrupt_came) ? WH_STUDY_HELPED : WH_STUDY_FAILED;
     } else {
         end = play_first(&pool, options, ranks);
     }

@@ -12,14 +12,18 @@ void wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
     worker->study = study;
     worker->options = study->run;
     worker->options.unread_parameters = true;
-    worker->places = wh_array_new(layout->station_count, sizeof *worker->places);
-    worker->start = wh_array_new(layout->wafer_count, sizeof *worker->start);
+    worker->room.places = wh_array_new(layout->station_count, sizeof *worker->room.places);
+    worker->room.start = wh_array_new(layout->wafer_count, sizeof *worker->room.start);
+    worker->room.rims = wh_array_new(layout->wafer_count, sizeof *worker->room.rims);
+    worker->room.rim_of = wh_array_new(layout->wafer_count, sizeof(const wh_rim_t *));
     worker->wafers = wh_array_new(layout->wafer_count, sizeof *worker->wafers);
 }
 
 void wh_worker_close(wh_worker_t *worker) {
-    free(worker->places);
-    free(worker->start);
+    free(worker->room.places);
+    free(worker->room.start);
+    free(worker->room.rims);
+    free(worker->room.rim_of);
     free(worker->wafers);
     free(worker->world.parts);
     free(worker->world.names);
@@ -48,7 +52,7 @@ static bool watch(void *user, const wh_event_t events[], size_t count) {
 
 /* True if the station is where the layout has it, to the last bit. */
 static bool stands_as_taught(const wh_worker_t *worker, int32_t station) {
-    const wh_pose_t *real = &worker->places[station].base_from_station;
+    const wh_pose_t *real = &worker->room.places[station].base_from_station;
     const wh_pose_t *taught = &worker->study->layout->places[station].base_from_station;
     return wh_hash_pose(WH_HASH_START, real) == wh_hash_pose(WH_HASH_START, taught);
 }
@@ -108,7 +112,7 @@ static bool set_up(wh_worker_t *worker) {
     const wh_layout_t *layout = &worker->trial_cell.layout;
     const wh_grasp_storage_t storage = {
         worker->wafers, layout->wafer_count, worker->grippers, layout->machine.gripper_count, NULL, 0};
-    memcpy(worker->wafers, worker->start, layout->wafer_count * sizeof *worker->wafers);
+    memcpy(worker->wafers, worker->room.start, layout->wafer_count * sizeof *worker->wafers);
     return wh_simulator_init(&worker->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK &&
            wh_simulator_set_physics(&worker->simulator, &layout->physics) == WH_OK;
 }
@@ -139,7 +143,7 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_record_t *record = &study->nominal.record;
     const wh_trial_t name = {study->seed, trial};
     begin(worker, trial);
-    wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, worker->places, worker->start);
+    wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, &worker->room);
     if (!set_up(worker)) {
         return false;
     }

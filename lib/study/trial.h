@@ -20,8 +20,8 @@ typedef struct {
 typedef struct {
     const wh_study_t *study;
     wh_trial_cell_t trial_cell;
-    wh_station_t *places;
-    wh_wafer_t *start, *wafers;
+    wh_trial_room_t room;
+    wh_wafer_t *wafers;
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_simulator_t simulator;
     wh_outcome_t outcome;

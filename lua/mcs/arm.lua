@@ -6,7 +6,7 @@
 local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
 local tostring, type = tostring, type
 
-return function(native, lookup)
+return function(native, lookup, centring)
   -- inside   the target whose straight line the arm has entered and not left
   -- since    the command that entered it
   -- stopped  a command that was cut short, and neither RECOVER nor HOME came since; else nil
@@ -198,13 +198,16 @@ return function(native, lookup)
   -- the segment. The cell knows if a wafer is on a gripper's pads, whatever its sensor says; a
   -- controller would look.
   local function perform(request, target)
-    if request.is_on then
+    if request.centre then
+      return centring.answer(request.centre)
+    elseif request.is_on then
       return native.sensor(request.is_on)
     elseif request.is_loaded then
       return native.held(request.is_loaded) ~= nil
     end
     if request.enters then
       arm.inside, arm.since = request.enters, running
+      centring.begin(request.enters)
     end
     local ended, lost = native.play(request.planned or segment_of(request))
     if request.leaves then
@@ -246,6 +249,14 @@ return function(native, lookup)
     return answer
   end
 
+  -- What is ahead of a plan that was answered otherwise than it assumed: planned anew, since the blade goes
+  -- elsewhere by what beams say.
+  local function plan_again(plan)
+    local again = plan_ahead(plan, true)
+    again.text, again.conclude = plan.text, plan.conclude
+    return again
+  end
+
   local function finish(plan, became)
     if plan.conclude then
       plan.conclude(became)
@@ -275,6 +286,8 @@ return function(native, lookup)
       local answer = answer_to(plan, request)
       if answer == nil then
         return nil
+      elseif request.centre then
+        return arm.drive(plan_again(plan), conclude)
       elseif answer ~= assumed(request) then
         return go_on(plan)
       end

@@ -4,9 +4,10 @@
 local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 
 return function(native, patterns, lookup)
-  local arm = native.module("mcs/arm.lua")(native, lookup)
+  local centring = native.module("mcs/centring.lua")(native, lookup)
+  local arm = native.module("mcs/arm.lua")(native, lookup, centring)
   local targets = native.module("mcs/targets.lua")(native, lookup)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets)
+  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, centring)
 
   ----------------------------------------------------------------------------------------------- single moves
 
@@ -77,6 +78,9 @@ return function(native, patterns, lookup)
   function commands.edge_scan(station)
     return arm.move(lookup.command("EDGE_SCAN", station), edge_scan, station)
   end
+
+  commands.centring = centring.last
+  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then

@@ -14,6 +14,9 @@
 -- answered with true or false, of which a plan knows no more than what to `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
+--   centre    = target                            answered with { x, y }, mm in base: how far the wafer's
+--                                                 centre on its blade is from where it should be, or with false
+--                                                 if the beams that the way in has passed do not tell
 -- or, if the target's `stop` asks for it,
 --   hold = "extended" or "up"                     the command ends here, and CONTINUE goes on behind it
 -- It returns what became of the wafer, a word, as the sensors tell.
@@ -94,6 +97,21 @@ local function holds(target, gripper)
   return not target.asks or yield { sensor = gripper, timeout = target.timeout }
 end
 
+-- On the way in the blade passed beams that tell where the wafer lies on it: the blade goes aside by that.
+-- False if they do not.
+local STRAIGHT = { 0, 0 }
+
+local function centre(target)
+  if not target.centre then
+    return true
+  end
+  local off = yield { centre = target, assume = STRAIGHT }
+  if off and (off[1] ~= 0 or off[2] ~= 0) then
+    yield { line = { -off[1], -off[2], 0 }, target = target, where = "in" }
+  end
+  return off and true
+end
+
 -- Down to where a PUT lets go, valve closed, down below the wafer: whatever lies on the blade stays in the
 -- slot.
 local function set_back(target, height)
@@ -165,11 +183,16 @@ end
 ---------------------------------------------------------------------------------------------------------- PUT
 
 -- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck
--- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it.
+-- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it. With `centre` aside
+-- before that, by what beams say of the wafer; when they do not, out again with the wafer: "uncentred".
 function patterns.put(target)
   local became = "kept"
   approach(target, target.offset)
   enter(target)
+  if not centre(target) then
+    leave(target)
+    return "uncentred"
+  end
   pause(target, "extended")
   stroke(target, target.release - target.offset)
   if target.chuck then

@@ -66,6 +66,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
         options[prefix .. name] = "number"
       end
       options[prefix .. "stop"] = "phase"
+      options[prefix .. "centre"] = "switch"
     end
     return options
   end
@@ -131,9 +132,13 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   local function put(arguments, options)
-    local held = held_wafers()
+    local held, before = held_wafers(), commands.centring()
     return carried(function()
-      return { { "wafer", held[effector_for(arguments, options)] } }
+      local list, seen = { { "wafer", held[effector_for(arguments, options)] } }, commands.centring()
+      if seen and seen ~= before then
+        list[2], list[3], list[4] = { "dx", seen.dx }, { "dy", seen.dy }, { "sd", seen.sd }
+      end
+      return list
     end, commands.put, arguments[1], arguments[2], options)
   end
 
@@ -158,6 +163,14 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local codes
     local time = timed(function() codes = commands.map(arguments[1], options) end)
     return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
+  end
+
+  local function teach(arguments)
+    local taught
+    local time = timed(function() taught = commands.teach(arguments[1]) end)
+    return tokens.pairs {
+      { "x", taught.at[1] }, { "y", taught.at[2] }, { "z", taught.at[3] }, { "yaw_deg", taught.rpy[3] }, time,
+    }
   end
 
   local function offset_text(dx, dy, dz, tilt)
@@ -379,6 +392,8 @@ return function(native, commands, queries, lookup, tokens, states, keep)
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
+    TEACH = { takes = { "station" }, run = teach,
+              does = "finds out where the station truly is, by its beam and the wafer in slot 1" },
     HOME = { takes = {}, run = moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },
     RECOVER = { takes = {}, run = moving(commands.recover),

@@ -12,7 +12,7 @@ return function(native, lookup)
   -- What else GET and PUT may say, and SWAP for its GET and its PUT: by prefix, the fields' kinds by name. The
   -- unit of a length or an angle is at the same place as in lookup.parameters.
   local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },
-                  turn = { nil, nil, "degrees" }, stop = { values = lookup.phases } }
+                  turn = { nil, nil, "degrees" }, stop = { values = lookup.phases }, centre = { values = { true, false } } }
 
   local function with_prefixes(...)
     local fields = {}
@@ -61,6 +61,18 @@ return function(native, lookup)
     target.stop = options[prefix .. "stop"]
   end
 
+  -- If a PUT goes aside by what beams say of its wafer.
+  local function read_centre(target, word, station, options, prefix)
+    local own = prefix and options[prefix .. "centre"]
+    if word == "get" and own ~= nil and own ~= false then
+      native.fail("BAD_ARGUMENT", ("%scentre: true (expected false: a PUT centres)"):format(prefix))
+    end
+    target.centre = word == "put" and prefix ~= nil and station.centre
+    if word == "put" and own ~= nil then
+      target.centre = own
+    end
+  end
+
   -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
   -- next one would take its wafer.
   local function rules(target, station, layout)
@@ -77,6 +89,8 @@ return function(native, lookup)
         'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
       { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
         "0, or 1e-6 mm/s^2 or more" },
+      { "centre", not target.centre or station.beams > 1, "false: %s has %d beams, and two tell a centre",
+        station.name, station.beams },
       { "retries", math.tointeger(target.retries), "a whole number" },
       { "dz", math.max(-bottom - target.dz, target.offset + target.dz) < pitch,
         "with the stroke within the pitch of %.10g mm below and above the slot", pitch },
@@ -113,6 +127,7 @@ return function(native, lookup)
         target[name] = station[name]
       end
     end
+    read_centre(target, word, station, options, prefix)
     check(target, rules(target, station, native.layout), prefix)
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, pcall, select, type = ipairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets)
+return function(native, patterns, lookup, arm, targets, centring)
   local transfer = {}
 
   local slot_map = native.module("mcs/slot_map.lua")(native)
@@ -58,8 +58,13 @@ return function(native, patterns, lookup, arm, targets)
     return text == "-0.000" and "0.000" or text
   end
 
-  -- Why the chuck did not take what the running command let go: that wafer still lies there.
-  local function explain_lost(chuck)
+  -- Why the chuck did not take the wafer: it was not let go, or what the running command let go still lies there.
+  local function explain_lost(gripper, chuck)
+    local kept = native.held(gripper)
+    if kept then
+      local text = "%s still holds %s: its valve or vacuum did not let go of it when %s was to take it"
+      return text:format(name_of(gripper), kept, name_of(chuck))
+    end
     local wafer, dx, dy, dz, reasons = native.let_go(chuck)
     if not wafer then
       return explain(chuck)
@@ -97,8 +102,10 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local function judge_put(target, became)
-    if became == "lost" then
-      native.fail("WAFER_LOST", explain_lost(target.chuck))
+    if became == "uncentred" then
+      centring.fail(target)
+    elseif became == "lost" then
+      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck))
     elseif became == "loose" then
       fail_late(target, target.chuck)
     end
@@ -121,7 +128,9 @@ return function(native, patterns, lookup, arm, targets)
     arm.drive(plan, function(became)
       kind.judge(target, became)
       kind.note(target)
+      centring.know_notch(target.gripper)
     end)
+    return target.centred
   end
 
   -- The command as the record has it: with its corrections, and where it stops.
@@ -141,7 +150,7 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   function transfer.put(station, slot, options)
-    arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
+    return arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------- SWAP
@@ -180,6 +189,9 @@ return function(native, patterns, lookup, arm, targets)
     end
     local empty, loaded = choose_grippers()
     local give = targets.at("put", station, slot, options, loaded, "put_")
+    if give.centre then
+      native.fail("BAD_ARGUMENT", "put_centre: true (expected false: the beams would see both wafers of a SWAP)")
+    end
     take.gripper = empty
     local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
@@ -191,6 +203,8 @@ return function(native, patterns, lookup, arm, targets)
       judge_get(take, became)
       judge_put(give, became)
       slot_map.note_put(give)
+      centring.know_notch(take.gripper)
+      centring.know_notch(give.gripper)
     end)
   end
 

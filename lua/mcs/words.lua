@@ -20,8 +20,8 @@ local function options(class)
   return { "options", "waferhand." .. class .. "?", "for this one command" }
 end
 
-local function at_slot(class, does)
-  return { takes = { STATION, SLOT, options(class) }, does = does }
+local function at_slot(class, does, ...)
+  return { takes = { STATION, SLOT, options(class) }, gives = { ... }, does = does }
 end
 
 local words = {}
@@ -32,7 +32,7 @@ words.scripts = {
   study = { takes = { { "errors", "waferhand.study", "what is drawn" } },
             does = "Before cell: what a study draws, in place of the layout's." },
   get = at_slot("carrying_options", "Takes the wafer there, or fails with WAFER_MISSING and the reason."),
-  put = at_slot("carrying_options", "Sets the wafer down there."),
+  put = at_slot("carrying_options", "Sets the wafer down there.", { "waferhand.centring?", "centring" }),
   swap = at_slot("swap_options",
     "Takes the wafer there with the empty gripper, then puts down what the other one holds."),
   ready = at_slot("command_options", "Goes in front of the slot, to where GET or PUT enters."),
@@ -47,6 +47,11 @@ words.scripts = {
               does = "A STOP comes after so much simulated time." },
   rotate = { takes = { STATION, { "degrees", "number", "degrees" } },
              does = "Turns a prealigner's chuck by so much." },
+  centring = { takes = {}, gives = { { "waferhand.centring?", "centring" } },
+               does = "What the beams of the last PUT that centred said of its wafer; nil before one." },
+  teach = { takes = { STATION, { "options", "waferhand.teach_options?", "how" } },
+            gives = { { "waferhand.taught", "taught" } },
+            does = "Finds out where a station truly is, by the beam at its door and the wafer in its slot 1." },
   edge_scan = { takes = { STATION }, gives = { { "waferhand.edge_scan", "scan" } },
                 does = "Turns a prealigner's chuck once round while its edge sensor looks at the wafer." },
   valve = { takes = { GRIPPER, { "level", "0|1", "0 opens it (vacuum on), 1 closes it" } },
@@ -122,6 +127,29 @@ words.classes = {
     { "first", "integer", "the number of the first sample" },
     { "count", "integer", "how many were asked for" }, { "missed", "integer", "how many never came" },
     { "is_armed", "boolean", "if more were to come when the turn ended" } },
+  { "centring", "What beams at a station's door said of a wafer on its blade: mm and degrees.",
+    { "station", "string", "whose beams" }, { "gripper", "string", "the blade" },
+    { "sure", "boolean", "if the PUT went by it" }, { "error", "integer", "0, or why it did not" },
+    { "dx", "number?", "how far the centre was off, in the slot's frame" }, { "dy", "number?", "" },
+    { "sd_dx", "number?", "its standard deviation" }, { "sd_dy", "number?", "" },
+    { "sd", "number?", "in the worst direction" }, { "radius", "number?", "of the wafer" },
+    { "used", "integer", "how many crossings it rests on" },
+    { "missed", "integer", "latches that never came" },
+    { "crossings", "waferhand.crossing[]", "what crossed the beams" },
+    { "candidates", "waferhand.candidate[]", "the likelier first" } },
+  { "crossing", "A beam that was broken or got free.",
+    { "beam", "integer", "which of the station's, from 1" }, { "edge", "\"in\"|\"out\"", "broken, or free" },
+    { "use", "\"rim\"|\"notch\"|\"other\"|\"none\"", "what it was taken for" },
+    { "x", "number", "on the blade" }, { "y", "number", "" }, { "time", "number", "s" } },
+  { "candidate", "Where a wafer's centre may be on its blade.",
+    { "dx", "number", "in the slot's frame" }, { "dy", "number", "" }, { "radius", "number", "" },
+    { "sd", "number", "in the worst direction" }, { "used", "integer", "crossings that it rests on" } },
+  { "teach_options", "How a station is taught.", { "by", "\"beam\"?", "what tells it" } },
+  { "taught", "Where a station was found: mm and degrees.",
+    { "at", "number[]", "as a layout has it" }, { "rpy", "number[]", "likewise" },
+    { "sd", "number[]", "standard deviations of x, y and z" },
+    { "beam", "number[]", "by how much the beam is elsewhere, in base" },
+    { "text", "string", "of a layout" } },
   { "relation", "How a frame lies as seen from another: mm and degrees.",
     { "distance", "number", "of the origins" }, { "dx", "number", "" }, { "dy", "number", "" },
     { "dz", "number", "" }, { "angle", "number", "between the z axes" }, { "turn", "number", "the whole turn" } },

@@ -9,9 +9,9 @@
 /* What to put right, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };
 
-static const char *const channels[] = {WH_CHANNEL_COMMAND,  WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
-                                       WH_CHANNEL_MCS,      WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
-                                       WH_CHANNEL_EDGE_SCAN};
+static const char *const channels[] = {WH_CHANNEL_COMMAND,   WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
+                                       WH_CHANNEL_MCS,       WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
+                                       WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
 
 static int64_t fingerprint_of(const char *channel) {
     if (strcmp(channel, WH_CHANNEL_COMMAND) == 0) {
@@ -28,6 +28,9 @@ static int64_t fingerprint_of(const char *channel) {
     }
     if (strcmp(channel, WH_CHANNEL_EDGE_SCAN) == 0) {
         return __waferhand_edge_scan_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_LATCH) == 0) {
+        return __waferhand_centring_get_hash();
     }
     return __waferhand_state_get_hash();
 }
@@ -134,10 +137,12 @@ DEFINE_CHECK(mcs)
 DEFINE_CHECK(request)
 DEFINE_CHECK(cell)
 DEFINE_CHECK(edge_scan)
+DEFINE_CHECK(centring)
 
 bool fuzz_check_decoding(const fuzz_frame_t *frame) {
-    static bool (*const checks[])(const fuzz_frame_t *frame) = {
-        check_command, check_state, check_state, check_mcs, check_request, check_cell, check_edge_scan};
+    static bool (*const checks[])(const fuzz_frame_t *frame) = {check_command,   check_state,   check_state,
+                                                                check_mcs,       check_request, check_cell,
+                                                                check_edge_scan, check_centring};
     for (size_t i = 0; i < sizeof channels / sizeof channels[0]; ++i) {
         if (frame->channel == channels[i]) {
             return checks[i](frame);

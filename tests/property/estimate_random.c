@@ -77,6 +77,37 @@ static void frames_lie_within_their_deviations(void **state) {
     assert_near(sum / FRAMES, 1.06, 0.12);
 }
 
+/* Up to a quarter of the points are wrong, by 100 deviations and more: these are set aside, hardly any other
+ * is, and the frame lies within its deviations. */
+static void wrong_points_are_set_aside(void **state) {
+    (void)state;
+    size_t good = 0;
+    size_t good_aside = 0;
+    for (int round = 0; round < FRAMES; ++round) {
+        wh_frame_point_t points[30];
+        const size_t count = 8 + wh_test_below(23);
+        const size_t wrong = 1 + wh_test_below((uint32_t)count / 4);
+        const double sd = wh_test_decades(1e-3, 0.1);
+        const wh_pose_t station = random_station();
+        for (size_t i = 0; i < count; ++i) {
+            points[i].known =
+                wh_vec3(wh_test_uniform(-150, 150), wh_test_uniform(-150, 150), wh_test_uniform(0, 240));
+            points[i].touched = near_to(wh_pose_point(&station, &points[i].known), sd);
+            points[i].touched.x += i < wrong ? (i % 2 == 0 ? 1 : -1) * wh_test_uniform(100, 500) * sd : 0;
+        }
+        wh_frame_estimate_t frame;
+        assert_int_equal(wh_frame_estimate(points, count, &frame), WH_OK);
+        (void)judge_frame(&frame, &station);
+        assert_int_equal(frame.used + frame.set_aside, count);
+        for (size_t i = 0; i < count; ++i) {
+            assert_true(i >= wrong || points[i].is_set_aside);
+            good += i >= wrong ? 1 : 0;
+            good_aside += i >= wrong && points[i].is_set_aside ? 1 : 0;
+        }
+    }
+    assert_true((double)good_aside < 1e-3 * (double)good);
+}
+
 static void points_on_a_line_are_never_a_frame(void **state) {
     (void)state;
     for (int round = 0; round < FRAMES; ++round) {
@@ -408,6 +439,41 @@ static void robots_are_the_best_fit_by_differences(void **state) {
     }
 }
 
+/* Headings are measured better than the touches tell the scale of yaw, which a short tool does not: no
+ * contradiction. A scale that is told and that the headings contradict is one. */
+static void headings_and_scales_go_together(void **state) {
+    (void)state;
+    int near = 0;
+    int all = 0;
+    for (int round = 0; round < ROBOTS / 2; ++round) {
+        const size_t count = 30 + wh_test_below(60);
+        const double precision = wh_test_decades(1e-4, 1e-2) * DEG;
+        double truth[NUMBERS];
+        wh_geometry_estimate_t found;
+        random_robot(truth);
+        truth[WH_GEOMETRY_TOOL_X] = wh_test_uniform(20, 200);
+        for (int k = WH_GEOMETRY_SCALE; k < NUMBERS; ++k) {
+            truth[k] = wh_test_uniform(0.99, 1.01);
+        }
+        touch_points(truth, count, wh_test_decades(5e-3, 0.05), 15);
+        for (size_t i = 0; i < count; ++i) {
+            touches[i].heading = headed(truth, touches[i].axes) + noise(precision);
+        }
+        const wh_status_t status = wh_geometry_estimate(touches, count, true, &found);
+        if (status != WH_OK) {
+            fail_msg("%s", found.reason);
+        }
+        assert_near(off_by(&found, truth, WH_GEOMETRY_ZERO + 3), 0, WRONG);
+        near += fabs(off_by(&found, truth, WH_GEOMETRY_ZERO + 3)) < 2 ? 1 : 0;
+        ++all;
+        for (size_t i = 0; i < count; ++i) {
+            touches[i].heading -= 0.1 * touches[i].axes[WH_AXIS_YAW];
+        }
+        assert_int_equal(wh_geometry_estimate(touches, count, true, &found), WH_STATUS_NO_FIT);
+    }
+    assert_true(near > 0.88 * all);
+}
+
 /* What a fit to touches with some axes varied must tell, and must not; what it tells is right. */
 static void judge_varied(const wh_geometry_estimate_t *found, const double *truth, unsigned varied) {
     const bool reaches = (varied & 3) != 0;
@@ -495,6 +561,7 @@ static void robots_of_another_kind_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_lie_within_their_deviations),
+        cmocka_unit_test(wrong_points_are_set_aside),
         cmocka_unit_test(points_on_a_line_are_never_a_frame),
         cmocka_unit_test(the_goal_is_met_for_an_axis_of_the_usual_kind),
         cmocka_unit_test(limits_are_right_or_not_determined),
@@ -502,6 +569,7 @@ int main(void) {
         cmocka_unit_test(robots_lie_within_their_deviations),
         cmocka_unit_test(robots_are_the_best_fit_by_differences),
         cmocka_unit_test(robots_are_right_or_not_determined),
+        cmocka_unit_test(headings_and_scales_go_together),
         cmocka_unit_test(robots_of_another_kind_are_refused),
     };
     (void)wh_test_seed();

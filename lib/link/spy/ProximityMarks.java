@@ -83,8 +83,9 @@ final class ProximityMarks {
     /** The events of one state message. */
     static final class State {
         private static final int HEAD = 125, WAFER = 100, GRIPPER = 446, EVENT = 156, FAULT = 328, SAMPLE = 4,
-                                 CHECK = 8;
-        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64;
+                                 LATCHING = 41, LATCH = 24, CHECK = 8;
+        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64,
+                                 LATCHES = 16;
 
         final long utime, seq, run, layout;
         final List<Event> events = new ArrayList<>();
@@ -103,9 +104,12 @@ final class ProximityMarks {
             final int count = count(data, EVENTS);
             final int faults = count(data, FAULTS);
             final int samples = count(data, SAMPLES);
-            demand(size == HEAD + WAFER * wafers + GRIPPER * grippers + EVENT * count + FAULT * faults +
-                               SAMPLE * samples,
-                   "a whole state");
+            final int body = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers + EVENT * count +
+                             FAULT * faults + SAMPLE * samples;
+            demand(size >= body + LATCHING + CHECK, "a whole state");
+            data.position(body);
+            final int latches = count(data, LATCHES) + count(data, LATCHES);
+            demand(size == body + LATCHING + LATCH * latches + CHECK, "a whole state");
             demand(utime >= 0 && seq >= 0 && isSound(data, size), "a sound state");
             final int first = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers;
             for (int k = 0; status == 0 && k < count; k++) {

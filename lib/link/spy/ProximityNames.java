@@ -16,6 +16,7 @@ final class ProximityNames {
     private static final int WAFERS = 256;
     private static final int FAULTS = 16;
     private static final int SENSORS = 8;
+    private static final int BEAMS = 16;
     /** Bytes of a station after its name, and in the message before and after the layout's path. */
     private static final int STATION = 3 * 8 + 9 * 8 + 4 + 8 + 4, BEFORE_LAYOUT = 3 * 8,
                              AFTER_PATH = 6 * 8 + 3 + 12 * 8;
@@ -34,6 +35,8 @@ final class ProximityNames {
         wafers = new String[count(data, WAFERS)];
         count(data, FAULTS);
         count(data, SENSORS);
+        count(data, BEAMS);
+        count(data, GRIPPERS);   // outlines
         count(data, WAFERS + 1); // rims
         valves = new String[grippers.length];
         texts(data, grippers);

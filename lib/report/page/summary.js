@@ -36,6 +36,12 @@
             W.seconds(event.t)}`, 'other complaint', 'other complaints')}${though}.`)];
     }
 
+    /* By what the cell was off, if it was on purpose. */
+    function errors(doc) {
+        const given = doc.run.errors || [];
+        return given.length === 0 ? [] : [W.why(`The cell was off, as --error asked for: ${given.join(', ')}.`)];
+    }
+
     /* Why a run failed: what ended it, what it did not do, and what went wrong in the cell. */
     function reasons(doc) {
         if (doc.run.ok !== false) {
@@ -104,6 +110,7 @@
             document.getElementById('head').append(
                 W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
                     W.element('span', { class: 'space' }), help, theme),
+                ...errors(doc),
                 ...reasons(doc),
                 ...doc.notes.map((note) => W.why(note)),
                 W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));

@@ -78,7 +78,7 @@ function cases.wrong_values()
   local words = {
     get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
     ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
-    continue = {}, stop = {}, rotate = { station, number("degrees", 5) }, edge_scan = { station }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
+    continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) }, edge_scan = { station }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
     move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
     wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7) },
     fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },
@@ -134,7 +134,7 @@ function cases.wrong_values()
     end
     return known
   end
-  for word, count in pairs { get = 21, put = 21, swap = 26, ready = 16 } do
+  for word, count in pairs { get = 22, put = 22, swap = 28, ready = 16 } do
     expect(try_fields(word, "A", 1) == count, ("%s has %d fields"):format(word, count))
   end
   expect(try_fields("map", "A") == 16 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")

@@ -69,6 +69,9 @@ final class SpyTest {
     /** A state with an event of each of these kinds, by gripper 1 of wafer 0. */
     private static state step(long run, long seq, int... kinds) {
         final state message = new state();
+        message.latching = new latching();
+        message.latching.waiting = new latch[0];
+        message.latching.latches = new latch[0];
         message.run = run;
         message.seq = seq;
         message.utime = seq * 1000;

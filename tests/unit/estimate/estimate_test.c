@@ -9,14 +9,14 @@
 /* ------------------------------------------------------------------------------------------------- frames */
 
 static wh_frame_point_t at(double x, double y, double z, double known_x, double known_y, double known_z) {
-    const wh_frame_point_t point = {{x, y, z}, {known_x, known_y, known_z}};
+    const wh_frame_point_t point = {.touched = {x, y, z}, .known = {known_x, known_y, known_z}};
     return point;
 }
 
 static void a_quarter_turn_is_found_exactly(void **state) {
     (void)state;
-    const wh_frame_point_t points[] = {at(700, 10, 900, 0, 0, 0), at(700, 110, 900, 100, 0, 0),
-                                       at(500, 10, 900, 0, 200, 0), at(700, 10, 930, 0, 0, 30)};
+    wh_frame_point_t points[] = {at(700, 10, 900, 0, 0, 0), at(700, 110, 900, 100, 0, 0),
+                                 at(500, 10, 900, 0, 200, 0), at(700, 10, 930, 0, 0, 30)};
     wh_frame_estimate_t frame;
     assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
     assert_near(frame.base_from_station.r.x, 700, 1e-10);
@@ -29,21 +29,50 @@ static void a_quarter_turn_is_found_exactly(void **state) {
     assert_string_equal(frame.reason, "");
 }
 
-static void a_point_that_is_off_shows_in_the_residuals(void **state) {
+static void residuals_are_of_the_points_that_count(void **state) {
     (void)state;
     wh_frame_point_t points[9];
     for (int i = 0; i < 9; ++i) {
         const double x = 100 * (i % 3);
         const double y = 100 * (double)(i / 3);
-        points[i] = at(x + 5, y, 7 + (i == 4 ? 0.9 : 0), x, y, 0);
+        const double up = i == 4 ? 0.9 : i % 2 == 0 ? -0.3 : 0.2;
+        points[i] = at(x + 5, y, 7 + up, x, y, 0);
     }
     wh_frame_estimate_t frame;
     assert_int_equal(wh_frame_estimate(points, 9, &frame), WH_OK);
-    /* The middle: it lifts the plane by a ninth, and turns nothing. */
-    assert_near(frame.base_from_station.r.z, 7.1, 1e-9);
-    assert_near(frame.largest, 0.8, 1e-9);
+    /* Symmetric about the middle: the plane is lifted by the mean, and nothing turns. */
+    const double mean = (0.9 - 4 * 0.3 + 4 * 0.2) / 9;
+    assert_int_equal(frame.set_aside, 0);
+    assert_near(frame.base_from_station.r.z, 7 + mean, 1e-9);
+    assert_near(frame.largest, 0.9 - mean, 1e-9);
     assert_int_equal(frame.largest_index, 4);
-    assert_near(frame.rms, sqrt((0.64 + 8 * 0.01) / 9), 1e-9);
+    assert_near(frame.rms, sqrt((0.81 + 4 * 0.09 + 4 * 0.04) / 9 - mean * mean), 1e-9);
+}
+
+/* Of six points, which are 0.02 mm off, one is 20 mm off, in each place in turn. */
+static void a_point_that_contradicts_the_others_is_set_aside(void **state) {
+    (void)state;
+    static const double off[6][3] = {{0.02, 0, -0.01}, {-0.02, 0.01, 0}, {0.01, -0.02, 0.02},
+                                     {0, 0.02, 0.01},  {0.01, 0.01, 0},  {-0.01, -0.02, -0.02}};
+    for (size_t wrong = 0; wrong < 6; ++wrong) {
+        wh_frame_point_t points[6];
+        wh_frame_estimate_t frame;
+        for (size_t i = 0; i < 6; ++i) {
+            const double x = 150 * cos((double)i);
+            const double y = 150 * sin((double)i);
+            const double z = i % 2 == 0 ? 0 : 240;
+            points[i] = at(700 + x + off[i][0], y + off[i][1], 900 + z + off[i][2], x, y, z);
+        }
+        points[wrong].touched.y += 20;
+        assert_int_equal(wh_frame_estimate(points, 6, &frame), WH_OK);
+        assert_int_equal(frame.used, 5);
+        assert_int_equal(frame.set_aside, 1);
+        assert_near(frame.base_from_station.r.y, 0, 0.05);
+        assert_true(frame.rms < 0.04 && frame.largest_index != wrong);
+        for (size_t i = 0; i < 6; ++i) {
+            assert_int_equal(points[i].is_set_aside, i == wrong);
+        }
+    }
 }
 
 static void frames_that_points_do_not_tell_are_refused(void **state) {
@@ -425,7 +454,8 @@ static int remove_path(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quarter_turn_is_found_exactly),
-        cmocka_unit_test(a_point_that_is_off_shows_in_the_residuals),
+        cmocka_unit_test(residuals_are_of_the_points_that_count),
+        cmocka_unit_test(a_point_that_contradicts_the_others_is_set_aside),
         cmocka_unit_test(frames_that_points_do_not_tell_are_refused),
         cmocka_unit_test(limits_are_found_and_pauses_are_set_aside),
         cmocka_unit_test(short_moves_tell_no_speed_and_say_so),

@@ -11,7 +11,8 @@ static const char base[] =
     " pads = { friction = 0.5, force = 10 }, corrections = {}, clearance = {},"
     " robot = { theta = {}, r = {}, z = {}, yaw = {} },"
     " grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },"
-    " stations = { A = { at = { 700, 0, 900 }, slots = 2 }, B = { at = { 0, 700, 900 } },"
+    " stations = { A = { at = { 700, 0, 900 }, slots = 2, beams = { { y = 60 } } }, B = { at = { 0, 700, 900 "
+    "} },"
     "   P = { kind = 'prealigner', at = { -600, 0, 950 }, sensor = { hidden = { { from = 1, width = 2 } } } "
     "} },"
     " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, flats = { { at = 0, length = 50 "
@@ -26,8 +27,9 @@ static const char base[] =
     "   { kind = 'wafer_doubled', wafer = 'W1', onto = 'W2' }, { kind = 'wafer_crossed', wafer = 'W1' },"
     "   { kind = 'wafer_shifted', wafer = 'W1' }, { kind = 'wafer_tilted', wafer = 'W1', rpy = { 1, 0, 0 } } "
     "},"
-    " study = { placement = {}, teaching = {}, timing = {}, wafers = { W1 = {} }, stations = { A = {} },"
-    "   grippers = { EE = {} } } }\n";
+    " study = { placement = {}, teaching = {}, timing = {}, rim = {}, wafers = { W1 = {} }, rims = { W1 = {} "
+    "},"
+    "   stations = { A = {} }, grippers = { EE = {} } } }\n";
 
 /* The fault tables follow one another in the list as the base's faults do. */
 static const char first_fault[] = "fault.gripper";
@@ -158,7 +160,8 @@ static void try_field(const char *in, const wh_reader_field_t *field) {
 
 /* The key of a table's only entry of this class. */
 static const char *key_of(const char *class) {
-    return strcmp(class, "placement") == 0 ? "W1" : strcmp(class, "valve") == 0 ? "EE" : "A";
+    const bool is_wafer = strcmp(class, "placement") == 0 || strcmp(class, "rim_width") == 0;
+    return is_wafer ? "W1" : strcmp(class, "valve") == 0 ? "EE" : "A";
 }
 
 static void try_class(const char *path, const wh_layout_class_t *class);

@@ -5,7 +5,16 @@
 
 /* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
  * LCM sends longer messages in fragments, which get lost one by one. */
-enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64, NAME = 64 };
+enum {
+    DATAGRAM = 65499,
+    WAFERS = 256,
+    GRIPPERS = 8,
+    EVENTS = 64,
+    FAULTS = 16,
+    SAMPLES = 64,
+    LATCHES = 16,
+    NAME = 64
+};
 
 typedef struct {
     const char *name;
@@ -34,22 +43,27 @@ static void largest_state_fits(void **state) {
     static waferhand_event events[EVENTS];
     static waferhand_fault_slot faults[FAULTS];
     static int32_t samples[SAMPLES];
+    static waferhand_latch latches[LATCHES];
     (void)state;
-    const waferhand_state message = {.wafer_count = WAFERS,
-                                     .gripper_count = GRIPPERS,
-                                     .event_count = EVENTS,
-                                     .fault_count = FAULTS,
-                                     .sample_count = SAMPLES,
-                                     .wafers = wafers,
-                                     .grippers = grippers,
-                                     .events = events,
-                                     .faults = faults,
-                                     .samples = samples};
+    const waferhand_state message = {
+        .wafer_count = WAFERS,
+        .gripper_count = GRIPPERS,
+        .event_count = EVENTS,
+        .fault_count = FAULTS,
+        .sample_count = SAMPLES,
+        .wafers = wafers,
+        .grippers = grippers,
+        .events = events,
+        .faults = faults,
+        .samples = samples,
+        .latching = {
+            .waiting_count = LATCHES, .latch_count = LATCHES, .waiting = latches, .latches = latches}};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
-    /* Computed by hand: a header of 117, a check of 8, wafers of 100, grippers of 446, events of 156, slots of
-     * faults of 328 and samples of 4 bytes. */
-    assert_int_equal(size, 125 + SAMPLES * 4 + WAFERS * 100 + GRIPPERS * 446 + EVENTS * 156 + FAULTS * 328);
+    /* Computed by hand: a header of 117, a check of 8, beams of 41, wafers of 100, grippers of 446, events of 156, slots of
+     * faults of 328, samples of 4 and latches of 24 bytes. */
+    assert_int_equal(size, 166 + SAMPLES * 4 + 2 * LATCHES * 24 + WAFERS * 100 + GRIPPERS * 446 +
+                               EVENTS * 156 + FAULTS * 328);
     assert_true(size <= DATAGRAM);
 }
 
@@ -85,7 +99,7 @@ static void fixed_sizes(void **state) {
     (void)state;
     const waferhand_command command = {0};
     const waferhand_proximity proximity = {0};
-    assert_int_equal(waferhand_command_encoded_size(&command), 1489);
+    assert_int_equal(waferhand_command_encoded_size(&command), 1501);
     assert_int_equal(waferhand_proximity_encoded_size(&proximity), 508);
 }
 

@@ -5,6 +5,8 @@
 #include "support/random.h"
 
 #include "layout/layout.h"
+#include "layout/transit.h"
+#include "math/trig.h"
 
 #define GRIPPERS "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, "
 #define PREALIGNER "P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } }, "
@@ -355,6 +357,78 @@ static void too_many(void **state) {
     assert_null(wh_layout_part_name(unchecked, 0));
 }
 
+/* --------------------------------------------------------------------------------------------------- the transit */
+
+/* How far what hangs on gripper `g` is from theta's axis, by support points in all directions. */
+static double outermost(const wh_layout_t *layout, size_t g, double R, double yaw) {
+    const wh_pose_t effector = {wh_mat3_about_z(yaw), {R, 0, 0}};
+    const wh_mount_t *mount = &layout->machine.mounts[g];
+    const wh_pose_t gripper =
+        mount->is_shifted ? wh_pose_compose(&effector, &mount->effector_from_gripper) : effector;
+    double most = 0;
+    for (size_t i = 0; i <= layout->world.part_count; ++i) {
+        const wh_part_t *hung = &layout->world.parts[i];
+        const bool is_wafer = i == layout->world.part_count;
+        if (!is_wafer && (hung->kind != WH_PART_BLADE || hung->owner != (int32_t)g)) {
+            continue;
+        }
+        const wh_convex_t *convex = is_wafer ? &layout->world.wafer : &hung->convex;
+        const wh_pose_t base_from_shape = wh_pose_compose(&gripper, &convex->body_from_shape);
+        for (int k = 0; k < 720; ++k) {
+            const wh_vec3_t way = wh_vec3(wh_cos(k * WH_PI / 360), wh_sin(k * WH_PI / 360), 0);
+            const wh_vec3_t point = wh_convex_support(convex, &base_from_shape, way);
+            most = fmax(most, wh_vec3_dot(&point, &way));
+        }
+    }
+    return most;
+}
+
+static double outermost_while_turning(const wh_layout_t *layout, double R, double from, double to) {
+    double most = 0;
+    for (int k = 0; k <= 90; ++k) {
+        for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+            if (layout->grippers[g].station == WH_NONE) {
+                most = fmax(most, outermost(layout, g, R, from + (to - from) * k / 90));
+            }
+        }
+    }
+    return most;
+}
+
+/* Up to the reach the circle is kept, and not much beyond it. */
+static void a_circle_is_kept(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "robot = { transit = 600 }, grippers = { { name = 'EE' }, { name = 'LO', at = { -30, 20, -12 }, "
+        "rpy = { 0, 0, 25 } } }, stations = { " FOUP "}, "
+        "obstacles = { { name = 'camera', on = 'EE', box = { 40, 20, 30 }, at = { -210, 60, 10 } } }, ");
+    assert_near(layout->transit, 600, 0);
+    for (int i = 0; i < 40; ++i) {
+        const double from = wh_test_uniform(-5, 5);
+        const double to = i % 4 == 0 ? from : from + wh_test_uniform(-7, 7);
+        const double reach = wh_transit_reach(layout, from, to);
+        assert_true(reach > 300);
+        assert_true(outermost_while_turning(layout, reach, from, to) <= 600 + 1e-6);
+        assert_true(outermost_while_turning(layout, reach + 3, from, to) > 600);
+        const double least = wh_transit_least(layout, from, to);
+        assert_true(least >= outermost_while_turning(layout, 300, from, to) - 1e-6);
+        assert_true(least <= outermost_while_turning(layout, 300, from, to) + 3);
+    }
+}
+
+static void the_circle_is_read(void **state) {
+    (void)state;
+    assert_near(read_sound(CELL)->transit, 0, 0);
+    expect_refused("robot = { transit = 0 }, " CELL,
+                   "cell.lua: robot.transit: 0 (expected a number from 1 to 100000)");
+    expect_refused("robot = { transit = 'wide' }, " CELL,
+                   "cell.lua: robot.transit: \"wide\" (expected a number from 1 to 100000)");
+    const wh_layout_t *plain = read_sound(CELL);
+    const uint64_t without = wh_layout_hash(plain);
+    assert_true(wh_layout_hash(read_sound("robot = { transit = 500 }, " CELL)) != without &&
+                without == wh_layout_hash(read_sound(CELL)));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shapes_of_300_mm),
@@ -369,6 +443,8 @@ int main(void) {
         cmocka_unit_test(bad_obstacles),
         cmocka_unit_test(bad_shapes),
         cmocka_unit_test(too_many),
+        cmocka_unit_test(a_circle_is_kept),
+        cmocka_unit_test(the_circle_is_read),
     };
     return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
 }

@@ -350,6 +350,72 @@ static void sensors_and_rims_are_in_the_hash_once_there_is_a_sensor(void **state
     assert_true(without != usual && usual != noisy && usual != chipped && noisy != chipped);
 }
 
+#define DOOR(beams)                                                                                          \
+    "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10, beams = { " beams " } } }, "
+
+static void beams_at_a_door_are_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        GRIPPERS DOOR("{ y = 60 }, { y = -110, x = -160, low = -5, high = 40, delay_on = 5e-5, delay_off = "
+                      "8e-5, jitter = 3e-6, seed = 4, dx = 0.5, dy = -0.25, late = 1e-5 }"));
+    assert_int_equal(layout->beam_count, 2);
+    const wh_layout_beam_t *usual = &layout->beams[0];
+    const double usual_numbers[] = {usual->x,         usual->low,  usual->high,
+                                    usual->dx,        usual->dy,   usual->delay_on,
+                                    usual->delay_off, usual->late, layout->doors[0].jitter};
+    const double wanted_usual[] = {-150, -30, 50, 0, 0, 0, 0, 0, 0};
+    const wh_door_beam_t *door = &layout->doors[1];
+    const double numbers[] = {door->beam.x,   door->beam.y,      door->beam.z,   door->beam.ez,
+                              door->beam.low, door->beam.high,   door->delay_on, door->delay_off,
+                              door->jitter,   (double)door->seed};
+    const double wanted[] = {540.5, -110.25, 900, 1, -5, 40, 6e-5, 9e-5, 3e-6, 4};
+    for (size_t i = 0; i < sizeof wanted_usual / sizeof wanted_usual[0]; ++i) {
+        assert_near(usual_numbers[i], wanted_usual[i], 1e-12);
+    }
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; ++i) {
+        assert_near(numbers[i], wanted[i], 1e-12);
+    }
+    assert_int_equal(layout->doors[0].seed, 1);
+    assert_int_equal(layout->blades[0].count, 12);
+    assert_near(layout->nominal_rim->radius, 150, 0);
+    assert_int_equal(wh_layout_beams_at(layout, 0).count, 2);
+    assert_false(layout->stations[0].centre);
+}
+
+static void beams_are_in_the_hash_once_there_are_some(void **state) {
+    (void)state;
+    const uint64_t none = wh_layout_hash(read_sound(GRIPPERS DOOR("")));
+    const uint64_t plain = wh_layout_hash(
+        read_sound(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10 } }, "));
+    const uint64_t two = wh_layout_hash(read_sound(GRIPPERS DOOR("{ y = 60 }, { y = -110 }")));
+    const uint64_t late = wh_layout_hash(read_sound(GRIPPERS DOOR("{ y = 60 }, { y = -110, late = 1e-6 }")));
+    assert_true(none == plain);
+    assert_true(none != two && two != late);
+}
+
+static void what_is_wrong_with_beams_is_named(void **state) {
+    (void)state;
+#define CENTRED(fields) "stations = { A = { at = { 700, 0, 900 }, centre = true, " fields " } }, "
+    static const char *const rows[][2] = {
+        {GRIPPERS DOOR("{ }"), "stations.A.beams[1].y: nothing"},
+        {GRIPPERS DOOR("{ y = 149 }"), "stations.A.beams[1].y: 149 (expected a number from -148 to 148)"},
+        {GRIPPERS DOOR("{ y = 60, z = 3 }"), "stations.A.beams[1].z: 3 (expected one of the fields x"},
+        {GRIPPERS DOOR("{ y = 85 }, { y = -85 }"),
+         "stations.A.beams[2].y: -85 (expected a distance from the way that differs by 5 mm or more"},
+        {GRIPPERS DOOR("{ y = 60, low = 10, high = 5 }"), "beams[1].high: 5 (expected a number from 11"},
+        {GRIPPERS DOOR("{ y = 60, delay_on = 0.02 }"), "beams[1].delay_on: 0.02 (expected a number from 0"},
+        {GRIPPERS DOOR("{ y = 60, jitter = 0.1 }"), "beams[1].jitter: 0.1 (expected a number from 0"},
+        {GRIPPERS CENTRED(""), "stations.A.centre: true (expected false, or two beams"},
+        {GRIPPERS CENTRED("beams = { { y = 60 } }"), "stations.A.centre: true (expected false, or two"},
+        {GRIPPERS CENTRED("beams = { { y = 60, x = -100 }, { y = -110 } }"),
+         "stations.A.beams[1].x: -100 (expected from -157.523 to -142.477 mm, where all of a wafer passes"},
+        {GRIPPERS DOOR("{ y = 60 }") "wafer = { diameter = 700, thickness = 1 }", "beams see wafers from 20"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        expect_refused(rows[i][0], rows[i][1]);
+    }
+}
+
 static void wafers_lie_where_the_slots_frame_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -468,6 +534,98 @@ static void the_first_unknown_field_by_name_is_reported(void **state) {
     expect_refused(GRIPPERS STATIONS "zeta = 1, beta = 2, omega = 3, kappa = 4", "cell.lua: beta: 2");
 }
 
+/* ------------------------------------------------------------------------------- what a study draws of rims */
+
+#define SENSOR                                                                                               \
+    "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, stations = { A = { slots = 5, at = { 700, "  \
+    "0, "                                                                                                    \
+    "900 } }, P = { kind = 'prealigner', at = { -600, 0, 900 }, sensor = {} } }, "
+#define RIMS                                                                                                 \
+    SENSOR                                                                                                   \
+    "wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = { depth = 1.125, angle = 92 } "      \
+    "} }, { name = 'W2', station = 'A', slot = 2, rim = { notch = { depth = 0 }, flats = { { at = 0, "       \
+    "length = 57 } } } }, { name = 'W3', station = 'A', slot = 3, rim = { chips = { "                        \
+    "{ at = 0, width = 1, depth = 0 }, { at = 1, width = 1, depth = 0 }, { at = 2, width = 1, "              \
+    "depth = 0 }, { at = 3, width = 1, depth = 0 }, { at = 4, width = 1, depth = 0 }, "                      \
+    "{ at = 5, width = 1, depth = 0 }, { at = 6, width = 1, depth = 0 }, { at = 7, width = 1, "              \
+    "depth = 0 } } } } }, "
+
+/* SEMI M1's notch is 1.00 mm deep, + 0.25, - 0, and has 90 degrees, + 5, - 1. */
+#define WIDTHS                                                                                               \
+    "study = { rim = { shape = 'uniform', diameter = 0.2, notch_depth = 0.125, notch_angle = 3, "            \
+    "notch_bottom "                                                                                          \
+    "= 0.05, notch_corner = 0.02, flat = 2, chip_depth = 0.4, chip_width = 3, bow = 0.3, saddle = 0.2, "     \
+    "glass "                                                                                                 \
+    "= 0.3 }, rims = { W2 = { flat = 0.5, chip_width = 0 } } }"
+
+static bool is_near(double value, double middle, double width) {
+    return fabs(value - middle) <= width + 1e-12;
+}
+
+/* Every trial's rim is one, within the widths; what a wafer has not is not drawn. */
+static void every_rim_that_is_drawn_is_one(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(RIMS WIDTHS);
+    const wh_errors_t *errors = layout->errors;
+    double least = 9;
+    double most = 0;
+    for (uint64_t n = 0; n < 3000; ++n) {
+        const wh_trial_t trial = {7, n};
+        for (size_t w = 0; w < 3; ++w) {
+            const wh_rim_t *own = layout->rims[w];
+            wh_rim_t rim = *own;
+            double drawn[WH_RIM_DRAWS];
+            wh_errors_draw_rim(errors, &trial, w, own, drawn);
+            assert_true(wh_rim_draw_apply(drawn, &rim));
+            assert_int_equal(wh_rim_validate(&rim, NULL), WH_OK);
+            assert_true(is_near(rim.radius, 150, 0.1) && is_near(rim.bow, 0, 0.3));
+            assert_true(is_near(rim.saddle, 0, 0.2) && rim.transmission >= 0 && rim.transmission <= 0.3);
+            assert_true(is_near(rim.notch.depth, own->notch.depth, own->notch.depth > 0 ? 0.125 : 0));
+            assert_true(
+                is_near(rim.flats[0].length, own->flats[0].length, own->flats[0].length > 0 ? 0.5 : 0));
+            assert_int_equal(rim.chip_count, w == 2 ? WH_RIM_CHIPS : 1);
+            assert_true(w == 2 || (rim.chips[0].depth <= 0.4 && rim.chips[0].width >= rim.chips[0].depth));
+            assert_true(w != 1 || is_near(rim.chips[0].width, 4 * rim.chips[0].depth, 0.01));
+            least = fmin(least, w == 0 ? rim.notch.depth : least);
+            most = fmax(most, w == 0 ? rim.notch.depth : most);
+        }
+    }
+    assert_true(least < 1.001 && most > 1.249);
+}
+
+static void assert_draw_refused(const char *study, const char *message) {
+    char fields[4000];
+    (void)snprintf(fields, sizeof fields, "%s study = { %s }", RIMS, study);
+    expect_refused(fields, message);
+}
+
+static void a_width_that_leaves_no_rim_is_named(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(RIMS "study = { rim = { notch_depth = 0.08 } }");
+    assert_non_null(layout->errors);
+    assert_draw_refused("rim = { notch_depth = 0.2 }",
+                        "cell.lua: study.rim.notch_depth: 0.2 (expected a width that leaves W1 a rim, "
+                        "whatever is drawn: 8.6 standard deviations of it either way)");
+    assert_draw_refused("rims = { W2 = { shape = 'uniform', flat = 5, glass = 0.91 } }",
+                        "cell.lua: study.rims.W2.glass: 0.91 (expected a number from 0 to 0.9)");
+    assert_draw_refused("rims = { W1 = { notch_bottom = 1, shape = 'uniform' } }",
+                        "cell.lua: study.rims.W1.notch_bottom: 1 (expected a width that leaves W1 a rim, "
+                        "whatever is drawn: all of it either way)");
+    assert_draw_refused("rims = { W1 = { flat = 1 } }",
+                        "cell.lua: study.rims.W1.flat: 1 (expected 0: no wafer here has such a flat)");
+    assert_draw_refused("rims = { W2 = { notch_depth = 0.01 } }",
+                        "cell.lua: study.rims.W2.notch_depth: 0.01 (expected 0: no wafer here has a notch)");
+    assert_draw_refused(
+        "rims = { W3 = { chip_depth = 0.1 } }",
+        "cell.lua: study.rims.W3.chip_depth: 0.1 (expected 0: no wafer here has room for a chip more)");
+    assert_draw_refused("rim = { chip_width = 1 }",
+                        "cell.lua: study.rim.chip_depth: 0 (expected a width above 0 beside chip_width)");
+    assert_draw_refused("rim = { bow = -1 }", "cell.lua: study.rim.bow: -1 (expected a number from 0 to 2)");
+    expect_refused(GRIPPERS STATIONS "study = { rim = { bow = 1 } }",
+                   "cell.lua: study.rim: a table (expected nothing: no prealigner of this layout has a "
+                   "`sensor` that would see it)");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(defaults_of_the_cell, open_sandbox, close_sandbox),
@@ -489,6 +647,10 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(the_usual_rim_is_that_of_the_layouts_wafer, open_sandbox,
                                         close_sandbox),
+        cmocka_unit_test_setup_teardown(beams_at_a_door_are_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(beams_are_in_the_hash_once_there_are_some, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_beams_is_named, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(sensors_and_rims_are_in_the_hash_once_there_is_a_sensor, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
@@ -497,6 +659,8 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(the_first_unknown_field_by_name_is_reported, open_sandbox,
                                         close_sandbox),
+        cmocka_unit_test_setup_teardown(every_rim_that_is_drawn_is_one, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(a_width_that_leaves_no_rim_is_named, open_sandbox, close_sandbox),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -384,7 +384,7 @@ static void the_examples_fit_blocks(void **state) {
         "lua/examples/01_transfer.lua",    "lua/examples/02_prealigner.lua",
         "lua/examples/03_missed_pick.lua", "lua/examples/04_scrape.lua",
         "lua/examples/05_leak.lua",        "lua/examples/06_cross_slotted.lua",
-        "lua/examples/08_corrections.lua"};
+        "lua/examples/08_corrections.lua", "lua/examples/12_three_foups.lua"};
     (void)state;
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; ++i) {
         passing_t passing = {0};

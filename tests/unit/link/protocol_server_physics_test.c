@@ -7,6 +7,7 @@
 
 #define SCRIPT "tests/end_to_end/data/delayed.lua"
 #define EDGE "lua/examples/09_edge_scan.lua"
+#define BEAMS "lua/examples/13_centring.lua"
 
 static wh_protocol_server_t servers[2];
 static int64_t restart_every;
@@ -14,6 +15,8 @@ static size_t restarts, faults_seen, slips_seen;
 static const char *script = SCRIPT;
 static uint8_t sampled[WH_LINK_DATAGRAM]; /* the first state that has samples */
 static size_t sampled_size;
+static uint8_t latched[WH_LINK_DATAGRAM]; /* the first state with a latch to come */
+static size_t latched_size;
 
 static void send(const wh_command_t *command) {
     waferhand_command decoded;
@@ -51,6 +54,10 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     if (state->physics->scan.sample_count > 0 && sampled_size == 0) {
         sampled_size = server->encoded_size;
         memcpy(sampled, server->encoded, sampled_size);
+    }
+    if (state->physics->latches.waiting_count > 0 && latched_size == 0) {
+        latched_size = server->encoded_size;
+        memcpy(latched, server->encoded, latched_size);
     }
     if (restart_every > 0 && command->seq % restart_every == 0) {
         restart(server->layout);
@@ -100,6 +107,20 @@ static void a_scan_goes_on_in_another_server(void **state) {
     assert_true(by_call == UINT64_C(0xcd21f71bc181a5f9));
     assert_true(run_with(0, false) == by_call);
     assert_true(sampled_size > 0);
+    assert_true(run_with(7, false) == by_call);
+    assert_true(restarts > 500);
+    assert_true(run_with(1, false) == by_call);
+    script = SCRIPT;
+}
+
+/* Also with a latch on its way; and motion control centres by the same crossings. */
+static void a_pass_through_beams_goes_on_in_another_server(void **state) {
+    (void)state;
+    script = BEAMS;
+    latched_size = 0;
+    const uint64_t by_call = run_with(0, true);
+    assert_true(run_with(0, false) == by_call);
+    assert_true(latched_size > 0);
     assert_true(run_with(7, false) == by_call);
     assert_true(restarts > 500);
     assert_true(run_with(1, false) == by_call);
@@ -158,6 +179,68 @@ static void no_other_scan_is_taken_over(void **state) {
     for (size_t cut = 1; cut < sampled_size; cut += 7) {
         waferhand_state message;
         assert_false(wh_link_decode_state(sampled, sampled_size - cut, &message));
+    }
+    wh_script_run_close(&run);
+}
+
+static void other_latch(waferhand_state *message) {
+    message->latching.waiting[0].part += 1e-9;
+}
+
+static void latch_of_no_beam(waferhand_state *message) {
+    message->latching.waiting[0].beam = 7;
+}
+
+static void no_edge(waferhand_state *message) {
+    message->latching.waiting[0].edge = 2;
+}
+
+static void no_part(waferhand_state *message) {
+    message->latching.waiting[0].part = (double)NAN;
+}
+
+static void latch_of_the_past(waferhand_state *message) {
+    message->latching.waiting[0].slice = 1;
+}
+
+static void never_armed(waferhand_state *message) {
+    message->latching.number = 0;
+}
+
+static void no_beams(waferhand_state *message) {
+    message->latching.beams = 0;
+}
+
+static void other_broken(waferhand_state *message) {
+    message->latching.broken ^= 1;
+}
+
+static void no_other_latches_are_taken_over(void **state) {
+    static void (*const changes[])(waferhand_state * message) = {other_latch, latch_of_no_beam,  no_edge,
+                                                                 no_part,     latch_of_the_past, never_armed,
+                                                                 no_beams,    other_broken};
+    static wh_protocol_server_t fresh;
+    wh_script_run_options_t options = {.script = BEAMS, .partners = {.connect = connect_server}};
+    wh_script_run_t run;
+    (void)state;
+    restart_every = 0;
+    latched_size = 0;
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
+    assert_int_equal(wh_protocol_server_open(&fresh, server->layout), WH_OK);
+    for (size_t i = 0; i <= sizeof changes / sizeof changes[0]; ++i) {
+        const bool changed = i < sizeof changes / sizeof changes[0];
+        waferhand_state message;
+        assert_true(wh_link_decode_state(latched, latched_size, &message));
+        if (changed) {
+            changes[i](&message);
+        }
+        assert_int_equal(wh_protocol_server_restore(&fresh, &message),
+                         changed ? WH_SERVER_IGNORED : WH_SERVER_RESTORED);
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+    for (size_t cut = 1; cut < latched_size; cut += 7) {
+        waferhand_state message;
+        assert_false(wh_link_decode_state(latched, latched_size - cut, &message));
     }
     wh_script_run_close(&run);
 }
@@ -287,11 +370,59 @@ static void the_cell_tells_what_sensors_see(void **state) {
     wh_script_run_close(&run);
 }
 
+/* The same with beams and the blades that break them. */
+static void the_cell_tells_what_beams_see(void **state) {
+    static wh_link_cell_t cell;
+    static uint8_t bytes[WH_LINK_DATAGRAM];
+    wh_script_run_options_t options = {.script = BEAMS, .partners = {.connect = connect_server}};
+    wh_script_run_t run;
+    (void)state;
+    restart_every = 0;
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
+    const wh_layout_t *layout = server->layout;
+    const wh_link_identity_t identity = {1, wh_layout_hash(layout)};
+    assert_true(wh_link_cell_from_layout(layout, &identity, &cell));
+    assert_int_equal(cell.message.beam_count, 4);
+    assert_int_equal(cell.message.outline_count, 1);
+    const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &cell.message);
+    waferhand_cell message;
+    for (size_t cut = 1; cut < (size_t)size; cut += 7) {
+        assert_false(wh_link_decode_cell(bytes, (size_t)size - cut, &message));
+    }
+    assert_true(wh_link_decode_cell(bytes, (size_t)size, &message));
+    wh_layout_t *made = wh_link_layout_from_cell(&message);
+    assert_non_null(made);
+    const wh_latching_t before = wh_layout_latching(layout);
+    const wh_latching_t after = wh_layout_latching(made);
+    assert_true(wh_latching_hash(&before, 1, 3, 0) == wh_latching_hash(&after, 1, 3, 0));
+    wh_link_layout_free(made);
+    message.beams[0].station = 7;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.beams[0].station = cell.message.beams[0].station;
+    message.beams[1].direction[2] = 0.5;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.beams[1].direction[2] = 1;
+    message.outlines[0].count = 2;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.outlines[0].count = cell.message.outlines[0].count;
+    message.outline_count = 0;
+    assert_null(wh_link_layout_from_cell(&message));
+    message.outline_count = 1;
+    (void)waferhand_cell_decode_cleanup(&message);
+    wh_script_run_close(&run);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(restarted_again_and_again),   cmocka_unit_test(no_other_condition_is_taken_over),
-        cmocka_unit_test(the_cell_tells_it_all),       cmocka_unit_test(a_scan_goes_on_in_another_server),
-        cmocka_unit_test(no_other_scan_is_taken_over), cmocka_unit_test(the_cell_tells_what_sensors_see),
+        cmocka_unit_test(restarted_again_and_again),
+        cmocka_unit_test(no_other_condition_is_taken_over),
+        cmocka_unit_test(the_cell_tells_it_all),
+        cmocka_unit_test(a_scan_goes_on_in_another_server),
+        cmocka_unit_test(no_other_scan_is_taken_over),
+        cmocka_unit_test(the_cell_tells_what_sensors_see),
+        cmocka_unit_test(a_pass_through_beams_goes_on_in_another_server),
+        cmocka_unit_test(no_other_latches_are_taken_over),
+        cmocka_unit_test(the_cell_tells_what_beams_see),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -147,7 +147,7 @@ static void take_event(content_t *content) {
         ++content->whole_commands;
     } else if (strcmp(in.channel, WH_CHANNEL_RECORDING) == 0) {
         assert_true(wh_link_decode_recording(in.data, in.size, &recording));
-        assert_int_equal(recording.version, 3);
+        assert_int_equal(recording.version, 4);
         assert_string_equal(recording.program, "test");
         *(recording.closed ? &content->last : &content->first) = recording;
         (void)waferhand_recording_decode_cleanup(&recording);

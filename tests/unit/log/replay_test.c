@@ -756,7 +756,7 @@ static void an_unknown_version_is_refused(void **state) {
     record_all_versions();
     const log_t *log = &whole[OF_SLICES];
     const size_t data = log->starts[0] + HEADER + strlen(WH_CHANNEL_RECORDING);
-    for (uint8_t version = 2; version <= 4; version += 2) {
+    for (uint8_t version = 3; version <= 5; version += 2) {
         copy_whole(log);
         damaged.bytes[data + 43] = version;
         wh_link_seal(damaged.bytes + data, log->starts[1] - data);

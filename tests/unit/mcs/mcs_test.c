@@ -224,6 +224,169 @@ static void theta_goes_the_longer_way_round_if_the_way_in_asks_for_it(void **sta
     assert_texts(layout, script);
 }
 
+/* Two doors with beams, and a wafer that is carried to and fro between them. */
+#define DOORS                                                                                                \
+    "local function door(at, yaw)\n"                                                                         \
+    "  return { at = at, rpy = { 0, 0, yaw }, beams = { { y = 60, delay_on = 5e-5, delay_off = 8e-5, "       \
+    "jitter "                                                                                                \
+    "= 3e-6 },\n"                                                                                            \
+    "    { y = -110, delay_on = 5e-5, delay_off = 8e-5, jitter = 3e-6 } } }\n"                               \
+    "end\n"                                                                                                  \
+    "return { grippers = { { name = 'EE' }, { name = 'E2', at = { 0, 0, 30 } } },\n"                         \
+    "stations = { A = door({ 700, 0, 900 }, 0), B = door({ 0, 700, 900 }, 90), C = { at = { -700, 0, 900 "   \
+    "}, "                                                                                                    \
+    "rpy = { 0, 0, 180 }, slots = 2 } },\n"
+
+/* Errors of 300 passes, each with latches of its own, in the deviations that are stated with them. */
+static void centring_is_as_near_as_it_says(void **state) {
+    (void)state;
+    assert_texts(
+        DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
+              "} } } }\n",
+        "cell 'cell.lua' local sum, worst, n = { 0, 0 }, 0, 300\n"
+        "for i = 1, n do\n"
+        "  get('A', 1) local c = put('B', 1, { centre = true })\n"
+        "  local x, y = offset('W', 'B', 1)\n"
+        "  sum[1], sum[2] = sum[1] + (x / c.sd_dx)^2, sum[2] + (y / c.sd_dy)^2\n"
+        "  worst = math.max(worst, x / c.sd_dx, y / c.sd_dy)\n"
+        "  get('B', 1) put('A', 1, { dx = i % 3 - 1, dy = i % 5 - 2 })\n"
+        "end\n"
+        "local x, y = math.sqrt(sum[1] / n), math.sqrt(sum[2] / n)\n"
+        "expect(math.abs(x - 1) < 0.15 and math.abs(y - 1) < 0.15 and worst < 5, x .. ' ' .. y .. ' ' "
+        ".. worst)\n");
+}
+
+/* The notch goes by one of the beams' crossings, by 0.02 degrees each time. */
+static void a_notch_in_a_beams_way_does_no_harm(void **state) {
+    (void)state;
+    assert_texts(DOORS "wafers = { { name = 'W', station = 'A', slot = 1, rpy = { 0, 0, 22.5 } } } }\n",
+                 "cell 'cell.lua' local hits, near, worst, unsure = 0, 0, 0, 0\n"
+                 "get('A', 1)\n"
+                 "for i = 1, 110 do\n"
+                 "  local ok, c = pcall(put, 'B', 1, { centre = true })\n"
+                 "  if ok then\n"
+                 "    local e = distance('W', 'B')\n"
+                 "    local x, y = offset('W', 'B', 1) e = math.sqrt(x * x + y * y)\n"
+                 "    worst, near = math.max(worst, e), near + (e <= 0.02 and 1 or 0)\n"
+                 "    hits = hits + (c.used < 4 and 1 or 0)\n"
+                 "    get('B', 1)\n"
+                 "  else unsure = unsure + 1 end\n"
+                 "  put('A', 1, { turn = 0.02 }) get('A', 1)\n"
+                 "end\n"
+                 "expect(hits > 40 and unsure <= 1 and near >= 109 - unsure and worst <= 0.1, hits .. ' ' .. "
+                 "near .. ' ' .. worst .. ' ' .. unsure)\n");
+}
+
+static void centring_goes_with_what_else_a_put_does(void **state) {
+    (void)state;
+    assert_texts(
+        DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1, rpy = { 0, 0, 90 } },\n"
+              "{ name = 'V', station = 'C', slot = 1, dx = -1 } } }\n",
+        "cell 'cell.lua' local good = true\n"
+        "local function check(what, x, y)\n"
+        "  local dx, dy = offset('W', 'B', 1)\n"
+        "  if not (math.abs(dx - x) < 0.02 and math.abs(dy - y) < 0.02) then good = false print(what, dx, "
+        "dy) "
+        "end\n"
+        "end\n"
+        "local function fails(name, word, ...)\n"
+        "  local ok, problem = pcall(word, ...)\n"
+        "  if ok or problem.name ~= name then good = false print(name, ok, problem and problem.message) end\n"
+        "end\n"
+        "local centred = { centre = true }\n"
+        /* corrections by hand move the place */
+        "get('A', 1) put('B', 1, { centre = true, dx = 1, dy = -0.5 }) check('by hand', 1, -0.5)\n"
+        /* in phases */
+        "get('B', 1) put('B', 1, { centre = true, stop = 'extended' }) continue() check('in phases', 0, 0)\n"
+        "if centring().used ~= 4 or not centring().sure then good = false end\n"
+        /* turned, and beside the frame's axes */
+        "get('B', 1) put('B', 1, { centre = true, turn = 4, dx = 1 }) check('turned', 1, 0)\n"
+        "get('B', 1) put('B', 1, { dx = 3 }) get('C', 1, { gripper = 'E2' })\n"
+        /* too far off: out again, still held */
+        "get('B', 1, { dx = 5, dy = -5 })\n"
+        "fails('CORRECTION_TOO_LARGE', put, 'B', 1, centred)\n"
+        "if holder('W') ~= 'EE' then good = false print 'not held' end\n"
+        "put('B', 1, { dx = 3 }) get('B', 1, { dx = 3 })\n"
+        /* too short a way: not all of the wafer passes */
+        "fails('TOO_FEW_SAMPLES', put, 'B', 1, { centre = true, retract = 160 })\n"
+        "put('B', 1)\n"
+        /* refused before anything moves */
+        "fails('BAD_ARGUMENT', swap, 'B', 1, { put_centre = true }) put('C', 1, { gripper = 'E2' }) get('B', "
+        "1)\n"
+        "fails('BAD_ARGUMENT', put, 'C', 2, centred) fails('BAD_ARGUMENT', get, 'B', 1, centred)\n"
+        "fails('BAD_ARGUMENT', put, 'B', 1, { centre = 1 })\n"
+        "expect(good, 'all of it')\n");
+}
+
+/* Wafers of other diameters: told with a spread, refused without. A blade that reaches before its wafer hides one crossing. */
+static void true_diameters_are_found_if_they_may_vary(void **state) {
+    (void)state;
+    static const char *const spreads[] = {"wafer = { spread = 0.1 },", ""};
+    static const char *const shapes[] = {"", "shapes = { blade = { length = 170 } },"};
+    for (unsigned bits = 0; bits < 4; ++bits) {
+        char layout[2000], script[1000];
+        (void)snprintf(layout, sizeof layout,
+                       DOORS "%s %s wafers = { { name = 'W', station = 'A', slot = 1, dx = 1.5, "
+                             "dy = -0.8, rpy = { 0, 0, 90 }, rim = { diameter = 300.2 } } } }\n",
+                       spreads[bits % 2], shapes[bits / 2]);
+        (void)snprintf(
+            script, sizeof script,
+            "cell 'cell.lua' get('A', 1) local ok, problem = pcall(put, 'B', 1, { centre = true })\n"
+            "local c, good = centring(), not ok and problem.name == 'CENTRE_NOT_SURE'\n"
+            "if ok then local x, y = offset('W', 'B', 1)\n"
+            "  good = math.abs(x) < 0.02 and math.abs(y) < 0.02 and math.abs(c.radius - 150.1) < 0.005 and "
+            "c.used == %d end\n"
+            "expect(good and ok == %s, tostring(ok) .. ' ' .. c.used)\n",
+            bits / 2 ? 3 : 4, bits % 2 ? "false" : "true");
+        assert_texts(layout, script);
+        wh_script_run_close(&run);
+    }
+}
+
+/* Stations off by 0.25 mm and 0.2 degrees, a beam that nobody knows the place of to 0.5 mm, latches that are late by 10 us more or
+ * less than believed. The script compares with what is true. */
+static void stations_are_taught_by_a_beam(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    for (int lesson = 0; lesson < 40 / WH_TEST_SHARE; ++lesson) {
+        static const char *const fields[] = {"x", "y", "z", "yaw"};
+        char texts[4][60];
+        const char *errors[4];
+        for (size_t i = 0; i < 4; ++i) {
+            const double most = i == 3 ? 0.2 : 0.25;
+            (void)snprintf(texts[i], sizeof texts[i], "A.%s=%.4f", fields[i], wh_test_uniform(-most, most));
+            errors[i] = texts[i];
+        }
+        const wh_script_run_options_t options = {.script = "lua/examples/14_teach.lua",
+                                                 .limits = {.print_to = stderr},
+                                                 .errors = errors,
+                                                 .error_count = 4};
+        if (wh_script_run(&run, &options) != WH_RUN_MET) {
+            fail_msg("%s %s %s %s: %s", texts[0], texts[1], texts[2], texts[3],
+                     run.record.failure ? run.record.failure : run.message);
+        }
+        wh_script_run_close(&run);
+    }
+}
+
+static void what_cannot_be_taught_is_said(void **state) {
+    (void)state;
+    assert_texts(
+        DOORS "wafers = { { name = 'W', station = 'A', slot = 1 } } }\n",
+        "cell 'cell.lua' local good = true\n"
+        "local function fails(name, ...)\n"
+        "  local ok, problem = pcall(teach, ...)\n"
+        "  if ok or problem.name ~= name then good = false print(name, ok, problem and problem.message) "
+        "end\n"
+        "end\n"
+        "fails('BAD_ARGUMENT', 'C') fails('BAD_ARGUMENT', 'A', { by = 'touch' })\n"
+        "fails('NO_SUCH_STATION', 'Z') fails('BAD_ARGUMENT', 'A', { with = 'beam' })\n"
+        "fails('WAFER_MISSING', 'B') get('A', 1) fails('WAFER_ON_GRIPPER', 'A')\n"
+        "put('A', 1) fault { kind = 'wafer_shifted', wafer = 'W', dz = -2 } fails('WAFER_MISSING', "
+        "'A')\n"
+        "expect(good, 'all of it')\n");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
@@ -235,6 +398,12 @@ int main(void) {
         cmocka_unit_test(a_stop_may_come_at_any_time),
         cmocka_unit_test_teardown(a_blade_may_touch_the_wafer_on_a_tilted_chuck, close_run),
         cmocka_unit_test_teardown(theta_goes_the_longer_way_round_if_the_way_in_asks_for_it, close_run),
+        cmocka_unit_test_teardown(centring_is_as_near_as_it_says, close_run),
+        cmocka_unit_test_teardown(a_notch_in_a_beams_way_does_no_harm, close_run),
+        cmocka_unit_test_teardown(centring_goes_with_what_else_a_put_does, close_run),
+        cmocka_unit_test(true_diameters_are_found_if_they_may_vary),
+        cmocka_unit_test(stations_are_taught_by_a_beam),
+        cmocka_unit_test_teardown(what_cannot_be_taught_is_said, close_run),
         cmocka_unit_test_teardown(a_put_leaves_the_wafer_on_its_support, close_run),
         cmocka_unit_test_teardown(the_record_is_paid_for_from_the_budget, close_run),
     };

@@ -1,4 +1,5 @@
-/* Oracle: each axis planned alone; the slowest decides. */
+/* Moves. Oracle: each axis planned alone; the slowest decides. Ways: limits and the circle are kept at each sample, and none of 200
+ * inner positions is faster. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,7 +8,9 @@
 
 #include <cmocka.h>
 
+#include "math/trig.h"
 #include "motion/move.h"
+#include "motion/way.h"
 #include "support/support.h"
 
 #define MOVES 100000
@@ -224,6 +227,233 @@ static void bad_arguments_change_nothing(void **state) {
     assert_memory_equal(&move, &before, sizeof move);
 }
 
+/* ----------------------------------------------------------------------------------------------------------------- ways */
+
+#define WAYS 400
+#define SAMPLES 600
+
+#if defined(WH_FLOAT)
+#define WAY_TOLERANCE 2e-3
+#else
+#define WAY_TOLERANCE 1e-9
+#endif
+
+typedef struct {
+    wh_robot_t robot;
+    wh_real_t from[WH_ROBOT_AXES], to[WH_ROBOT_AXES];
+    wh_real_t reach;
+} transit_t;
+
+static transit_t random_transit(int i) {
+    transit_t t;
+    wh_robot_default(&t.robot);
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        wh_limits_t *limits = &t.robot.limits[axis];
+        limits->speed *= WH_REAL(wh_test_decades(0.3, 3));
+        limits->acceleration *= WH_REAL(wh_test_decades(0.3, 3));
+        limits->jerk *= WH_REAL(wh_test_decades(0.3, 3));
+        const double min = (double)t.robot.travel[axis].min;
+        const double max = (double)t.robot.travel[axis].max;
+        const double share = axis == WH_AXIS_Z ? 0.2 : 1;
+        t.from[axis] = WH_REAL(wh_test_uniform(min, max));
+        t.to[axis] = t.from[axis] + WH_REAL(share * (wh_test_uniform(min, max) - (double)t.from[axis]));
+    }
+    t.reach = WH_REAL(i % 10 == 0 ? 300 : wh_test_uniform(300, 700));
+    return t;
+}
+
+/* The axes at SAMPLES + 1 instants, and three more on each side. */
+static double sample(const wh_way_t *way, wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES]) {
+    const double apart = (double)wh_way_duration(way) / SAMPLES;
+    for (int k = 0; k < SAMPLES + 7; ++k) {
+        wh_way_at(way, WH_REAL(apart * (k - 3)), q[k]);
+    }
+    return apart;
+}
+
+/* The largest divided difference of an order, 1 to 3, of an axis. */
+static double difference(wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES], size_t axis, int order, double apart) {
+    double row[SAMPLES + 7];
+    double most = 0;
+    for (int k = 0; k < SAMPLES + 7; ++k) {
+        row[k] = (double)q[k][axis];
+    }
+    for (int i = 0; i < order; ++i) {
+        for (int k = 0; k + 1 < SAMPLES + 7 - i; ++k) {
+            row[k] = (row[k + 1] - row[k]) / apart;
+        }
+    }
+    for (int k = 0; k < SAMPLES + 7 - order; ++k) {
+        most = fmax(most, fabs(row[k]));
+    }
+    return most;
+}
+
+static void ways_keep_limits_and_circle(void **state) {
+    (void)state;
+    int went_in = 0;
+    for (int i = 0; i < WAYS; ++i) {
+        const transit_t t = random_transit(i);
+        static wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES];
+        wh_way_t way;
+        assert_int_equal(wh_way_plan(&way, &t.robot, t.from, t.to, t.reach), WH_OK);
+        const double apart = sample(&way, q);
+        assert_memory_equal(q[0], t.from, sizeof t.from);
+        assert_memory_equal(q[SAMPLES + 6], t.to, sizeof t.to);
+        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+            const wh_limits_t *limits = &t.robot.limits[axis];
+            const double rounding = sizeof(wh_real_t) == 4 ? 1e-6 : 2.3e-16; /* of a float's time, too */
+            const double size = 1 + fabs((double)t.from[axis]) + fabs((double)t.to[axis]);
+            assert_true(difference(q, axis, 1, apart) <=
+                        (double)limits->speed * (1 + WAY_TOLERANCE) + 2 * rounding * size / apart);
+            assert_true(difference(q, axis, 2, apart) <= (double)limits->acceleration * (1 + WAY_TOLERANCE) +
+                                                             4 * rounding * size / (apart * apart));
+            assert_true(difference(q, axis, 3, apart) <=
+                        (double)limits->jerk * (1 + WAY_TOLERANCE) + 8 * rounding * size / pow(apart, 3));
+        }
+        for (int k = 1; k < SAMPLES + 7; ++k) {
+            const bool turns =
+                q[k][WH_AXIS_THETA] != q[k - 1][WH_AXIS_THETA] || q[k][WH_AXIS_YAW] != q[k - 1][WH_AXIS_YAW];
+            const bool both = q[k][WH_AXIS_R] > t.reach && q[k - 1][WH_AXIS_R] > t.reach;
+            assert_false(turns && both && t.from[WH_AXIS_R] > t.reach && t.to[WH_AXIS_R] > t.reach);
+        }
+        went_in += t.from[WH_AXIS_R] > t.reach || t.to[WH_AXIS_R] > t.reach;
+    }
+    assert_true(went_in > WAYS / 2);
+}
+
+/* When a leg from `begin` has come to `place`, by small steps and a straight line between two of them. */
+static double passes(const wh_profile_t *leg, double begin, double place) {
+    const double duration = (double)wh_profile_duration(leg);
+    double before = begin;
+    for (int k = 1; k <= 20000; ++k) {
+        const double now = begin + (double)wh_profile_position(leg, WH_REAL(duration * k / 20000));
+        if ((before - place) * (now - place) <= 0 && now != before) {
+            return duration * (k - 1 + (place - before) / (now - before)) / 20000;
+        }
+        before = now;
+    }
+    return duration;
+}
+
+/* The duration by way of an inner position, from the header's own words. */
+static double by_way_of(const transit_t *t, double inner, double turn) {
+    wh_profile_t in;
+    wh_profile_t out;
+    const wh_limits_t *limits = &t->robot.limits[WH_AXIS_R];
+    assert_int_equal(wh_profile_plan(&in, WH_REAL(inner) - t->from[WH_AXIS_R], limits), WH_OK);
+    assert_int_equal(wh_profile_plan(&out, t->to[WH_AXIS_R] - WH_REAL(inner), limits), WH_OK);
+    const double from = (double)t->from[WH_AXIS_R];
+    const double to = (double)t->to[WH_AXIS_R];
+    const double reach = (double)t->reach;
+    const double begin = from > reach ? passes(&in, from, reach) : 0;
+    const double end = to > reach ? passes(&out, inner, reach) : (double)out.duration;
+    const double inside = (double)in.duration - begin + end;
+    return (double)in.duration + (double)out.duration + fmax(0, turn - inside);
+}
+
+static void no_inner_position_is_faster(void **state) {
+    (void)state;
+    double worst = 0;
+    for (int i = 0; i < 60; ++i) {
+        transit_t t = random_transit(i);
+        t.to[WH_AXIS_Z] = t.from[WH_AXIS_Z];
+        if (t.from[WH_AXIS_R] <= t.reach && t.to[WH_AXIS_R] <= t.reach) {
+            continue;
+        }
+        wh_way_t way;
+        wh_profile_t alone;
+        assert_int_equal(wh_way_plan(&way, &t.robot, t.from, t.to, t.reach), WH_OK);
+        double turn = 0;
+        const size_t turns[] = {WH_AXIS_THETA, WH_AXIS_YAW};
+        for (size_t k = 0; k < 2; ++k) {
+            const size_t axis = turns[k];
+            assert_int_equal(wh_profile_plan(&alone, t.to[axis] - t.from[axis], &t.robot.limits[axis]),
+                             WH_OK);
+            turn = fmax(turn, (double)alone.duration);
+        }
+        double least = 1e9;
+        for (int k = 0; k < 200; ++k) {
+            least = fmin(least, by_way_of(&t, (double)t.reach - ((double)t.reach - 300) * k / 199, turn));
+        }
+        worst = fmax(worst, (double)wh_way_duration(&way) / least - 1);
+    }
+    printf("at most %.4f %% above the best of 200\n", 100 * worst);
+    assert_true(worst < 1e-3);
+}
+
+/* From 700 mm to 700 mm with a circle of 400 mm: t_in + T_theta + t_out is what no way can beat. */
+static void a_way_is_near_its_bound(void **state) {
+    (void)state;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    wh_profile_t far;
+    assert_int_equal(wh_profile_plan(&far, 1e6, &robot.limits[WH_AXIS_R]), WH_OK);
+    const double passing = passes(&far, 0, 300);
+    wh_profile_t near;
+    assert_int_equal(wh_profile_plan(&near, 300, &robot.limits[WH_AXIS_R]), WH_OK);
+    double worst = 0;
+    for (int turn_deg = 30; turn_deg <= 180; turn_deg += 25) {
+        const wh_real_t from[WH_ROBOT_AXES] = {0, 700, 900, 0};
+        const wh_real_t to[WH_ROBOT_AXES] = {wh_rad_from_deg((wh_real_t)turn_deg), 700, 900, 0};
+        wh_way_t way;
+        wh_profile_t turn;
+        assert_int_equal(wh_way_plan(&way, &robot, from, to, 400), WH_OK);
+        assert_int_equal(wh_profile_plan(&turn, to[0], &robot.limits[WH_AXIS_THETA]), WH_OK);
+        const double bound = 2 * passing + (double)turn.duration;
+        const double stopping = 2 * (double)near.duration + (double)turn.duration;
+        const double above = (double)wh_way_duration(&way) / bound - 1;
+        printf("%3d degrees: %.2f %% above the bound, stop and turn %.2f %%\n", turn_deg, 100 * above,
+               100 * (stopping / bound - 1));
+        assert_true(above > -1e-3);
+        worst = fmax(worst, above);
+    }
+    assert_true(worst <= 0.03);
+}
+
+static void a_way_inside_is_a_move(void **state) {
+    (void)state;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    const wh_real_t from[WH_ROBOT_AXES] = {0, 400, 900, 0};
+    const wh_real_t to[WH_ROBOT_AXES] = {2, 500, 950, -1};
+    wh_way_t way;
+    wh_move_t move;
+    assert_int_equal(wh_way_plan(&way, &robot, from, to, 500), WH_OK);
+    assert_int_equal(wh_move_plan(&move, WH_ROBOT_AXES, from, to, robot.limits), WH_OK);
+    assert_near((double)wh_way_duration(&way), (double)wh_move_duration(&move), 1e-6);
+    wh_real_t q[WH_ROBOT_AXES];
+    wh_real_t want[WH_ROBOT_AXES];
+    for (int k = 0; k <= 20; ++k) {
+        const wh_real_t t = wh_move_duration(&move) * (wh_real_t)k / 20;
+        wh_way_at(&way, t, q);
+        wh_move_at(&move, t, want);
+        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+            assert_near((double)q[axis], (double)want[axis], 1e-9 * (sizeof(wh_real_t) == 4 ? 1e6 : 1));
+        }
+    }
+}
+
+static void bad_ways_are_refused(void **state) {
+    (void)state;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    wh_real_t from[WH_ROBOT_AXES] = {0, 700, 900, 0};
+    const wh_real_t to[WH_ROBOT_AXES] = {1, 700, 900, 0};
+    wh_way_t way;
+    memset(&way, 0x5a, sizeof way);
+    const wh_way_t before = way;
+    assert_int_equal(wh_way_plan(&way, NULL, from, to, 400), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_way_plan(&way, &robot, from, to, 299), WH_STATUS_OUT_OF_REACH);
+    assert_int_equal(wh_way_plan(&way, &robot, from, to, (wh_real_t)NAN), WH_STATUS_NOT_FINITE);
+    from[2] = (wh_real_t)INFINITY;
+    assert_int_equal(wh_way_plan(&way, &robot, from, to, 400), WH_STATUS_NOT_FINITE);
+    from[2] = 900;
+    robot.limits[WH_AXIS_YAW].speed = 0;
+    assert_int_equal(wh_way_plan(&way, &robot, from, to, 400), WH_STATUS_BAD_LIMITS);
+    assert_memory_equal(&way, &before, sizeof way);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_slowest_axis_decides),
@@ -235,6 +465,11 @@ int main(void) {
         cmocka_unit_test(a_move_goes_on_from_the_last_ones_end),
         cmocka_unit_test(durations_too_far_apart_are_refused),
         cmocka_unit_test(bad_arguments_change_nothing),
+        cmocka_unit_test(ways_keep_limits_and_circle),
+        cmocka_unit_test(no_inner_position_is_faster),
+        cmocka_unit_test(a_way_is_near_its_bound),
+        cmocka_unit_test(a_way_inside_is_a_move),
+        cmocka_unit_test(bad_ways_are_refused),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);

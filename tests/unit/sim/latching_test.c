@@ -5,7 +5,7 @@
 
 #include "grasp/sweep_internal.h"
 #include "math/rotation.h"
-#include "sim/latching.h"
+#include "sim/snapshot.h"
 
 #define PI 3.14159265358979323846
 
@@ -37,6 +37,7 @@ static wh_latching_t set_up(const wh_pose_t *lies) {
     memset(beams, 0, sizeof beams);
     for (size_t b = 0; b < 2; ++b) {
         beams[b].beam = wh_beam_at(&base, 0, y[b], 0, 100);
+        beams[b].seed = 7;
     }
     rim = wh_rim_nominal(150);
     rim.notch.direction = PI / 2;
@@ -44,7 +45,7 @@ static wh_latching_t set_up(const wh_pose_t *lies) {
     memset(grippers, 0, sizeof grippers);
     grippers[0].wafer = 0;
     grippers[0].gripper_from_wafer = *lies;
-    const wh_latching_t latching = {beams, 2, rims, &blade, 7};
+    const wh_latching_t latching = {beams, 2, rims, &blade};
     return latching;
 }
 
@@ -526,6 +527,185 @@ static void what_is_no_beam_is_refused(void **state) {
     assert_int_equal(wh_latching_check(&latching, &wild), WH_STATUS_OUT_OF_RANGE);
 }
 
+/* --------------------------------------------------------------------------------------------- in a simulator */
+
+/* A simulator of one wafer that its gripper carries along x. */
+typedef struct {
+    wh_simulator_t simulator;
+    wh_wafer_t wafers[1];
+    wh_gripper_t grippers[1];
+    wh_command_t command;
+    wh_state_t state;
+} run_t;
+
+static run_t run, twin;
+static const wh_station_t nowhere = {.slots = 1, .pitch = 10, .chuck = WH_NONE};
+
+static void begin(run_t *of, const wh_latching_t *latching) {
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {of->wafers, 1, of->grippers, 1, NULL, 0};
+    wh_station_t station = nowhere;
+    station.base_from_station = wh_pose_identity();
+    static wh_station_t stations[1];
+    stations[0] = station;
+    const wh_cell_t cell = {stations, 1, wh_tolerance_paper(), 0, 0, false};
+    memset(of, 0, sizeof *of);
+    of->wafers[0].base_from_wafer = at_x(-200);
+    assert_int_equal(wh_simulator_init(&of->simulator, &config, &storage, &cell), WH_OK);
+    if (latching) {
+        assert_int_equal(wh_simulator_set_latching(&of->simulator, latching), WH_OK);
+    }
+    of->command.gripper_count = 1;
+}
+
+/* To x in the next slice, with the vacuum on. */
+static wh_status_t go(run_t *of, double x, wh_latch_order_t order) {
+    ++of->command.seq;
+    of->command.grippers[0].base_from_gripper = at_x(x);
+    of->command.grippers[0].valve = WH_VALVE_OPEN;
+    of->command.latch = order;
+    return wh_simulator_step(&of->simulator, &of->command, &of->state);
+}
+
+static void a_simulator_gives_the_latches_of_what_it_carries(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    const double h[2] = {sqrt(150 * 150 - 60 * 60), sqrt(150 * 150 - 110 * 110)};
+    const double wanted[4] = {-h[0], -h[1], h[1], h[0]};
+    size_t count = 0;
+    beams[1].delay_off = 0.002;
+    begin(&run, &latching);
+    assert_int_equal(go(&run, -200, arm), WH_OK);
+    assert_int_equal(run.grippers[0].wafer, 0);
+    assert_int_equal(run.state.physics->latches.number, 1);
+    for (int i = 1; i <= 800; ++i) {
+        assert_int_equal(go(&run, -200 + 0.5 * i, keep), WH_OK);
+        const wh_latches_t *latches = &run.state.physics->latches;
+        for (int32_t k = 0; k < latches->latch_count; ++k) {
+            const double delay =
+                latches->latches[k].beam == 1 && latches->latches[k].edge == WH_CROSSING_OUT ? 2 : 0;
+            const double slices = i - 1 + latches->latches[k].part - delay;
+            /* within 1 us: at 0.5 mm a slice of 1 ms */
+            assert_near((-200 + 0.5 * slices - wanted[count]) / 0.5, 0, exact);
+            ++count;
+        }
+    }
+    assert_int_equal(count, 4);
+}
+
+static void what_no_beam_can_take_is_refused(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    wh_latching_t latching = set_up(&lies);
+    begin(&run, NULL);
+    const uint64_t hash = wh_simulator_hash(&run.simulator);
+    assert_int_equal(go(&run, -200, arm), WH_STATUS_OUT_OF_RANGE);
+    assert_true(wh_simulator_hash(&run.simulator) == hash);
+    assert_int_equal(run.simulator.table.counters.refused, 1);
+    assert_int_equal(wh_simulator_set_latching(NULL, &latching), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_set_latching(&run.simulator, NULL), WH_STATUS_NULL_ARGUMENT);
+    memset(&twin, 0, sizeof twin);
+    assert_int_equal(wh_simulator_set_latching(&twin.simulator, &latching), WH_STATUS_NOT_INITIALISED);
+    beams[0].jitter = -1;
+    assert_int_equal(wh_simulator_set_latching(&run.simulator, &latching), WH_STATUS_OUT_OF_RANGE);
+    beams[0].jitter = 0;
+    assert_int_equal(wh_simulator_set_latching(&run.simulator, &latching), WH_OK);
+    const wh_latch_order_t third = {WH_LATCH_ARM, 1, 2};
+    assert_int_equal(go(&run, -200, third), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(go(&run, -200, arm), WH_OK);
+    assert_int_equal(wh_simulator_set_latching(&run.simulator, &latching), WH_STATUS_OUT_OF_RANGE);
+}
+
+/* Beams that nobody arms change nothing. */
+static void a_run_hashes_beams_once_they_were_armed(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    begin(&run, &latching);
+    begin(&twin, NULL);
+    for (int i = 0; i < 100; ++i) {
+        assert_int_equal(go(&run, -200 + i, keep), WH_OK);
+        assert_int_equal(go(&twin, -200 + i, keep), WH_OK);
+        assert_true(wh_simulator_hash(&run.simulator) == wh_simulator_hash(&twin.simulator));
+    }
+    assert_int_equal(go(&run, -100, arm), WH_OK);
+    assert_int_equal(go(&twin, -100, keep), WH_OK);
+    assert_true(wh_simulator_hash(&run.simulator) != wh_simulator_hash(&twin.simulator));
+}
+
+static void expect_unsound(const wh_physics_state_t *physics) {
+    assert_int_equal(wh_physics_state_validate(physics, 1, 1), WH_STATUS_OUT_OF_RANGE);
+}
+
+/* Of a state with one latch to come. */
+static void no_other_latches_are_sound(const wh_physics_state_t *sound) {
+    assert_int_equal(wh_physics_state_validate(sound, 1, 1), WH_OK);
+    wh_physics_state_t broken = *sound;
+    broken.latches.waiting[0].slice = broken.latches.slice;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting[0].part = (double)NAN;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting[0].beam = 2;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.waiting_count = WH_LATCHES + 1;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.latch_count = 1; /* of no slice */
+    memset(&broken.latches.latches[0], 0, sizeof broken.latches.latches[0]);
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.broken = 4;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.count = WH_BEAMS + 1;
+    expect_unsound(&broken);
+    broken = *sound;
+    broken.latches.number = 0;
+    expect_unsound(&broken);
+}
+
+/* With latches that are on their way. */
+static void a_saved_pass_goes_on_bit_for_bit(void **state) {
+    (void)state;
+    static uint8_t bytes[WH_SNAPSHOT_SIZE(1, 1)];
+    static wh_wafer_t room_wafers[1];
+    static wh_gripper_t room_grippers[1];
+    static wh_snapshot_room_t room = {.wafers = room_wafers, .grippers = room_grippers};
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    size_t size = 0;
+    beams[0].delay_on = 0.005;
+    beams[0].jitter = 1e-4;
+    begin(&run, &latching);
+    begin(&twin, &latching);
+    assert_int_equal(go(&run, -200, arm), WH_OK);
+    assert_int_equal(go(&run, -140, keep), WH_OK);
+    for (int i = 1; i <= 3; ++i) {
+        assert_int_equal(go(&run, -140 + i, keep), WH_OK);
+    }
+    assert_int_equal(run.state.physics->latches.waiting_count, 1);
+    assert_int_equal(wh_simulator_save(&run.simulator, bytes, sizeof bytes, &size), WH_OK);
+    assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_OK);
+    twin.command.seq = run.command.seq;
+    int latches = 0;
+    for (int i = 4; i <= 280; ++i) {
+        assert_int_equal(go(&run, -140 + i, keep), WH_OK);
+        assert_int_equal(go(&twin, -140 + i, keep), WH_OK);
+        assert_true(wh_simulator_hash(&run.simulator) == wh_simulator_hash(&twin.simulator));
+        latches += twin.state.physics->latches.latch_count;
+    }
+    assert_int_equal(latches, 4);
+    beams[0].jitter = 2e-4;
+    assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_STATUS_OTHER_SNAPSHOT);
+    beams[0].jitter = 1e-4;
+    assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_OK);
+    no_other_latches_are_sound(&twin.simulator.physics);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
@@ -540,6 +720,10 @@ int main(void) {
         cmocka_unit_test(all_changes_are_where_dense_samples_find_them),
         cmocka_unit_test(latches_give_back_the_wafers_centre),
         cmocka_unit_test(what_is_no_beam_is_refused),
+        cmocka_unit_test(a_simulator_gives_the_latches_of_what_it_carries),
+        cmocka_unit_test(what_no_beam_can_take_is_refused),
+        cmocka_unit_test(a_run_hashes_beams_once_they_were_armed),
+        cmocka_unit_test(a_saved_pass_goes_on_bit_for_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -408,7 +408,7 @@ static void sealed_bytes_give_a_sound_state_or_none(void **state) {
 /* As snapshot.h says. */
 static void the_most_bytes_are_those_of_the_manual(void **state) {
     (void)state;
-    assert_int_equal(WH_SNAPSHOT_SIZE(25, 2), sizeof(wh_real_t) == 8 ? 9133 : 5125);
+    assert_int_equal(WH_SNAPSHOT_SIZE(25, 2), sizeof(wh_real_t) == 8 ? 9846 : 5838);
     assert_int_equal((37 * sizeof(wh_real_t) + 32) * WH_FAULTS, sizeof(wh_real_t) == 8 ? 5248 : 2880);
 }
 
@@ -417,14 +417,15 @@ static void bytes_are_the_same_everywhere(void **state) {
     (void)state;
     begin(&run, WH_CHECK_SAMPLED, false);
     const size_t size = save(&run);
-    static const uint8_t head[8] = {'W', 'H', 'S', 'N', 'A', 'P', 2, sizeof(wh_real_t)};
+    static const uint8_t head[8] = {'W', 'H', 'S', 'N', 'A', 'P', 3, sizeof(wh_real_t)};
     assert_memory_equal(bytes, head, sizeof head);
     uint64_t sum = 0;
     for (size_t i = 0; i < 8; ++i) {
         sum |= (uint64_t)bytes[size - 8 + i] << (8 * i);
     }
+    print_message("sum %016llx\n", (unsigned long long)sum);
     assert_true(sum ==
-                (sizeof(wh_real_t) == 8 ? UINT64_C(0x8ee73a9f344283af) : UINT64_C(0x98452d2a5e7571c2)));
+                (sizeof(wh_real_t) == 8 ? UINT64_C(0x31ac9932e110daa2) : UINT64_C(0xcbab056845c1ed4e)));
 }
 
 int main(void) {

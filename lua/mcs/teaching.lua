@@ -1,0 +1,199 @@
+-- Teaching: the robot finds out with its own motions where a station truly is. By a beam at the station's door:
+-- it comes up below the wafer in slot 1 until the vacuum sensor feels it, which tells z; carries it through the
+-- beam on both sides, its heading as in the station and turned either way, which tells x and y, and where the
+-- beam is; and turns the wafer's notch through the beam, which tells yaw. Last the wafer is put back.
+
+-- Kept, for a script may set globals of these names.
+local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
+
+return function(native, patterns, lookup, arm, targets)
+  -- How far from where the wafer is expected the blade looks for it, mm, and in what steps.
+  local SEARCH, STEP = 0.35, 0.01
+  -- Through the beam: how fast, and how far before and behind a rim, mm.
+  local SPEED, ROOM = 100, 8
+  local TURNS = { 0, math.rad(30), math.rad(-30) }
+  -- The notch: how far inside of the rim the beam is, mm, and how far the wafer turns to either side.
+  local INSIDE, SWEEP = 0.5, math.rad(2.5)
+
+  local function play(segment)
+    arm.play(patterns.single, { segment = segment, watched = false })
+  end
+
+  local function along(place, way, height)
+    return { way * place.dir_x, way * place.dir_y, height or 0 }
+  end
+
+  local function go(target, x, y, z, heading)
+    play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper } }
+  end
+
+  -- Into the station below the wafer, and up to it. Returns the height of the wafer's back face, and the blade's.
+  local function feel(target)
+    local place, projz, gripper = target.place, native.layout.tolerance.projz, target.gripper
+    local bottom = target.offset - target.stroke
+    local begin = math.max(bottom, -projz - SEARCH)
+    go(target, place.x - target.retract * place.dir_x, place.y - target.retract * place.dir_y, place.z + bottom,
+      place.heading)
+    play { line = along(place, target.retract), enters = target, target = target, where = "on the way into" }
+    play { line = { 0, 0, begin - bottom }, speed = target.pickup_speed }
+    play { valves = { [gripper] = 0 } }
+    local on = native.sensor(gripper)
+    for _ = 1, on and 0 or math.ceil((SEARCH - projz - begin) / STEP) do
+      play { line = { 0, 0, STEP } }
+      play { dwell = target.timeout }
+      on = native.sensor(gripper)
+      if on then
+        local height = native.gripper_pose(gripper).r[3]
+        return height + projz - STEP / 2, height - STEP / 2
+      end
+    end
+    play { valves = { [gripper] = 1 } }
+    play { line = { 0, 0, place.z + bottom - native.gripper_pose(gripper).r[3] } }
+    play { line = along(place, -target.retract), leaves = true }
+    native.fail(on and "VACUUM_BEFORE_PICK" or "WAFER_MISSING",
+      ("no wafer was felt within %.10g mm of slot %d of %s"):format(SEARCH, target.slot, target.station))
+  end
+
+  local function carry_out(target)
+    local place = target.place
+    play { line = { 0, 0, place.z + target.offset - native.gripper_pose(target.gripper).r[3] },
+           speed = target.pickup_speed }
+    play { line = along(place, -target.retract), leaves = true }
+  end
+
+  -- What crosses the beams while this plays.
+  local function watch(station, target, action)
+    native.arm_beams(station.index, target.gripper)
+    play { dwell = 2 * native.layout.slice }
+    action()
+    play { dwell = 0.01 }
+    local found = native.centre({})
+    native.disarm_beams()
+    play { dwell = native.layout.slice }
+    return found
+  end
+
+  -- In and out again over one edge of the beam, beside the wafer's middle.
+  local function cross(station, target, beam, turn, side)
+    local place, radius = target.place, station.radius
+    local aside = side * radius * 2 / 3
+    local ahead = math.sqrt(radius * radius - aside * aside) + ROOM
+    go(target, beam.x - aside * place.dir_y - ahead * place.dir_x, beam.y + aside * place.dir_x
+      - ahead * place.dir_y, place.z + target.offset, place.heading + turn)
+    watch(station, target, function()
+      play { line = along(place, 2 * ROOM), speed = SPEED }
+      play { line = along(place, -2 * ROOM), speed = SPEED }
+    end)
+    native.add_teaching(place.x, place.y)
+  end
+
+  local function rotate(angle, x, y)
+    local c, s = math.cos(angle), math.sin(angle)
+    return c * x - s * y, s * x + c * y
+  end
+
+  -- The notch through the beam, there and back. Returns by how much the station's yaw is off.
+  local function find_yaw(station, target, beam, solved)
+    local place = target.place
+    local x, y = rotate(-place.heading, solved.x, solved.y)
+    local heading, radius = place.heading - station.notch, station.radius - INSIDE
+    local to_x, to_y = beam.x + solved.beam_x - radius * place.dir_x, beam.y + solved.beam_y - radius * place.dir_y
+    local function at(turn)
+      local ox, oy = rotate(heading + turn, x, y)
+      go(target, to_x - ox, to_y - oy, place.z + target.offset, heading + turn)
+    end
+    at(-SWEEP)
+    local found = watch(station, target, function()
+      at(SWEEP)
+      at(-SWEEP)
+    end)
+    local count, sum = 0, 0
+    for _, crossing in ipairs(found.crossings) do
+      if crossing.beam == 1 then
+        local bx, by = rotate(-heading, solved.beam_x, solved.beam_y)
+        local angle = math.atan(crossing.y + by - y, crossing.x + bx - x) - station.notch
+        count, sum = count + 1, sum + (angle + math.pi) % (2 * math.pi) - math.pi
+      end
+    end
+    if count ~= 4 then
+      native.fail("NO_NOTCH", ("%d crossings of the wafer's notch (expected 4)"):format(count))
+    end
+    return sum / count
+  end
+
+  local function check(name, options)
+    local station = lookup.station(name)
+    if options ~= nil and type(options) ~= "table" then
+      native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
+    end
+    for field, value in pairs(options or {}) do
+      if field ~= "by" or value ~= "beam" then
+        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\")"):format(lookup.quote(field),
+          lookup.quote(value)))
+      end
+    end
+    if station.beams == 0 then
+      native.fail("BAD_ARGUMENT", ("station: %s (expected one with beams at its door)"):format(
+        lookup.quote(name)))
+    end
+    return station
+  end
+
+  local function to_rpy(R)
+    return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1])), math.deg(math.atan(R[2][1], R[1][1]))
+  end
+
+  local function result_of(station, guess, z, yaw, solved)
+    local roll, pitch, heading = to_rpy(guess.R)
+    local result = {
+      at = { guess.r[1] + solved.x, guess.r[2] + solved.y, z }, rpy = { roll, pitch, heading + math.deg(yaw) },
+      sd = { solved.sd_x, solved.sd_y, STEP / math.sqrt(12) }, beam = { solved.beam_x, solved.beam_y },
+    }
+    result.text = ("%s = { at = { %.4f, %.4f, %.4f }, rpy = { %.5g, %.5g, %.4f } }"):format(
+      station.name:match("^[%a_][%w_]*$") or ("[%q]"):format(station.name), result.at[1], result.at[2],
+      result.at[3], roll, pitch, result.rpy[3])
+    return result
+  end
+
+  -- Where it was taken from: on a blade that draws wafers onto its pads it lies lower.
+  local function put_back(name, target, z, felt)
+    local height = (native.layout.seat and z or felt) - target.place.z
+    local release = math.min(math.max(height, target.offset - target.stroke), target.offset)
+    target = targets.at("put", name, 1, { release = release, centre = false }, nil, "")
+    arm.drive(arm.rehearse(patterns.put, target, true))
+  end
+
+  local function teach(name, options)
+    local station = check(name, options)
+    local target = targets.at("get", name, 1)
+    arm.check_free()
+    if native.sensor(target.gripper) then
+      native.fail("WAFER_ON_GRIPPER", "TEACH takes the wafer in slot 1")
+    end
+    local z, felt = feel(target)
+    carry_out(target)
+    local beam = native.beam(station.index)
+    native.begin_teaching()
+    local good, result = pcall(function()
+      for _, turn in ipairs(TURNS) do
+        cross(station, target, beam, turn, -1)
+        cross(station, target, beam, turn, 1)
+      end
+      local solved = native.solve_teaching()
+      if solved.error ~= 0 then
+        native.fail("CENTRE_NOT_SURE", "the crossings contradict each other")
+      end
+      return result_of(station, beam.station, z, find_yaw(station, target, beam, solved), solved)
+    end)
+    put_back(name, target, z, felt)
+    if not good then
+      error(result, 0)
+    end
+    return result
+  end
+
+  -- Where the station truly is, by its beam and the wafer in its slot 1: see lua/mcs/words.lua.
+  return function(station, options)
+    return arm.move(lookup.command("TEACH", station), teach, station, options)
+  end
+end
