@@ -4,6 +4,11 @@
  * the verdict. The wafer's e1 is where the nominal wafer has its marks: with a nominal notch in direction 0
  * the turn is the notch's direction. No number is better than its standard deviation says, and none is given
  * out as sure whose deviation is larger than the limits allow.
+ *
+ * Bytes of stack on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12 (tests/verify/footprint);
+ * the caller's memory is 56 bytes a sample:
+ *                                             M7 -O2    -Os  M4F -O2    -Os
+ *     stack of wh_align_estimate              2736   2716    3136   2964
  */
 #ifndef WH_ALIGN_ALIGN_H
 #define WH_ALIGN_ALIGN_H

@@ -64,10 +64,11 @@ static bool tells_all(const task_t *task) {
         const double faster = fabs(scan->speed - first->speed);
         speed = faster > speed ? faster : speed;
     }
-    return way >= WH_CALIBRATION_WAY * WH_CALIBRATION_WAY && speed >= WH_CALIBRATION_SPEED;
+    return sqrt(way) >= WH_CALIBRATION_WAY && speed >= WH_CALIBRATION_SPEED;
 }
 
-static wh_status_t check(task_t *task) {
+/* All but the scans themselves. */
+static wh_status_t check_numbers(const task_t *task) {
     wh_status_t status = wh_sensor_validate(task->sensor, NULL);
     if (status == WH_OK) {
         status = in_range(task->radius, 10, 300);
@@ -78,17 +79,16 @@ static wh_status_t check(task_t *task) {
     if (status == WH_OK && task->count < WH_CALIBRATION_LEAST) {
         status = WH_STATUS_TOO_FEW_SAMPLES;
     }
-    if (status == WH_OK && task->count > WH_CALIBRATION_SCANS) {
-        status = WH_STATUS_OUT_OF_RANGE;
-    }
+    return status == WH_OK && task->count > WH_CALIBRATION_SCANS ? WH_STATUS_OUT_OF_RANGE : status;
+}
+
+static wh_status_t check(task_t *task) {
+    wh_status_t status = check_numbers(task);
     for (size_t i = 0; status == WH_OK && i < task->count; ++i) {
         status = check_scan(&task->scans[i]);
         task->bad = status == WH_OK ? WH_NONE : (int32_t)i;
     }
-    if (status != WH_OK) {
-        return status;
-    }
-    return tells_all(task) ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
+    return status == WH_OK && !tells_all(task) ? WH_STATUS_CENTRE_NOT_SURE : status;
 }
 
 /* -------------------------------------------------------------------------------------------------- steps */
@@ -188,6 +188,7 @@ static wh_status_t step(task_t *task, wh_calibration_t *now, wh_normal_t *normal
 static wh_status_t solve(task_t *task, wh_calibration_t *found) {
     wh_normal_t normal;
     double moved = 1;
+    wh_normal_begin(&normal, UNKNOWNS);
     for (int i = 0; i < STEPS && moved > STILL; ++i) {
         const wh_status_t status = step(task, found, &normal, &moved);
         if (status != WH_OK) {
@@ -198,7 +199,7 @@ static wh_status_t solve(task_t *task, wh_calibration_t *found) {
     found->sd_gain = sqrt(normal.matrix[3][3]);
     found->sd_latency = sqrt(normal.matrix[4][4]);
     found->sd_zero = sqrt(normal.matrix[5][5]);
-    const double limit = wh_mismatch_limit((double)(3 * task->count - UNKNOWNS), WH_MISMATCH_NEVER);
+    const double limit = wh_mismatch_limit((double)(3 * task->count - UNKNOWNS));
     return moved <= IN_TURN && found->mismatch <= limit ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
 }
 

@@ -18,6 +18,10 @@
  * offset into each wh_rim_scan_t. Lengths in mm, times in s, angles in rad, in the chuck's frame, which at turn
  * 0 is the station's: a way that was made at another turn is to be turned back by that. No heap, no state;
  * the same bits on every machine.
+ *
+ * Bytes of stack on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12 (tests/verify/footprint):
+ *                                             M7 -O2    -Os  M4F -O2    -Os
+ *     stack of wh_calibration_solve           2168   2024    2512   2312
  */
 #ifndef WH_ALIGN_CALIBRATION_H
 #define WH_ALIGN_CALIBRATION_H
@@ -57,7 +61,7 @@ typedef struct {
  * WH_STATUS_OUT_OF_RANGE for a number; WH_STATUS_TOO_FEW_SAMPLES for fewer scans than WH_CALIBRATION_LEAST, or
  * for what wh_circle_fit says so, as WH_STATUS_BAD_SCAN is; WH_STATUS_CENTRE_NOT_SURE for a scan that tells no
  * circle, for ways or speeds that do not differ, for an error out of the range of wh_sensor_error_t, and for
- * scans that contradict each other as chance does three times in a million. *bad, which may be
+ * scans that contradict each other as chance does once in a million. *bad, which may be
  * null, is the scan, or WH_NONE if it is none alone. Cost: wh_circle_fit five times a scan. */
 wh_status_t wh_calibration_solve(const wh_sensor_t *sensor, double radius, double sd_way,
                                  const wh_calibration_scan_t *scans, size_t count, wh_rim_point_t *points,

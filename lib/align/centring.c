@@ -133,7 +133,7 @@ static bool fit(const search_t *search, guess_t *guess) {
             guess->covariance[i][j] = i < normal.terms && j < normal.terms ? normal.matrix[i][j] : 0;
         }
     }
-    return moved <= 1e-10 && guess->mismatch <= wh_mismatch_limit(guess->used - 2, WH_MISMATCH_NEVER);
+    return moved <= 1e-10 && guess->mismatch <= wh_mismatch_limit(guess->used - 2);
 }
 
 /* ---------------------------------------------------------------------------------------------- the notch */

@@ -8,7 +8,9 @@
  * the standard deviation is enlarged by as much, and where it cannot be chance it is no notch. A dent is none
  * if its rim stands where a notch, chipped or not, would have none; what remains, such as a chip wider and
  * deeper than a notch, leaves the verdict open, unless the notch was seen so well (a scatter up to 8 um) that
- * it cannot be a chip itself. A flat is a chord: rho(a) = h / cos(a), of the length 2 sqrt(R^2 - h^2).
+ * it cannot be a chip itself. Where the notch is hidden, a chip that is as all of this says is taken for it:
+ * of a scatter of 10 um and more, one some 2.7 mm wide and 1 mm deep. A flat is a chord: rho(a) = h / cos(a),
+ * of the length 2 sqrt(R^2 - h^2).
  */
 #ifndef WH_ALIGN_MARKS_H
 #define WH_ALIGN_MARKS_H

@@ -4,14 +4,11 @@
 
 #include <math.h>
 
-/* Deviations for what is not to happen by chance: three in a million. */
-#define WH_MISMATCH_NEVER 4.5
-
-/* The sum of `spare` squares of normal deviates, 1 or more, that is exceeded as seldom as one deviate exceeds
- * `deviations`, by Wilson and Hilferty's form. */
-static inline double wh_mismatch_limit(double spare, double deviations) {
+/* The sum of `spare` squares of normal deviates, 1 or more, that is exceeded once in a million: Wilson and
+ * Hilferty's form at 4.5 deviations. */
+static inline double wh_mismatch_limit(double spare) {
     const double part = 2 / (9 * spare);
-    const double root = 1 - part + deviations * sqrt(part);
+    const double root = 1 - part + 4.5 * sqrt(part);
     return spare * root * root * root;
 }
 

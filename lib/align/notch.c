@@ -19,10 +19,11 @@
 #define DEEPER 0.4
 #define OPENING_OFF (2.2 * WH_ALIGN_PI / 180)
 /* The bottom's radius is the nominal one, give or take this, mm. If the squares of flanks and bottom are so
- * many times noise's, that is no chance any more; if they are as seldom as so many deviations, a chip. */
+ * many times noise's, that is no chance any more; if they are this part of what chance does once in a million
+ * times (now once in ten thousand), it is a chip. */
 #define BOTTOM_SD 0.08
 #define CHANCE 1.5
-#define CHIPPED 3.7
+#define CHIPPED 0.8
 /* With samples so good, mm, no chip's curved sides pass for flanks, if it is as deep as a notch but for
  * this. */
 #define SHARP 0.008
@@ -37,9 +38,11 @@
 #define BESIDE 0.8
 /* Samples of a notch through which light falls, at most. */
 #define LIGHT 4
-/* Steps; after so many of them it stands which samples are flanks, and their weights. */
-#define STEPS 25
-#define CHOICES 12
+/* Steps, and the last one's length, mm; after so many of them it stands which samples are flanks, and their
+ * weights, even if they come and go. */
+#define STEPS 32
+#define STILL 1e-11
+#define CHOICES 20
 
 /* Fitted values: the axis, from the circle's centre to the apex, half of the opening. */
 typedef struct {
@@ -198,10 +201,11 @@ static bool fit(const vee_search_t *search, const wh_dent_t *dent, vee_t *vee) {
         if (!step(search, dent, &choice, i < 2 && cuts[i] > last ? cuts[i] : last, vee)) {
             return false;
         }
+        if (i > 2 && vee->step < STILL) {
+            return true;
+        }
         if (i < CHOICES) {
             choice = *vee;
-        } else if (vee->step < 1e-9) {
-            return true;
         }
     }
     return false;
@@ -241,15 +245,15 @@ static against_arc_t hold_against_arc(const vee_search_t *search, const vee_t *v
         return against;
     }
     /* Towards the centre of the arc, and the ray along that. */
-    const double in = 0 - from_centre / distance;
-    const double aside = 0 - across / distance;
+    const double in = -from_centre / distance;
+    const double aside = -across / distance;
     const double slope = in * (ray->cosine * vee->axis_x + ray->sine * vee->axis_y) +
                          aside * (ray->sine * vee->axis_x - ray->cosine * vee->axis_y);
     const double opens = radius * vee->cosine / (vee->sine * vee->sine);
     against.residual = (radius - distance) / slope;
     against.by[0] = aside * centre / slope;
     against.by[1] = in / slope;
-    against.by[2] = 0 - in * opens / slope;
+    against.by[2] = -in * opens / slope;
     against.by[3] = (in / vee->sine - 1) / slope;
     return against;
 }
@@ -303,7 +307,7 @@ static bool has_bottom(const vee_search_t *search, const wh_dent_t *dent, vee_t 
     const double spare = (double)(count - 2);
     const double times = squares / (sigma * sigma * spare);
     vee->inflation = times > CHANCE ? times : 1;
-    return times * spare <= wh_mismatch_limit(spare, CHIPPED);
+    return times * spare <= CHIPPED * wh_mismatch_limit(spare);
 }
 
 /* ------------------------------------------------------------------------------------ is it the notch */
@@ -462,6 +466,22 @@ static tally_t judge_all(const vee_search_t *search, const wh_dents_t *dents) {
     return tally;
 }
 
+/* What the dents say together. */
+static wh_status_t conclude(const vee_search_t *search, const wh_dents_t *dents, const tally_t *tally) {
+    if (tally->counts[IS_NOTCH] > 1) {
+        return WH_STATUS_TWO_NOTCHES;
+    }
+    if (tally->counts[IS_NOTCH] == 1) {
+        /* What may be a chipped notch is a chip if the notch cannot be one. */
+        const bool is_sharp = search->of.circle->scatter <= SHARP &&
+                              tally->first.depth >= search->nominal->depth - SHARP_SHALLOWER;
+        const bool is_one = tally->counts[IS_DOUBTFUL] == 0 || is_sharp;
+        return is_one && dents->whole ? WH_OK : WH_STATUS_NOTCH_NOT_SURE;
+    }
+    const bool may_be = tally->deep > 0 || !dents->whole || !wh_scanned_is_whole(&search->of);
+    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
+}
+
 wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle,
                           const wh_notch_shape_t *nominal, bool glass, wh_notch_t *notch) {
     const double deepest = glass ? nominal->depth + DEEPER + CUT * circle->scatter : circle->radius;
@@ -470,16 +490,9 @@ wh_status_t wh_notch_find(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, c
     search.spacing = wh_scanned_spacing(&search.of);
     const wh_dents_t dents = wh_dents_find(&search.of);
     const tally_t tally = judge_all(&search, &dents);
-    if (tally.counts[IS_NOTCH] > 1) {
-        return WH_STATUS_TWO_NOTCHES;
-    }
-    /* What may be a chipped notch is a chip if the notch cannot be one. */
-    const bool is_sharp = circle->scatter <= SHARP && tally.first.depth >= nominal->depth - SHARP_SHALLOWER;
-    const bool is_one = tally.counts[IS_DOUBTFUL] == 0 || is_sharp;
-    if (tally.counts[IS_NOTCH] == 1 && is_one && dents.whole) {
+    const wh_status_t status = conclude(&search, &dents, &tally);
+    if (status == WH_OK) {
         *notch = tally.first;
-        return WH_OK;
     }
-    const bool may_be = tally.deep > 0 || !dents.whole || !wh_scanned_is_whole(&search.of);
-    return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
+    return status;
 }

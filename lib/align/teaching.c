@@ -312,8 +312,7 @@ static wh_status_t solve(const wh_teach_guess_t *guess, const wh_teach_measureme
     }
     place_station(&fit);
     tell(&fit, taught);
-    const double limit = wh_mismatch_limit((double)count, WH_MISMATCH_NEVER);
-    const bool good = moved <= 1e-10 && taught->mismatch <= limit;
+    const bool good = moved <= 1e-10 && taught->mismatch <= wh_mismatch_limit((double)count);
     return good ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
 }
 

@@ -4,22 +4,25 @@
 /* A wafer that is nearer to its slot's plane than this, mm, lies on it. */
 #define SUPPORT_TOUCH WH_REAL(1e-3)
 
-/* A wafer's height above its support: the nearest slot plane below, or base's floor. */
-static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {
-    wh_real_t height = base_from_wafer->r.z;
+/* Finds what is below a wafer, the nearest slot's plane or base's floor, and how far; less than projz below a
+ * plane the wafer is on it. A wafer that is in no slot, though it is no farther than half a pitch above that
+ * plane, is so for its tilt. */
+static void find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_event_t *said) {
     bool found = false;
+    said->height = base_from_wafer->r.z;
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         for (int32_t slot = 1; slot <= station->slots; ++slot) {
             const wh_place_t place = wh_station_measure(station, slot, base_from_wafer);
             const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
-            if (aside < cell->tolerance.projxy && place.dz >= 0 && (!found || place.dz < height)) {
-                height = place.dz;
+            if (aside < cell->tolerance.projxy && place.dz > -cell->tolerance.projz &&
+                (!found || place.dz < said->height)) {
+                said->height = place.dz;
+                said->value = place.dz < station->pitch / 2 ? place.tilt : 0;
                 found = true;
             }
         }
     }
-    return height;
 }
 
 /* True if a wafer lies in this very slot. A wafer that a blade holds over the slot only passes. */
@@ -56,7 +59,7 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
     const int32_t wafer = list->events[release].wafer;
     wh_event_t *said = append_as(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
     if (said != NULL) {
-        said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
+        find_support(cell, &table->storage.wafers[wafer].base_from_wafer, said);
     }
 }
 

@@ -12,7 +12,7 @@
  *     stack of wh_station_slot                  56     56       8     20
  *     stack of wh_station_measure              336    336     168    200
  *     stack of wh_cell_locate                  424    424     232    264
- *     stack of wh_cell_judge                   576    576     344    376
+ *     stack of wh_cell_judge                   592    592     352    384
  *     stack of wh_cell_settle                  616    616     352    384
  *     size of wh_station_t                     120             60
  *     size of wh_cell_t                         56             32
@@ -78,7 +78,9 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
 /* Looks at the releases among a step's events, and appends what the cell says of them while the list has
  * room:
  *   - WH_EVENT_RELEASED_UNSUPPORTED: the wafer lies in no slot. `height` is its height above the nearest slot
- *     below it within tolerance.projxy, or else above base's z = 0 (negative below it);
+ *     below it within tolerance.projxy, or else above base's z = 0 (negative below it). Less than
+ *     tolerance.projz below a slot it is on that slot, and its height negative. If it would lie there but
+ *     for its tilt, `value` is that, rad; else 0;
  *   - WH_EVENT_SLOT_OCCUPIED: another wafer, free or held by the station's chuck, lies in the same slot.
  *     `other` is its index, the lowest;
  *   - WH_EVENT_PLACED_OFF_CENTRE, WH_EVENT_PLACED_ASKEW: the wafer lies in a slot beyond the cell's limits.

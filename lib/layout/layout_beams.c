@@ -34,6 +34,7 @@ static double read_across(wh_reader_t *reader, const wh_layout_t *layout, size_t
 }
 
 static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t first) {
+    static const char *const stuck[] = {"no", "dark", "lit", NULL};
     const wh_station_t *place = &layout->places[s];
     wh_layout_beam_t *beam = &layout->beams[layout->beam_count];
     wh_door_beam_t *door = &layout->doors[layout->beam_count];
@@ -53,6 +54,7 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     door->delay_off = beam->delay_off + beam->late;
     door->jitter = wh_reader_number(reader, "jitter", 0, 0, 0.001);
     door->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
+    door->stuck = (wh_beam_stuck_t)wh_reader_choice(reader, "stuck", 0, stuck);
     wh_layout_place_beam(layout, layout->beam_count);
 }
 

@@ -183,6 +183,7 @@ const wh_reader_field_t wh_layout_beam_fields[] = {
     {"dx", NUMBER, "mm by which it truly stands farther in than motion control believes", false},
     {"dy", NUMBER, "mm by which it truly stands farther to the left", false},
     {"late", NUMBER, "s by which both delays are truly longer", false},
+    {"stuck", "\"no\"|\"dark\"|\"lit\"", "what a beam always says that is broken down", false},
     END};
 
 const wh_reader_field_t wh_layout_sensor_fields[] = {

@@ -105,7 +105,8 @@ static void put_beam(const wh_layout_t *layout, size_t b, waferhand_door_beam *o
                                  .high = beam->high,
                                  .delay_on = door->delay_on,
                                  .delay_off = door->delay_off,
-                                 .jitter = door->jitter};
+                                 .jitter = door->jitter,
+                                 .stuck = (int32_t)door->stuck};
     put_vector(beam->x, beam->y, beam->z, out->point);
     put_vector(beam->ex, beam->ey, beam->ez, out->direction);
 }
@@ -361,7 +362,8 @@ static wh_door_beam_t take_beam(const waferhand_door_beam *in) {
                                  .delay_on = in->delay_on,
                                  .delay_off = in->delay_off,
                                  .jitter = in->jitter,
-                                 .seed = (uint64_t)in->seed};
+                                 .seed = (uint64_t)in->seed,
+                                 .stuck = (wh_beam_stuck_t)in->stuck};
     return door;
 }
 

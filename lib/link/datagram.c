@@ -27,7 +27,7 @@
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
-#define BEAM_FIXED (4 + 8 + 11 * 8)
+#define BEAM_FIXED (4 + 8 + 11 * 8 + 4)
 #define RIM_FIXED (4 + 14 * 8)
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)

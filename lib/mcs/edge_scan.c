@@ -88,10 +88,12 @@ static int arm_edge(lua_State *L) {
     return 0;
 }
 
-/* native.disarm_edge(): with the next slice. What was collected stays. */
+/* native.disarm_edge(): with the next slice, if samples are still to come. What was collected stays. */
 static int disarm_edge(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_DISARM};
+    if (mcs->edge.armed) {
+        mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_DISARM};
+    }
     return 0;
 }
 

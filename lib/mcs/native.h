@@ -63,6 +63,7 @@ void wh_mcs_free_pass(wh_mcs_pass_t *pass);
 void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner);
 
 /* Functions of the native table, by file. */
+extern const luaL_Reg wh_mcs_align_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];

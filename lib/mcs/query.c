@@ -172,7 +172,8 @@ static int read_slot_pose(lua_State *L) {
 }
 
 /* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy,
- * dz, and the angle and the whole turn in degrees. */
+ * dz, in degrees the angle, the whole turn, and the heading: the direction of the second's x about the first's
+ * z, from the first's x. */
 static int relate(lua_State *L) {
     const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
     wh_pose_t poses[2];
@@ -187,7 +188,10 @@ static int relate(lua_State *L) {
     lua_pushnumber(L, relation.r.z);
     lua_pushnumber(L, wh_deg_from_rad(relation.angle));
     lua_pushnumber(L, wh_deg_from_rad(relation.turn));
-    return 6;
+    const wh_vec3_t x = wh_mat3_column(&poses[1].R, 0);
+    const wh_vec3_t seen = wh_mat3_transform_back(&poses[0].R, &x);
+    lua_pushnumber(L, wh_deg_from_rad(wh_atan2(seen.y, seen.x)));
+    return 7;
 }
 
 /* --------------------------------------------------------------------------------------------- collisions */

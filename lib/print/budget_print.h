@@ -1,7 +1,8 @@
 /* A script's budget, for people and for programs.
  *
  * As JSON one object, format 1, its lists with one element a line:
- *   format, ok (false: it was ended before all was found; what is not known is missing), script, layout, trials (all in all), limit_mm, limit_deg,
+ *   format, ok (false: it was ended before all was found; what is not known is missing), script, layout,
+ *          trials (all in all), limit_mm, limit_deg,
  *          collision (whether it was looked for), caught_errors (in a trial that passed, by the script),
  *          capped (how many errors passed up to the limit, which is less than the tightest error's width),
  *   errors:  station, error (x, y, z, roll, pitch, yaw), unit (mm or deg), width (passes everywhere that was

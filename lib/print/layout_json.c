@@ -47,6 +47,26 @@ static json_t *sensor(const wh_sensor_t *from) {
                        from->error.zero, from->error.gain, from->error.latency, from->hidden_count);
 }
 
+static json_t *beam(const wh_layout_t *layout, size_t b) {
+    static const char *const stuck[] = {"no", "dark", "lit"};
+    const wh_layout_beam_t *from = &layout->beams[b];
+    return wh_json_set(json_object(),
+                       "x %g y %g low %g high %g delay_on %g delay_off %g jitter %g dx %g dy %g late %g "
+                       "stuck %s",
+                       from->x, from->y, from->low, from->high, from->delay_on, from->delay_off,
+                       layout->doors[b].jitter, from->dx, from->dy, from->late,
+                       stuck[layout->doors[b].stuck]);
+}
+
+static json_t *beams_at(const wh_layout_t *layout, size_t s) {
+    const wh_latch_order_t order = wh_layout_beams_at(layout, s);
+    json_t *list = json_array();
+    for (int32_t i = 0; i < order.count; ++i) {
+        (void)json_array_append_new(list, beam(layout, (size_t)(order.first + i)));
+    }
+    return list;
+}
+
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
@@ -71,6 +91,8 @@ static json_t *station(const void *subject, size_t i) {
     wh_json_put(object, "room", room);
     const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
     (void)json_object_set_new(object, "sensor", scanner ? sensor(&scanner->sensor) : json_null());
+    (void)json_object_set_new(object, "beams", beams_at(layout, i));
+    (void)json_object_set_new(object, "centre", json_boolean(from->centre));
     return object;
 }
 

@@ -56,6 +56,15 @@ static void print_grippers(const listing_t *listing) {
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
+/* What looks at wafers there. */
+static const char *seen_by(const wh_layout_t *layout, size_t s) {
+    const bool has_beams = wh_layout_beams_at(layout, s).count > 0;
+    if (wh_layout_scanner(layout, layout->places[s].chuck)) {
+        return has_beams ? ", edge sensor, beams" : ", edge sensor";
+    }
+    return has_beams ? ", beams" : "";
+}
+
 static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_layout_station_t *station = &listing->layout->stations[s];
     const wh_station_t *place = &listing->layout->places[s];
@@ -65,8 +74,7 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const char *kind = station->foup ? "foup" : "slots";
     wh_grid_named_row(grid, station->name);
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s", station->prealigner ? "prealigner" : kind,
-                 wh_layout_scanner(listing->layout, place->chuck) ? ", edge sensor" : "",
-                 station->taught ? "" : ", not taught");
+                 seen_by(listing->layout, s), station->taught ? "" : ", not taught");
     const double values[] = {r->x,
                              r->y,
                              r->z,

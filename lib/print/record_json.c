@@ -35,16 +35,18 @@ static json_t *command(const void *subject, size_t i) {
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
-/* Where the notch points, about the station's z from its x; about base's for a wafer in no slot. Infinite
- * if there is none. */
-static double notch_deg(const wh_layout_t *layout, const wh_wafer_record_t *wafer) {
+/* Where the notch of wafer `w` points, about the station's z from its x; about base's for a wafer in no slot.
+ * Infinite if there is none. A wafer's own rim tells, where edge sensors see it. */
+static double notch_deg(const wh_layout_t *layout, const wh_wafer_record_t *wafer, size_t w) {
+    const wh_rim_t *rim = layout->scanner_count > 0 && layout->rims ? layout->rims[w] : NULL;
+    const double depth = rim ? rim->notch.depth : layout->notch_depth;
     wh_real_t sine = 0;
     wh_real_t cosine = 1;
-    wh_sin_cos(layout->notch, &sine, &cosine);
-    const wh_vec3_t notch = {cosine, sine, 0};
-    if (!(layout->notch_depth > 0)) {
+    if (!(depth > 0)) {
         return HUGE_VAL;
     }
+    wh_sin_cos((wh_real_t)(rim ? rim->notch.direction : layout->notch), &sine, &cosine);
+    const wh_vec3_t notch = {cosine, sine, 0};
     wh_vec3_t direction = wh_mat3_transform(&wafer->base_from_wafer.R, &notch);
     if (wafer->place.station != WH_NONE) {
         direction =
@@ -63,7 +65,7 @@ static json_t *wafer(const void *subject, size_t i) {
         wh_record_wafer_name(record, (int32_t)i), wh_record_gripper_name(record, from->holder),
         wh_record_station_name(record, place->station), lies ? place->slot : WH_JSON_NONE,
         lies ? place->dx : HUGE_VAL, lies ? place->dy : HUGE_VAL, lies ? place->dz : HUGE_VAL,
-        lies ? wh_deg_from_rad(place->tilt) : HUGE_VAL, notch_deg(record->layout, from));
+        lies ? wh_deg_from_rad(place->tilt) : HUGE_VAL, notch_deg(record->layout, from, i));
     return wh_json_add(object, "position rotation", wh_json_vector(from->base_from_wafer.r),
                        wh_json_matrix(&from->base_from_wafer.R), NULL);
 }
@@ -147,6 +149,9 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
         break;
     case WH_EVENT_RELEASED_UNSUPPORTED:
         (void)wh_json_set(object, "height %g", event->height);
+        if (event->value > 0) {
+            (void)wh_json_set(object, "value %g", wh_deg_from_rad(event->value));
+        }
         break;
     case WH_EVENT_BAD_INPUT:
         (void)wh_json_set(object, "status %d message %s", (int)event->status,

@@ -13,11 +13,10 @@
  *
  * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if a
  * log does not show it, and if no command came), nothing_moved (true, only when no command came), failure
- * (only when the run ended in one), errors (only when the cell
- * was given some: [NAME.FIELD=VALUE]), log (only when the run was read from one: { verdict, reason (null if it
- * is the same), id (16 hex digits; null: it is no recording of ours), part, notes [text] }), script, layout
- * (path or null), slices, missed, simulated_s, wall_s,
- * hash (16 hex digits),
+ * (only when the run ended in one), errors (only when the cell was given some: [NAME.FIELD=VALUE]), log (only
+ * when the run was read from one: { verdict, reason (null if it is the same), id (16 hex digits; null: it is
+ * no recording of ours), part, notes [text] }), script, layout (path or null), slices, missed, simulated_s,
+ * wall_s, hash (16 hex digits),
  *   throughput:   { wafers_per_hour (null: there is no figure), reason (why not, in words, or null),
  *                 wafers, seconds, first_cycle, last_cycle (of the marked cycles that count, from 1; null:
  *                 the whole run counts), puts (all of the run), counting (the names of the stations that
@@ -34,14 +33,15 @@
  *   commands:     line, text, error (0: none), begin_s, end_s, split (of the command); message where there
  *                 is one
  *   wafers:       name, holder (or null), station, slot, dx, dy, dz (mm), tilt_deg (all six null when it
- *                 lies in no slot), notch_deg (where its notch points, about the station's z from its x; in
- *                 no slot about base's; null without a notch), position [3] (mm), rotation [3][3]
- *                 (row by row)
+ *                 lies in no slot), notch_deg (where its notch points, by its own rim if it has one, about
+ *                 the station's z from its x; in no slot about base's; null without a notch), position [3]
+ *                 (mm), rotation [3][3] (row by row)
  *   events:       utime (us), kind, wafer, gripper (names or null), dr_proj_z, dr_proj_xy [3],
  *                 dr_proj_xy_norm (mm), n1_proj_n2, margins { projz, projxy, planar }, failed (a list of
  *                 "projz", "projxy", "planar"), measured_utime (us, null without a layout); and by kind:
  *                 from (handed_over: the gripper that let go), holder (contested), other (slot_occupied:
- *                 the wafer that lies there), height (released_unsupported, mm), status and message
+ *                 the wafer that lies there), height (released_unsupported, mm; if
+ *                 it is for its tilt, that as value, degrees), status and message
  *                 (bad_input, whose measured values are null)
  *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
  *                 none): the smallest gaps of a run whose collisions were checked

@@ -242,6 +242,12 @@ static void say_of_cell(said_t *said) {
     switch ((int)event->kind) {
     case WH_EVENT_RELEASED_UNSUPPORTED:
         put_text(said, "in no slot, ");
+        if (event->value > 0) {
+            put_text(said, "tilted by ");
+            put_fixed(said, wh_deg_from_rad(event->value), 3);
+            put_text(said, degree_of(said));
+            put_text(said, ", ");
+        }
         put_fixed(said, event->height, 3);
         put_text(said, " mm above what is below");
         break;

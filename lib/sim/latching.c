@@ -21,6 +21,9 @@ static wh_status_t check_beam(const wh_door_beam_t *door) {
     wh_status_t status = wh_beam_validate(&door->beam);
     status = status == WH_OK ? check_delay(door->delay_on, 0.01) : status;
     status = status == WH_OK ? check_delay(door->delay_off, 0.01) : status;
+    if (door->stuck != WH_BEAM_WORKS && door->stuck != WH_BEAM_DARK && door->stuck != WH_BEAM_LIT) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     return status == WH_OK ? check_delay(door->jitter, 0.001) : status;
 }
 
@@ -171,6 +174,9 @@ static void note_broken(const wh_latching_t *latching, const wh_shade_t shades[]
         double part = 1;
         bool broken = false;
         (void)wh_beam_next(&latching->beams[b].beam, shades, count, &part, &broken);
+        if (latching->beams[b].stuck != WH_BEAM_WORKS) {
+            broken = latching->beams[b].stuck == WH_BEAM_DARK;
+        }
         latches->broken |= broken ? UINT32_C(1) << b : 0;
     }
 }
@@ -187,7 +193,9 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
         ++latches->slice;
         for (int32_t i = 0; i < latches->count; ++i) {
             const size_t b = (size_t)latches->first + (size_t)i;
-            look_at_beam(latching, latches, b, shades, count, (double)slice_s);
+            if (latching->beams[b].stuck == WH_BEAM_WORKS) {
+                look_at_beam(latching, latches, b, shades, count, (double)slice_s);
+            }
         }
         give_out(latches);
     }
@@ -229,7 +237,7 @@ uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, s
                                  beam->ey,       beam->ez,        beam->low,   beam->high,
                                  door->delay_on, door->delay_off, door->jitter};
         hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
-        hash = wh_hash_word(hash, door->seed);
+        hash = wh_hash_int(wh_hash_word(hash, door->seed), (int32_t)door->stuck);
     }
     for (size_t g = 0; latching->blades && g < gripper_count; ++g) {
         const wh_blade_outline_t *blade = &latching->blades[g];

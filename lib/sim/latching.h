@@ -28,12 +28,16 @@ WH_REFUSE_PACKING(latching);
 #define WH_BEAMS 16
 #define WH_LATCHES 16
 
+/* What a beam says that is broken down: always the same, so it gives no latch. */
+typedef enum WH_FOUR_BYTES { WH_BEAM_WORKS, WH_BEAM_DARK, WH_BEAM_LIT } wh_beam_stuck_t;
+
 /* A beam with its electronics. */
 typedef struct {
     wh_beam_t beam;
     double delay_on, delay_off; /* from being broken, or free, to the latch, s, 0 to 0.01 */
     double jitter;              /* standard deviation of both, s, 0 to 0.001; no delay is below 0 */
     uint64_t seed;              /* names the jitter, with the number of the arming and of the crossing */
+    wh_beam_stuck_t stuck;
 } wh_door_beam_t;
 
 /* What does not change during a run: the caller's arrays. */
@@ -98,7 +102,7 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
                       wh_real_t slice_s, const wh_latch_order_t *order, wh_latches_t *latches)
     WH_SYMBOL(wh_latching_step);
 
-/* Continues a hash (math/hash.h) with all that the latches of a run depend on. Nothing is checked. Cost: 12
+/* Continues a hash (math/hash.h) with all that the latches of a run depend on. Nothing is checked. Cost: 13
  * words for each beam, 50 for each wafer, and two for each point of an outline. */
 uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count,
                           uint64_t hash) WH_SYMBOL(wh_latching_hash);

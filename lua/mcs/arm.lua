@@ -195,8 +195,8 @@ return function(native, lookup, centring)
   end
 
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
-  -- the segment. The cell knows if a wafer is on a gripper's pads, whatever its sensor says; a
-  -- controller would look.
+  -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
+  -- whatever its sensor says; a controller would look.
   local function perform(request, target)
     if request.centre then
       return centring.answer(request.centre)
@@ -217,7 +217,7 @@ return function(native, lookup, centring)
       local name, at = native.layout.grippers[lost].name, request.target
       local way = request.to and "on the way to" or request.where
       local where = at and (" %s %s slot %d"):format(way, at.station, at.slot) or ""
-      native.fail("WAFER_LOST_ON_WAY", ("the sensor of %s went off%s"):format(name, where))
+      native.fail(target.lost_as or "WAFER_LOST_ON_WAY", ("the sensor of %s went off%s"):format(name, where))
     end
     return ended
   end

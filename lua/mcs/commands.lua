@@ -6,8 +6,9 @@ local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 return function(native, patterns, lookup)
   local centring = native.module("mcs/centring.lua")(native, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup, centring)
-  local targets = native.module("mcs/targets.lua")(native, lookup)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, centring)
+  local align = native.module("mcs/align.lua")(native, patterns, lookup, arm)
+  local targets = native.module("mcs/targets.lua")(native, lookup, align)
+  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring)
 
   ----------------------------------------------------------------------------------------------- single moves
 
@@ -16,19 +17,8 @@ return function(native, patterns, lookup)
     arm.play(patterns.single, { segment = segment, watched = true })
   end
 
-  local function prealigners()
-    local names = {}
-    for name, station in pairs(native.layout.stations) do
-      names[#names + 1] = station.chuck and name
-    end
-    return #names > 0 and "expected " .. lookup.listed(names) or "this cell has none"
-  end
-
   local function rotate(station_name, degrees)
-    local station = lookup.station(station_name)
-    if not station.chuck then
-      native.fail("NOT_A_PREALIGNER", ("%s (%s)"):format(lookup.quote(station_name), prealigners()))
-    end
+    local station = align.prealigner(station_name)
     local axis = native.layout.grippers[station.chuck].axis
     local axes = native.axes()
     axes[axis] = axes[axis] + math.rad(lookup.number("degrees", degrees))
@@ -39,45 +29,7 @@ return function(native, patterns, lookup)
     arm.move(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
   end
 
-  local function sensing()
-    local names = {}
-    for name, station in pairs(native.layout.stations) do
-      names[#names + 1] = station.sensor and name
-    end
-    return #names > 0 and "expected a prealigner with an edge sensor: " .. lookup.listed(names)
-      or "expected a prealigner with an edge sensor: this cell has none"
-  end
-
-  -- A turn and two samples more: from the first sample that is at least one ahead of where the chuck stands.
-  local function edge_scan(station_name)
-    local station = lookup.station(station_name)
-    local sensor = station.sensor
-    if not sensor then
-      native.fail("BAD_ARGUMENT", ("station: %s (%s)"):format(lookup.quote(station_name), sensing()))
-    end
-    local axis = native.layout.grippers[station.chuck].axis
-    local axes, step = native.axes(), 2 * math.pi / sensor.samples
-    local first = (math.floor(axes[axis] / step) + 2) % sensor.samples
-    axes[axis] = axes[axis] + (sensor.samples + 2) * step
-    native.arm_edge(station.chuck, first, sensor.samples)
-    local ok, problem = pcall(function()
-      play { dwell = native.layout.slice }
-      play { axes = axes }
-    end)
-    local scan = native.edge()
-    if scan.is_armed then
-      native.disarm_edge()
-    end
-    if not ok then
-      error(problem, 0)
-    end
-    return scan
-  end
-
-  -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
-  function commands.edge_scan(station)
-    return arm.move(lookup.command("EDGE_SCAN", station), edge_scan, station)
-  end
+  commands.edge_scan, commands.align = align.edge_scan, align.align
 
   commands.centring = centring.last
   commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
@@ -86,7 +38,9 @@ return function(native, patterns, lookup)
     if level ~= 0 and level ~= 1 then
       native.fail("BAD_VALVE", ("level: %s (expected 0, open, or 1, closed)"):format(lookup.quote(level)))
     end
-    play { valves = { [lookup.gripper(gripper)] = math.tointeger(level) } }
+    local index = lookup.gripper(gripper)
+    align.forget_chuck(index)
+    play { valves = { [index] = math.tointeger(level) } }
   end
 
   function commands.valve(gripper, level)
@@ -195,10 +149,11 @@ return function(native, patterns, lookup)
 
   -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
   function commands.keep()
-    local put_slots_back = keep_slots()
+    local put_slots_back, put_found_back = keep_slots(), align.keep()
     local put_arm_back, is_as_was = arm.keep()
     return function()
       put_slots_back()
+      put_found_back()
       put_arm_back()
     end, is_as_was
   end

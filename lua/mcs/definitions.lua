@@ -95,10 +95,12 @@ return function(native, lookup, targets, words)
   end
 
   local function add_all_options()
-    local own, common = targets.phase_fields, { lookup.options, lookup.parameters }
+    local own, common = targets.fields, { lookup.options, lookup.parameters }
     add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])
-    add_options("carrying_options", "What GET and PUT may say for themselves.", own[""], common[1], common[2])
-    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.get_, common[1], common[2])
+    add_options("get_options", "What GET may say for itself.", own.get, common[1], common[2])
+    add_options("put_options", "What PUT may say for itself.", own.put, common[1], common[2])
+    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.swap, common[1], common[2])
+    add_options("align_options", "What ALIGN may say for itself.", lookup.align_fields)
     add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
     add("")

@@ -20,6 +20,15 @@ return function(native, errors)
   lookup.correction_fields = { "dx", "dy", "dz", "turn" }
   lookup.phases = { "extended", "up" }
 
+  -- If a GET makes good what ALIGN has found.
+  lookup.correct = { values = { true, false } }
+
+  -- What ALIGN may say.
+  lookup.align_fields = {
+    angle = { -360, 360, "degrees" }, mode = { values = { "robot", "stage", "pins" } },
+    mark = { values = { "own", "none" } }, glass = { 0, 0.9, "" }, correct = lookup.correct,
+  }
+
   -- The fields of MOVE and LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }

@@ -47,6 +47,8 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
     phase = function() return lookup.phases end,
+    mode = function() return lookup.align_fields.mode.values end,
+    mark = function() return lookup.align_fields.mark.values end,
     name = function() return {} end, save = states.names,
   }
 
@@ -71,7 +73,11 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return options
   end
 
-  local transfer_options, swap_options = carrying_options(""), carrying_options("get_", "put_")
+  local get_options, put_options = carrying_options(""), carrying_options("")
+  local swap_options = carrying_options("get_", "put_")
+  get_options.correct, swap_options.get_correct = "switch", "switch"
+
+  local align_options = { mode = "mode", mark = "mark", glass = "number", correct = "switch" }
 
   local function fields(list)
     local options = {}
@@ -165,6 +171,40 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
   end
 
+  -- How many samples there are, and of those that came the least and the most; the samples themselves are
+  -- published.
+  local function edge_scan(arguments)
+    local scan, least, most
+    local time = timed(function() scan = commands.edge_scan(arguments[1]) end)
+    for _, sample in ipairs(scan.samples) do
+      if sample >= 0 then
+        least = math.min(least or sample, sample)
+        most = math.max(most or sample, sample)
+      end
+    end
+    return tokens.pairs { { "count", scan.count }, { "first", scan.first }, { "missed", scan.missed },
+      { "least", least }, { "most", most }, time }
+  end
+
+  -- The fields of an answer in order, and as they are called in it.
+  local ALIGNED = {
+    { "mark", "mark" }, { "eccentricity", "eccentricity" }, { "direction", "direction_deg" }, { "dx", "dx" },
+    { "dy", "dy" }, { "notch", "notch_deg" }, { "turn", "turn_deg" }, { "correction", "correction" },
+    { "correction_angle", "correction_angle_deg" }, { "after_dx", "after_dx" }, { "after_dy", "after_dy" },
+    { "after_notch", "after_notch_deg" }, { "radius", "radius" }, { "sd_centre", "sd_centre" },
+    { "sd_notch", "sd_notch_deg" }, { "seconds", "seconds" },
+  }
+
+  local function align(arguments, options)
+    local list = {}
+    options.angle = arguments[2]
+    local found = commands.align(arguments[1], options)
+    for _, field in ipairs(ALIGNED) do
+      list[#list + 1] = found[field[1]] and { field[2], found[field[1]] }
+    end
+    return tokens.pairs(list)
+  end
+
   local function teach(arguments)
     local taught
     local time = timed(function() taught = commands.teach(arguments[1]) end)
@@ -198,7 +238,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local found = queries.measure(arguments[1], arguments[2])
     return tokens.pairs {
       { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
-      { "angle_deg", found.angle }, { "turn_deg", found.turn },
+      { "angle_deg", found.angle }, { "turn_deg", found.turn }, { "heading_deg", found.heading },
     }
   end
 
@@ -380,9 +420,9 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   prompt_commands.commands = {
-    GET = { takes = { "station", "slot" }, options = transfer_options, run = get,
+    GET = { takes = { "station", "slot" }, options = get_options, run = get,
             does = "takes the wafer there" },
-    PUT = { takes = { "station", "slot" }, options = transfer_options, run = put,
+    PUT = { takes = { "station", "slot" }, options = put_options, run = put,
             does = "sets the wafer down there" },
     CONTINUE = { takes = {}, run = continue,
                  does = "goes on with what is held, to its next stop or its end" },
@@ -411,6 +451,11 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     VERSION = { takes = {}, run = version, keeps = true, does = "the program's version" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
                does = "turns a prealigner's chuck by so much" },
+    EDGE_SCAN = { takes = { "station" }, run = edge_scan,
+                  does = "turns a prealigner's chuck once round while its edge sensor looks at the wafer" },
+    ALIGN = { takes = { "station", "degrees" }, optional = true, options = align_options, run = align,
+              does = "turns a prealigner's wafer until its notch points there, to 0 without degrees; "
+                .. "the next GET makes good how it lies" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
               does = "0 opens it (vacuum on), 1 closes it" },
     MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true,

@@ -26,12 +26,14 @@ return function(native, lookup)
   end
 
   -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first
-  -- frame's axes, mm; the angle between the z axes, and the whole turn, degrees. A frame is the name of a
-  -- wafer, a gripper, a station (its slot 1) or a slot, such as "B/10", or "base".
+  -- frame's axes, mm; the angle between the z axes, the whole turn, and the heading of the second's x about the
+  -- first's z, degrees. A frame is the name of a wafer, a gripper, a station (its slot 1) or a slot, such as
+  -- "B/10", or "base".
   function queries.measure(first, second)
     local base_from_first = lookup.frame("measure", first)
-    local distance, dx, dy, dz, angle, turn = native.relate(base_from_first, lookup.frame("measure", second))
-    return { distance = distance, dx = dx, dy = dy, dz = dz, angle = angle, turn = turn }
+    local distance, dx, dy, dz, angle, turn, heading =
+      native.relate(base_from_first, lookup.frame("measure", second))
+    return { distance = distance, dx = dx, dy = dy, dz = dz, angle = angle, turn = turn, heading = heading }
   end
 
   -- The distance of two frames' origins, mm.

@@ -4,13 +4,13 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, lookup)
+return function(native, lookup, align)
   local targets = {}
 
   local parameters = lookup.parameters
 
-  -- What else GET and PUT may say, and SWAP for its GET and its PUT: by prefix, the fields' kinds by name. The
-  -- unit of a length or an angle is at the same place as in lookup.parameters.
+  -- What else GET and PUT may say, and SWAP for its GET and its PUT: the fields' kinds by name. The unit of a
+  -- length or an angle is at the same place as in lookup.parameters.
   local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },
                   turn = { nil, nil, "degrees" }, stop = { values = lookup.phases }, centre = { values = { true, false } } }
 
@@ -24,14 +24,19 @@ return function(native, lookup)
     return fields
   end
 
-  local of_swap = with_prefixes("get_", "put_")
-  targets.phase_fields = { [""] = with_prefixes(""), get_ = of_swap, put_ = of_swap }
+  targets.fields = { get = with_prefixes(""), put = with_prefixes(""), swap = with_prefixes("get_", "put_") }
+  targets.fields.get.correct = lookup.correct
+  targets.fields.swap.get_correct = lookup.correct
 
-  local function check_options(options, prefix)
+  -- Those of "get" or "put", by itself or within a SWAP; `prefix` nil: of a command that has none.
+  local function own_fields(word, prefix)
+    return prefix and targets.fields[prefix == "" and word or "swap"] or {}
+  end
+
+  local function check_options(options, own)
     if options ~= nil and type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
-    local own = targets.phase_fields[prefix] or {}
     for name, value in pairs(options or {}) do
       local kind = lookup.options[name] or parameters[name] or own[name]
       if not kind then
@@ -45,16 +50,17 @@ return function(native, lookup)
     return options or {}
   end
 
-  -- The gripper goes so far beside the slot's frame as it was taught. Refused is what the layout does not
-  -- allow.
-  local function read_corrections(target, options, prefix)
+  -- The gripper goes so far beside the slot's frame as it was taught: by the command's options, else by what an
+  -- ALIGN has `found`. Refused is what the layout does not allow.
+  local function read_corrections(target, options, prefix, found)
     for _, name in ipairs(lookup.correction_fields) do
-      local value = options[prefix .. name] or 0
+      local value = options[prefix .. name] or found[name] or 0
       local most, field = native.layout.corrections[name], name:match("^d([xyz])$") or name
       if value > most or value < -most then
-        local text = "%s: %.10g (expected from %.10g to %.10g %s: corrections.%s of the layout)"
+        local text = "%s: %.10g (expected from %.10g to %.10g %s: corrections.%s of the layout%s)"
+        local why = found[name] and ("; ALIGN found it: %scorrect = false goes without"):format(prefix) or ""
         native.fail("CORRECTION_TOO_LARGE",
-          text:format(prefix .. name, value, -most, most, kinds[name][3], field))
+          text:format(prefix .. name, value, -most, most, kinds[name][3], field, why))
       end
       target[name] = value
     end
@@ -113,13 +119,14 @@ return function(native, lookup)
   function targets.at(word, station_name, slot, options, gripper, prefix)
     local station = lookup.station(station_name)
     local number = lookup.slot(station, slot)
-    options = check_options(options, prefix)
+    options = check_options(options, own_fields(word, prefix))
     if not station.taught then
       native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
     end
     local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
     target.gripper = gripper or lookup.effector(options.gripper, station.effector)
-    read_corrections(target, prefix and options or {}, prefix or "")
+    local found = word == "get" and prefix and align.correction(station.name, options, prefix)
+    read_corrections(target, prefix and options or {}, prefix or "", found or {})
     target.place = native.slot(station.index, number, target.dx, target.dy, target.dz, target.turn)
     for name in pairs(parameters) do
       target[name] = options[name]

@@ -140,7 +140,7 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local function to_rpy(R)
-    return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1])), math.deg(math.atan(R[2][1], R[1][1]))
+    return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1]) + 0.0), math.deg(math.atan(R[2][1], R[1][1]))
   end
 
   local function result_of(station, guess, z, yaw, solved)

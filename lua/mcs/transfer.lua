@@ -2,9 +2,9 @@
 -- which only goes there; MAP, which only looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, pcall, select, type = ipairs, pcall, select, type
+local ipairs, pairs, pcall, select, type = ipairs, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets, centring)
+return function(native, patterns, lookup, arm, targets, align, centring)
   local transfer = {}
 
   local slot_map = native.module("mcs/slot_map.lua")(native)
@@ -124,13 +124,34 @@ return function(native, patterns, lookup, arm, targets, centring)
     kind.check_gripper(target)
     kind.check_slot(target)
     local plan = arm.rehearse(kind.pattern, target, true)
+    local notch, deviation
+    if word == "get" then
+      notch, deviation = align.notch(target)
+    end
     slot_map.forget(target)
+    align.forget(target.station)
     arm.drive(plan, function(became)
       kind.judge(target, became)
       kind.note(target)
-      centring.know_notch(target.gripper)
+      centring.know_notch(target.gripper, notch, deviation)
     end)
     return target.centred
+  end
+
+  -- The options with what an ALIGN has found for the GET, which they do not say themselves.
+  local function with_found(station, options, prefix)
+    local found = align.correction(station, options, prefix)
+    if not found then
+      return options
+    end
+    local all = {}
+    for name, value in pairs(type(options) == "table" and options or {}) do
+      all[name] = value
+    end
+    for name, value in pairs(found) do
+      all[prefix .. name] = value
+    end
+    return all
   end
 
   -- The command as the record has it: with its corrections, and where it stops.
@@ -140,13 +161,15 @@ return function(native, patterns, lookup, arm, targets, centring)
       for _, name in ipairs(lookup.correction_fields) do
         fields[#fields + 1] = prefix .. name
       end
+      fields[#fields + 1] = prefix .. "correct"
       fields[#fields + 1] = prefix .. "stop"
     end
     return lookup.command(word, station, slot, lookup.fields_text(options, fields))
   end
 
   function transfer.get(station, slot, options)
-    arm.move(text_of("GET", station, slot, options, ""), carry, "get", station, slot, options)
+    local text = text_of("GET", station, slot, with_found(station, options, ""), "")
+    arm.move(text, carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
@@ -198,19 +221,22 @@ return function(native, patterns, lookup, arm, targets, centring)
     check_empty(take)
     slot_map.check_get(take)
     local plan = arm.rehearse(patterns.swap, target, true)
+    local notch, deviation = align.notch(take)
     slot_map.forget(take)
+    align.forget(take.station)
     arm.drive(plan, function(became)
       judge_get(take, became)
       judge_put(give, became)
       slot_map.note_put(give)
-      centring.know_notch(take.gripper)
+      centring.know_notch(take.gripper, notch, deviation)
       centring.know_notch(give.gripper)
     end)
   end
 
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
-    arm.move(text_of("SWAP", station, slot, options, "get_", "put_"), swap, station, slot, options)
+    local text = text_of("SWAP", station, slot, with_found(station, options, "get_"), "get_", "put_")
+    arm.move(text, swap, station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------ READY

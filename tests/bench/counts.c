@@ -9,6 +9,7 @@
 #include <valgrind/callgrind.h>
 
 #include "batch/batch.h"
+#include "bench/scan.h"
 #include "bench/table.h"
 #include "sim/simulator.h"
 
@@ -241,6 +242,14 @@ static void count_simulator(void) {
     COUNT("simulator's hash", sink = (double)wh_simulator_hash(&simulator));
 }
 
+static void count_estimate(void) {
+    static bench_scan_t made;
+    wh_status_t verdict = WH_STATUS_BAD_SCAN;
+    bench_scan_make(&made);
+    COUNT("estimate 3600", verdict = bench_scan_estimate(&made));
+    must(verdict == WH_OK, "an estimate");
+}
+
 int main(void) {
     COUNT("nothing", (void)0);
     count_checks();
@@ -249,5 +258,6 @@ int main(void) {
     count_table();
     count_motion();
     count_simulator();
+    count_estimate();
     return 0;
 }

@@ -1,10 +1,12 @@
-/* What needs no peer: how much faster than real time the program plays the transfer run, and how many instructions a step
- * takes, as callgrind counts them. To be started at the root, after `make all tests`. */
+/* What needs no peer: how much faster than real time the program plays the transfer run, how many instructions a step
+ * takes, as callgrind counts them, and how long the estimate of a scan does. To be started at the root, after
+ * `make all tests`. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench/harness.h"
+#include "bench/scan.h"
 
 enum { RUNS = 41 };
 
@@ -53,6 +55,31 @@ static void count_step(const char *row, const char *name, double goal) {
     bench_figure(row, "instructions", &spread, true, goal);
 }
 
+static uint64_t estimate(void *user, size_t repeats) {
+    bench_scan_t *made = user;
+    uint64_t verdicts = 0;
+    for (size_t i = 0; i < repeats; ++i) {
+        verdicts += (uint64_t)bench_scan_estimate(made);
+    }
+    return verdicts;
+}
+
+/* By the thousand, which makes of the harness's nanoseconds microseconds. */
+static void time_estimate(const char *row, double goal) {
+    static bench_scan_t made;
+    bench_result_t result;
+    const bench_contender_t ours = {"ours", estimate, &made, 1000};
+    if (!bench_wanted(row)) {
+        return;
+    }
+    bench_scan_make(&made);
+    if (bench_scan_estimate(&made) != WH_OK) {
+        bench_differ("the estimate", "a scan that it is sure of");
+    }
+    bench_race(&ours, 1, &result);
+    bench_figure(row, "us", &result.ns, true, goal);
+}
+
 int main(int argc, char **argv) {
     bench_begin("program", "", argc, argv);
     bench_note("`waferhand run` on the transfer run with 1 ms slices, by its own clock; a step counted by "
@@ -64,5 +91,6 @@ int main(int argc, char **argv) {
     count_step("step, 100 wafers", "step indexed 100 idle", 400);
     count_step("step, 100, turning", "step indexed 100 turning", 400);
     count_step("step, 100, carrying", "step indexed 100 carry", 400);
+    time_estimate("estimate, 3600 samples", 300);
     return bench_end();
 }

@@ -3,9 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <unsupported/Eigen/NonLinearOptimization>
 #include <vector>
 
 #include "support/support.h"
@@ -391,6 +393,224 @@ void a_verdict_is_right_or_not_sure(void **) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------- marks by Eigen */
+
+/* Straight lines in the circle's frame against samples: how far along its ray each sample is outside of its line, times
+ * the root of its weight. A line is where n(a) . P = h, with the normal's direction a. */
+struct Lines {
+    using Scalar = double;
+    using InputType = Eigen::VectorXd;
+    using ValueType = Eigen::VectorXd;
+    using JacobianType = Eigen::MatrixXd;
+    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+    struct Sample {
+        Eigen::Vector2d from, along; /* the ray */
+        double radius, root;
+        int side;
+    };
+    std::vector<Sample> taken;
+    bool vee; /* three unknowns: axis, apex, half of the opening; else two: a chord's axis and height */
+    double half = 0, part = 0; /* what is known of the opening */
+
+    int inputs() const {
+        return vee ? 3 : 2;
+    }
+    int values() const {
+        return static_cast<int>(taken.size()) + (vee ? 1 : 0);
+    }
+    /* Of a T, double or complex: what it is at x + i h tells the derivatives at x exactly. */
+    template <class T> T off(const Eigen::Matrix<T, Eigen::Dynamic, 1> &x, const Sample &sample) const {
+        const T turned = vee ? x(0) + static_cast<double>(sample.side) * (x(2) - pi / 2) + pi : x(0);
+        const T nx = std::cos(turned);
+        const T ny = std::sin(turned);
+        const T beyond =
+            nx * (x(1) * std::cos(x(0)) - sample.from.x()) + ny * (x(1) * std::sin(x(0)) - sample.from.y());
+        return sample.radius - beyond / (nx * sample.along.x() + ny * sample.along.y());
+    }
+    int df(const InputType &x, JacobianType &by) const {
+        for (Eigen::Index p = 0; p < x.size(); ++p) {
+            Eigen::VectorXcd at = x.cast<std::complex<double>>();
+            at(p) += std::complex<double>(0, 1e-30);
+            for (size_t i = 0; i < taken.size(); ++i) {
+                by(static_cast<Eigen::Index>(i), p) = taken[i].root * off(at, taken[i]).imag() / 1e-30;
+            }
+            if (vee) {
+                by(values() - 1, p) = p == 2 ? part : 0;
+            }
+        }
+        return 0;
+    }
+    int operator()(const InputType &x, ValueType &out) const {
+        for (size_t i = 0; i < taken.size(); ++i) {
+            out(static_cast<Eigen::Index>(i)) = taken[i].root * off(x, taken[i]);
+        }
+        if (vee) {
+            out(values() - 1) = part * (x(2) - half);
+        }
+        return 0;
+    }
+    Sample sample(const Scan &scan, const wh_circle_t &circle, size_t i) const {
+        const double a = scan.points[i].angle;
+        const Eigen::Vector2d along(std::cos(a), std::sin(a));
+        const Eigen::Vector2d from(-scan.scan.offset * std::sin(a) - circle.x,
+                                   scan.scan.offset * std::cos(a) - circle.y);
+        return {from, along, scan.points[i].radius, 1, 1};
+    }
+    /* Levenberg and Marquardt's minimum from a start. */
+    InputType minimum(InputType x) const {
+        Lines lines = *this;
+        Eigen::LevenbergMarquardt<Lines> solver(lines);
+        solver.parameters.ftol = solver.parameters.xtol = solver.parameters.gtol = 0;
+        solver.minimize(x);
+        /* It ends where the sum of squares does not change any more, that is half of the digits: full steps tell the rest. */
+        Eigen::VectorXd off_line(values());
+        Eigen::MatrixXd by(values(), x.size());
+        for (int again = 0; again < 4; ++again) {
+            (*this)(x, off_line);
+            df(x, by);
+            x -= by.colPivHouseholderQr().solve(off_line);
+        }
+        return x;
+    }
+};
+
+/* The samples of the dent about a direction, and of three next to each other on the circle it is no more. */
+std::vector<size_t> dent_at(const Scan &scan, const wh_circle_t &circle, double direction) {
+    const double least = std::max(6 * circle.scatter, 0.05);
+    size_t middle = 0;
+    double nearest = INFINITY;
+    for (size_t i = 0; i < samples; ++i) {
+        const double a = scan.points[i].angle;
+        const double x = scan.points[i].radius * std::cos(a) - scan.scan.offset * std::sin(a) - circle.x;
+        const double y = scan.points[i].radius * std::sin(a) + scan.scan.offset * std::cos(a) - circle.y;
+        const double away = std::fabs(std::remainder(std::atan2(y, x) - direction, 2 * pi));
+        middle = away < nearest ? i : middle;
+        nearest = std::min(nearest, away);
+    }
+    std::vector<size_t> dent;
+    for (const size_t by : {size_t{1}, size_t{samples - 1}}) {
+        std::vector<size_t> side;
+        size_t last = 0;
+        for (size_t i = middle, out = 0; out < 3; i = (i + by) % samples) {
+            side.push_back(i);
+            out = scan.rays[i].residual < -least ? 0 : out + 1;
+            last = out == 0 ? side.size() : last;
+        }
+        side.resize(last);
+        if (by == 1) {
+            dent = side;
+        } else {
+            dent.insert(dent.begin(), side.rbegin(), side.rend() - 1); /* the middle is there */
+        }
+    }
+    return dent;
+}
+
+double tukey(double off, double scatter) {
+    const double part = off / (6 * scatter);
+    return std::fabs(part) < 1 ? 1 - part * part : 0; /* the root of the weight */
+}
+
+/* The least squares with the weights that a V, which is x, gives to the samples of the notch; how many count. */
+Eigen::VectorXd after(const Eigen::VectorXd &x, const Scan &scan, const wh_circle_t &circle, size_t &used) {
+    const double bottom = wh_rim_nominal(150).notch.bottom;
+    const double full = circle.radius - x(1) - bottom * (1 / std::sin(x(2)) - 1);
+    Lines lines;
+    lines.vee = true;
+    lines.half = (90 / 2. + 0.75) * rad;
+    lines.part = circle.scatter / (0.75 * rad);
+    for (const size_t i : dent_at(scan, circle, x(0))) {
+        Lines::Sample sample = lines.sample(scan, circle, i);
+        const Eigen::Vector2d rim = sample.from + sample.radius * sample.along;
+        sample.side = rim.y() * std::cos(x(0)) - rim.x() * std::sin(x(0)) < 0 ? -1 : 1;
+        const double off = lines.off(x, sample);
+        const double depth = off - scan.rays[i].residual;
+        sample.root = tukey(off, circle.scatter);
+        if (depth >= 0.08 * full && depth <= 0.7 * full && sample.root > 0) {
+            lines.taken.push_back(sample);
+        }
+    }
+    used = lines.taken.size();
+    Eigen::VectorXd start = x;
+    start(0) += 1e-4;
+    start(1) += 0.02;
+    start(2) -= 0.01;
+    return lines.minimum(start);
+}
+
+/* How far direction (rad), apex (mm) and opening (rad) are from Eigen's; -1 if there is no such V, since the samples that
+ * count come and go. */
+double notch_off(const Scan &scan, const wh_align_result_t &result) {
+    const wh_notch_t &notch = result.notch;
+    const double half = notch.opening / 2;
+    const double below = wh_rim_nominal(150).notch.bottom * (1 / std::sin(half) - 1);
+    Eigen::VectorXd x(3);
+    x << notch.direction, result.circle.radius - notch.depth - below, half;
+    size_t used = 0;
+    const Eigen::VectorXd found = after(x, scan, result.circle, used);
+    const double off = (found - x).cwiseAbs().maxCoeff();
+    if (off > 1e-9 && (after(found, scan, result.circle, used) - found).cwiseAbs().maxCoeff() > 1e-9) {
+        return -1;
+    }
+    assert_int_equal(used, notch.used);
+    return off;
+}
+
+double flat_off(const Scan &scan, const wh_circle_t &circle, const wh_flat_t &flat) {
+    Lines lines;
+    lines.vee = false;
+    Eigen::VectorXd x(2);
+    x << flat.direction, std::sqrt(circle.radius * circle.radius - flat.length * flat.length / 4);
+    const std::vector<size_t> dent = dent_at(scan, circle, flat.direction);
+    for (size_t k = 3; k + 3 < dent.size(); ++k) {
+        Lines::Sample sample = lines.sample(scan, circle, dent[k]);
+        sample.root = tukey(lines.off(x, sample), circle.scatter);
+        if (sample.root > 0) {
+            lines.taken.push_back(sample);
+        }
+    }
+    if (lines.taken.size() != flat.used) {
+        return -1;
+    }
+    Eigen::VectorXd start = x;
+    start(0) += 1e-4;
+    start(1) += 0.02;
+    return (lines.minimum(start) - x).cwiseAbs().maxCoeff();
+}
+
+wh_align_result_t estimate(const Chuck &chuck, Scan &scan);
+
+/* With the weights that the fitted marks give to their samples. */
+void the_marks_are_eigens(void **) {
+    wh_test_seed();
+    double largest[2] = {0, 0};
+    int compared[2] = {0, 0};
+    int others[2] = {0, 0};
+    for (int wafer = 0; wafer < wafers() / 5 + 1; ++wafer) {
+        Chuck chuck = draw(wafer % 2 ? 3 : 0);
+        chuck.rim.chip_count = 0;
+        chuck.sensor.noise = (wafer % 4 < 2 ? 5 : 20) * um;
+        Scan scan(chuck);
+        const wh_align_result_t result = estimate(chuck, scan);
+        for (int f = 0; f < 2 && result.verdict == WH_OK; ++f) {
+            const bool vee = wafer % 2 == 0;
+            if (vee ? f == 1 : result.flats[f].length == 0) {
+                continue;
+            }
+            const double off = vee ? notch_off(scan, result) : flat_off(scan, result.circle, result.flats[f]);
+            ++(off < 0 ? others : compared)[vee];
+            largest[vee] = std::max(largest[vee], off);
+        }
+    }
+    std::printf("off Eigen's by at most %.2e mm or rad in %d notches (%d have none), %.2e in %d "
+                "flats (%d)\n",
+                largest[1], compared[1], others[1], largest[0], compared[0], others[0]);
+    for (int kind = 0; kind < 2; ++kind) {
+        assert_true(compared[kind] > 5 * others[kind]);
+        assert_true(largest[kind] <= 1e-9);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------- calibration */
 
 /* Scans of a known wafer in two places, both ways of turning, as a controller has them that believes in no error. */
@@ -694,6 +914,7 @@ int main() {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_centre_is_as_near_as_it_says),
         cmocka_unit_test(the_fit_is_eigens),
+        cmocka_unit_test(the_marks_are_eigens),
         cmocka_unit_test(a_calibrated_sensor_tells_the_centre),
         cmocka_unit_test(what_calibrates_nothing_is_refused),
         cmocka_unit_test(a_verdict_is_right_or_not_sure),

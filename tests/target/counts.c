@@ -1,4 +1,4 @@
-/* How many instructions the check and a step take, on a Cortex-M under emulation: `-icount shift=6` makes each instruction
+/* How many instructions the check, a step and the estimate of a scan take, on a Cortex-M under emulation: `-icount shift=6` makes each instruction
  * last 64 ns, and SysTick counts 25 MHz. Prints "NAME COUNT" for each case; the count repeats exactly.
  *
  * The worst case of a step is looked for in 20,000 random steps beside the ones that are built on purpose. */
@@ -6,6 +6,7 @@
 
 #include <waferhand.h>
 
+#include "bench/scan.h"
 #include "support/random.h"
 
 enum { WAFERS = 25, GRIPPERS = 2, STEPS = 20000 };
@@ -164,6 +165,18 @@ static void count_worst(const char *name, wh_check_t check) {
     printf("step %s worst %u\n", name, (unsigned)worst);
 }
 
+#if defined(__ARM_FP) && (__ARM_FP & 8) != 0
+/* Where double is the processor's own. */
+static void count_estimate(void) {
+    static bench_scan_t made;
+    bench_scan_make(&made);
+    start();
+    const wh_status_t verdict = bench_scan_estimate(&made);
+    const uint32_t count = stop();
+    printf("estimate 3600 %u%s\n", (unsigned)count, verdict == WH_OK ? "" : " WRONG");
+}
+#endif
+
 int main(void) {
     start();
     overhead = stop();
@@ -179,6 +192,9 @@ int main(void) {
     count_check("too_tilted", &tilted, false);
     count_check("accepted", &near, true);
     count_measure();
+#if defined(__ARM_FP) && (__ARM_FP & 8) != 0
+    count_estimate();
+#endif
     count_idle("sampled", WH_CHECK_SAMPLED);
     count_idle("swept", WH_CHECK_SWEPT);
     count_between("sampled", WH_CHECK_SAMPLED);

@@ -78,7 +78,9 @@ function cases.wrong_values()
   local words = {
     get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
     ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
-    continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) }, edge_scan = { station }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
+    continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) },
+    edge_scan = { station }, align = { station, { "options: ", nil, { 5, true, "90" } } },
+    valve = { gripper, number("level", 1, 2, -1, 0.5) },
     move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
     wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7) },
     fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },
@@ -121,7 +123,7 @@ function cases.wrong_values()
       before[before.n + 1] = fields
       return table.unpack(before, 1, before.n + 1)
     end
-    local near = ({ move = "thetta", line = "sped" })[word] or "strok"
+    local near = ({ move = "thetta", line = "sped", align = "angel" })[word] or "strok"
     try(word, { near .. ": ", "did you mean " }, 5, call { [near] = 5 })
     local _, unknown = pcall(_G[word], call { q = 5 })
     local known = 0
@@ -134,10 +136,10 @@ function cases.wrong_values()
     end
     return known
   end
-  for word, count in pairs { get = 22, put = 22, swap = 28, ready = 16 } do
+  for word, count in pairs { get = 23, put = 22, swap = 29, ready = 16 } do
     expect(try_fields(word, "A", 1) == count, ("%s has %d fields"):format(word, count))
   end
-  expect(try_fields("map", "A") == 16 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")
+  expect(try_fields("map", "A") == 16 and try_fields("align", "P") == 5 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")
   for field, values in pairs { stroke = with(0, -1, 2000), retract = with(0.5), timeout = with(-1), wait = with(-1),
     release = with(4, -4), retries = with(0.5, -1, 101), pickup_speed = with(0, 501), map_speed = with(0),
     pickup_acceleration = with(-1, 1e-7), offset = with(-1, 7), vacuum_delay = with(3601) } do

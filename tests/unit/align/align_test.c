@@ -2,6 +2,7 @@
 #include "support/heap.h"
 
 #include "align/align.h"
+#include "align/calibration.h"
 
 enum { SAMPLES = 3600 };
 
@@ -151,6 +152,92 @@ static void each_verdict_has_its_cause(void **state) {
     assert_int_equal(verdict_on(&sensor, &nominal, &nominal, &limits).verdict, WH_STATUS_OFF_SENSOR);
 }
 
+static void a_chip_is_told_from_a_notch_by_a_sharp_scan_alone(void **state) {
+    (void)state;
+    const wh_align_limits_t limits = wh_align_limits_default();
+    const wh_rim_t nominal = wh_rim_nominal(150);
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_rim_t rim = nominal;
+    rim.chip_count = 1;
+    rim.chips[0] = (wh_chip_t){2, 4, 1.5};
+    const wh_align_result_t result = verdict_on(&sensor, &rim, &nominal, &limits);
+    assert_int_equal(result.verdict, WH_OK);
+    assert_true(fabs(result.turn - 0.7) < 5e-5);
+    sensor.noise = 0.02;
+    assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
+    /* One that is narrower than a notch never was one. */
+    rim.chips[0] = (wh_chip_t){2, 1.5, 1.4};
+    assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_OK);
+}
+
+static void a_notch_is_sure_only_if_its_bottom_agrees(void **state) {
+    (void)state;
+    const wh_align_limits_t limits = wh_align_limits_default();
+    wh_rim_t nominal = wh_rim_nominal(150);
+    const wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_rim_t rim = nominal;
+    nominal.notch.bottom = 0.3;
+    assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
+    nominal.notch.bottom = 0.85;
+    assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_OK);
+    nominal = rim;
+    rim.chip_count = 1;
+    rim.chips[0] = (wh_chip_t){0.7 / 150, 1.9, 0.8};
+    assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
+}
+
+enum { OF_REFERENCE = 360 };
+
+/* Four scans of a known wafer, and room for one more: two places, the chuck turning either way. */
+static void scan_reference(const wh_sensor_t *sensor, wh_calibration_scan_t scans[4]) {
+    const wh_rim_t rim = wh_rim_nominal(150);
+    for (size_t k = 0; k < 4; ++k) {
+        const wh_placement_t placement = {k < 2 ? -6 : 6, k < 2 ? 1 : -4, 0.7};
+        const double speed = k % 2 == 0 ? 6 : -6;
+        wh_rim_point_t *own = &points[k * OF_REFERENCE];
+        for (size_t i = 0; i < OF_REFERENCE; ++i) {
+            const int64_t at = (int64_t)(speed > 0 ? i : OF_REFERENCE - i);
+            const wh_glance_t glance = {wh_sensor_angle(sensor, at), speed, {1, k}, (uint32_t)i};
+            own[i] =
+                wh_sensor_point(sensor, NULL, &glance, wh_sensor_read(sensor, &rim, &placement, &glance));
+        }
+        scans[k] = (wh_calibration_scan_t){own, OF_REFERENCE, speed, k < 2 ? 0 : 12, k < 2 ? 0 : -5};
+    }
+}
+
+static void a_sensor_is_calibrated_by_a_known_wafer(void **state) {
+    (void)state;
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_calibration_scan_t scans[4];
+    wh_calibration_t found = {.mismatch = 7};
+    int32_t bad = 7;
+    sensor.samples = OF_REFERENCE;
+    sensor.pixel = 0.001;
+    sensor.error = (wh_sensor_error_t){0.1, -0.2, 1e-3, 20e-6};
+    scan_reference(&sensor, scans);
+    wh_rim_point_t *room = &points[4 * OF_REFERENCE];
+    assert_int_equal(wh_calibration_solve(&sensor, 150, 0, scans, 3, room, rays, &found, &bad),
+                     WH_STATUS_TOO_FEW_SAMPLES);
+    assert_int_equal(wh_calibration_solve(&sensor, 150, 0, scans, 4, room, NULL, &found, &bad),
+                     WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_calibration_solve(&sensor, (double)NAN, 0, scans, 4, room, rays, &found, &bad),
+                     WH_STATUS_NOT_FINITE);
+    assert_int_equal(wh_calibration_solve(&sensor, 150, 1.1, scans, 4, room, rays, &found, &bad),
+                     WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(bad, WH_NONE);
+    scans[2].speed = 101;
+    assert_int_equal(wh_calibration_solve(&sensor, 150, 0, scans, 4, room, rays, &found, &bad),
+                     WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(bad, 2);
+    assert_true(found.mismatch == 7);
+    scans[2].speed = 6;
+    assert_int_equal(wh_calibration_solve(&sensor, 150, 0, scans, 4, room, rays, &found, NULL), WH_OK);
+    assert_true(fabs(found.error.offset - 0.1) < 0.002 && fabs(found.error.zero + 0.2) < 2e-4);
+    assert_true(fabs(found.error.gain - 1e-3) < 1e-5 && fabs(found.error.latency - 20e-6) < 1e-6);
+    assert_true(fabs(found.x + 6) < 2e-4 && fabs(found.y - 1) < 2e-4);
+    assert_true(found.sd_gain > 0 && found.sd_offset > 0 && found.sd_latency > 0 && found.sd_zero > 0);
+}
+
 static void two_notches_are_told_from_one(void **state) {
     (void)state;
     const wh_align_limits_t limits = wh_align_limits_default();
@@ -226,6 +313,9 @@ int main(void) {
         cmocka_unit_test(the_centre_is_found_and_nothing_is_allocated),
         cmocka_unit_test(what_is_no_scan_is_refused),
         cmocka_unit_test(each_verdict_has_its_cause),
+        cmocka_unit_test(a_chip_is_told_from_a_notch_by_a_sharp_scan_alone),
+        cmocka_unit_test(a_notch_is_sure_only_if_its_bottom_agrees),
+        cmocka_unit_test(a_sensor_is_calibrated_by_a_known_wafer),
         cmocka_unit_test(two_notches_are_told_from_one),
         cmocka_unit_test(flats_are_told_by_their_lengths),
         cmocka_unit_test(bad_numbers_change_nothing),

@@ -126,14 +126,17 @@ static void the_nearest_slot_below_supports(void **state) {
 /* A wafer that leans is in no slot, and yet over the one below its centre. */
 static void a_leaning_wafer_is_above_what_is_below(void **state) {
     (void)state;
-    static const double heights[][2] = {{0, 0}, {0.5, 0.5}, {-0.5, 899.5}};
-    for (size_t i = 0; i < 3; ++i) {
+    static const double heights[][2] = {{0, 0}, {0.5, 0.5}, {-0.5, 899.5}, {-0.25, -0.25}, {4, 4}};
+    for (size_t i = 0; i < 5; ++i) {
         scene_t scene;
         wh_pose_t wafer = wh_test_at(700, 0, 900 + heights[i][0]);
         wafer.R = wh_mat3_from_rpy_deg(30, 0, 0);
         let_go(&scene, &wafer);
         assert_int_equal(judge(&scene), 1);
         expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, heights[i][1]);
+        /* It is for the tilt that it lies in none, unless it is too far from any. */
+        const bool is_near = heights[i][1] < 5;
+        assert_near(scene.events[1].value, is_near ? WH_PI / 6 : 0, 1e-5);
     }
 }
 

@@ -357,7 +357,7 @@ static void beams_at_a_door_are_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         GRIPPERS DOOR("{ y = 60 }, { y = -110, x = -160, low = -5, high = 40, delay_on = 5e-5, delay_off = "
-                      "8e-5, jitter = 3e-6, seed = 4, dx = 0.5, dy = -0.25, late = 1e-5 }"));
+                      "8e-5, jitter = 3e-6, seed = 4, dx = 0.5, dy = -0.25, late = 1e-5, stuck = 'lit' }"));
     assert_int_equal(layout->beam_count, 2);
     const wh_layout_beam_t *usual = &layout->beams[0];
     const double usual_numbers[] = {usual->x,         usual->low,  usual->high,
@@ -376,6 +376,8 @@ static void beams_at_a_door_are_read(void **state) {
         assert_near(numbers[i], wanted[i], 1e-12);
     }
     assert_int_equal(layout->doors[0].seed, 1);
+    assert_int_equal(layout->doors[0].stuck, WH_BEAM_WORKS);
+    assert_int_equal(door->stuck, WH_BEAM_LIT);
     assert_int_equal(layout->blades[0].count, 12);
     assert_near(layout->nominal_rim->radius, 150, 0);
     assert_int_equal(wh_layout_beams_at(layout, 0).count, 2);

@@ -318,6 +318,17 @@ static void centring_goes_with_what_else_a_put_does(void **state) {
         "expect(good, 'all of it')\n");
 }
 
+/* No centre from one beam: nothing is put down. */
+static void a_stuck_beam_is_found_out(void **state) {
+    (void)state;
+    assert_texts(
+        "return { grippers = { { name = 'EE' } }, stations = { A = { at = { 700, 0, 900 }, centre = true,\n"
+        "  beams = { { y = 60, stuck = 'dark' }, { y = -110 } } } }, wafers = { { name = 'W', station = 'A', "
+        "slot = 1 } } }\n",
+        "cell 'cell.lua' get('A', 1) local ok, problem = pcall(put, 'A', 1)\n"
+        "expect(problem.name == 'TOO_FEW_SAMPLES' and holder('W') == 'EE', problem.message)\n");
+}
+
 /* Wafers of other diameters: told with a spread, refused without. A blade that reaches before its wafer hides one crossing. */
 static void true_diameters_are_found_if_they_may_vary(void **state) {
     (void)state;
@@ -401,6 +412,7 @@ int main(void) {
         cmocka_unit_test_teardown(centring_is_as_near_as_it_says, close_run),
         cmocka_unit_test_teardown(a_notch_in_a_beams_way_does_no_harm, close_run),
         cmocka_unit_test_teardown(centring_goes_with_what_else_a_put_does, close_run),
+        cmocka_unit_test_teardown(a_stuck_beam_is_found_out, close_run),
         cmocka_unit_test(true_diameters_are_found_if_they_may_vary),
         cmocka_unit_test(stations_are_taught_by_a_beam),
         cmocka_unit_test_teardown(what_cannot_be_taught_is_said, close_run),

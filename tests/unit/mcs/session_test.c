@@ -75,7 +75,7 @@ static void every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP", "OK ANGLE AXES CLEAR CONTINUE DISTANCE FAULT GET HELP"},
+        {"HELP", "OK ALIGN ANGLE AXES CLEAR CONTINUE DISTANCE EDGE_SCAN FAULT GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
     };
     ASSERT_DIALOGUE(dialogue);

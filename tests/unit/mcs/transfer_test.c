@@ -390,7 +390,164 @@ static void a_command_in_phases_ends_as_a_whole_one(void **state) {
     assert_true(hash_after(whole) == hash_after(phased));
 }
 
+/* ------------------------------------------------------------------------------------------------- aligning */
+
+/* Two blades and an edge sensor. */
+static const char *const aligner =
+    "return {\n"
+    "  robot = { r = { min = 50, max = 700, home = 150 } },\n"
+    "  grippers = { { name = 'FRONT', at = { 250, 0, 0 } }, { name = 'PA', on = 'P' },\n"
+    "    { name = 'BACK', at = { -250, 0, 10 }, rpy = { 0, 0, 180 } } },\n"
+    "  stations = { A = { at = { 700, 0, 900 }, slots = 3, pitch = 10 },\n"
+    "    P = { kind = 'prealigner', at = { -620, 0, 950 }, rpy = { 0, 0, 180 }, sensor = {} } },\n"
+    "  wafers = { { name = 'W1', station = 'A', slot = 1, dx = 1, dy = -2, rpy = { 0, 0, 30 } },\n"
+    "    { name = 'W2', station = 'A', slot = 2 } },\n"
+    "}\n";
+
+/* W1 is aligned to 90 degrees; all of that is saved under the name `aligned`. */
+static int open_aligned(void **state) {
+    (void)state;
+    char path[WH_TEST_PATH];
+    FILE *file = fdopen(mkstemp(wh_test_path(path, "aligner")), "w");
+    (void)fputs(aligner, file);
+    (void)fclose(file);
+    const wh_session_options_t options = {.layout = path, .limits = {.print_to = stderr}};
+    const bool is_open = wh_session_open(&session, &options);
+    (void)remove(path);
+    static const char *const lines[] = {"GET A 1", "PUT P 1", "ALIGN P 90", "SAVE aligned"};
+    for (size_t i = 0; is_open && i < sizeof lines / sizeof lines[0]; ++i) {
+        assert_answer(lines[i], "OK");
+    }
+    return is_open ? 0 : -1;
+}
+
+static const char *last_command(void) {
+    return session.record.commands[session.record.command_count - 1].text;
+}
+
+/* The lines, with | between them; each is answered with OK. */
+static void execute_all(const char *lines) {
+    while (*lines) {
+        char line[100];
+        const size_t length = strcspn(lines, "|");
+        (void)snprintf(line, sizeof line, "%.*s", (int)length, lines);
+        assert_answer(line, "OK");
+        lines += length + (lines[length] == '|' ? 1 : 0);
+    }
+}
+
+/* A GET corrects by so much, as its text tells. W1 lay at 1, -2 turned by 30 degrees: 60 more are asked for. */
+static void assert_corrected(const char *get, double dx, double dy) {
+    char text[60];
+    double x = 0, y = 0;
+    assert_answer(get, "OK");
+    assert_int_equal(sscanf(last_command(), "%59[A-Z 1] dx=%lf dy=%lf", text, &x, &y), 3);
+    assert_near(x, dx, 0.005);
+    assert_near(y, dy, 0.005);
+}
+
+static void a_get_goes_to_where_align_found_the_wafer(void **state) {
+    (void)state;
+    assert_corrected("GET P 1", 2.232, -0.134);
+    assert_answer("PUT A 3 gripper=FRONT", "OK wafer=W1");
+    assert_answer("OFFSET W1 A 3", "OK dx=");
+    assert_near(strtod(strstr(answer, "dx=") + 3, NULL), 0, 0.005);
+    assert_near(strtod(strstr(answer, "dy=") + 3, NULL), 0, 0.005);
+    assert_answer("MEASURE A/3 W1", "OK");
+    assert_near(strtod(strstr(answer, "turn_deg=") + 9, NULL), 90, 0.01);
+}
+
+static void what_align_found_turns_with_the_chuck(void **state) {
+    (void)state;
+    static const char *const kept[] = {"WAIT 1",
+                                       "HOME",
+                                       "READY P 1",
+                                       "MAP A",
+                                       "GET A 2|PUT A 2",
+                                       "GET P 1|UNDO",
+                                       "VALVE PA 1|UNDO",
+                                       "ROTATE P 90|ROTATE P -90",
+                                       "EDGE_SCAN P|ROTATE P -0.2"};
+    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i) {
+        execute_all("RESTORE aligned");
+        execute_all(kept[i]);
+        assert_corrected("GET P 1", 2.232, -0.134);
+    }
+    execute_all("RESTORE aligned|ROTATE P 90");
+    assert_corrected("GET P 1", 0.134, 2.232);
+    execute_all("RESTORE aligned");
+    assert_answer("GET P 1 retract=900", "ERROR 21 ");
+    assert_corrected("GET P 1", 2.232, -0.134);
+}
+
+/* And where a command says for itself how it goes. */
+static void what_align_found_is_forgotten_with_the_wafer(void **state) {
+    (void)state;
+    static const char *const gone[] = {"GET P 1|PUT P 1", "GET P 1 correct=false|PUT P 1",
+                                       "VALVE PA 1|VALVE PA 0", "GET P 1 stop=extended|STOP|RECOVER"};
+    for (size_t i = 0; i < sizeof gone / sizeof gone[0]; ++i) {
+        execute_all("RESTORE aligned");
+        execute_all(gone[i]);
+        assert_answer("GET P 1", "OK");
+        assert_string_equal(last_command(), "GET P 1");
+    }
+    static const char *const own[] = {"GET P 1 dx=0.5", "GET P 1 dy=-0.5", "GET P 1 correct=false"};
+    for (size_t i = 0; i < sizeof own / sizeof own[0]; ++i) {
+        execute_all("RESTORE aligned");
+        assert_answer(own[i], "OK");
+        assert_string_equal(last_command(), own[i]);
+    }
+    execute_all("RESTORE aligned");
+    assert_answer("ALIGN P 0 correct=false", "OK mark=notch");
+    assert_answer("GET P 1", "OK");
+    assert_string_equal(last_command(), "GET P 1");
+}
+
+static void a_swap_takes_where_align_found_the_wafer(void **state) {
+    (void)state;
+    double x = 0, y = 0;
+    assert_answer("GET A 2", "OK wafer=W2");
+    assert_answer("SWAP P 1", "OK wafer=W1 put=W2");
+    assert_int_equal(sscanf(last_command(), "SWAP P 1 get_dx=%lf get_dy=%lf", &x, &y), 2);
+    assert_near(x, 2.232, 0.005);
+    assert_near(y, -0.134, 0.005);
+    assert_answer("GET P 1 gripper=FRONT", "OK wafer=W2");
+    assert_string_equal(last_command(), "GET P 1");
+    execute_all("RESTORE aligned|GET A 2");
+    assert_answer("SWAP P 1 get_correct=false", "OK wafer=W1 put=W2");
+    assert_string_equal(last_command(), "SWAP P 1 get_correct=false");
+}
+
+/* Nothing moves. */
+static void an_align_that_cannot_be(void **state) {
+    (void)state;
+    const int64_t slice = session.mcs.track.slice;
+    static const char *const bad[] = {
+        "PUT P 1 correct=false", "SWAP P 1 correct=false", "READY P 1 correct=false",
+        "ALIGN P 361",           "ALIGN P mode=pins",      "ALIGN P mark=flat",
+        "ALIGN P glass=1",       "ALIGN P correct=0",      "ALIGN P stop=up"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+        assert_answer(bad[i], "ERROR 48 BAD_ARGUMENT: ");
+    }
+    assert_answer("ALIGN P 1 2", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("ALIGN", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("EDGE_SCAN A", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("ALIGN A", "ERROR 49 NOT_A_PREALIGNER: ");
+    assert_answer("ALIGN Q", "ERROR 40 NO_SUCH_STATION: ");
+    assert_int_equal(session.mcs.track.slice, slice);
+    assert_answer("GET P 1 stop=extended", "OK");
+    assert_answer("ALIGN P", "ERROR 65 IN_PHASE: ");
+    assert_answer("EDGE_SCAN P", "ERROR 65 IN_PHASE: ");
+    assert_answer("STOP", "OK");
+    assert_answer("ALIGN P",
+                  "ERROR 52 STOPPED: a command was stopped before its end; the arm stands in P slot 1");
+    assert_answer("RECOVER", "OK");
+    assert_answer("ALIGN P", "OK mark=notch ");
+}
+
 #define IN_DUAL(test) cmocka_unit_test_setup_teardown(test, open_dual, close_session)
+
+#define ALIGNED(test) cmocka_unit_test_setup_teardown(test, open_aligned, close_session)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
@@ -411,6 +568,11 @@ int main(void) {
         IN_DUAL(what_is_held_in_a_phase_moves_no_more),
         IN_DUAL(what_fails_behind_a_phase_fails_the_continue),
         IN_DUAL(a_command_in_phases_ends_as_a_whole_one),
+        ALIGNED(a_get_goes_to_where_align_found_the_wafer),
+        ALIGNED(what_align_found_turns_with_the_chuck),
+        ALIGNED(what_align_found_is_forgotten_with_the_wafer),
+        ALIGNED(a_swap_takes_where_align_found_the_wafer),
+        ALIGNED(an_align_that_cannot_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The record as JSON: read back, it is the record. */
+/* The record as JSON: read back, it is the record; two results are compared member by member. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,10 +7,13 @@
 #include <cmocka.h>
 #include <float.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "print/record_print.h"
 #include "support/record.h"
+#include "text/json_compare.h"
 
 /* Prints a record and parses it again. */
 static json_t *reread(const wh_record_t *record) {
@@ -338,6 +341,54 @@ static void doubles_return_bit_for_bit(void **state) {
     json_decref(root);
 }
 
+/* --------------------------------------------------------------------------------------------- comparison */
+
+static char told[500];
+
+/* "path@time " for each difference. */
+static void note(void *user, const wh_json_difference_t *difference) {
+    const size_t length = strlen(told);
+    assert_ptr_equal(user, told);
+    assert_true(difference->a || difference->b);
+    snprintf(told + length, sizeof told - length, isnan(difference->time_s) ? "%s " : "%s@%g ",
+             difference->path, difference->time_s);
+}
+
+static void results_are_compared_member_by_member(void **state) {
+    (void)state;
+    static const char *const aside[] = {"wall_s", NULL};
+    static const struct {
+        const char *a, *b, *told;
+    } rows[] = {
+        {"{}", "{}", ""},
+        {"{\"x\": 1}", "{\"x\": 1.0}", ""},
+        {"{\"x\": 0.0}", "{\"x\": -0.0}", "x "},
+        {"{\"x\": 1}", "{\"x\": \"1\"}", "x "},
+        {"{\"x\": 9007199254740993}", "{\"x\": 9007199254740992}", "x "},
+        {"{\"x\": null}", "{}", "x "},
+        {"{\"wall_s\": 1, \"y\": {\"wall_s\": 2}}", "{\"y\": {}}", ""},
+        {"{\"a\": 1, \"b\": {\"c\": [1, 2]}}", "{\"d\": 1, \"b\": {\"c\": [1, 3, 4]}}", "a b.c[1] b.c[2] d "},
+        /* Times: an element's own, of two the earlier, that around it, and that of its place in the list beside. */
+        {"{\"e\": [{\"utime\": 2000000, \"v\": 1}]}", "{\"e\": [{\"utime\": 2000000, \"v\": 2}]}",
+         "e[0].v@2 "},
+        {"{\"e\": [{\"begin_s\": 2}]}", "{\"e\": [{\"begin_s\": 3}]}", "e[0].begin_s@2 "},
+        {"{\"e\": [{\"t\": 4, \"l\": [1]}]}", "{\"e\": [{\"t\": 4, \"l\": [2]}]}", "e[0].l[0]@4 "},
+        {"{\"t\": [1, 2], \"v\": [5, 6]}", "{\"t\": [1, 2], \"v\": [5, 7]}", "v[1]@2 "},
+        {"{\"t\": [1], \"v\": [5, 6]}", "{\"t\": [1], \"v\": [5, 7]}", "v[1] "},
+        {"{\"begin_s\": 1, \"v\": 1}", "{\"begin_s\": 1, \"v\": 2}", "v "},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        json_t *a = json_loads(rows[i].a, 0, NULL);
+        json_t *b = json_loads(rows[i].b, 0, NULL);
+        assert_true(a && b);
+        told[0] = '\0';
+        wh_json_compare(a, b, aside, note, told);
+        assert_string_equal(told, rows[i].told);
+        json_decref(a);
+        json_decref(b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(head),
@@ -351,6 +402,7 @@ int main(void) {
         cmocka_unit_test(hostile_values),
         cmocka_unit_test(write_error),
         cmocka_unit_test(doubles_return_bit_for_bit),
+        cmocka_unit_test(results_are_compared_member_by_member),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

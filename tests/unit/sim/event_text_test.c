@@ -233,8 +233,8 @@ static void each_kind_has_its_words(void **state) {
          "mm, n1_proj_n2 0.000000"},
         {WH_EVENT_CONTESTED, "contested: wafer 2, gripper 1: ready, but gripper 3 holds it"},
         {WH_EVENT_BAD_INPUT, "bad input: wafer 2, gripper 1: a number is NaN or infinite"},
-        {WH_EVENT_RELEASED_UNSUPPORTED,
-         "released unsupported: wafer 2, gripper 1: in no slot, 3.250 mm above what is below"},
+        {WH_EVENT_RELEASED_UNSUPPORTED, "released unsupported: wafer 2, gripper 1: in no slot, tilted by "
+                                        "42.972 deg, 3.250 mm above what is below"},
         {WH_EVENT_SLOT_OCCUPIED, "slot occupied: wafer 2, gripper 1: wafer 3 lies in that slot"},
         {WH_EVENT_PLACED_OFF_CENTRE,
          "placed off centre: wafer 2, gripper 1: 0.750 mm beside the centre (limit 0.5 mm)"},

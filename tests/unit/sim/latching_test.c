@@ -594,6 +594,25 @@ static void a_simulator_gives_the_latches_of_what_it_carries(void **state) {
     assert_int_equal(count, 4);
 }
 
+static void a_stuck_beam_gives_no_latch(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    wh_latch_t list[WH_LATCHES];
+    for (int stuck = WH_BEAM_DARK; stuck <= WH_BEAM_LIT; ++stuck) {
+        beams[0].stuck = (wh_beam_stuck_t)stuck;
+        assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_OK);
+        assert_int_equal(drive(&latching, -200, 1000, 0.001, 400, list), 2);
+        assert_int_equal(list[0].beam, 1);
+        assert_int_equal(list[1].beam, 1);
+        begin(&run, &latching);
+        assert_int_equal(go(&run, -200, arm), WH_OK);
+        assert_int_equal(run.state.physics->latches.broken, stuck == WH_BEAM_DARK ? 1 : 0);
+    }
+    beams[0].stuck = (wh_beam_stuck_t)3;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+}
+
 static void what_no_beam_can_take_is_refused(void **state) {
     (void)state;
     const wh_pose_t lies = wh_pose_identity();
@@ -721,6 +740,7 @@ int main(void) {
         cmocka_unit_test(latches_give_back_the_wafers_centre),
         cmocka_unit_test(what_is_no_beam_is_refused),
         cmocka_unit_test(a_simulator_gives_the_latches_of_what_it_carries),
+        cmocka_unit_test(a_stuck_beam_gives_no_latch),
         cmocka_unit_test(what_no_beam_can_take_is_refused),
         cmocka_unit_test(a_run_hashes_beams_once_they_were_armed),
         cmocka_unit_test(a_saved_pass_goes_on_bit_for_bit),
