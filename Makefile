@@ -27,7 +27,7 @@ include lib/build/switches.mk tests/tests.mk
 
 # Checks that need tools of their own; tests/README.md says which claim is checked by which of them.
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
-PART := $(CORE_PARTS) wp coverage mutation
+PART := $(CORE_PARTS) wp coverage mutation host_mutation
 
 .PHONY: all library shared install-library run spy view test quick bench check verify-core verify install uninstall clean help
 

@@ -123,7 +123,6 @@ static wh_protocol_server_result_t step(wh_protocol_server_t *server, const wafe
     server->state = state;
     server->missed += gap;
     server->seq = message->seq;
-    server->lockstep = message->lockstep != 0;
     if (!server->encodes_later) {
         wh_protocol_server_encode(server);
     }

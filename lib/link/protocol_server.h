@@ -34,7 +34,6 @@ typedef struct {
     wh_state_t state;         /* after the last step */
     int64_t seq;              /* of the last step; 0: none yet */
     int64_t missed;           /* slices that never came, in a free-running run */
-    bool lockstep;            /* the last command's */
     bool encodes_later; /* set by the caller: the state of a step is encoded by wh_protocol_server_encode */
     int64_t past_runs[WH_SERVER_PAST_RUNS];
     size_t past_count;

@@ -124,7 +124,7 @@ static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool
         *sound = any == 0;
         return NULL;
     }
-    char *text = wh_array_new(*size, 1);
+    char *text = wh_array_new(*size + 1, 1);
     *sound = ranks->calls->receive(*from, text, *size) == 0;
     return text;
 }

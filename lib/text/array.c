@@ -41,5 +41,6 @@ void *wh_array_grow(void *items, size_t count, size_t *capacity, size_t size) {
 }
 
 void *wh_array_new(size_t count, size_t size) {
-    return wh_memory_need(calloc(count + 1, size));
+    /* Of no item some systems allocate nothing. No item more than asked for, or sanitizers would not see one used. */
+    return wh_memory_need(calloc(count > 0 ? count : 1, size));
 }

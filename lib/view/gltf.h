@@ -20,7 +20,7 @@ typedef struct {
     size_t material;
 } wh_gltf_primitive_t;
 
-/* Zero it to begin with. */
+/* Read only, begun by wh_gltf_open. */
 typedef struct {
     json_t *accessors, *views, *meshes, *materials, *nodes, *samplers, *channels, *children;
     uint8_t *bytes;

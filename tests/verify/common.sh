@@ -53,3 +53,20 @@ at_most() {
     figure=$(sed -n "s/^.* $2 \([0-9]*\)$/\1/p" "$3")
     [[ $figure && $figure -le $1 ]] || fail "$2 is ${figure:-missing}, more than $1"
 }
+
+# python_with_mutants: sets $python to one that has the generator of mutants.
+python_with_mutants() {
+    local venv=build/verify/mutation/venv
+    need python3=python3
+    if ! "$venv/bin/python" -c 'import universalmutator' 2>/dev/null; then
+        # Without its dependencies: the generator alone needs none.
+        if ! { python3 -m venv "$venv" && "$venv/bin/pip" install --quiet --disable-pip-version-check --no-deps \
+            --require-hashes -r tests/verify/mutants/requirements.txt; }; then
+            echo "SKIPPED $(basename "$0"): no universalmutator (from PyPI; tests/verify/mutants/requirements.txt says which)," \
+                "or no venv for python3 (package python3-venv)"
+            exit 77
+        fi
+    fi
+    # shellcheck disable=SC2034 # for the script that asks
+    python=$venv/bin/python
+}

@@ -21,7 +21,7 @@ static char *read_text(const char *path) {
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) {
         /* Only the end of a long file is read. */
         const off_t skipped = about.st_size > WH_HISTORY_BYTES ? about.st_size - WH_HISTORY_BYTES : 0;
-        text = wh_array_new(WH_HISTORY_BYTES, 1);
+        text = wh_array_new(WH_HISTORY_BYTES + 1, 1);
         const ssize_t bytes = pread(fd, text, WH_HISTORY_BYTES, skipped);
         text[bytes > 0 ? bytes : 0] = '\0';
     }

@@ -1,4 +1,5 @@
-/* What a report shows of a run against the run itself, slice by slice; and its scene against glTF's rules. */
+/* What a report shows of a run against the run itself, slice by slice: curves, rows of plots, its document and its scene,
+ * whose buffer is read back and held against glTF's rules. */
 #include "support/support.h"
 
 #include <jansson.h>
@@ -7,6 +8,8 @@
 #include "mcs/script_run.h"
 #include "record/quaternion.h"
 #include "report/document.h"
+#include "report/gnuplot.h"
+#include "view/gltf.h"
 #include "view/scene.h"
 
 /* A slice as it was. */
@@ -185,6 +188,9 @@ static void check_axes(int64_t n) {
 
 static void check_all(void) {
     const wh_layout_t *layout = signals.layout;
+    for (size_t i = 0; i < signals.stay_count; ++i) {
+        assert_in_range(signals.stays[i].wafer, 0, layout->wafer_count - 1);
+    }
     for (int64_t n = 1; n < (int64_t)slice_count; ++n) {
         for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
             check_gripper(g, n);
@@ -288,6 +294,74 @@ static void a_gripper_that_is_elsewhere(void **state) {
     wh_signals_close(&other);
 }
 
+/* ---------------------------------------------------------------------------------------------------- past */
+
+/* Near wafer 0 up to slice 100, near wafer 1 up to 200, then near none. A near miss at 120 is told of slice 50, one at 250 of 150:
+ * the curves say so. One at 260 is told of a wafer that was not the nearest then: they do not. */
+static void a_near_miss_is_told_late(void **state) {
+    (void)state;
+    play("lua/examples/01_transfer.lua");
+    const wh_layout_t *layout = signals.layout;
+    static const struct {
+        int64_t at, of;
+        int32_t wafer;
+        double projz;
+    } misses[] = {{120, 50, 0, 4.25}, {250, 150, 1, 4.5}, {260, 60, 1, 4.75}};
+    wh_signals_t other = {0};
+    wh_gripper_t grippers[2];
+    wh_physics_state_t condition;
+    wh_wafer_t *wafers = malloc(layout->wafer_count * sizeof *wafers);
+    assert_non_null(wafers);
+    memcpy(wafers, layout->start, layout->wafer_count * sizeof *wafers);
+    memset(grippers, 0, sizeof grippers);
+    wh_physics_state_start(&condition, &layout->physics);
+    wh_signals_begin(&other, layout, false);
+    size_t next = 0;
+    for (int64_t n = 1; n <= 300; ++n) {
+        wh_event_t event = {.kind = WH_EVENT_NEAR_MISS};
+        const bool tells = next < 3 && misses[next].at == n;
+        if (tells) {
+            event.wafer = misses[next].wafer;
+            event.measured_slice = (uint64_t)misses[next].of;
+            event.measured.dr_proj_z = -misses[next].projz;
+            event.measured.dr_proj_xy_norm = 0.5;
+            event.measured.n1_proj_n2 = 1;
+            ++next;
+        }
+        grippers[0].base_from_gripper = wafers[n <= 100 ? 0 : 1].base_from_wafer;
+        grippers[0].base_from_gripper.r.z -= n <= 200 ? 5 : 500;
+        grippers[1].base_from_gripper = grippers[0].base_from_gripper;
+        grippers[1].base_from_gripper.r.z -= 1000;
+        grippers[0].wafer = grippers[1].wafer = WH_NONE;
+        const wh_state_t at = {.seq = n,
+                               .grippers = grippers,
+                               .gripper_count = 2,
+                               .physics = &condition,
+                               .events = &event,
+                               .event_count = tells ? 1 : 0,
+                               .wafers = wafers,
+                               .wafer_count = layout->wafer_count};
+        wh_signals_slice(&other, NULL, layout->machine.axis_count, &at);
+    }
+    wh_signals_finish(&other);
+    assert_int_equal(other.nearest[0].count, 3);
+    assert_int_equal(other.nearest[1].count, 1);
+    assert_int_equal(other.stay_count, layout->wafer_count);
+    const wh_path_t *curve = &other.proximity[0][WH_MEASURE_PROJZ];
+    for (int64_t n = 1; n <= 300; ++n) {
+        const double told = n == 50 ? 4.25 : n == 150 ? 4.5 : 5;
+        const double shown = wh_path_read(curve, n, NULL);
+        assert_int_equal(step_at(&other.nearest[0], n), n <= 100 ? 0 : n <= 200 ? 1 : WH_NONE);
+        if (n % 50 == 0 && n <= 200) {
+            assert_near(shown, told, n % 100 == 50 ? 1e-12 : 0.01);
+        }
+        assert_int_equal(isnan(shown), n > 200);
+    }
+    assert_near(wh_path_read(curve, 60, NULL), 5, 0.75);
+    wh_signals_close(&other);
+    free(wafers);
+}
+
 /* --------------------------------------------------------------------------------------------------- scene */
 
 static json_int_t integer(const json_t *object, const char *key) {
@@ -318,15 +392,236 @@ static void check_accessors(const json_t *scene) {
     }
 }
 
-static const json_t *node(const json_t *scene, const char *name) {
+static size_t node_index(const json_t *scene, const char *name) {
     size_t i;
     json_t *found;
     json_array_foreach(json_object_get(scene, "nodes"), i, found) {
         if (strcmp(json_string_value(json_object_get(found, "name")), name) == 0) {
-            return found;
+            return i;
         }
     }
-    return NULL;
+    return SIZE_MAX;
+}
+
+static const json_t *node(const json_t *scene, const char *name) {
+    return json_array_get(json_object_get(scene, "nodes"), node_index(scene, name));
+}
+
+/* The numbers of a list, as many as there are. */
+static size_t read_list(const json_t *list, double values[4]) {
+    for (size_t i = 0; i < json_array_size(list); ++i) {
+        values[i] = json_number_value(json_array_get(list, i));
+    }
+    return json_array_size(list);
+}
+
+/* The scene's buffer, from base 64. */
+static uint8_t *read_buffer(const json_t *scene) {
+    static const char head[] = "data:application/octet-stream;base64,";
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const json_t *buffer = json_array_get(json_object_get(scene, "buffers"), 0);
+    const char *text = json_string_value(json_object_get(buffer, "uri"));
+    assert_int_equal(strncmp(text, head, sizeof head - 1), 0);
+    text += sizeof head - 1;
+    uint8_t *bytes = malloc(strlen(text) + 1);
+    size_t count = 0;
+    assert_non_null(bytes);
+    uint32_t held = 0;
+    unsigned bits = 0;
+    for (size_t i = 0; text[i] != '\0' && text[i] != '='; ++i) {
+        held = held << 6 | (uint32_t)(strchr(digits, text[i]) - digits);
+        bits += 6;
+        if (bits >= 8) {
+            bits -= 8;
+            bytes[count++] = (uint8_t)(held >> bits);
+        }
+    }
+    assert_int_equal(integer(buffer, "byteLength"), count);
+    return bytes;
+}
+
+/* An accessor's numbers, in the buffer, and how many items of how many numbers they are. */
+typedef struct {
+    const float *numbers;
+    size_t count, width;
+} floats_t;
+
+static floats_t floats_at(const json_t *scene, const uint8_t *buffer, json_int_t index) {
+    const json_t *accessor = json_array_get(json_object_get(scene, "accessors"), (size_t)index);
+    const json_t *view =
+        json_array_get(json_object_get(scene, "bufferViews"), (size_t)integer(accessor, "bufferView"));
+    const char *type = json_string_value(json_object_get(accessor, "type"));
+    assert_int_equal(integer(accessor, "componentType"), 5126);
+    return (floats_t){(const float *)(const void *)(buffer + integer(view, "byteOffset")),
+                      (size_t)integer(accessor, "count"),
+                      strcmp(type, "SCALAR") == 0 ? 1 : (size_t)(type[3] - '0')};
+}
+
+/* Where there are bounds, they are the least and the greatest number. */
+static void check_bounds(const json_t *scene, const uint8_t *buffer) {
+    size_t bounded = 0;
+    for (size_t a = 0; a < json_array_size(json_object_get(scene, "accessors")); ++a) {
+        const json_t *accessor = json_array_get(json_object_get(scene, "accessors"), a);
+        double low[4], high[4];
+        const size_t width = read_list(json_object_get(accessor, "min"), low);
+        assert_int_equal(read_list(json_object_get(accessor, "max"), high), width);
+        if (width > 0) {
+            const floats_t found = floats_at(scene, buffer, (json_int_t)a);
+            bool low_is[4] = {false}, high_is[4] = {false};
+            assert_int_equal(found.width, width);
+            for (size_t i = 0; i < found.count * width; ++i) {
+                const double value = (double)found.numbers[i];
+                assert_true(value >= low[i % width] && value <= high[i % width]);
+                low_is[i % width] = low_is[i % width] || value <= low[i % width];
+                high_is[i % width] = high_is[i % width] || value >= high[i % width];
+            }
+            for (size_t c = 0; c < width; ++c) {
+                assert_true(low_is[c] && high_is[c]);
+            }
+            ++bounded;
+        }
+    }
+    assert_true(bounded > 10);
+}
+
+/* Triangles of vertices that are there, which the normals at their corners show from outside. */
+static void check_meshes(const json_t *scene, const uint8_t *buffer) {
+    const json_t *accessors = json_object_get(scene, "accessors");
+    const json_t *meshes = json_object_get(scene, "meshes");
+    for (size_t m = 0; m < json_array_size(meshes); ++m) {
+        const json_t *part = json_array_get(json_object_get(json_array_get(meshes, m), "primitives"), 0);
+        const json_t *attributes = json_object_get(part, "attributes");
+        const floats_t places = floats_at(scene, buffer, integer(attributes, "POSITION"));
+        const floats_t normals = floats_at(scene, buffer, integer(attributes, "NORMAL"));
+        const json_t *of = json_array_get(accessors, (size_t)integer(part, "indices"));
+        const json_t *view =
+            json_array_get(json_object_get(scene, "bufferViews"), (size_t)integer(of, "bufferView"));
+        const uint16_t *indices = (const uint16_t *)(const void *)(buffer + integer(view, "byteOffset"));
+        assert_int_equal(integer(of, "componentType"), 5123);
+        assert_int_equal(integer(of, "count") % 3, 0);
+        assert_int_equal(normals.count, places.count);
+        for (size_t i = 0; i < (size_t)integer(of, "count"); i += 3) {
+            wh_vec3_t p[3];
+            for (size_t k = 0; k < 3; ++k) {
+                assert_in_range(indices[i + k], 0, places.count - 1);
+                const float *at = &places.numbers[3 * (size_t)indices[i + k]];
+                p[k] = wh_vec3((double)at[0], (double)at[1], (double)at[2]);
+            }
+            const wh_vec3_t ab = wh_vec3_subtract(&p[1], &p[0]);
+            const wh_vec3_t ac = wh_vec3_subtract(&p[2], &p[0]);
+            const wh_vec3_t out =
+                wh_vec3(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
+            for (size_t k = 0; k < 3; ++k) {
+                const float *n = &normals.numbers[3 * (size_t)indices[i + k]];
+                const wh_vec3_t normal = wh_vec3((double)n[0], (double)n[1], (double)n[2]);
+                assert_near(wh_vec3_norm(&normal), 1, 1e-6);
+                assert_true(wh_vec3_dot(&normal, &out) >= 0);
+            }
+        }
+    }
+}
+
+/* A node's keyframes: item 0 of its channels is its place, item 1 its turn. */
+typedef struct {
+    floats_t times, values[2];
+} keys_t;
+
+static keys_t keys_of(const json_t *scene, const uint8_t *buffer, const char *name) {
+    static const char *const paths[] = {"translation", "rotation"};
+    const json_t *animation = json_array_get(json_object_get(scene, "animations"), 0);
+    keys_t keys = {{NULL, 0, 0}, {{NULL, 0, 0}, {NULL, 0, 0}}};
+    size_t i;
+    json_t *channel;
+    json_array_foreach(json_object_get(animation, "channels"), i, channel) {
+        const json_t *target = json_object_get(channel, "target");
+        const char *path = json_string_value(json_object_get(target, "path"));
+        if ((size_t)integer(target, "node") == node_index(scene, name)) {
+            const json_t *sampler =
+                json_array_get(json_object_get(animation, "samplers"), (size_t)integer(channel, "sampler"));
+            const size_t k = strcmp(path, paths[1]) == 0 ? 1 : 0;
+            assert_string_equal(path, paths[k]);
+            assert_string_equal(json_string_value(json_object_get(sampler, "interpolation")), "LINEAR");
+            keys.times = floats_at(scene, buffer, integer(sampler, "input"));
+            keys.values[k] = floats_at(scene, buffer, integer(sampler, "output"));
+            assert_int_equal(keys.values[k].width, 3 + k);
+            assert_int_equal(keys.values[k].count, keys.times.count);
+        }
+    }
+    assert_true(keys.values[0].count > 1 && keys.values[1].count == keys.values[0].count);
+    return keys;
+}
+
+/* What a viewer shows at a slice. `k` is the last keyframe before it. */
+static wh_pose_t shown_at(const keys_t *keys, int64_t n, size_t *k) {
+    const float *times = keys->times.numbers;
+    const double seconds = (double)n * (double)signals.layout->slice_us / 1e6;
+    while (*k + 2 < keys->times.count && (double)times[*k + 1] <= seconds) {
+        assert_true(times[*k + 1] > times[*k]);
+        ++*k;
+    }
+    const double share =
+        fmin(fmax((seconds - (double)times[*k]) / (double)(times[*k + 1] - times[*k]), 0), 1);
+    double from[7], to[7], turn[4];
+    for (size_t c = 0; c < 7; ++c) {
+        const floats_t *of = &keys->values[c / 3 > 0 ? 1 : 0];
+        const float *at = &of->numbers[*k * of->width + (c < 3 ? c : c - 3)];
+        from[c] = (double)at[0];
+        to[c] = (double)at[of->width];
+    }
+    wh_pose_t shown;
+    shown.r =
+        wh_vec3(1000 * (from[0] + share * (to[0] - from[0])), 1000 * (from[1] + share * (to[1] - from[1])),
+                1000 * (from[2] + share * (to[2] - from[2])));
+    wh_quaternion_slerp(from + 3, to + 3, share, turn);
+    wh_quaternion_to_matrix(turn, &shown.R);
+    return shown;
+}
+
+/* Grippers and wafers move as they did. Places are floats of metres. */
+static void check_animation(const json_t *scene, const uint8_t *buffer) {
+    const keys_t gripper = keys_of(scene, buffer, "EE");
+    const keys_t wafer = keys_of(scene, buffer, "Wafer 1");
+    size_t at[2] = {0, 0};
+    for (int64_t n = 1; n < (int64_t)slice_count; ++n) {
+        const wh_pose_t shown = shown_at(&gripper, n, &at[0]);
+        assert_pose(&shown, &slices[n].grippers[0], 0.15, 2e-3);
+        const wh_pose_t lies = shown_at(&wafer, n, &at[1]);
+        assert_pose(&lies, &slices[n].wafers[0], 0.3, 3e-3);
+    }
+}
+
+static void check_still(const json_t *scene, const char *name, const wh_pose_t *pose) {
+    const json_t *of = node(scene, name);
+    double r[4], q[4];
+    wh_pose_t shown;
+    assert_int_equal(read_list(json_object_get(of, "translation"), r), 3);
+    assert_int_equal(read_list(json_object_get(of, "rotation"), q), 4);
+    shown.r = wh_vec3(1000 * r[0], 1000 * r[1], 1000 * r[2]);
+    wh_quaternion_to_matrix(q, &shown.R);
+    assert_pose(&shown, pose, 1e-9, 1e-9);
+}
+
+/* Everything stands where it is before the first slice, in a cell whose z is glTF's y. */
+static void check_nodes(const json_t *scene) {
+    const wh_layout_t *layout = signals.layout;
+    wh_pose_t links[WH_SIGNALS_LINKS], cell;
+    double q[4];
+    for (size_t i = 0; i < layout->station_count; ++i) {
+        char name[WH_NAME_SIZE + 16];
+        (void)snprintf(name, sizeof name, "station %s", layout->stations[i].name);
+        check_still(scene, name, &layout->places[i].base_from_station);
+    }
+    assert_true(wh_signals_links(&signals, signals.first, links));
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+        check_still(scene, wh_signals_link_names[i], &links[i]);
+    }
+    check_still(scene, "Wafer 2", &layout->start[1].base_from_wafer);
+    assert_int_equal(read_list(json_object_get(node(scene, "cell"), "rotation"), q), 4);
+    wh_quaternion_to_matrix(q, &cell.R);
+    const wh_vec3_t up = wh_mat3_column(&cell.R, 2);
+    assert_near(up.y, 1, 1e-12);
+    assert_int_equal(json_array_size(json_object_get(node(scene, "cell"), "children")),
+                     json_array_size(json_object_get(scene, "nodes")) - 1);
 }
 
 static void a_scene_is_made(void **state) {
@@ -347,10 +642,174 @@ static void a_scene_is_made(void **state) {
     const json_t *animation = json_array_get(json_object_get(moving, "animations"), 0);
     /* Lift, upper arm, forearm, hand, EE and two wafers, each in place and turn. */
     assert_int_equal(json_array_size(json_object_get(animation, "channels")), 14);
+    uint8_t *buffer = read_buffer(moving);
+    check_bounds(moving, buffer);
+    check_meshes(moving, buffer);
+    check_animation(moving, buffer);
+    check_nodes(still);
+    free(buffer);
     const json_t *place = json_object_get(node(still, "Wafer 1"), "translation");
     assert_near(json_number_value(json_array_get(place, 0)), 0.7, 1e-12);
     json_decref(still);
     json_decref(moving);
+}
+
+/* Whatever was in its place before, an asset begins with nothing; and only lists that have something are written. */
+static void an_empty_scene(void **state) {
+    (void)state;
+    wh_gltf_t gltf;
+    memset(&gltf, 0xff, sizeof gltf);
+    wh_gltf_open(&gltf);
+    assert_null(gltf.bytes);
+    assert_int_equal(gltf.size, 0);
+    assert_int_equal(gltf.capacity, 0);
+    json_t *root = wh_gltf_finish(&gltf, "nothing", "a test");
+    assert_int_equal(json_object_size(root), 4);
+    assert_int_equal(json_array_size(json_object_get(root, "nodes")), 1);
+    assert_int_equal(json_array_size(json_object_get(node(root, "cell"), "children")), 0);
+    json_decref(root);
+}
+
+/* --------------------------------------------------------------------------------------------------- plots */
+
+/* Rows of a block as they were written; `breaks` of one that a gap is before. */
+typedef struct {
+    int64_t slice;
+    double values[WH_MEASURES + 1];
+    bool breaks;
+} row_t;
+
+static row_t *rows_of(const wh_plot_curves_t *of, size_t columns, size_t *count) {
+    const double slice_s = wh_signals_seconds(&signals, 1);
+    wh_plot_t plot = {.has_rows = false};
+    char *text = NULL;
+    size_t size = 0;
+    plot.data = open_memstream(&text, &size);
+    assert_non_null(plot.data);
+    assert_int_equal(wh_plot_curves(&plot, of, slice_s), 0);
+    (void)fclose(plot.data);
+    assert_string_equal(text + size - 3, "\n\n\n");
+    text[size - 2] = '\0';
+    row_t *rows = calloc(size, sizeof *rows);
+    assert_non_null(rows);
+    *count = 0;
+    bool breaks = false;
+    for (char *line = text; *line != '\0'; line += strcspn(line, "\n") + 1) {
+        row_t *row = &rows[*count];
+        char *c = line;
+        if (*line == '\n') {
+            assert_false(breaks || *count == 0);
+            breaks = true;
+            continue;
+        }
+        row->breaks = breaks;
+        row->slice = (int64_t)llround(strtod(c, &c) / slice_s);
+        for (size_t k = 0; k < columns; ++k) {
+            row->values[k] = strtod(c, &c);
+        }
+        assert_int_equal(*c, '\n');
+        breaks = false;
+        ++*count;
+    }
+    free(text);
+    return rows;
+}
+
+/* How far a straight line between two rows is off the curve. */
+static double off_line(const wh_path_t *curve, const row_t *from, const row_t *to) {
+    double off = 0;
+    for (int64_t n = from->slice; n <= to->slice; ++n) {
+        const double share = (double)(n - from->slice) / (double)(to->slice - from->slice);
+        const double line = from->values[0] + share * (to->values[0] - from->values[0]);
+        off = fmax(off, fabs(line - wh_path_read(curve, n, NULL)));
+    }
+    return off;
+}
+
+/* Lines between rows are within the curve's tolerance, but for rows being at whole slices, and of six or more in one cubic none at
+ * its two ends could be spared. Returns how many cubics have so many. */
+static size_t check_rows(const wh_path_t *curve) {
+    const wh_points_t *points = &curve->list;
+    const wh_plot_curves_t of = {{curve}, 1, 1, false, NULL};
+    size_t count = 0, cut = 0, i = 0;
+    row_t *rows = rows_of(&of, 1, &count);
+    assert_int_equal(rows[0].slice, points->points[0].slice);
+    for (size_t p = 0; p + 1 < points->count; ++p) {
+        size_t end = i;
+        while (end < count && rows[end].slice < points->points[p + 1].slice) {
+            ++end;
+        }
+        assert_true(end < count && rows[end].slice == points->points[p + 1].slice);
+        const double length = (double)(rows[end].slice - rows[i].slice) / (double)(end - i);
+        const double most = points->tolerance * (length + 1) * (length + 1) / (length * length);
+        if (end - i >= 6 && length > 4) {
+            assert_true(off_line(curve, &rows[i], &rows[i + 2]) > points->tolerance ||
+                        off_line(curve, &rows[end - 2], &rows[end]) > points->tolerance);
+            ++cut;
+        }
+        for (; i < end; ++i) {
+            assert_true(rows[i + 1].slice > rows[i].slice);
+            assert_true(off_line(curve, &rows[i], &rows[i + 1]) < most + 1e-6);
+        }
+    }
+    assert_int_equal(i, count - 1);
+    free(rows);
+    return cut;
+}
+
+/* Of speeds each row is the slope there. */
+static void check_slopes(const wh_path_t *curve) {
+    const wh_plot_curves_t of = {{curve}, 1, 0.5, true, NULL};
+    size_t count = 0;
+    row_t *rows = rows_of(&of, 1, &count);
+    for (size_t i = 0; i < count; ++i) {
+        double slope;
+        (void)wh_path_read(curve, rows[i].slice, &slope);
+        const double speed = 2 * slope / wh_signals_seconds(&signals, 1);
+        assert_near(rows[i].values[0], speed, 1e-8 * fmax(fabs(speed), 1));
+    }
+    free(rows);
+}
+
+/* Each row tells the curves, and the wafer that they are against. Where that is another one, or there was none, is a gap. */
+static void check_measured_rows(size_t gripper) {
+    const wh_path_t *curves = signals.proximity[gripper];
+    const wh_steps_t *nearest = &signals.nearest[gripper];
+    const wh_plot_curves_t of = {{&curves[0], &curves[1], &curves[2]}, 3, 1, false, nearest};
+    size_t count = 0, gaps = 0;
+    row_t *rows = rows_of(&of, 4, &count);
+    for (size_t i = 0; i < count; ++i) {
+        const int64_t slice = rows[i].slice;
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            const double value = wh_path_read(&curves[m], slice, NULL);
+            assert_near(rows[i].values[m], value, 1e-8 * fmax(fabs(value), 1e-3));
+        }
+        assert_int_equal(rows[i].values[3], step_at(nearest, slice));
+        if (i > 0) {
+            bool breaks = false;
+            for (int64_t n = rows[i - 1].slice; n <= slice; ++n) {
+                breaks = breaks || step_at(nearest, n) != (int32_t)rows[i].values[3];
+            }
+            assert_int_equal(rows[i].breaks, breaks);
+            gaps += breaks ? 1 : 0;
+        }
+    }
+    assert_true(gaps > 0);
+    free(rows);
+}
+
+static void plots_have_rows_of_the_curves(void **state) {
+    (void)state;
+    size_t cut = 0;
+    play("lua/examples/02_prealigner.lua");
+    for (size_t axis = 0; axis < signals.axis_count; ++axis) {
+        cut += check_rows(&signals.axes[axis]);
+        check_slopes(&signals.axes[axis]);
+    }
+    for (size_t g = 0; g < signals.layout->machine.gripper_count; ++g) {
+        check_measured_rows(g);
+    }
+    assert_true(cut > 20);
 }
 
 /* ------------------------------------------------------------------------------------------------- document */
@@ -547,7 +1006,10 @@ int main(void) {
         cmocka_unit_test_teardown(missed_pick, close_run),
         cmocka_unit_test_teardown(vacuum_that_leaks, close_run),
         cmocka_unit_test_teardown(a_gripper_that_is_elsewhere, close_run),
+        cmocka_unit_test_teardown(a_near_miss_is_told_late, close_run),
         cmocka_unit_test_teardown(a_scene_is_made, close_run),
+        cmocka_unit_test(an_empty_scene),
+        cmocka_unit_test_teardown(plots_have_rows_of_the_curves, close_run),
         cmocka_unit_test_teardown(a_document_is_made, close_run),
         cmocka_unit_test_teardown(an_edge_scan, close_run),
         cmocka_unit_test_teardown(the_mark_is_where_the_notch_is_seen, close_run),

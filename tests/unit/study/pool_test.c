@@ -105,6 +105,24 @@ static void play(const wh_study_t *study, size_t threads, const wh_progress_t *k
     wh_stretches_free(&rest);
 }
 
+/* Whatever was in their place before: what begins and what ends is empty. */
+static void nothing_is_left_of_what_was_there(void **state) {
+    static const wh_stretches_t none;
+    static wh_study_t study;
+    wh_progress_t progress;
+    (void)state;
+    open_study(&study, 3);
+    memset(&progress, 0xff, sizeof progress);
+    wh_progress_init(&progress, &study);
+    assert_memory_equal(&progress.done, &none, sizeof none);
+    assert_true(wh_stretches_add(&progress.done, (wh_stretch_t){1, 2}));
+    progress.done.trials = UINT64_MAX;
+    progress.done.capacity = SIZE_MAX;
+    wh_progress_free(&progress);
+    assert_memory_equal(&progress.done, &none, sizeof none);
+    wh_study_close(&study);
+}
+
 static void threads_share_few_trials(void **state) {
     static wh_study_t study;
     (void)state;
@@ -204,9 +222,8 @@ static void a_state_grows_with_its_study(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stretches_hold_what_was_added),
-        cmocka_unit_test(threads_share_few_trials),
-        cmocka_unit_test(others_take_from_the_front),
+        cmocka_unit_test(stretches_hold_what_was_added), cmocka_unit_test(nothing_is_left_of_what_was_there),
+        cmocka_unit_test(threads_share_few_trials),      cmocka_unit_test(others_take_from_the_front),
         cmocka_unit_test(a_state_grows_with_its_study),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,10 +6,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 from builder import Builder
-from campaign import Campaign
-from judge import Judge, Test
-from results import Results
-from survivors import Survivors
+from campaign import Campaign, Judge, Test
+from records import Results, Survivors
 
 LEAST_RATE = 0.97
 LIST = "tests/verify/mutants/survivors"

@@ -1,17 +1,45 @@
-"""The list of mutants that no test can kill, each under the reason why.
+"""What is kept in files: what earlier runs found, and the list of mutants that no test can kill."""
 
-    because: a reason, which holds for all that follow up to the next
-    lib/math/pose.c
-    - the line as it is
-    + the line as the mutant has it
-
-Under `everywhere` instead of a file's name it is not lines, but parts of them, in every file.
-"""
-
+import json
 import os
+import threading
+
+
+class Results:
+    """A line for each finding, appended at once."""
+
+    def __init__(self, path):
+        self.known = {}
+        self.lock = threading.Lock()
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                for line in file:
+                    if line.endswith("\n"):
+                        entry = json.loads(line)
+                        self.known.setdefault(entry.pop("key"), {}).update(entry)
+        self.file = open(path, "a", encoding="utf-8")
+
+    def get(self, key):
+        return self.known.get(key, {})
+
+    def put(self, key, entry):
+        with self.lock:
+            self.known.setdefault(key, {}).update(entry)
+            self.file.write(json.dumps({"key": key, **entry}) + "\n")
+            self.file.flush()
 
 
 class Survivors:
+    """The list of mutants that no test can kill, each under the reason why.
+
+        because: a reason, which holds for all that follow up to the next
+        lib/math/pose.c
+        - the line as it is
+        + the line as the mutant has it
+
+    Under `everywhere` instead of a file's name it is not lines, but parts of them, in every file.
+    """
+
     def __init__(self, path):
         self.path = path
         self.reasons = {}  # by file, line and mutant
