@@ -1,7 +1,6 @@
 """host.py FOLDER: mutants of the host rooms and of collision, drawn from all their sources together. tests/verify/host_mutation
 says what is asked and has the settings; it gives the names of sources and tests."""
 
-import atexit
 import collections
 import contextlib
 import hashlib
@@ -36,10 +35,12 @@ CHECKED = ["B=build/sanitize", f"CFLAGS={CHECKED}", f"CXXFLAGS={CHECKED}", *PLAI
 RUNNING = set()  # process groups of tests
 
 
-def end_tests():
+def stop(*_):
+    """Interrupted: no test is left behind, and no thread begins another."""
     for group in list(RUNNING):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(group, signal.SIGKILL)
+    os._exit(1)
 
 
 def digest_of(*contents):
@@ -334,6 +335,6 @@ def main():
 
 
 if __name__ == "__main__":
-    atexit.register(end_tests)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("mutation: stopped"))
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)
     main()
