@@ -149,7 +149,8 @@
                 + 'all. A bar is where the true value lies; all bars together hold with 95 %. Coloured bars do not reach 0.'
                 + (more > 0 ? ` ${more} weaker ones are not shown.` : '')),
             [0, doc.result.trials].includes(doc.result.success.met)
-                ? W.why(`${doc.result.success.met === 0 ? 'All' : 'None'} of the trials failed, so nothing tells what failing goes with.`)
+                ? W.why(`${doc.result.success.met === 0 ? 'All' : 'None'} of the trials failed, `
+                    + 'so nothing tells what failing goes with.')
                 : '',
             W.charts.correlations(rows, 'Correlations of drawn errors with failing')));
     }

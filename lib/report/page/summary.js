@@ -37,7 +37,7 @@
     }
 
     /* By what the cell was off, if it was on purpose. */
-    function errors(doc) {
+    function displacements(doc) {
         const given = doc.run.errors || [];
         return given.length === 0 ? [] : [W.why(`The cell was off, as --error asked for: ${given.join(', ')}.`)];
     }
@@ -110,7 +110,7 @@
             document.getElementById('head').append(
                 W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
                     W.element('span', { class: 'space' }), help, theme),
-                ...errors(doc),
+                ...displacements(doc),
                 ...reasons(doc),
                 ...doc.notes.map((note) => W.why(note)),
                 W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
