@@ -172,7 +172,9 @@ static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
     switch (kind) {
     case 0:
         read_axes_field(L, mcs, &segment);
-        keep_within_transit(mcs, &segment);
+        if (lua_getfield(L, 1, "stays") != LUA_TBOOLEAN) {
+            keep_within_transit(mcs, &segment);
+        }
         break;
     case 1:
         read_line_field(L, &segment);

@@ -14,6 +14,8 @@ return function(native, patterns, lookup, arm, targets)
   local TURNS = { 0, math.rad(30), math.rad(-30) }
   -- The notch: how far inside of the rim the beam is, mm, and how far the wafer turns to either side.
   local INSIDE, SWEEP = 0.5, math.rad(2.5)
+  -- How far a flank is from the notch's middle there, as seen from the wafer's: else it is no notch.
+  local LEAST_FLANK, MOST_FLANK = math.rad(0.05), math.rad(0.6)
 
   local function play(segment)
     arm.play(patterns.single, { segment = segment, watched = false })
@@ -23,8 +25,9 @@ return function(native, patterns, lookup, arm, targets)
     return { way * place.dir_x, way * place.dir_y, height or 0 }
   end
 
-  local function go(target, x, y, z, heading)
-    play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper } }
+  -- `stays`: it turns where it is, whatever `robot.transit` says, for coming in would lead through the beam.
+  local function go(target, x, y, z, heading, stays)
+    play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper }, stays = stays }
   end
 
   -- Into the station below the wafer, and up to it. Returns the height of the wafer's back face, and the blade's.
@@ -67,6 +70,9 @@ return function(native, patterns, lookup, arm, targets)
     play { dwell = 2 * native.layout.slice }
     action()
     play { dwell = 0.01 }
+    if not native.sensor(target.gripper) then
+      native.fail("WAFER_LOST_ON_WAY", "the vacuum sensor went off while the wafer passed the beam")
+    end
     local found = native.centre({})
     native.disarm_beams()
     play { dwell = native.layout.slice }
@@ -100,25 +106,33 @@ return function(native, patterns, lookup, arm, targets)
     local to_x, to_y = beam.x + solved.beam_x - radius * place.dir_x, beam.y + solved.beam_y - radius * place.dir_y
     local function at(turn)
       local ox, oy = rotate(heading + turn, x, y)
-      go(target, to_x - ox, to_y - oy, place.z + target.offset, heading + turn)
+      go(target, to_x - ox, to_y - oy, place.z + target.offset, heading + turn, true)
     end
     at(-SWEEP)
     local found = watch(station, target, function()
       at(SWEEP)
       at(-SWEEP)
     end)
-    local count, sum = 0, 0
+    local angles, sum = {}, 0
     for _, crossing in ipairs(found.crossings) do
       if crossing.beam == 1 then
         local bx, by = rotate(-heading, solved.beam_x, solved.beam_y)
         local angle = math.atan(crossing.y + by - y, crossing.x + bx - x) - station.notch
-        count, sum = count + 1, sum + (angle + math.pi) % (2 * math.pi) - math.pi
+        angles[#angles + 1] = (angle + math.pi) % (2 * math.pi) - math.pi
+        sum = sum + angles[#angles]
       end
     end
-    if count ~= 4 then
-      native.fail("NO_NOTCH", ("%d crossings of the wafer's notch (expected 4)"):format(count))
+    if #angles ~= 4 then
+      native.fail("NO_NOTCH", ("%d crossings of the wafer's notch (expected 4)"):format(#angles))
     end
-    return sum / count
+    for _, angle in ipairs(angles) do
+      local flank = math.abs(angle - sum / 4)
+      if flank < LEAST_FLANK or flank > MOST_FLANK then
+        native.fail("NO_NOTCH", ("what crossed the beam is %.3f degrees from its middle (expected %.4g to %.4g of a notch)"):format(
+          math.deg(flank), math.deg(LEAST_FLANK), math.deg(MOST_FLANK)))
+      end
+    end
+    return sum / 4
   end
 
   local function check(name, options)
@@ -185,7 +199,9 @@ return function(native, patterns, lookup, arm, targets)
       end
       return result_of(station, beam.station, z, find_yaw(station, target, beam, solved), solved)
     end)
-    put_back(name, target, z, felt)
+    if native.sensor(target.gripper) then
+      put_back(name, target, z, felt)
+    end
     if not good then
       error(result, 0)
     end

@@ -398,8 +398,35 @@ static void what_cannot_be_taught_is_said(void **state) {
         "expect(good, 'all of it')\n");
 }
 
+/* The notch is turned through the beam where it is, though the arm stands beyond `transit`; a wafer without one is not taught by; and
+ * what goes off on the way is no wafer that was carried. */
+static void teaching_looks_at_what_it_relies_on(void **state) {
+    (void)state;
+    static const char *const rims[] = {"", ", rim = { notch = { depth = 0 } }"};
+    for (int round = 0; round < 3; ++round) {
+        char layout[1000];
+        (void)snprintf(
+            layout, sizeof layout,
+            "return { robot = { transit = 480 }, grippers = { { name = 'EE' } }, stations = { A = { at = { "
+            "700, 0, 900 }, beams = { { y = 60 } } } },\n"
+            "wafers = { { name = 'W', station = 'A', slot = 1%s } } }\n",
+            rims[round == 1 ? 1 : 0]);
+        static const char *const scripts[] = {
+            "cell 'cell.lua' local t = teach('A') expect(math.abs(t.rpy[3]) < 0.02, tostring(t.rpy[3]))\n",
+            "cell 'cell.lua' local ok, e = pcall(teach, 'A') expect(not ok and e.name == 'NO_NOTCH', "
+            "tostring(e.name))\n",
+            "cell 'cell.lua' fault { kind = 'sensor_off', gripper = 'EE', after = 14 }\n"
+            "local ok, e = pcall(teach, 'A') expect(not ok and e.name == 'WAFER_LOST_ON_WAY', "
+            "tostring(e.name))\n",
+        };
+        assert_texts(layout, scripts[round]);
+        wh_script_run_close(&run);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(teaching_looks_at_what_it_relies_on),
         cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
         cmocka_unit_test_teardown(nothing_moves_without_a_link, close_run),
         cmocka_unit_test_teardown(errors_within_a_pattern_name_the_line, close_run),
