@@ -251,8 +251,16 @@ static void note_corner(boxing_t *boxing) {
     }
 }
 
+static bool is_origin(const boxing_t *boxing, const int32_t point[]) {
+    bool all_zero = true;
+    for (size_t i = 0; i < boxing->size; ++i) {
+        all_zero = all_zero && point[i] == 0;
+    }
+    return all_zero;
+}
+
 /* Shrinks the box until a point that fails is outside, and the point of the box next to it passes: these are
- * its witnesses. */
+ * its witnesses. Where even no error at all fails, by what is drawn besides, no box is left. */
 static void shrink(boxing_t *boxing, const int32_t failing[]) {
     wh_budget_box_t *box = boxing->box;
     const size_t bytes = boxing->size * sizeof *failing;
@@ -261,6 +269,10 @@ static void shrink(boxing_t *boxing, const int32_t failing[]) {
     memcpy(box->inside, failing, bytes);
     do {
         memcpy(box->outside, box->inside, bytes);
+        if (is_origin(boxing, box->outside)) {
+            set_share(boxing, 0);
+            return;
+        }
         if (!go_back(boxing, box->outside)) {
             boxing->stuck = true;
             return;

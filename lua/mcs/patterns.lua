@@ -183,8 +183,9 @@ end
 ---------------------------------------------------------------------------------------------------------- PUT
 
 -- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck
--- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it. With `centre` aside
--- before that, by what beams say of the wafer; when they do not, out again with the wafer: "uncentred".
+-- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it, "stuck" when the
+-- gripper's sensor is still on after it has left a plain slot. With `centre` aside before that, by what beams
+-- say of the wafer; when they do not, out again with the wafer: "uncentred".
 function patterns.put(target)
   local became = "kept"
   approach(target, target.offset)
@@ -208,6 +209,9 @@ function patterns.put(target)
     pause(target, "up")
   end
   leave(target)
+  if not target.chuck and target.asks and is_on(target.gripper, false) then
+    return "stuck"
+  end
   return became
 end
 

@@ -108,6 +108,10 @@ return function(native, patterns, lookup, arm, targets, align, centring)
       native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck))
     elseif became == "loose" then
       fail_late(target, target.chuck)
+    elseif became == "stuck" then
+      local kept, name = native.held(target.gripper), name_of(target.gripper)
+      native.fail("WAFER_LOST", kept and ("%s still holds %s: its valve or vacuum did not let go of it"):format(name, kept)
+        or ("the sensor of %s is still on, with nothing on its pads"):format(name))
     end
   end
 
