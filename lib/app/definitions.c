@@ -28,7 +28,7 @@ static const wh_command_line_t command_line = {
     .name = "definitions",
     .synopsis = "",
     .about = "Prints what layouts and scripts may say, for editors that use the Lua language server: they "
-             "complete fields and words, and underline what is none. A folder with this as waferhand.lua, "
+             "complete fields and words, and underline what is none. A folder with this as definitions.lua, "
              "as waferhand new makes one, is enough.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "argument",
