@@ -79,6 +79,18 @@ static bool concerns_any(const wh_layout_t *layout, size_t first, size_t end, wh
     return any;
 }
 
+static void check_concerned(const wh_reader_t *reader, const wh_layout_t *layout, size_t first, size_t end,
+                            wh_rim_draw_t draw, wh_real_t width) {
+    const char *name = wh_rim_draw_name(draw);
+    if (wh_reader_has(reader, name) && width > 0 && !concerns_any(layout, first, end, draw)) {
+        lua_pushnumber(reader->L, width);
+        wh_reader_fail(reader, name, "0: no wafer here has %s",
+                       draw == WH_RIM_CHIP_DEPTH || draw == WH_RIM_CHIP_WIDTH ? "room for a chip more"
+                       : draw == WH_RIM_FLAT || draw == WH_RIM_SECOND_FLAT    ? "such a flat"
+                                                                              : "a notch");
+    }
+}
+
 /* Reads the table of widths for the wafers from `first` on; none of them means anything without a sensor. */
 static void read_rim_widths(wh_reader_t *reader, const wh_layout_t *layout, size_t first, size_t end,
                             wh_rim_spreads_t *spreads) {
@@ -88,17 +100,11 @@ static void read_rim_widths(wh_reader_t *reader, const wh_layout_t *layout, size
     }
     for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
         const wh_rim_draw_t draw = (wh_rim_draw_t)i;
-        const char *name = wh_rim_draw_name(draw);
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = read_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, name, spread->width, 0, (wh_real_t)wh_rim_draw_most(draw));
-        if (wh_reader_has(reader, name) && spread->width > 0 && !concerns_any(layout, first, end, draw)) {
-            lua_pushnumber(reader->L, spread->width);
-            wh_reader_fail(reader, name, "0: no wafer here has %s",
-                           draw == WH_RIM_CHIP_DEPTH || draw == WH_RIM_CHIP_WIDTH ? "room for a chip more"
-                           : draw == WH_RIM_FLAT || draw == WH_RIM_SECOND_FLAT    ? "such a flat"
-                                                                                  : "a notch");
-        }
+        spread->width = wh_reader_number(reader, wh_rim_draw_name(draw), spread->width, 0,
+                                         (wh_real_t)wh_rim_draw_most(draw));
+        check_concerned(reader, layout, first, end, draw, spread->width);
     }
     if (spreads->of[WH_RIM_CHIP_WIDTH].width > 0 && !(spreads->of[WH_RIM_CHIP_DEPTH].width > 0)) {
         lua_pushnumber(reader->L, spreads->of[WH_RIM_CHIP_DEPTH].width);

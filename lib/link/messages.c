@@ -199,7 +199,7 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
     for (size_t e = 0; e < state->event_count; ++e) {
         put_event(&state->events[e], &room->events[e]);
     }
-    for (size_t i = 0; i < (size_t)room->message.fault_count; ++i) {
+    for (size_t i = 0; state->physics && i < (size_t)room->message.fault_count; ++i) {
         const wh_fault_slot_t *slot = &state->physics->faults.slots[i];
         waferhand_fault_slot *out = &room->faults[i];
         out->phase = (int32_t)slot->phase;

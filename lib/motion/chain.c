@@ -28,7 +28,9 @@ static bool is_in_travel(const wh_chain_t *chain, size_t axis, wh_real_t positio
     if (!wh_chain_has(chain, axis)) {
         return position == 0;
     }
-    return wh_travel_has(&chain->travel[axis], is_length(chain, axis) ? WH_SLACK_MM : WH_SLACK_RAD, position);
+    static const wh_real_t slacks[] = {WH_SLACK_MM, WH_SLACK_RAD};
+    const wh_real_t slack = slacks[is_length(chain, axis) ? 0 : 1];
+    return wh_travel_has(&chain->travel[axis], slack, position);
 }
 
 /* ------------------------------------------------------------------------------------------ is it sound? */
@@ -164,17 +166,21 @@ void wh_chain_forward(const wh_chain_t *chain, const wh_real_t q[WH_CHAIN_AXES],
 
 /* ----------------------------------------------------------------------------------------------- inverse */
 
-static wh_status_t check_input(const wh_pose_t *pose, const wh_chain_choice_t *choice,
-                               const wh_real_t near_q[WH_CHAIN_AXES]) {
-    bool finite =
-        wh_vec3_is_finite(&pose->r) && wh_real_is_finite(choice->rail) && wh_real_is_finite(choice->flip);
+static bool input_is_finite(const wh_pose_t *pose, const wh_chain_choice_t *choice,
+                            const wh_real_t near_q[WH_CHAIN_AXES]) {
+    bool finite = wh_vec3_is_finite(&pose->r) && wh_real_is_finite(choice->rail + choice->flip);
     for (size_t i = 0; i < 9; ++i) {
         finite = finite && wh_real_is_finite(pose->R.m[i / 3][i % 3]);
     }
     for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
         finite = finite && wh_real_is_finite(near_q[axis]);
     }
-    if (!finite) {
+    return finite;
+}
+
+static wh_status_t check_input(const wh_pose_t *pose, const wh_chain_choice_t *choice,
+                               const wh_real_t near_q[WH_CHAIN_AXES]) {
+    if (!input_is_finite(pose, choice, near_q)) {
         return WH_STATUS_NOT_FINITE;
     }
     const bool in_range = wh_real_abs(near_q[WH_CHAIN_THETA]) <= WH_TRIG_MAX_RAD &&
@@ -266,6 +272,20 @@ static wh_status_t find_scara(const wh_chain_t *chain, const wh_plane_t *plane, 
     return WH_OK;
 }
 
+static wh_status_t find(const wh_chain_t *chain, const wh_pose_t *base_from_effector,
+                        const wh_chain_choice_t *choice, const wh_real_t near_q[WH_CHAIN_AXES],
+                        wh_real_t q[WH_CHAIN_AXES]) {
+    const wh_pose_t wrist = wrist_of(chain, base_from_effector, choice);
+    wh_plane_t plane;
+    if (!find_plane(chain, &wrist, q, &plane)) {
+        return WH_STATUS_NOT_LEVEL;
+    }
+    const wh_status_t status = chain->kind == WH_CHAIN_SCARA
+                                   ? find_scara(chain, &plane, choice->elbow, near_q, q)
+                                   : find_polar(chain, &plane, near_q, q);
+    return status == WH_OK ? wh_chain_check_travel(chain, q) : status;
+}
+
 wh_status_t wh_chain_inverse(const wh_chain_t *chain, const wh_pose_t *base_from_effector,
                              const wh_chain_choice_t *choice, const wh_real_t near_q[WH_CHAIN_AXES],
                              wh_real_t q[WH_CHAIN_AXES]) {
@@ -279,16 +299,7 @@ wh_status_t wh_chain_inverse(const wh_chain_t *chain, const wh_pose_t *base_from
     wh_real_t found[WH_CHAIN_AXES] = {0};
     found[WH_CHAIN_RAIL] = choice->rail;
     found[WH_CHAIN_FLIP] = choice->flip;
-    const wh_pose_t wrist = wrist_of(chain, base_from_effector, choice);
-    wh_plane_t plane;
-    if (!find_plane(chain, &wrist, found, &plane)) {
-        return WH_STATUS_NOT_LEVEL;
-    }
-    status = chain->kind == WH_CHAIN_SCARA ? find_scara(chain, &plane, choice->elbow, near_q, found)
-                                           : find_polar(chain, &plane, near_q, found);
-    if (status == WH_OK) {
-        status = wh_chain_check_travel(chain, found);
-    }
+    status = find(chain, base_from_effector, choice, near_q, found);
     for (size_t axis = 0; status == WH_OK && axis < WH_CHAIN_AXES; ++axis) {
         q[axis] = found[axis];
     }

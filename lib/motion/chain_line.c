@@ -7,20 +7,24 @@
 
 static const size_t plane_axes[WH_ROBOT_AXES] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_Z, WH_CHAIN_YAW};
 
+static wh_status_t check_caps(const wh_line_caps_t *caps) {
+    if (!wh_real_is_finite(caps->speed) || !wh_real_is_finite(caps->acceleration)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
+}
+
 static wh_status_t check_arguments(const wh_chain_line_t *line, const wh_chain_t *chain,
                                    const wh_real_t from_q[], const wh_vec3_t *travel,
                                    const wh_line_caps_t *caps) {
     if (line == NULL || chain == NULL || from_q == NULL || travel == NULL || caps == NULL) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!wh_real_is_finite(wh_vec3_dot(travel, travel)) || !wh_real_is_finite(caps->speed) ||
-        !wh_real_is_finite(caps->acceleration)) {
+    if (!wh_real_is_finite(wh_vec3_dot(travel, travel))) {
         return WH_STATUS_NOT_FINITE;
     }
-    if (caps->speed < 0 || caps->acceleration < 0) {
-        return WH_STATUS_OUT_OF_RANGE;
-    }
-    return wh_chain_check_travel(chain, from_q);
+    const wh_status_t status = check_caps(caps);
+    return status == WH_OK ? wh_chain_check_travel(chain, from_q) : status;
 }
 
 /* The travel as a step in the column's plane, and along the column. */
@@ -82,7 +86,8 @@ static wh_status_t plan_along_arm(wh_line_t *path, const wh_chain_t *chain, cons
     const wh_vec3_t along = wh_vec3(step->x * c + step->y * s, 0, step->z);
     const wh_status_t status = wh_line_plan_capped(path, &robot, from, &along, caps);
     if (status == WH_OK) {
-        path->from[WH_AXIS_THETA] = path->to[WH_AXIS_THETA] = from_q[WH_CHAIN_THETA];
+        path->from[WH_AXIS_THETA] = from_q[WH_CHAIN_THETA];
+        path->to[WH_AXIS_THETA] = from_q[WH_CHAIN_THETA];
         path->direction.y = 0;
     }
     return status;

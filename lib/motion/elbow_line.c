@@ -112,13 +112,15 @@ static wh_real_t turning_value(const wh_chain_line_t *line, size_t joint, wh_rea
     wh_jet_t joints[JOINTS];
     joints_at(line, from, joints);
     const bool rises = joints[joint].first > 0;
+    wh_real_t before = from;
+    wh_real_t behind = to;
     for (int i = 0; i < HALVINGS; ++i) {
-        const wh_real_t middle = from + (to - from) / 2;
+        const wh_real_t middle = before + (behind - before) / 2;
         joints_at(line, middle, joints);
         if ((joints[joint].first > 0) == rises) {
-            from = middle;
+            before = middle;
         } else {
-            to = middle;
+            behind = middle;
         }
     }
     return joints[joint].value;

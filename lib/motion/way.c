@@ -20,7 +20,7 @@ typedef struct {
     const wh_limits_t *limits; /* of R */
     wh_real_t from, to, reach; /* mm */
     wh_real_t turn;            /* s that theta and yaw need at least */
-} task_t;
+} trip_t;
 
 /* When a profile from `begin` passes `place`, which lies between its ends. */
 static wh_real_t time_at(const wh_profile_t *profile, wh_real_t begin, wh_real_t place) {
@@ -38,7 +38,7 @@ static wh_real_t time_at(const wh_profile_t *profile, wh_real_t begin, wh_real_t
     return rises ? early : late;
 }
 
-static wh_status_t plan_legs(const task_t *task, wh_real_t inner, legs_t *legs) {
+static wh_status_t plan_legs(const trip_t *task, wh_real_t inner, legs_t *legs) {
     wh_status_t status = wh_profile_plan(&legs->in, inner - task->from, task->limits);
     if (status == WH_OK) {
         status = wh_profile_plan(&legs->out, task->to - inner, task->limits);
@@ -52,12 +52,12 @@ static wh_status_t plan_legs(const task_t *task, wh_real_t inner, legs_t *legs) 
 }
 
 /* How long R waits at its inner position. */
-static wh_real_t wait_of(const task_t *task, const legs_t *legs) {
+static wh_real_t wait_of(const trip_t *task, const legs_t *legs) {
     const wh_real_t inside = (legs->in.duration - legs->came_in) + legs->goes_out;
     return task->turn > inside ? task->turn - inside : 0;
 }
 
-static wh_real_t duration_of(const task_t *task, wh_real_t inner, legs_t *legs, wh_status_t *status) {
+static wh_real_t duration_of(const trip_t *task, wh_real_t inner, legs_t *legs, wh_status_t *status) {
     if (*status == WH_OK) {
         *status = plan_legs(task, inner, legs);
     }
@@ -66,13 +66,13 @@ static wh_real_t duration_of(const task_t *task, wh_real_t inner, legs_t *legs, 
 
 /* The best inner position so far. */
 typedef struct {
-    const task_t *task;
+    const trip_t *task;
     wh_real_t inner, shortest;
     wh_status_t status;
-} search_t;
+} inner_t;
 
 /* Returns the duration by way of `inner`. */
-static wh_real_t try_inner(search_t *search, wh_real_t inner) {
+static wh_real_t try_inner(inner_t *search, wh_real_t inner) {
     legs_t legs;
     const wh_real_t duration = duration_of(search->task, inner, &legs, &search->status);
     if (duration < search->shortest) {
@@ -83,8 +83,8 @@ static wh_real_t try_inner(search_t *search, wh_real_t inner) {
 }
 
 /* An end that is inside already may be the inner position itself. */
-static void try_ends(search_t *search) {
-    const task_t *task = search->task;
+static void try_ends(inner_t *search) {
+    const trip_t *task = search->task;
     (void)try_inner(search, task->reach);
     if (task->from < task->reach) {
         (void)try_inner(search, task->from);
@@ -94,7 +94,7 @@ static void try_ends(search_t *search) {
     }
 }
 
-static void try_between(search_t *search, wh_real_t least, wh_real_t most) {
+static void try_between(inner_t *search, wh_real_t least, wh_real_t most) {
     const wh_real_t golden = WH_REAL(0.61803398874989484820);
     const wh_real_t apart = (most - least) / POSITIONS;
     for (int i = 0; i < POSITIONS; ++i) {
@@ -136,7 +136,7 @@ static wh_status_t plan_turn(wh_way_t *way, const wh_robot_t *robot, wh_real_t *
 }
 
 /* Completes a way from its legs: R waits for the turn, and for Z. */
-static wh_status_t complete(wh_way_t *way, const task_t *task, const legs_t *legs) {
+static wh_status_t complete(wh_way_t *way, const trip_t *task, const legs_t *legs) {
     const wh_real_t legs_alone = legs->in.duration + legs->out.duration;
     const wh_real_t waits = wh_real_max(wait_of(task, legs), way->Z.duration - legs_alone);
     way->in = legs->in;
@@ -169,8 +169,8 @@ static wh_status_t move_at_once(wh_way_t *way, const wh_robot_t *robot, wh_real_
     return status == WH_OK ? stretch(&way->Z, way->duration) : status;
 }
 
-static wh_status_t go_in_and_out(wh_way_t *way, const wh_robot_t *robot, const task_t *task) {
-    search_t search = {task, task->reach, (wh_real_t)FLT_MAX, WH_OK};
+static wh_status_t go_in_and_out(wh_way_t *way, const wh_robot_t *robot, const trip_t *task) {
+    inner_t search = {task, task->reach, (wh_real_t)FLT_MAX, WH_OK};
     const wh_real_t least = robot->travel[WH_AXIS_R].min;
     try_ends(&search);
     try_between(&search, least < task->reach ? least : task->reach, task->reach);
@@ -207,7 +207,7 @@ wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t 
     memset(&planned, 0, sizeof planned);
     memcpy(planned.from, from, sizeof planned.from);
     memcpy(planned.to, to, sizeof planned.to);
-    task_t task = {&robot->limits[WH_AXIS_R], from[WH_AXIS_R], to[WH_AXIS_R], reach, 0};
+    trip_t task = {&robot->limits[WH_AXIS_R], from[WH_AXIS_R], to[WH_AXIS_R], reach, 0};
     status = plan_turn(&planned, robot, &task.turn);
     if (status == WH_OK) {
         const bool is_inside = task.from <= reach && task.to <= reach;

@@ -62,7 +62,7 @@ static json_t *beams_at(const wh_layout_t *layout, size_t s) {
     const wh_latch_order_t order = wh_layout_beams_at(layout, s);
     json_t *list = json_array();
     for (int32_t i = 0; i < order.count; ++i) {
-        (void)json_array_append_new(list, beam(layout, (size_t)(order.first + i)));
+        (void)json_array_append_new(list, beam(layout, (size_t)order.first + (size_t)i));
     }
     return list;
 }

@@ -278,7 +278,8 @@ static uint64_t hash_latches(uint64_t hash, const wh_latches_t *all) {
             i < all->waiting_count ? &all->waiting[i] : &all->latches[i - all->waiting_count];
         uint64_t part;
         memcpy(&part, &latch->part, sizeof part);
-        hash = hash_word(hash, (uint64_t)(2 * (int64_t)latch->beam + (int64_t)latch->edge));
+        const int64_t which = 2 * (int64_t)latch->beam + (int64_t)latch->edge;
+        hash = hash_word(hash, (uint64_t)which);
         hash = hash_word(hash, (uint64_t)latch->slice);
         hash = hash_word(hash, part);
     }

@@ -236,7 +236,10 @@ static void pass_scan(stream_t *stream, wh_scan_t *scan) {
 
 /* 21 bytes. */
 static void pass_latch(stream_t *stream, wh_latch_t *latch) {
-    uint64_t edge = latch->edge == WH_CROSSING_OUT ? 1 : 0;
+    uint64_t edge = 0;
+    if (latch->edge == WH_CROSSING_OUT) {
+        edge = 1;
+    }
     pass_int(stream, &latch->beam);
     pass_bytes(stream, &edge, 1);
     pass_time(stream, &latch->slice);

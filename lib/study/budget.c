@@ -256,6 +256,10 @@ static bool search_soundly(const wh_budget_t *budget, search_t *search, int32_t 
     return sound;
 }
 
+static int32_t lesser_inside(const wh_budget_error_t *error) {
+    return error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside : error->sides[1].inside;
+}
+
 static void search_error(wh_budget_player_t *player, void *user, size_t index) {
     const errors_t *errors = user;
     wh_budget_t *budget = errors->budget;
@@ -277,8 +281,7 @@ static void search_error(wh_budget_player_t *player, void *user, size_t index) {
         error->has_effect = error->has_effect || search.differs;
         error->known = error->known && !search.ended;
     }
-    error->width =
-        error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside : error->sides[1].inside;
+    error->width = lesser_inside(error);
 }
 
 static bool tell_unsound(const wh_budget_t *budget, const errors_t *errors, size_t count) {

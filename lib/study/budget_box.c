@@ -294,6 +294,15 @@ static void try_point(wh_budget_player_t *player, void *user, size_t index) {
         !make_point(boxing, boxing->first + index, point) || wh_budget_passes(player, point, boxing->level);
 }
 
+/* `batch` if all passed. */
+static size_t first_failed(const boxing_t *boxing, size_t batch) {
+    size_t failed = 0;
+    while (failed < batch && boxing->passes[failed]) {
+        ++failed;
+    }
+    return failed;
+}
+
 /* Tries all points of the level's list, each in the box as it then is. False if there are no threads;
  * `*clean` becomes false if one failed. */
 static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
@@ -307,10 +316,7 @@ static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
             free(ignored);
             return false;
         }
-        size_t failed = 0;
-        while (failed < batch && boxing->passes[failed]) {
-            ++failed;
-        }
+        const size_t failed = first_failed(boxing, batch);
         if (failed < batch) {
             shrink(boxing, boxing->points + failed * boxing->size);
             *clean = false;

@@ -35,21 +35,26 @@ static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
     }
 }
 
+static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        add_spreads(list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        add_spreads(list, WH_CAUSE_STATION, s, &errors->stations[s]);
+    }
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        add(list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
+    }
+    add(list, WH_CAUSE_VACUUM, 0, 0, errors->vacuum.width);
+    for (size_t w = 0; errors->rims && w < layout->wafer_count; ++w) {
+        add_rim(list, layout, w);
+    }
+}
+
 wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
-    const wh_errors_t *errors = layout->errors;
     list_t list = {wh_array_new(1, sizeof *list.causes), 0, 1};
-    for (size_t w = 0; errors && w < layout->wafer_count; ++w) {
-        add_spreads(&list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
-    }
-    for (size_t s = 0; errors && s < layout->station_count; ++s) {
-        add_spreads(&list, WH_CAUSE_STATION, s, &errors->stations[s]);
-    }
-    for (size_t g = 0; errors && g < layout->machine.gripper_count; ++g) {
-        add(&list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
-    }
-    add(&list, WH_CAUSE_VACUUM, 0, 0, errors ? errors->vacuum.width : 0);
-    for (size_t w = 0; errors && errors->rims && w < layout->wafer_count; ++w) {
-        add_rim(&list, layout, w);
+    if (layout->errors) {
+        add_all(&list, layout, layout->errors);
     }
     *count = list.count;
     return list.causes;

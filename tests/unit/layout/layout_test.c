@@ -564,6 +564,17 @@ static bool is_near(double value, double middle, double width) {
     return fabs(value - middle) <= width + 1e-12;
 }
 
+static void assert_within_widths(const wh_rim_t *rim, const wh_rim_t *own, size_t w) {
+    assert_int_equal(wh_rim_validate(rim, NULL), WH_OK);
+    assert_true(is_near(rim->radius, 150, 0.1) && is_near(rim->bow, 0, 0.3));
+    assert_true(is_near(rim->saddle, 0, 0.2) && rim->transmission >= 0 && rim->transmission <= 0.3);
+    assert_true(is_near(rim->notch.depth, own->notch.depth, own->notch.depth > 0 ? 0.125 : 0));
+    assert_true(is_near(rim->flats[0].length, own->flats[0].length, own->flats[0].length > 0 ? 0.5 : 0));
+    assert_int_equal(rim->chip_count, w == 2 ? WH_RIM_CHIPS : 1);
+    assert_true(w == 2 || (rim->chips[0].depth <= 0.4 && rim->chips[0].width >= rim->chips[0].depth));
+    assert_true(w != 1 || is_near(rim->chips[0].width, 4 * rim->chips[0].depth, 0.01));
+}
+
 /* Every trial's rim is one, within the widths; what a wafer has not is not drawn. */
 static void every_rim_that_is_drawn_is_one(void **state) {
     (void)state;
@@ -579,15 +590,7 @@ static void every_rim_that_is_drawn_is_one(void **state) {
             double drawn[WH_RIM_DRAWS];
             wh_errors_draw_rim(errors, &trial, w, own, drawn);
             assert_true(wh_rim_draw_apply(drawn, &rim));
-            assert_int_equal(wh_rim_validate(&rim, NULL), WH_OK);
-            assert_true(is_near(rim.radius, 150, 0.1) && is_near(rim.bow, 0, 0.3));
-            assert_true(is_near(rim.saddle, 0, 0.2) && rim.transmission >= 0 && rim.transmission <= 0.3);
-            assert_true(is_near(rim.notch.depth, own->notch.depth, own->notch.depth > 0 ? 0.125 : 0));
-            assert_true(
-                is_near(rim.flats[0].length, own->flats[0].length, own->flats[0].length > 0 ? 0.5 : 0));
-            assert_int_equal(rim.chip_count, w == 2 ? WH_RIM_CHIPS : 1);
-            assert_true(w == 2 || (rim.chips[0].depth <= 0.4 && rim.chips[0].width >= rim.chips[0].depth));
-            assert_true(w != 1 || is_near(rim.chips[0].width, 4 * rim.chips[0].depth, 0.01));
+            assert_within_widths(&rim, own, w);
             least = fmin(least, w == 0 ? rim.notch.depth : least);
             most = fmax(most, w == 0 ? rim.notch.depth : most);
         }
