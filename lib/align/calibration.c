@@ -128,8 +128,8 @@ static void add(wh_normal_t *normal, const double *by, double off, double square
     *mismatch += off * off / square;
 }
 
-/* Three equations of a scan: its centre's x and y, its radius. Unknown are, in this order, the first centre's x and
- * y, offset, gain, latency, zero, each as what is still to be added. */
+/* Three equations of a scan: its centre's x and y, its radius. Unknown are, in this order, the first centre's
+ * x and y, offset, gain, latency, zero, each as what is still to be added. */
 static void add_scan(const task_t *task, const wh_calibration_scan_t *scan, const wh_circle_t *circle,
                      const wh_calibration_t *now, wh_normal_t *normal, double *mismatch) {
     const double x = now->x + scan->way_x;

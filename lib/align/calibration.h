@@ -4,10 +4,10 @@
  * them while the chuck turns either way. How far it was moved from the first place is known: a robot carried
  * it, or a stage. What the four errors do to the centre c and the radius that a scan tells:
  *
- *     latency t   turns c about the axis by the chuck's speed times t, against it for the other way of turning
+ *     latency t   turns c about the axis by the chuck's speed times t, the other way if it turns so
  *     offset d    turns c by -d / R, whichever way the chuck turns
  *     gain g      makes c shorter by the part g
- *     zero z      makes the radius smaller by z, and g by g times the rim's distance from the line's inner end
+ *     zero z      makes the radius smaller by z, and g by g times the rim's distance from the inner end
  *
  * So both ways of turning tell the latency, and the way from place to place tells offset and gain: its
  * direction the one, its length the other. A way that is wrong by w in a length of L makes each centre at an
@@ -15,9 +15,9 @@
  * other. The effects above are of first order; the scans are corrected and fitted again until nothing moves.
  *
  * What was found goes where a controller keeps what it believes: `believed` of wh_sensor_point, and its
- * offset into each wh_rim_scan_t. Lengths in mm, times in s, angles in rad, in the chuck's frame, which at turn
- * 0 is the station's: a way that was made at another turn is to be turned back by that. No heap, no state;
- * the same bits on every machine.
+ * offset into each wh_rim_scan_t. Lengths in mm, times in s, angles in rad, in the chuck's frame, which at
+ * turn 0 is the station's: a way that was made at another turn is to be turned back by that. No heap, no
+ * state; the same bits on every machine.
  *
  * Bytes of stack on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12 (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
@@ -58,11 +58,11 @@ typedef struct {
  * and `rays` are the caller's memory, each as many as the longest scan has.
  *
  * WH_OK; or, `calibration` then unchanged: WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or
- * WH_STATUS_OUT_OF_RANGE for a number; WH_STATUS_TOO_FEW_SAMPLES for fewer scans than WH_CALIBRATION_LEAST, or
- * for what wh_circle_fit says so, as WH_STATUS_BAD_SCAN is; WH_STATUS_CENTRE_NOT_SURE for a scan that tells no
- * circle, for ways or speeds that do not differ, for an error out of the range of wh_sensor_error_t, and for
- * scans that contradict each other as chance does once in a million. *bad, which may be
- * null, is the scan, or WH_NONE if it is none alone. Cost: wh_circle_fit five times a scan. */
+ * WH_STATUS_OUT_OF_RANGE for a number; WH_STATUS_TOO_FEW_SAMPLES for fewer scans than WH_CALIBRATION_LEAST,
+ * or for what wh_circle_fit says so, as WH_STATUS_BAD_SCAN is; WH_STATUS_CENTRE_NOT_SURE for a scan that
+ * tells no circle, for ways or speeds that do not differ, for an error out of the range of wh_sensor_error_t,
+ * and for scans that contradict each other as chance does once in a million. *bad, which may be null, is the
+ * scan, or WH_NONE if it is none alone. Cost: wh_circle_fit five times a scan. */
 wh_status_t wh_calibration_solve(const wh_sensor_t *sensor, double radius, double sd_way,
                                  const wh_calibration_scan_t *scans, size_t count, wh_rim_point_t *points,
                                  wh_rim_ray_t *rays, wh_calibration_t *calibration, int32_t *bad)

@@ -26,7 +26,8 @@ bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_liste
  * reads may be the script's. */
 bool wh_log_arguments_are_set_read(const wh_log_run_t *run);
 
-/* The same for whom the layout alone reads them: true also if none are given. Else standard error says why. */
+/* The same for whom the layout alone reads them: true also if none are given. Else standard error says
+ * why. */
 bool wh_log_arguments_check_set(const wh_log_run_t *run);
 
 /* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay

@@ -45,8 +45,8 @@ extern const wh_option_t wh_run_options[];
 /* Why errors do not go with what tells of the cell. */
 #define WH_RUN_ERRORS_ALONE "--error does not go with %s, which tells of the cell as its layout says"
 
-/* Errors that are given, for a run in this process: also into a wh_run_arguments_t. The check refuses one that is
- * given twice, and those beside --segments. */
+/* Errors that are given, for a run in this process: also into a wh_run_arguments_t. The check refuses one
+ * that is given twice, and those beside --segments. */
 extern const wh_option_t wh_run_error_options[];
 void wh_run_errors_check(const void *filled, struct argp_state *state);
 

@@ -102,8 +102,8 @@ typedef struct {
     /* its tolerance says how near a gripper comes to a wafer that it may take */
     const wh_grasp_config_t *grasp;
     wh_real_t limits[WH_CLEARANCES]; /* a gap below it gives WH_EVENT_TOO_CLOSE; 0: none */
-    /* For each part, then for each wafer: it goes where it went in a run of which the events are known. Pairs of
-     * two such are not judged, and clearances and curves not kept: the events alone count. Null: all are
+    /* For each part, then for each wafer: it goes where it went in a run of which the events are known. Pairs
+     * of two such are not judged, and clearances and curves not kept: the events alone count. Null: all are
      * judged. */
     const bool *known;
 } wh_world_config_t;

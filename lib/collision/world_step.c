@@ -42,7 +42,8 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     }
 }
 
-/* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of them. */
+/* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of
+ * them. */
 static bool hold_each_other(const wh_look_t *look, const wh_mover_t *a, const wh_mover_t *b) {
     const wh_world_config_t *config = look->world->config;
     const bool a_hangs = (size_t)a->part < config->part_count;

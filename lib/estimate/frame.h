@@ -1,12 +1,12 @@
 /* A station's frame from points: where the station stands in base, from points that were touched there
  * and whose places on the station are known.
  *
- * The frame is the rotation and shift that bring the known points nearest to the touched ones, in the
- * sense of least squares: by the singular value decomposition of their products (W. Kabsch, 1976; S.
- * Umeyama, 1991, whose sign keeps it from mirroring). A point that contradicts the others is set aside: one
- * that lies farther from where they have it than WH_FRAME_ASIDE_SDS standard deviations, more where these are
- * known from few points. The others count alike. Standard deviations come from their residuals, of which there
- * are 3 used - 6 more than unknowns: of three points they are rough, and none can be set aside.
+ * The frame is the rotation and shift that bring the known points nearest to the touched ones, in the sense
+ * of least squares: by the singular value decomposition of their products (W. Kabsch, 1976; S. Umeyama, 1991,
+ * whose sign keeps it from mirroring). A point that contradicts the others is set aside: one that lies
+ * farther from where they have it than WH_FRAME_ASIDE_SDS standard deviations, more where these are known
+ * from few points. The others count alike. Standard deviations come from their residuals, of which there are
+ * 3 used - 6 more than unknowns: of three points they are rough, and none can be set aside.
  *
  * Lengths in mm, angles in rad. */
 #ifndef WH_ESTIMATE_FRAME_H

@@ -1,10 +1,11 @@
-/* How far out the robot's arm may be while it turns, so that blades and wafers stay within the layout's circle.
+/* How far out the robot's arm may be while it turns, so that blades and wafers stay within the layout's
+ * circle.
  *
- * A layout's `robot.transit` is a radius about theta's axis, mm. A point p of a blade is at R e_x + Rz(yaw) p from that axis, seen
- * along the arm. With p at the distance d and in the direction a, it is within the circle while
- * R <= sqrt(transit^2 - d^2 (1 - c^2)) - d c, c being the largest cos(a + yaw) on the way. Looked at are the parts that hang on
- * grippers of the robot, and on each of these grippers a wafer, if there is one or not. What is not polygonal
- * is taken by an outline of 48 corners that encloses it.
+ * A layout's `robot.transit` is a radius about theta's axis, mm. A point p of a blade is at R e_x + Rz(yaw) p
+ * from that axis, seen along the arm. With p at the distance d and in the direction a, it is within the
+ * circle while R <= sqrt(transit^2 - d^2 (1 - c^2)) - d c, c being the largest cos(a + yaw) on the way.
+ * Looked at are the parts that hang on grippers of the robot, and on each of these grippers a wafer, if there
+ * is one or not. What is not polygonal is taken by an outline of 48 corners that encloses it.
  *
  * All functions are reentrant. They end the program if out of memory.
  */

@@ -1,8 +1,8 @@
-/* What a scan of a wafer's edge says of the wafer on the chuck: the estimate of align/align.h over the samples
- * that the states have brought (edge_scan.c).
+/* What a scan of a wafer's edge says of the wafer on the chuck: the estimate of align/align.h over the
+ * samples that the states have brought (edge_scan.c).
  *
- * Motion control knows the sensor and the wafers as the layout says they should be. What is truly off, such as
- * a sensor's latency or one wafer's own rim, it does not know. A sample that never came counts as one that
+ * Motion control knows the sensor and the wafers as the layout says they should be. What is truly off, such
+ * as a sensor's latency or one wafer's own rim, it does not know. A sample that never came counts as one that
  * something covers: what is not seen is not told to be without a notch. */
 #include <string.h>
 
@@ -95,9 +95,9 @@ static void push_sights(lua_State *L, const sights_t *sights) {
     wh_lua_set_integer(L, "missed", sights->missed);
 }
 
-/* native.estimate_edge(with marks, glass): what the last scan says of its wafer, all in the chuck's frame, mm and rad:
- * `verdict`, the name of a status; the numbers of samples, by what they see; the `limits`; with a circle its
- * centre, `x` and `y`; with a verdict of OK and a mark the `mark` and its `direction`. */
+/* native.estimate_edge(with marks, glass): what the last scan says of its wafer, all in the chuck's frame, mm
+ * and rad: `verdict`, the name of a status; the numbers of samples, by what they see; the `limits`; with a
+ * circle its centre, `x` and `y`; with a verdict of OK and a mark the `mark` and its `direction`. */
 static int estimate_edge(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_edge_t *edge = &mcs->edge;

@@ -97,10 +97,9 @@ typedef bool wh_decisions_watch_t(void *user, const wh_event_t events[], size_t 
 /* Plays the decisions of a run against the simulator of a trial in the same layout, which was initialised
  * with `trial_cell` and not stepped. True if all that is read back is as it was in the run: the simulator is
  * then in the very state in which running the script for that trial would leave it, and `watch` has seen each
- * event. False if something was read differently, if the simulator refused a slice, or if enough was seen: all
- * is then void.
- * Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults and nobody looking,
- * those in which each gripper keeps its valve and either is closed or holds a wafer. */
+ * event. False if something was read differently, if the simulator refused a slice, or if enough was seen:
+ * all is then void. Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults
+ * and nobody looking, those in which each gripper keeps its valve and either is closed or holds a wafer. */
 bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
                        wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user);
 

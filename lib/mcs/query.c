@@ -172,8 +172,8 @@ static int read_slot_pose(lua_State *L) {
 }
 
 /* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy,
- * dz, in degrees the angle, the whole turn, and the heading: the direction of the second's x about the first's
- * z, from the first's x. */
+ * dz, in degrees the angle, the whole turn, and the heading: the direction of the second's x about the
+ * first's z, from the first's x. */
 static int relate(lua_State *L) {
     const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
     wh_pose_t poses[2];

@@ -6,9 +6,9 @@
  *
  * A SCARA's line is planned as one axis first, with limits that suit the joints' first derivatives along it.
  * Then speed, acceleration and jerk of each joint are computed by the chain rule at 17 instants of each phase
- * of the profile, or at up to 1025 where they change quickly. The largest of each phase is raised by a quarter
- * of the largest second difference, for what may lie between two instants. If a limit is exceeded, the whole
- * line is slowed uniformly.
+ * of the profile, or at up to 1025 where they change quickly. The largest of each phase is raised by a
+ * quarter of the largest second difference, for what may lie between two instants. If a limit is exceeded,
+ * the whole line is slowed uniformly.
  *
  * A line is a plain struct without pointers: copy it freely. All functions are reentrant.
  */
@@ -40,8 +40,8 @@ typedef struct {
  *   WH_STATUS_NOT_FINITE
  *   WH_STATUS_OUT_OF_RANGE    a negative cap
  *   WH_STATUS_NOT_ALONG_ARM   TRZ: the line leads aside by more than WH_SLACK_MM
- *   WH_STATUS_OUT_OF_REACH    R or the elbow leaves its travel, or the line its arm's reach, anywhere on it; a
- *                             SCARA's elbow comes closer than 0.01 rad to straight or folded
+ *   WH_STATUS_OUT_OF_REACH    R or the elbow leaves its travel, or the line its arm's reach, anywhere on
+ *                             it; a SCARA's elbow comes closer than 0.01 rad to straight or folded
  *   WH_STATUS_LIMIT_EXCEEDED  another axis leaves its travel
  *   WH_STATUS_BAD_LIMITS      see wh_line_plan
  * Cost: about 0.5 us; 40 us for a SCARA, up to 2 ms past its shoulder. */

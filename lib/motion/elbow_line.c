@@ -21,7 +21,8 @@
 #define MOST_INSTANTS 1024
 #define HALVINGS 40
 
-/* Of second differences, as a share of the largest value: below, what lies between instants is bounded well. */
+/* Of second differences, as a share of the largest value: below, what lies between instants is bounded
+ * well. */
 #define SMOOTH WH_REAL(0.02)
 
 /* The joints, as they stand in arrays here. */
@@ -59,8 +60,8 @@ void wh_elbow_line_axes(const wh_chain_line_t *line, wh_real_t along, wh_real_t 
     q[WH_CHAIN_Z] = line->from[WH_CHAIN_Z] + along * line->path.direction.z;
 }
 
-/* The joints with their derivatives by the way. With C = 2 L1 L2 cos elbow and S = 2 L1 L2 sin elbow, the lead
- * is the angle of (2 L1^2 + C, S). */
+/* The joints with their derivatives by the way. With C = 2 L1 L2 cos elbow and S = 2 L1 L2 sin elbow, the
+ * lead is the angle of (2 L1^2 + C, S). */
 static void joints_at(const wh_chain_line_t *line, wh_real_t along, wh_jet_t joints[JOINTS]) {
     const wh_real_t *L = line->links;
     wh_real_t q[WH_CHAIN_AXES];

@@ -47,8 +47,8 @@ static inline wh_jet_t wh_jet_root(wh_jet_t a) {
     return r;
 }
 
-/* The derivatives of the angle of (x, y), whose value is given: angle' = (x y' - y x') / (x^2 + y^2). Numerator
- * and denominator are needed to their second derivatives only. */
+/* The derivatives of the angle of (x, y), whose value is given: angle' = (x y' - y x') / (x^2 + y^2).
+ * Numerator and denominator are needed to their second derivatives only. */
 static inline wh_jet_t wh_jet_angle(wh_real_t value, wh_jet_t x, wh_jet_t y) {
     const wh_jet_t dx = {x.first, x.second, x.third, 0};
     const wh_jet_t dy = {y.first, y.second, y.third, 0};

@@ -90,10 +90,10 @@ wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
  * slice to the next. Refused, the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
- *   WH_STATUS_BAD_SEGMENT     a WAY of a track that takes none, or one that turns a chuck; kind, gripper, valve, speed, acceleration or seconds out of range; a motion of
- *                             over 1e6 s
+ *   WH_STATUS_BAD_SEGMENT     a WAY of a track that takes none, or one that turns a chuck; kind, gripper,
+ *                             valve, speed, acceleration or seconds out of range; a motion of over 1e6 s
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R outside its travel
- *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line; a WAY's reach below it
+ *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line; or a WAY's reach
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
  * Cost: about 1 us for a move, 2 us for a line, 40 us for a way.
  */

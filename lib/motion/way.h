@@ -3,14 +3,14 @@
  * While theta or yaw moves, R is at most `reach`. R goes from where it is to an inner position at or below
  * `reach` and on to its target; theta and yaw move from the instant when R has come in to the one when R goes
  * out. If they need longer than R is inside, R waits at its inner position; if R's way inside takes longer
- * than they need, they are slowed to fit it. Z moves over the whole way. Every axis keeps its limits and is at rest
- * at both ends, R also at the inner position.
+ * than they need, they are slowed to fit it. Z moves over the whole way. Every axis keeps its limits and is
+ * at rest at both ends, R also at the inner position.
  *
  * The further R goes in, the less it has begun to brake when it passes `reach`, and the longer its way. The
  * inner position with the shortest duration is searched for: at 33 positions from R's travel to `reach`, then
  * by golden section about the best of them. On the test's ways that is within 0.1 % of the best of 200
- * positions, and for a turn that R need not wait for within 3 % of t_in + t_turn + t_out, where t_in and t_out
- * are those of an arm that never brakes before it has come in.
+ * positions, and for a turn that R need not wait for within 3 % of t_in + t_turn + t_out, where t_in and
+ * t_out are those of an arm that never brakes before it has come in.
  *
  * If R begins and ends at or below `reach`, all axes move at once, from the first instant to the last.
  *

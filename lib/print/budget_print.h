@@ -11,10 +11,10 @@
  *            moves the rim of a wafer; null if at_least), and for down and up: { inside, outside (with their
  *            signs; outside null: nothing failed up to the limit), inside_error, outside_error (what run
  *            --error takes; null: none), trials, widest_step, why }
- *   all:     null if not ok; of all errors together: share (of each width), proved (false: nothing is), half (station, error,
- *            half: up and down), tried and tried_without_collisions (how many points of the box, by kind:
- *            alike, opposite, alone, corner, inside, beside), inside_errors, outside_errors (what run --error
- *            takes), why
+ *   all:     null if not ok; of all errors together: share (of each width), proved (false: nothing is), half
+ *            (station, error, half: up and down), tried and tried_without_collisions (how many points of the
+ *            box, by kind: alike, opposite, alone, corner, inside, beside), inside_errors, outside_errors
+ *            (what run --error takes), why
  *   tightest, next: station, error, width, rim_mm (null: none, or not ok)
  * and why is null or { name, error (its number, or null), line (or null), command (or ""), text }.
  */

@@ -42,8 +42,8 @@
  *                verdict (math/status.def; 0: sure), sure, words [text], circle { x, y, radius, sd_centre,
  *                sd_radius } (null: none), mark { kind, at (where the axis sees it), turn, sd_turn } (null:
  *                none), and for each sample that was taken theta (in which the sensor looked), rho (null:
- *                missing, or no rim), residual (rho less the circle's; null: no circle), counts (1; 0: not for
- *                the circle) }]
+ *                missing, or no rim), residual (rho less the circle's; null: no circle), counts (1; 0: not
+ *                for the circle) }]
  *   scans_left_out   how many scans more there were than a document holds
  *   scene        glTF 2.0 (view/scene.h), without animation
  */

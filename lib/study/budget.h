@@ -30,8 +30,8 @@ typedef struct {
      * nobody. */
     void (*tell)(void *user, const char *what, size_t done, size_t total);
     void *user;
-    /* Asked before each piece of work, from any thread: true ends the search, and `incomplete` is then set. Null:
-     * it goes on to its end. */
+    /* Asked before each piece of work, from any thread: true ends the search, and `incomplete` is then set.
+     * Null: it goes on to its end. */
     bool (*is_enough)(void);
 } wh_budget_options_t;
 
@@ -104,9 +104,9 @@ typedef struct {
 } wh_budget_t;
 
 /* Finds the budget of an opened study whose run without errors is ok. To be freed. False, with the reason on
- * stderr, if there are no threads or if a witness does not do what was found; and without one if it was ended,
- * as `incomplete` says. Deterministic: the same options
- * but for threads give the same result. Cost: some 500 trials a station, and some thousand of the box. */
+ * stderr, if there are no threads or if a witness does not do what was found; and without one if it was
+ * ended, as `incomplete` says. Deterministic: the same options but for threads give the same result. Cost:
+ * some 500 trials a station, and some thousand of the box. */
 bool wh_budget_find(wh_budget_t *budget, const wh_study_t *study, const wh_budget_options_t *options);
 void wh_budget_free(wh_budget_t *budget);
 

@@ -215,8 +215,8 @@ static void try_place(wh_budget_player_t *player, void *user, size_t index) {
     free(point);
 }
 
-/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`. False
- * if there are no threads. */
+/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`.
+ * False if there are no threads. */
 static bool go_back(boxing_t *boxing, int32_t end[]) {
     ray_t ray = {.boxing = boxing, .end = end};
     for (size_t i = 0; i < boxing->size; ++i) {

@@ -13,8 +13,8 @@ typedef struct {
 /* Does a piece of work, number `index`. */
 typedef void wh_budget_work_t(wh_budget_player_t *player, void *user, size_t index);
 
-/* Does pieces 0 to count - 1, each once, on all threads, in any order. False if there are none, or if some were
- * left out because it was enough. `what` is told; null: nothing is. */
+/* Does pieces 0 to count - 1, each once, on all threads, in any order. False if there are none, or if some
+ * were left out because it was enough. `what` is told; null: nothing is. */
 bool wh_budget_share_out(wh_budget_crew_t *crew, size_t count, wh_budget_work_t *work, void *user,
                          const char *what);
 

@@ -5,8 +5,8 @@
 
 #include "tally.h"
 
-/* Where the collisions of a trial that is replayed are looked for: a world with the trial's stations. Of it only
- * events are known. */
+/* Where the collisions of a trial that is replayed are looked for: a world with the trial's stations. Of it
+ * only events are known. */
 typedef struct {
     wh_part_t *parts;
     char (*names)[WH_PART_NAME_SIZE];
@@ -28,8 +28,8 @@ typedef struct {
     wh_script_run_t run; /* while a script runs whole */
     wh_script_run_options_t options;
     uint64_t hash; /* of the last state that a whole run ended in */
-    /* Replays have collisions looked for, of what stands or lies elsewhere than in the run without errors; that
-     * must be ok, and nothing but stations may be off. */
+    /* Replays have collisions looked for, of what stands or lies elsewhere than in the run without errors;
+     * that must be ok, and nothing but stations may be off. */
     bool looks_for_collisions;
     bool grips_alike; /* and without that it had the events of that run: wafers go where they went there */
     bool ends_at_complaint; /* what comes after an event that is a complaint need not be replayed */

@@ -4,8 +4,8 @@
 
 #include <stdbool.h>
 
-/* From here on SIGINT, SIGTERM and SIGHUP do not end the program: wh_interrupt_came tells of them. One that was
- * ignored stays ignored, as for a program in the background. */
+/* From here on SIGINT, SIGTERM and SIGHUP do not end the program: wh_interrupt_came tells of them. One that
+ * was ignored stays ignored, as for a program in the background. */
 void wh_interrupt_catch(void);
 
 /* True once one has come. May be called from any thread. */

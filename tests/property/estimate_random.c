@@ -335,7 +335,8 @@ static void robots_lie_within_their_deviations(void **state) {
     }
     print_message("robots: %.4f within 2 deviations, %.4f\n", (double)near / all, squares / all);
     assert_near((double)near / all, 0.95, 0.025);
-    assert_near(squares / all, 1.05, 0.02 + 3.3 * sqrt(2.0 / all)); /* a mean of as many squares of deviates */
+    assert_near(squares / all, 1.05,
+                0.02 + 3.3 * sqrt(2.0 / all)); /* a mean of as many squares of deviates */
     assert_true(wrongly_aside <= 2);
 }
 

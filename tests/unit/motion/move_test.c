@@ -289,6 +289,30 @@ static double difference(wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES], size_t axis, i
     return most;
 }
 
+static void assert_limits_kept(const transit_t *t, wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES], double apart) {
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        const wh_limits_t *limits = &t->robot.limits[axis];
+        const double rounding = sizeof(wh_real_t) == 4 ? 1e-6 : 2.3e-16; /* of a float's time, too */
+        const double size = 1 + fabs((double)t->from[axis]) + fabs((double)t->to[axis]);
+        assert_true(difference(q, axis, 1, apart) <=
+                    (double)limits->speed * (1 + WAY_TOLERANCE) + 2 * rounding * size / apart);
+        assert_true(difference(q, axis, 2, apart) <= (double)limits->acceleration * (1 + WAY_TOLERANCE) +
+                                                         4 * rounding * size / (apart * apart));
+        assert_true(difference(q, axis, 3, apart) <=
+                    (double)limits->jerk * (1 + WAY_TOLERANCE) + 8 * rounding * size / pow(apart, 3));
+    }
+}
+
+/* Between two ends outside of the circle nothing turns outside of it. */
+static void assert_circle_kept(const transit_t *t, wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES]) {
+    const bool leads_in = t->from[WH_AXIS_R] > t->reach && t->to[WH_AXIS_R] > t->reach;
+    for (int k = 1; leads_in && k < SAMPLES + 7; ++k) {
+        const bool turns =
+            q[k][WH_AXIS_THETA] != q[k - 1][WH_AXIS_THETA] || q[k][WH_AXIS_YAW] != q[k - 1][WH_AXIS_YAW];
+        assert_false(turns && q[k][WH_AXIS_R] > t->reach && q[k - 1][WH_AXIS_R] > t->reach);
+    }
+}
+
 static void ways_keep_limits_and_circle(void **state) {
     (void)state;
     int went_in = 0;
@@ -300,23 +324,8 @@ static void ways_keep_limits_and_circle(void **state) {
         const double apart = sample(&way, q);
         assert_memory_equal(q[0], t.from, sizeof t.from);
         assert_memory_equal(q[SAMPLES + 6], t.to, sizeof t.to);
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-            const wh_limits_t *limits = &t.robot.limits[axis];
-            const double rounding = sizeof(wh_real_t) == 4 ? 1e-6 : 2.3e-16; /* of a float's time, too */
-            const double size = 1 + fabs((double)t.from[axis]) + fabs((double)t.to[axis]);
-            assert_true(difference(q, axis, 1, apart) <=
-                        (double)limits->speed * (1 + WAY_TOLERANCE) + 2 * rounding * size / apart);
-            assert_true(difference(q, axis, 2, apart) <= (double)limits->acceleration * (1 + WAY_TOLERANCE) +
-                                                             4 * rounding * size / (apart * apart));
-            assert_true(difference(q, axis, 3, apart) <=
-                        (double)limits->jerk * (1 + WAY_TOLERANCE) + 8 * rounding * size / pow(apart, 3));
-        }
-        for (int k = 1; k < SAMPLES + 7; ++k) {
-            const bool turns =
-                q[k][WH_AXIS_THETA] != q[k - 1][WH_AXIS_THETA] || q[k][WH_AXIS_YAW] != q[k - 1][WH_AXIS_YAW];
-            const bool both = q[k][WH_AXIS_R] > t.reach && q[k - 1][WH_AXIS_R] > t.reach;
-            assert_false(turns && both && t.from[WH_AXIS_R] > t.reach && t.to[WH_AXIS_R] > t.reach);
-        }
+        assert_limits_kept(&t, q, apart);
+        assert_circle_kept(&t, q);
         went_in += t.from[WH_AXIS_R] > t.reach || t.to[WH_AXIS_R] > t.reach;
     }
     assert_true(went_in > WAYS / 2);

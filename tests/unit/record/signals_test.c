@@ -296,6 +296,22 @@ static void a_gripper_that_is_elsewhere(void **state) {
 
 /* ---------------------------------------------------------------------------------------------------- past */
 
+static void assert_told_late(const wh_signals_t *other) {
+    assert_int_equal(other->nearest[0].count, 3);
+    assert_int_equal(other->nearest[1].count, 1);
+    const wh_path_t *curve = &other->proximity[0][WH_MEASURE_PROJZ];
+    for (int64_t n = 1; n <= 300; ++n) {
+        const double told = n == 50 ? 4.25 : n == 150 ? 4.5 : 5;
+        const double shown = wh_path_read(curve, n, NULL);
+        assert_int_equal(step_at(&other->nearest[0], n), n <= 100 ? 0 : n <= 200 ? 1 : WH_NONE);
+        if (n % 50 == 0 && n <= 200) {
+            assert_near(shown, told, n % 100 == 50 ? 1e-12 : 0.01);
+        }
+        assert_int_equal(isnan(shown), n > 200);
+    }
+    assert_near(wh_path_read(curve, 60, NULL), 5, 0.75);
+}
+
 /* Near wafer 0 up to slice 100, near wafer 1 up to 200, then near none. A near miss at 120 is told of slice 50, one at 250 of 150:
  * the curves say so. One at 260 is told of a wafer that was not the nearest then: they do not. */
 static void a_near_miss_is_told_late(void **state) {
@@ -344,20 +360,8 @@ static void a_near_miss_is_told_late(void **state) {
         wh_signals_slice(&other, NULL, layout->machine.axis_count, &at);
     }
     wh_signals_finish(&other);
-    assert_int_equal(other.nearest[0].count, 3);
-    assert_int_equal(other.nearest[1].count, 1);
     assert_int_equal(other.stay_count, layout->wafer_count);
-    const wh_path_t *curve = &other.proximity[0][WH_MEASURE_PROJZ];
-    for (int64_t n = 1; n <= 300; ++n) {
-        const double told = n == 50 ? 4.25 : n == 150 ? 4.5 : 5;
-        const double shown = wh_path_read(curve, n, NULL);
-        assert_int_equal(step_at(&other.nearest[0], n), n <= 100 ? 0 : n <= 200 ? 1 : WH_NONE);
-        if (n % 50 == 0 && n <= 200) {
-            assert_near(shown, told, n % 100 == 50 ? 1e-12 : 0.01);
-        }
-        assert_int_equal(isnan(shown), n > 200);
-    }
-    assert_near(wh_path_read(curve, 60, NULL), 5, 0.75);
+    assert_told_late(&other);
     wh_signals_close(&other);
     free(wafers);
 }
