@@ -22,11 +22,15 @@
 #include "math/deviate.h"
 
 #include "grasp/proximity.h"
+#include "grasp/face.h"
 #include "grasp/event.h"
 #include "grasp/grasp.h"
 #include "grasp/restore.h"
 #include "grasp/vacuum.h"
 #include "grasp/hold.h"
+#include "grasp/edge.h"
+#include "grasp/passive.h"
+#include "grasp/grips.h"
 
 #include "batch/batch.h"
 
@@ -36,6 +40,7 @@
 #include "motion/line.h"
 #include "motion/chain.h"
 #include "motion/chain_line.h"
+#include "motion/door.h"
 #include "motion/machine.h"
 #include "motion/track.h"
 
@@ -43,18 +48,21 @@
 
 #include "align/rim.h"
 #include "align/sensing.h"
+#include "align/merge.h"
 #include "align/circle.h"
 #include "align/marks.h"
 #include "align/align.h"
 #include "align/calibration.h"
 #include "align/centring.h"
 #include "align/beam.h"
+#include "align/touch.h"
 #include "align/teaching.h"
 
 #include "sim/latching.h"
 #include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/scanning.h"
+#include "sim/doors.h"
 #include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"

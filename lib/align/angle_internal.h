@@ -67,4 +67,15 @@ static inline double wh_align_atan2(double y, double x) {
 }
 #endif
 
+/* Turns the point (x, y) about the origin. */
+static inline void wh_align_turn(double angle, double *x, double *y) {
+    const double before_x = *x;
+    const double before_y = *y;
+    double s;
+    double c;
+    wh_align_sin_cos(angle, &s, &c);
+    *x = before_x * c - before_y * s;
+    *y = before_y * c + before_x * s;
+}
+
 #endif

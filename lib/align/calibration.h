@@ -21,7 +21,7 @@
  *
  * Bytes of stack on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12 (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_calibration_solve           2168   2024    2512   2312
+ *     stack of wh_calibration_solve           2168   2040    2512   2328
  */
 #ifndef WH_ALIGN_CALIBRATION_H
 #define WH_ALIGN_CALIBRATION_H

@@ -20,6 +20,8 @@
 #define GATE 5
 /* The beam goes through the rim at no smaller sine than this, for the deviation's sake. */
 #define LEAST_SINE 0.1
+/* A radius that nothing confirms is likely up to so many of its deviations. */
+#define LIKELY 3
 /* The least standard deviation of a crossing, mm. */
 #define LEAST_SD 1e-6
 
@@ -58,9 +60,8 @@ static stand_t stand(const search_t *search, const guess_t *guess, size_t i) {
     const double least =
         LEAST_SINE * LEAST_SINE * (crossing->vx * crossing->vx + crossing->vy * crossing->vy);
     const double square = through * through > least ? through * through : least;
-    const double time = search->known->sd_time;
-    const double place = search->known->sd_place;
-    s.variance = square * time * time + place * place + LEAST_SD * LEAST_SD;
+    const wh_centring_t *of = search->known;
+    s.variance = square * of->sd_time * of->sd_time + of->sd_place * of->sd_place + LEAST_SD * LEAST_SD;
     s.fits_edge = crossing->edge == WH_CROSSING_IN ? through < 0 : through > 0;
     return s;
 }
@@ -350,6 +351,64 @@ static const guess_t *find_rival(const search_t *search, const guess_t *best, wh
     return rival;
 }
 
+/* The two crossings of three that are one beam's, and the third. */
+static void find_pair(const search_t *search, const guess_t *guess, size_t of[3]) {
+    size_t count = 0;
+    for (size_t i = 0; i < search->count && count < 3; ++i) {
+        of[count] = i;
+        count += has(guess, i) ? 1 : 0;
+    }
+    const wh_crossing_t *c = search->crossings;
+    size_t alone = 0;
+    if (c[of[0]].beam == c[of[1]].beam) {
+        alone = 2;
+    } else if (c[of[0]].beam == c[of[2]].beam) {
+        alone = 1;
+    }
+    const size_t third = of[alone];
+    of[alone] = of[2];
+    of[2] = third;
+}
+
+static double not_below(double value, double least) {
+    return value < 0 ? (value > -least ? -least : value) : (value < least ? least : value);
+}
+
+/* How far the centre would be elsewhere with a radius that has grown less, if a beam stood elsewhere. */
+static void doubt(const search_t *search, const guess_t *guess, double grown, double *dx, double *dy) {
+    size_t of[3] = {0, 0, 0};
+    find_pair(search, guess, of);
+    const stand_t a = stand(search, guess, of[0]);
+    const stand_t b = stand(search, guess, of[1]);
+    const stand_t c = stand(search, guess, of[2]);
+    const wh_crossing_t *third = &search->crossings[of[2]];
+    const double by = grown / not_below(a.x * b.y - a.y * b.x, LEAST_SINE);
+    const double x = by * (b.y - a.y); /* the third one's beam does */
+    const double y = by * (a.x - b.x);
+    const double least = LEAST_SINE * sqrt(third->vx * third->vx + third->vy * third->vy);
+    const double time = (grown - c.x * x - c.y * y) / not_below(c.x * third->vx + c.y * third->vy, least);
+    const double far_x = x + time * third->vx; /* the pair's does, along the way */
+    const double far_y = y + time * third->vy;
+    const bool farther = far_x * far_x + far_y * far_y > x * x + y * y;
+    *dx = farther ? far_x : x;
+    *dy = farther ? far_y : y;
+}
+
+/* Nothing contradicts three crossings and a radius that is not exact: it must be likely by itself. */
+static bool is_likely(const search_t *search, const guess_t *guess, wh_centre_t *centre) {
+    const double sd = search->known->sd_radius;
+    const double grown = guess->radius - search->known->radius;
+    if (guess->used > WH_CROSSINGS_LEAST || !(sd > 0)) {
+        return true;
+    }
+    double dx, dy;
+    doubt(search, guess, grown, &dx, &dy);
+    centre->sd_x = sqrt(centre->sd_x * centre->sd_x + dx * dx);
+    centre->sd_y = sqrt(centre->sd_y * centre->sd_y + dy * dy);
+    centre->sd_centre = sqrt(centre->sd_centre * centre->sd_centre + dx * dx + dy * dy);
+    return grown * grown <= LIKELY * LIKELY * sd * sd;
+}
+
 static wh_status_t judge(const search_t *search, wh_centres_t *centres) {
     const guess_t *best = NULL;
     for (size_t k = 0; k < search->guess_count; ++k) {
@@ -360,14 +419,14 @@ static wh_status_t judge(const search_t *search, wh_centres_t *centres) {
         return WH_STATUS_CENTRE_NOT_SURE;
     }
     tell(search, best, &centres->candidates[0]);
+    const bool likely = is_likely(search, best, &centres->candidates[0]);
     const guess_t *rival = find_rival(search, best, &centres->candidates[0]);
     centres->count = 1;
-    if (rival == NULL) {
-        return WH_OK;
+    if (rival != NULL) {
+        centres->count = 2;
+        tell(search, rival, &centres->candidates[1]);
     }
-    centres->count = 2;
-    tell(search, rival, &centres->candidates[1]);
-    return WH_STATUS_CENTRE_NOT_SURE;
+    return likely && rival == NULL ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
 }
 
 wh_centring_t wh_centring_nominal(double radius) {

@@ -30,6 +30,12 @@
  * chord too long or too short, as a wrong radius does: it enters y unless beams stand alike on both sides. A
  * radius that is wrong by 0.1 mm moves y by 0.08 mm with beams at +60 and -110: give sd_radius.
  *
+ * A beam that stands elsewhere than believed by d moves the centre by up to d / 2 along the way and, with
+ * beams at +60 and -110 and a radius that is not exact, by 0.6 d across it. Chords whose middles differ by
+ * more than about 6 deviations contradict each other; with sd_radius three crossings and another radius may
+ * still fit. Such a radius is believed up to 3 sd_radius, and by how much it may have moved the centre counts
+ * in the deviations. For beams whose places are not known exactly there is sd_place.
+ *
  * Lengths in mm, times in s, angles in rad, in the plane of the wafer and in the blade's frame. No heap, no
  * state; the same bits on every machine.
  */
@@ -105,7 +111,8 @@ wh_status_t wh_centring_validate(const wh_centring_t *known, wh_bad_field_t *bad
 
 /* The centre, candidates[0]. WH_OK: there is no other, or one within `agree`, by whose distance sd_x, sd_y
  * and sd_centre have grown. WH_STATUS_CENTRE_NOT_SURE: two candidates explain the crossings about equally
- * well, or none does (count 0); nothing should be corrected. Errors, `centres` then unchanged:
+ * well, or one does by a radius that is not likely (count 1), or none does (count 0); nothing should be
+ * corrected. Errors, `centres` then unchanged:
  * WH_STATUS_NULL_ARGUMENT; what wh_centring_validate says; of the crossings WH_STATUS_NOT_FINITE and
  * WH_STATUS_OUT_OF_RANGE (of a number, of the edge, of the count); and WH_STATUS_TOO_FEW_SAMPLES: fewer than
  * WH_CROSSINGS_LEAST, or all of one beam, which the circle on its other side would explain as well.

@@ -25,6 +25,9 @@
 #define CHANCE 2
 /* A shape of the rim that a bow or a saddle may leave, root mean square, mm. */
 #define SHAPE 0.03
+/* Noise spreads the pixels if at least this part of the samples is off by more than so many of them. */
+#define SPREAD 0.02
+#define BEYOND 1.25
 /* So many neighbours of a sample off the circle do not count. */
 #define NEIGHBOURS 2
 
@@ -326,9 +329,10 @@ static double scatter_of(const wh_rim_scan_t *scan, const pass_t *pass) {
     return square > least * least ? sqrt(square) : least;
 }
 
-/* From the median of the amounts, were it normal. */
+/* From the median of the amounts, were it normal. Of a wafer in the middle most samples may count the same
+ * pixels, and a circle through them has no median at all: what is within half a pixel is not known. */
 static double scatter_from(const wh_rim_scan_t *scan, double median) {
-    const double least = least_scatter(scan);
+    const double least = scan->pixel / 2 + LEAST_SCATTER;
     return 1.907 * median > least ? 1.907 * median : least;
 }
 
@@ -421,6 +425,23 @@ static double inflation_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, 
     return times > CHANCE * apart ? times / apart : 1;
 }
 
+/* Where noise does not spread the pixels, rounding goes with the rim: what it adds to the square of a
+ * sample's deviation. Of e cos(a), rounded to p, the error has a first harmonic of 2 p / pi times Bessel's J1
+ * of 2 pi e / p and its multiples: up to 0.37 p, and p sqrt(p / e) / 5 of a large e. A third of its square
+ * counts. */
+static double rounding_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle) {
+    size_t off = 0;
+    for (size_t i = 0; i < scan->count; ++i) {
+        off += rays[i].weight > 0 && fabs(rays[i].residual) > BEYOND * scan->pixel ? 1 : 0;
+    }
+    if (scan->pixel == 0 || (double)off >= SPREAD * (double)circle->used) {
+        return 0;
+    }
+    const double far = sqrt(circle->x * circle->x + circle->y * circle->y) / scan->pixel;
+    const double part = far > 0.3 ? 0.041 / far : 0.137;
+    return part * scan->pixel * scan->pixel / 3 * (double)circle->used / 2;
+}
+
 /* What remains is no noise: the circle is of something else, such as a rim and a flat. */
 static bool has_shape(const wh_circle_t *circle) {
     const double size = (double)circle->used / BLOCKS + 1;
@@ -443,8 +464,9 @@ static void complete(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t 
 
 static void tell(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const pass_t *pass,
                  wh_circle_t *circle) {
-    circle->inflation = inflation_of(scan, rays, circle->used);
-    const double square = circle->scatter * circle->scatter * circle->inflation;
+    const double sample = circle->scatter * circle->scatter;
+    const double square = sample * circle->inflation + rounding_of(scan, rays, circle);
+    circle->inflation = square / sample;
     const double xx = pass->normal.matrix[0][0] * square;
     const double yy = pass->normal.matrix[1][1] * square;
     const double xy = pass->normal.matrix[0][1] * square;
@@ -475,10 +497,11 @@ wh_status_t wh_circle_fit(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circ
         return WH_STATUS_CENTRE_NOT_SURE;
     }
     complete(scan, rays, &fit);
-    tell(scan, rays, &pass, &fit);
+    fit.inflation = inflation_of(scan, rays, fit.used);
     if (2 * fit.used < fit.seen || has_shape(&fit)) {
         return WH_STATUS_CENTRE_NOT_SURE;
     }
+    tell(scan, rays, &pass, &fit);
     *circle = fit;
     return WH_OK;
 }

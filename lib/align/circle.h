@@ -10,8 +10,9 @@
  * may be off the circle: notch, flats, chips, light through glass. From there Gauss and Newton's steps
  * minimise the weighted squares, with Tukey's weights: a sample that is 6 standard deviations off, and its
  * neighbours, count nothing. The standard deviations are those of independent noise, enlarged where
- * neighbouring samples are off together. A shape below a micrometre, such as a small saddle's, is not told
- * from noise: with half of the turn hidden it may move the centre by more than they say.
+ * neighbouring samples are off together, and where many count the same pixels, for want of noise. A shape
+ * below a micrometre, such as a small saddle's, is not told from noise: with half of the turn hidden it may
+ * move the centre by more than they say.
  */
 #ifndef WH_ALIGN_CIRCLE_H
 #define WH_ALIGN_CIRCLE_H
@@ -45,7 +46,7 @@ typedef struct {
     double sd_x, sd_y, sd_radius;
     double sd_centre; /* in the direction in which it is largest */
     double scatter;   /* standard deviation of a sample that counts, mm */
-    double inflation; /* of the squares of the deviations above: 1, more if neighbours are off together */
+    double inflation; /* of their squares: 1, more if neighbours are off, or rounded, together */
     size_t seen;      /* samples that see the rim */
     size_t used;      /* and count */
 } wh_circle_t;

@@ -75,13 +75,7 @@ static bool step(const wh_scanned_t *of, const wh_dent_t *dent, double cut, chor
         return false;
     }
     const double *by = chord->normal.right;
-    const double x = chord->axis_x;
-    const double y = chord->axis_y;
-    double s;
-    double c;
-    wh_align_sin_cos(by[0], &s, &c);
-    chord->axis_x = x * c - y * s;
-    chord->axis_y = y * c + x * s;
+    wh_align_turn(by[0], &chord->axis_x, &chord->axis_y);
     chord->height += by[1];
     chord->step = fabs(by[0]) * of->circle->radius + fabs(by[1]);
     return chord->height > 0 && chord->height < of->circle->radius;

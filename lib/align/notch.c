@@ -15,6 +15,8 @@
 /* A dent less deep than this part of the nominal depth is no notch; by so much a notch's depth may be off,
  * mm, and half of its opening. */
 #define DEEP 0.8
+/* Samples that are farther apart, in depths, may all miss the part of a notch that is so deep. */
+#define FINE 0.42
 #define SHALLOWER 0.15
 #define DEEPER 0.4
 #define OPENING_OFF (2.2 * WH_ALIGN_PI / 180)
@@ -42,7 +44,7 @@
  * weights, even if they come and go. */
 #define STEPS 32
 #define STILL 1e-11
-#define CHOICES 20
+#define CHOICES 26
 
 /* Fitted values: the axis, from the circle's centre to the apex, half of the opening. */
 typedef struct {
@@ -70,7 +72,7 @@ typedef struct {
     double depth;    /* of the V below the circle there */
     double by[3];    /* the V's derivatives there: axis, apex, half */
     int side;
-} against_t;
+} vee_point_t;
 
 typedef enum { IS_NONE, IS_DOUBTFUL, IS_NOTCH } finding_t;
 
@@ -88,7 +90,7 @@ static double depth_of(const vee_search_t *search, const vee_t *vee) {
     return search->of.circle->radius - vee->apex - below_bottom(vee, search->nominal);
 }
 
-static against_t hold_against(const vee_search_t *search, const vee_t *vee, size_t i) {
+static vee_point_t hold_against(const vee_search_t *search, const vee_t *vee, size_t i) {
     const wh_rim_ray_t *ray = &search->of.rays[i];
     double x;
     double y;
@@ -104,7 +106,7 @@ static against_t hold_against(const vee_search_t *search, const vee_t *vee, size
     const double from_apex = along - vee->apex;
     const double off = vee->cosine * across - ks * from_apex;
     const double slope = vee->cosine * ray_across - ks * ray_along;
-    against_t against;
+    vee_point_t against;
     against.side = across < 0 ? 0 : 1;
     against.residual = off / slope;
     against.depth = against.residual - ray->residual;
@@ -117,7 +119,7 @@ static against_t hold_against(const vee_search_t *search, const vee_t *vee, size
     return against;
 }
 
-static bool is_flank(const against_t *against, double depth) {
+static bool is_flank(const vee_point_t *against, double depth) {
     return against->depth >= FLANK_FROM * depth && against->depth <= FLANK_TO * depth;
 }
 
@@ -165,8 +167,8 @@ static bool step(const vee_search_t *search, const wh_dent_t *dent, const vee_t 
     for (size_t k = 0; k < dent->count; ++k) {
         const size_t i = place_of(search->of.scan, dent, k, 0);
         if (wh_scanned_counts(&search->of, i)) {
-            const against_t against = hold_against(search, vee, i);
-            const against_t chosen = hold_against(search, choice, i);
+            const vee_point_t against = hold_against(search, vee, i);
+            const vee_point_t chosen = hold_against(search, choice, i);
             const double weight = is_flank(&chosen, depth) ? tukey(chosen.residual, cut) : 0;
             wh_normal_add(&vee->normal, against.by, against.residual, weight);
             vee->used += weight > 0 ? 1 : 0;
@@ -179,13 +181,7 @@ static bool step(const vee_search_t *search, const wh_dent_t *dent, const vee_t 
         return false;
     }
     const double *by = vee->normal.right;
-    const double x = vee->axis_x;
-    const double y = vee->axis_y;
-    double s;
-    double c;
-    wh_align_sin_cos(by[0], &s, &c);
-    vee->axis_x = x * c - y * s;
-    vee->axis_y = y * c + x * s;
+    wh_align_turn(by[0], &vee->axis_x, &vee->axis_y);
     vee->apex += by[1];
     set_half(vee, vee->half + by[2]);
     vee->step = fabs(by[0]) * search->of.circle->radius + fabs(by[1]) + fabs(by[2]);
@@ -236,7 +232,7 @@ static against_arc_t hold_against_arc(const vee_search_t *search, const vee_t *v
     const double distance = sqrt(from_centre * from_centre + across * across);
     against_arc_t against;
     if (!is_on_arc(search, vee, across)) {
-        const against_t flank = hold_against(search, vee, i);
+        const vee_point_t flank = hold_against(search, vee, i);
         against.residual = flank.residual;
         for (size_t p = 0; p < 3; ++p) {
             against.by[p] = flank.by[p];
@@ -351,7 +347,7 @@ typedef struct {
 } vee_look_t;
 
 /* A sample's deviation and that of the V there. */
-static double may_be_off(const vee_search_t *search, const vee_t *vee, const against_t *against) {
+static double may_be_off(const vee_search_t *search, const vee_t *vee, const vee_point_t *against) {
     double square = 1;
     for (size_t p = 0; p < 3; ++p) {
         for (size_t q = 0; q < 3; ++q) {
@@ -362,7 +358,7 @@ static double may_be_off(const vee_search_t *search, const vee_t *vee, const aga
 }
 
 /* How far below and above the V, or the circle where that is further in, a sample's rim may be. */
-static void allow(const against_t *against, double depth, double may_be, double *below, double *above) {
+static void allow(const vee_point_t *against, double depth, double may_be, double *below, double *above) {
     *below = may_be;
     *above = may_be;
     if (against->depth < FLANK_FROM * depth) {
@@ -377,7 +373,7 @@ static void look_at(const vee_search_t *search, const vee_t *vee, size_t i, vee_
         ++look->off;
         return;
     }
-    const against_t against = hold_against(search, vee, i);
+    const vee_point_t against = hold_against(search, vee, i);
     const double depth = depth_of(search, vee);
     const double off = against.depth < 0 ? search->of.rays[i].residual : against.residual;
     double below;
@@ -466,19 +462,23 @@ static tally_t judge_all(const vee_search_t *search, const wh_dents_t *dents) {
     return tally;
 }
 
+/* What may be a chipped notch is a chip if the notch cannot be one. */
+static bool is_sharp(const vee_search_t *search, const tally_t *tally) {
+    return search->of.circle->scatter <= SHARP &&
+           tally->first.depth >= search->nominal->depth - SHARP_SHALLOWER;
+}
+
 /* What the dents say together. */
 static wh_status_t conclude(const vee_search_t *search, const wh_dents_t *dents, const tally_t *tally) {
     if (tally->counts[IS_NOTCH] > 1) {
         return WH_STATUS_TWO_NOTCHES;
     }
     if (tally->counts[IS_NOTCH] == 1) {
-        /* What may be a chipped notch is a chip if the notch cannot be one. */
-        const bool is_sharp = search->of.circle->scatter <= SHARP &&
-                              tally->first.depth >= search->nominal->depth - SHARP_SHALLOWER;
-        const bool is_one = tally->counts[IS_DOUBTFUL] == 0 || is_sharp;
+        const bool is_one = tally->counts[IS_DOUBTFUL] == 0 || is_sharp(search, tally);
         return is_one && dents->whole ? WH_OK : WH_STATUS_NOTCH_NOT_SURE;
     }
-    const bool may_be = tally->deep > 0 || !dents->whole || !wh_scanned_is_whole(&search->of);
+    const bool fine = search->spacing <= FINE * search->nominal->depth;
+    const bool may_be = tally->deep > 0 || !dents->whole || !fine || !wh_scanned_is_whole(&search->of);
     return may_be ? WH_STATUS_NOTCH_NOT_SURE : WH_STATUS_NO_NOTCH;
 }
 

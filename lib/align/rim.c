@@ -259,28 +259,19 @@ wh_status_t wh_rim_validate(const wh_rim_t *rim, wh_bad_field_t *bad) {
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-static uint64_t hash_doubles(uint64_t hash, const double values[], size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = wh_hash_word(hash, bits);
-    }
-    return hash;
-}
-
 uint64_t wh_rim_hash(const wh_rim_t *rim, uint64_t hash) {
     const double values[] = {rim->radius,        rim->notch.direction, rim->notch.depth,
                              rim->notch.opening, rim->notch.bottom,    rim->notch.corner,
                              rim->bow,           rim->saddle,          rim->saddle_direction,
                              rim->transmission};
-    hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
+    hash = wh_hash_doubles(hash, values, sizeof values / sizeof values[0]);
     for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
         const double flat[] = {rim->flats[i].direction, rim->flats[i].length};
-        hash = hash_doubles(hash, flat, 2);
+        hash = wh_hash_doubles(hash, flat, 2);
     }
     for (int32_t i = 0; i < rim->chip_count; ++i) {
         const double chip[] = {rim->chips[i].direction, rim->chips[i].width, rim->chips[i].depth};
-        hash = hash_doubles(hash, chip, 3);
+        hash = wh_hash_doubles(hash, chip, 3);
     }
     return wh_hash_int(hash, rim->chip_count);
 }

@@ -40,5 +40,8 @@ int wh_app_check(int argc, char **argv);
 int wh_app_estimate(int argc, char **argv);
 int wh_app_definitions(int argc, char **argv);
 int wh_app_new(int argc, char **argv);
+int wh_app_serve(int argc, char **argv);
+int wh_app_dialect(int argc, char **argv);
+int wh_app_converse(int argc, char **argv);
 
 #endif

@@ -14,6 +14,7 @@
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
+#include "check_values.h"
 #include "log_arguments.h"
 
 typedef struct {
@@ -104,8 +105,8 @@ static const double *values_of(checked_t *checked, size_t index) {
     return checked->values;
 }
 
-/* The last slice that ends at this number or before; null: there is none. Cost: log n, and KEY slices. */
-static const double *find_slice(checked_t *checked, int64_t seq) {
+/* The last slice that ends at this number or before, counted from 1; 0: there is none. Cost: log n. */
+static size_t find_slice(const checked_t *checked, int64_t seq) {
     size_t low = 0;
     size_t high = checked->count;
     while (low < high) {
@@ -116,7 +117,7 @@ static const double *find_slice(checked_t *checked, int64_t seq) {
             high = middle;
         }
     }
-    return low > 0 ? values_of(checked, low - 1) : NULL;
+    return low;
 }
 
 /* ---------------------------------------------------------------------------------------------------- Lua */
@@ -125,89 +126,10 @@ static checked_t *checked_of(lua_State *L) {
     return lua_touserdata(L, lua_upvalueindex(1));
 }
 
-static void push(lua_State *L, json_t *value);
-
-static void push_list(lua_State *L, const json_t *list) {
-    lua_createtable(L, (int)json_array_size(list), 0);
-    for (size_t i = 0; i < json_array_size(list); ++i) {
-        push(L, json_array_get(list, i));
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
-}
-
-/* Of a table whose field is nil: upvalue 1 has the fields that are nil rightly. A name that is none of
- * them is an error: it would make many an expectation true. */
-static int find_absent(lua_State *L) {
-    lua_pushvalue(L, 2);
-    if (lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
-        return luaL_error(L, "%s: there is no such field", luaL_tolstring(L, 2, NULL));
-    }
-    lua_pushnil(L);
-    return 1;
-}
-
-/* The table below the one at the top has those fields alone that it has now, and those that are the keys
- * of the one at the top, which is taken off. */
-static void make_strict(lua_State *L) {
-    lua_pushcclosure(L, find_absent, 1);
-    lua_createtable(L, 0, 1);
-    lua_insert(L, -2);
-    lua_setfield(L, -2, "__index");
-    lua_setmetatable(L, -2);
-}
-
-/* Puts a name into the set at the top. */
-static void set_name(lua_State *L, const char *name) {
-    lua_pushboolean(L, true);
-    lua_setfield(L, -2, name);
-}
-
-/* Events have fields by their kind, and are not strict. */
-static void push_object(lua_State *L, json_t *object) {
-    const bool is_event = json_object_get(object, "utime") && json_object_get(object, "kind");
-    lua_newtable(L);
-    lua_newtable(L);
-    for (void *member = json_object_iter(object); member; member = json_object_iter_next(object, member)) {
-        if (json_is_null(json_object_iter_value(member))) {
-            set_name(L, json_object_iter_key(member));
-        } else {
-            push(L, json_object_iter_value(member));
-            lua_setfield(L, -3, json_object_iter_key(member));
-        }
-    }
-    if (is_event) {
-        lua_pop(L, 1);
-    } else {
-        make_strict(L);
-    }
-}
-
-/* Null is nil. */
-static void push(lua_State *L, json_t *value) {
-    luaL_checkstack(L, 8, "values within values");
-    switch (json_typeof(value)) {
-    case JSON_OBJECT:
-        push_object(L, value);
-        break;
-    case JSON_ARRAY:
-        push_list(L, value);
-        break;
-    case JSON_STRING:
-        lua_pushlstring(L, json_string_value(value), json_string_length(value));
-        break;
-    case JSON_INTEGER:
-        lua_pushinteger(L, json_integer_value(value));
-        break;
-    case JSON_REAL:
-        lua_pushnumber(L, json_real_value(value));
-        break;
-    case JSON_TRUE:
-    case JSON_FALSE:
-        lua_pushboolean(L, json_is_true(value));
-        break;
-    case JSON_NULL:
-        lua_pushnil(L);
-        break;
+/* What is given too much may be meant to count: nobody looks at it. */
+static void refuse_surplus(lua_State *L, const char *name, int most) {
+    if (lua_gettop(L) > most) {
+        luaL_error(L, "%s: %d arguments (expected at most %d)", name, lua_gettop(L), most);
     }
 }
 
@@ -216,6 +138,7 @@ static int expect(lua_State *L) {
     checked_t *checked = checked_of(L);
     const int type = lua_type(L, 1);
     const char *text = luaL_optstring(L, 2, "an expectation");
+    refuse_surplus(L, "expect", 2);
     if (lua_gettop(L) == 0 || (type != LUA_TBOOLEAN && type != LUA_TNIL)) {
         return luaL_error(L, "expect: %s (expected true, false or nil)",
                           lua_gettop(L) == 0 ? "nothing" : luaL_typename(L, 1));
@@ -223,7 +146,8 @@ static int expect(lua_State *L) {
     ++checked->expected;
     if (!lua_toboolean(L, 1)) {
         ++checked->unmet;
-        printf("line %d: not met: ", wh_sandbox_line(L, checked->path));
+        wh_style_put(stdout, checked->path);
+        printf(":%d: not met: ", wh_sandbox_line(L, checked->path));
         wh_style_put(stdout, text);
         putchar('\n');
     }
@@ -234,13 +158,17 @@ static int64_t slice_at(lua_State *L, const checked_t *checked) {
     const double seconds = luaL_checknumber(L, 1);
     const double slice = floor(seconds * 1e6 / (double)checked->run.cell.layout->slice_us + 1e-6);
     luaL_argcheck(L, slice >= 0 && slice < 9e15, 1, "expected a time of the run in seconds");
+    if (slice > (double)checked->run.seq) {
+        luaL_error(L, "at: %f s (expected a time of the run, which ends at %f s)", seconds,
+                   wh_log_run_end(&checked->run));
+    }
     return (int64_t)slice;
 }
 
 /* Sets a field of the table below the one at the top, which has the fields that are nil. */
 static void set_field(lua_State *L, const char *name, const char *word, double value) {
     if (isnan(value) || (word && word[0] == '\0')) {
-        set_name(L, name);
+        wh_check_set_name(L, name);
         return;
     }
     if (word) {
@@ -255,51 +183,73 @@ static void set_field(lua_State *L, const char *name, const char *word, double v
 static int at(lua_State *L) {
     checked_t *checked = checked_of(L);
     const wh_layout_t *layout = checked->run.cell.layout;
-    const double *values = find_slice(checked, slice_at(L, checked));
-    if (!values) {
+    refuse_surplus(L, "at", 1);
+    const size_t found = find_slice(checked, slice_at(L, checked));
+    if (found == 0) {
         return luaL_error(L, "at: %f s (expected a time from %f s on, where the log begins)",
                           lua_tonumber(L, 1), (double)(checked->slices[0].seq * layout->slice_us) / 1e6);
     }
+    const double *values = values_of(checked, found - 1);
+    const int64_t seq = checked->slices[found - 1].seq;
     lua_newtable(L);
+    lua_pushinteger(L, seq);
+    lua_setfield(L, -2, "slice");
+    lua_pushnumber(L, (double)(seq * layout->slice_us) / 1e6);
+    lua_setfield(L, -2, "time s");
     lua_newtable(L);
     for (size_t i = 0; i < wh_slice_field_count(layout); ++i) {
         char name[WH_SLICE_FIELD_NAME];
         const wh_slice_field_t kind = wh_slice_field_name(layout, i, name);
         set_field(L, name, wh_slice_field_word(layout, kind, values[i]), values[i]);
     }
-    make_strict(L);
+    wh_check_make_strict(L);
     return 1;
 }
 
-/* { kind = , wafer = , gripper = }: of each the names that there are, as keys. It is called `events`
- * until the function of that name has taken it. */
-static void push_names(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, 0, 3);
+/* Kinds of events as keys: true, or why there can be none in the log. */
+static void push_kinds(lua_State *L, const checked_t *checked) {
     lua_newtable(L);
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        set_name(L, wh_event_name((wh_event_kind_t)kind));
+        const char *why = wh_log_layout_lacks(&checked->run.cell, (wh_event_kind_t)kind);
+        if (why) {
+            lua_pushstring(L, why);
+        } else {
+            lua_pushboolean(L, true);
+        }
+        lua_setfield(L, -2, wh_event_name((wh_event_kind_t)kind));
     }
+}
+
+/* { kind = , wafer = , gripper = , last = }: of each the names that there are, as keys, and when the run
+ * ends. It is called `events`
+ * until the function of that name has taken it. */
+static void push_names(lua_State *L, const checked_t *checked) {
+    const wh_layout_t *layout = checked->run.cell.layout;
+    lua_createtable(L, 0, 3);
+    push_kinds(L, checked);
     lua_setfield(L, -2, "kind");
     lua_newtable(L);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        set_name(L, layout->wafers[w].name);
+        wh_check_set_name(L, layout->wafers[w].name);
     }
     lua_setfield(L, -2, "wafer");
     lua_newtable(L);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        set_name(L, layout->grippers[g].name);
+        wh_check_set_name(L, layout->grippers[g].name);
     }
     lua_setfield(L, -2, "gripper");
+    lua_pushnumber(L, wh_log_run_end(&checked->run));
+    lua_setfield(L, -2, "last");
     lua_setglobal(L, "events");
 }
 
 /* In the sandbox's protection: memory may run out. */
 static int set_up(lua_State *L) {
     checked_t *checked = lua_touserdata(L, 1);
-    const luaL_Reg functions[] = {{"expect", expect}, {"at", at}};
-    push_names(L, checked->run.cell.layout);
+    const luaL_Reg functions[] = {{"expect", expect}, {"at", at}, {"ipairs", wh_check_ipairs}};
+    push_names(L, checked);
     lua_pushglobaltable(L);
-    push(L, checked->result);
+    wh_check_push(L, checked->result);
     lua_setfield(L, -2, "run");
     for (size_t i = 0; i < sizeof functions / sizeof functions[0]; ++i) {
         lua_pushlightuserdata(L, checked);
@@ -313,22 +263,32 @@ static int set_up(lua_State *L) {
 static const char events_text[] =
     "local known = { kind = 'string', wafer = 'string', gripper = 'string', from = 'number', to = 'number' "
     "}\n"
-    "local insert, next, type, error, tostring = table.insert, next, type, error, tostring\n"
+    "local insert, next, type, error, tostring, select = table.insert, next, type, error, tostring, select\n"
     "local list, names, rawget = run.events, events, rawget\n"
-    "function events(wanted)\n"
+    "function events(wanted, ...)\n"
+    "  if select('#', ...) > 0 then\n"
+    "    error('events: ' .. 1 + select('#', ...) .. ' arguments (expected one table)', 2)\n"
+    "  end\n"
     "  if wanted ~= nil and type(wanted) ~= 'table' then\n"
     "    error('events: ' .. type(wanted) .. ' (expected a table)', 2)\n"
     "  end\n"
     "  for name, value in next, wanted or {} do\n"
-    "    if type(value) ~= known[name] then\n"
+    "    if type(value) ~= known[name] or value ~= value then\n"
     "      error('events: ' .. tostring(name) .. ' (expected kind, wafer and gripper as texts, from and to "
     "as numbers)', 2)\n"
     "    end\n"
-    "    if names[name] and not names[name][value] then\n"
-    "      error('events: ' .. name .. ': ' .. value .. ' (there is none of that name)', 2)\n"
+    "    local is = type(value) ~= 'string' or names[name][value]\n"
+    "    if is ~= true then\n"
+    "      error('events: ' .. name .. ': ' .. value .. (is and ': ' .. is or ' (there is none of that "
+    "name)'), 2)\n"
     "    end\n"
     "  end\n"
     "  local found, w = {}, wanted or {}\n"
+    "  if w.from and w.from > names.last then\n"
+    "    error('events: from ' .. w.from .. ' (expected a time of the run, which ends at ' .. names.last .. "
+    "' s)', "
+    "2)\n"
+    "  end\n"
     "  if w.from and w.to and w.from > w.to then\n"
     "    error('events: from ' .. w.from .. ' to ' .. w.to .. ' (expected one that is not before)', 2)\n"
     "  end\n"
@@ -382,14 +342,12 @@ static int judge(const arguments_t *arguments, const checked_t *checked) {
 
 static int play(const arguments_t *arguments, checked_t *checked) {
     wh_sandbox_result_t result;
-    char unread[WH_SANDBOX_MESSAGE_BYTES];
     if (!prepare(arguments, checked, &result) ||
         !wh_sandbox_evaluate(wh_sandbox_state(checked->sandbox), checked->path, &result)) {
         fprintf(stderr, "%s\n", result.message);
         return WH_EXIT_USAGE;
     }
-    if (wh_sandbox_find_unread(checked->sandbox, unread) && !wh_log_arguments_are_set_read(&checked->run)) {
-        fprintf(stderr, "%s: %s\n", checked->path, unread);
+    if (!wh_log_arguments_check_set(&checked->run, checked->sandbox)) {
         return WH_EXIT_USAGE;
     }
     const int status = judge(arguments, checked);

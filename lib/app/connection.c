@@ -25,7 +25,7 @@ const wh_option_t wh_record_options[] = {
     {"record-all", 0, "FILE", "Record every message instead, as lcm-spy and viewers want it", WH_OPTION_TEXT,
      .variable = offsetof(wh_record_arguments_t, all)},
     {"record-size", 0, "MB", "Go on in a new file (run.part2.log) when one is so large", WH_OPTION_REAL,
-     .variable = offsetof(wh_record_arguments_t, part_mb), 0.01, 1e6, "a number from 0.01 to 1e+06"},
+     .variable = offsetof(wh_record_arguments_t, part_mb), 0.01, 1e6},
     {0}};
 
 void wh_record_arguments_check(const void *given, struct argp_state *state) {
@@ -57,12 +57,13 @@ void wh_record_arguments_apply(const wh_record_arguments_t *arguments, const cha
 /* --------------------------------------------------------------------------------------- motion control's */
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
+    const char *program = options->program ? options->program : "mcs";
     wh_catch_signals();
-    wh_record_arguments_apply(&options->record, "mcs", false, &link->record);
+    wh_record_arguments_apply(&options->record, program, false, &link->record);
     if (!wh_node_reaches_others(options->url) || !wh_node_open(&link->node, options->url, &link->record)) {
         return false;
     }
-    link->node.speaker = "mcs";
+    link->node.speaker = program;
     link->node.log_time = options->log_time;
     if (!wh_mcs_process_open(&link->control, &link->node, &options->client)) {
         wh_node_warn(&link->node, "LCM takes no subscription");

@@ -42,7 +42,8 @@ void wh_record_arguments_apply(const wh_record_arguments_t *arguments, const cha
 /* --------------------------------------------------------------------------------------- motion control's */
 
 typedef struct {
-    const char *url; /* null: the default */
+    const char *url;     /* null: the default */
+    const char *program; /* who speaks and records; null: mcs */
     wh_record_arguments_t record;
     bool log_time;
     wh_protocol_client_options_t client;

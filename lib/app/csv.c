@@ -20,7 +20,7 @@ static const wh_option_t options[] = {
     {"output", 'o', "FILE", "Write the table into FILE (default: standard output)", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, output)},
     {"every", 0, "N", "Of the slices from --from on every N-th alone (default 1)", WH_OPTION_COUNT,
-     .variable = offsetof(arguments_t, every), .least = 1, .expected = "a whole number from 1"},
+     .variable = offsetof(arguments_t, every), .least = 1},
     {0}};
 
 static const wh_option_table_t tables[] = {
@@ -109,7 +109,8 @@ int wh_app_csv(int argc, char **argv) {
         perror("waferhand csv: no room for the table");
         return status;
     }
-    if (wh_log_arguments_read(&arguments.log, on_slice, &table, &run) && wh_log_arguments_check_set(&run)) {
+    if (wh_log_arguments_read(&arguments.log, on_slice, &table, &run) &&
+        wh_log_arguments_check_set(&run, NULL) && wh_log_window_begins_in(&arguments.window, &run)) {
         status = write_table(&arguments, &table, &run);
     }
     wh_log_run_close(&run);

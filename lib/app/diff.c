@@ -14,6 +14,9 @@
 #include "apart.h"
 #include "app.h"
 
+/* The newest of results. */
+#define FORMAT 2
+
 /* Of what differs at the end so many are told one by one. */
 #define MOST_TOLD 20
 
@@ -47,8 +50,8 @@ static const wh_command_line_t command_line = {
     .operands = 2};
 
 /* What is no matter of the run: how long it took, where files lie, what program it was. */
-static const char *const aside[] = {"wall_s",    "script",  "layout", "title",
-                                    "reproduce", "version", "source", NULL};
+static const char *const aside[] = {"wall_s",  "script", "layout", "title", "reproduce",
+                                    "version", "source", "log",    NULL};
 
 /* The first difference, and those at the end. */
 typedef struct {
@@ -57,6 +60,7 @@ typedef struct {
     char *field, *values[2];
     json_t *end;                        /* a list of what differs at no certain time: field, a, b */
     size_t end_count;                   /* all of them */
+    bool has_other_layout;              /* the first of them: the layouts' hashes */
     int64_t common, differing, only[2]; /* slices */
 } result_t;
 
@@ -64,7 +68,7 @@ typedef struct {
 
 static char *word_of(const json_t *value) {
     char *text = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
-    return text ? text : wh_text_copy("nothing");
+    return text ? text : wh_text_copy("not there");
 }
 
 static void set_first(result_t *result, const char *field, char *a, char *b) {
@@ -76,8 +80,9 @@ static void set_first(result_t *result, const char *field, char *a, char *b) {
     result->values[1] = b;
 }
 
+/* What is not there is no null. */
 static json_t *shared(const json_t *value) {
-    return value ? json_deep_copy(value) : json_null();
+    return value ? json_deep_copy(value) : json_string("not there");
 }
 
 static void on_difference(void *user, const wh_json_difference_t *difference) {
@@ -121,6 +126,12 @@ static bool is_result(json_t *root) {
     return json_is_integer(json_object_get(root, "format")) && members > 1;
 }
 
+/* The scene of --data is called by the script's path. */
+static void leave_path(json_t *root) {
+    json_t *scene = json_object_get(root, "scene");
+    (void)json_object_del(json_array_get(json_object_get(scene, "scenes"), 0), "name");
+}
+
 static bool read_json(side_t *side, FILE *file) {
     json_error_t error;
     side->root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
@@ -129,6 +140,12 @@ static bool read_json(side_t *side, FILE *file) {
                 side->path, error.line, error.text);
     } else if (!is_result(side->root)) {
         fprintf(stderr, "%s: no result of ours (expected what --json or --data made)\n", side->path);
+    }
+    leave_path(side->root);
+    const json_int_t format = json_integer_value(json_object_get(side->root, "format"));
+    if (side->root && is_result(side->root) && (format < 1 || format > FORMAT)) {
+        fprintf(stderr, "%s: format: %lld (expected 1 to %d)\n", side->path, (long long)format, FORMAT);
+        return false;
     }
     return side->root && is_result(side->root);
 }
@@ -147,7 +164,10 @@ static bool open_side(side_t *side) {
     side->is_log =
         wh_log_is_packed(begin, size) || (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
     rewind(file);
-    const bool read = side->is_log || read_json(side, file);
+    if (size == 0) {
+        fprintf(stderr, "%s: empty (expected an LCM event log, or what --json or --data made)\n", side->path);
+    }
+    const bool read = size > 0 && (side->is_log || read_json(side, file));
     (void)fclose(file);
     return read;
 }
@@ -166,8 +186,13 @@ static bool read_log(side_t *side, size_t number) {
         fprintf(stderr, "%s: %s: %s (expected a whole log)\n", side->path, verdict, side->run->worth.reason);
         return false;
     }
+    if (wh_log_run_is_part(side->run)) {
+        fprintf(stderr,
+                "%s: part %d of a recording: the other parts are not read (expected a whole recording)\n",
+                side->path, (int)side->run->worth.part);
+        return false;
+    }
     side->root = wh_record_to_json(&side->run->record);
-    (void)json_object_del(side->root, "log");
     return true;
 }
 
@@ -184,11 +209,47 @@ static void close_side(side_t *side) {
 
 /* ------------------------------------------------------------------------------------------------ compare */
 
+/* How far the axes come is rehearsed where a script is played: of a log it is not known. */
+static void leave_reach(const side_t sides[2]) {
+    const size_t counts[2] = {json_array_size(json_object_get(sides[0].root, "reach")),
+                              json_array_size(json_object_get(sides[1].root, "reach"))};
+    if ((counts[0] == 0) != (counts[1] == 0)) {
+        fprintf(stderr, "reach: %s does not tell it: left aside\n", sides[counts[0] == 0 ? 0 : 1].path);
+        (void)json_object_del(sides[0].root, "reach");
+        (void)json_object_del(sides[1].root, "reach");
+    }
+}
+
 static void compare_documents(const side_t sides[2], result_t *result) {
+    leave_reach(sides);
     wh_json_compare(sides[0].root, sides[1].root, aside, on_difference, result);
     const double slice_s = slice_of(sides[0].root);
     if (!isnan(result->time_s) && result->slice == 0 && slice_s > 0) {
         result->slice = (int64_t)floor(result->time_s / slice_s + 0.5);
+    }
+}
+
+/* What two layouts do may be the same, slice by slice: that they differ is told first of all. Of one whose
+ * file is not there shapes and limits are not known. */
+static void compare_layouts(const side_t sides[2], result_t *result) {
+    const wh_log_layout_t *a = &sides[0].run->cell;
+    const wh_log_layout_t *b = &sides[1].run->cell;
+    for (size_t i = 0; i < 2; ++i) {
+        if (!sides[i].run->cell.is_whole) {
+            fprintf(stderr, "%s: shapes are the defaults of 300 mm wafers: %s\n", sides[i].path,
+                    sides[i].run->cell.note);
+        }
+    }
+    if (a->hash != b->hash || a->world_hash != b->world_hash) {
+        const bool is_cell = a->hash != b->hash;
+        json_t *one = wh_json_hash(is_cell ? a->hash : a->world_hash);
+        json_t *other = wh_json_hash(is_cell ? b->hash : b->world_hash);
+        const wh_json_difference_t difference = {is_cell ? "layout_hash" : "world_hash", one, other,
+                                                 (double)NAN};
+        result->has_other_layout = true;
+        on_difference(result, &difference);
+        json_decref(one);
+        json_decref(other);
     }
 }
 
@@ -199,6 +260,7 @@ static bool compare_run(side_t sides[2], size_t number, result_t *result) {
         return false;
     }
     wh_log_run_t *const runs[2] = {sides[0].run, sides[1].run};
+    compare_layouts(sides, result);
     const wh_log_digests_t digests[2] = {sides[0].digests, sides[1].digests};
     if (!wh_compare_runs(runs, digests, &found)) {
         fprintf(stderr, "%s\n%s\n", runs[0]->message, runs[1]->message);
@@ -221,6 +283,20 @@ static bool is_same(const result_t *result) {
     return !result->field && result->end_count == 0;
 }
 
+static void compare_counts(const size_t counts[2], size_t compared, result_t *result) {
+    if (counts[0] > 1 || counts[1] > 1) {
+        fprintf(stderr, "compared: the first %zu of %zu and %zu runs\n", compared, counts[0], counts[1]);
+    }
+    if (counts[0] != counts[1]) {
+        json_t *a = json_integer((json_int_t)counts[0]);
+        json_t *b = json_integer((json_int_t)counts[1]);
+        const wh_json_difference_t difference = {"runs", a, b, (double)NAN};
+        on_difference(result, &difference);
+        json_decref(a);
+        json_decref(b);
+    }
+}
+
 static bool compare_logs(side_t sides[2], result_t *result) {
     size_t number = 1;
     size_t counts[2] = {0, 0};
@@ -235,13 +311,8 @@ static bool compare_logs(side_t sides[2], result_t *result) {
         close_side(&sides[1]);
         ++number;
     } while (read && is_same(result) && number <= counts[0] && number <= counts[1]);
-    if (read && counts[0] != counts[1]) {
-        json_t *a = json_integer((json_int_t)counts[0]);
-        json_t *b = json_integer((json_int_t)counts[1]);
-        const wh_json_difference_t difference = {"runs", a, b, (double)NAN};
-        on_difference(result, &difference);
-        json_decref(a);
-        json_decref(b);
+    if (read) {
+        compare_counts(counts, number - 1, result);
     }
     return read;
 }
@@ -270,6 +341,9 @@ static void print_end(const result_t *result) {
 }
 
 static void print_table(const result_t *result) {
+    if (result->has_other_layout) {
+        puts("the layouts differ: their hashes are below");
+    }
     if (result->field) {
         if (result->slice > 0) {
             printf("slice %" PRId64 ", ", result->slice);
@@ -316,12 +390,20 @@ static int print_json(const result_t *result) {
     return status;
 }
 
+/* What --data makes has the record in a member of its own. */
+static bool is_data(const side_t *side) {
+    return json_object_get(side->root, "tracks") != NULL;
+}
+
 static bool are_of_one_kind(const side_t sides[2]) {
     if (sides[0].is_log != sides[1].is_log) {
         fprintf(stderr, "%s and %s: one is a log, the other is not (expected two of one kind)\n",
                 sides[0].path, sides[1].path);
+    } else if (is_data(&sides[0]) != is_data(&sides[1])) {
+        fprintf(stderr, "%s and %s: one is of --data, the other is not (expected two of one kind)\n",
+                sides[0].path, sides[1].path);
     }
-    return sides[0].is_log == sides[1].is_log;
+    return sides[0].is_log == sides[1].is_log && is_data(&sides[0]) == is_data(&sides[1]);
 }
 
 static bool compare_sides(side_t sides[2], result_t *result) {

@@ -1,4 +1,5 @@
 /* waferhand events LOG */
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,11 +81,22 @@ static const wh_command_line_t command_line = {
     .operand_may_lack = true,
     .check = check};
 
-static bool are_wafers_there(const arguments_t *arguments, const wh_layout_t *layout) {
+/* True if the cell has these wafers, and may have events of these kinds; `whose` cell it is. */
+static bool fits(const arguments_t *arguments, const wh_log_layout_t *cell, const char *whose) {
+    for (size_t i = 0; i < arguments->kinds.count; ++i) {
+        const char *name = arguments->kinds.items[i];
+        for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+            const char *why = wh_log_layout_lacks(cell, (wh_event_kind_t)kind);
+            if (why && strcmp(name, wh_event_name((wh_event_kind_t)kind)) == 0) {
+                fprintf(stderr, "--kind: %s: %s\n", name, why);
+                return false;
+            }
+        }
+    }
     for (size_t i = 0; i < arguments->wafers.count; ++i) {
         const char *name = arguments->wafers.items[i];
-        if (wh_layout_find_wafer(layout, name) == WH_NONE) {
-            fprintf(stderr, "--wafer: %s (expected the name of a wafer of the log's cell)\n", name);
+        if (wh_layout_find_wafer(cell->layout, name) == WH_NONE) {
+            fprintf(stderr, "--wafer: %s (expected the name of a wafer of the %s's cell)\n", name, whose);
             return false;
         }
     }
@@ -110,7 +122,7 @@ static bool is_wanted(const arguments_t *arguments, const wh_record_t *record, s
 static int print(const arguments_t *arguments, const wh_log_run_t *run) {
     const wh_record_t *record = &run->record;
     int status = 0;
-    if (!are_wafers_there(arguments, run->cell.layout)) {
+    if (!fits(arguments, &run->cell, "log") || !wh_log_window_begins_in(&arguments->window, run)) {
         return WH_EXIT_USAGE;
     }
     for (size_t i = 0; status == 0 && i < record->event_count; ++i) {
@@ -119,8 +131,16 @@ static int print(const arguments_t *arguments, const wh_log_run_t *run) {
     return wh_app_is_printed(status) ? wh_log_arguments_judge(&arguments->log, run) : WH_EXIT_USAGE;
 }
 
-static bool on_cell(void *user, const wh_layout_t *layout) {
-    return are_wafers_there(user, layout);
+static bool on_cell(void *user, const wh_log_layout_t *cell) {
+    return fits(user, cell, "simulator");
+}
+
+/* Whatever is asked for: what comes next is of another run. */
+static bool on_run(void *user, int64_t number, int64_t utime) {
+    (void)user;
+    return wh_app_is_printed(
+        printf("{\"utime\": %" PRId64 ", \"kind\": \"run\", \"run\": %" PRId64 "}\n", utime, number) < 0 ? -1
+                                                                                                         : 0);
 }
 
 static bool on_event(void *user, const wh_record_t *record, size_t i) {
@@ -134,8 +154,8 @@ static int print_log(const arguments_t *arguments) {
                                      {"the layout", arguments->log.layout, false}};
     int status = WH_EXIT_USAGE;
     if (wh_files_are_apart(named, 2, true)) {
-        const bool is_read =
-            wh_log_arguments_read(&arguments->log, NULL, NULL, &run) && wh_log_arguments_check_set(&run);
+        const bool is_read = wh_log_arguments_read(&arguments->log, NULL, NULL, &run) &&
+                             wh_log_arguments_check_set(&run, NULL);
         status = is_read ? print(arguments, &run) : status;
         wh_log_run_close(&run);
     }
@@ -145,7 +165,7 @@ static int print_log(const arguments_t *arguments) {
 int wh_app_events(int argc, char **argv) {
     arguments_t arguments = {.window = {0, HUGE_VAL}};
     wh_options_parse(&command_line, argc, argv, &arguments);
-    const wh_events_live_t live = {arguments.url, on_cell, on_event, &arguments};
+    const wh_events_live_t live = {arguments.url, on_cell, on_run, on_event, &arguments};
     const int status = arguments.lcm ? wh_events_live(&live) : print_log(&arguments);
     wh_option_list_free(&arguments.wafers);
     wh_option_list_free(&arguments.kinds);

@@ -5,7 +5,6 @@
 
 #include "../link/messages.h"
 #include "../link/node.h"
-#include "../log/log_layout.h"
 #include "app.h"
 #include "connection.h"
 
@@ -18,6 +17,7 @@ typedef struct {
     wh_link_arrays_t arrays;
     wh_record_t record;
     int64_t run, seq;
+    int64_t runs; /* heard so far */
     bool ended;
 } ear_t;
 
@@ -31,7 +31,7 @@ static void on_cell(void *user, const void *data, size_t size) {
     if (!ear->cell.layout || ear->cell.hash != (uint64_t)message.layout_hash) {
         wh_log_layout_free(&ear->cell);
         if (wh_log_layout_make(&ear->cell, &message, &nothing)) {
-            ear->ended = ear->ended || !ear->live->cell(ear->live->user, ear->cell.layout);
+            ear->ended = ear->ended || !ear->live->cell(ear->live->user, &ear->cell);
         }
     }
     (void)waferhand_cell_decode_cleanup(&message);
@@ -45,9 +45,17 @@ static bool is_news(ear_t *ear, const waferhand_state *message) {
                 message->seq - 1);
     }
     const bool news = !same_run || message->seq > ear->seq;
+    ear->runs += ear->runs == 0 || !same_run ? 1 : 0;
     ear->run = message->run;
     ear->seq = news ? message->seq : ear->seq;
     return news;
+}
+
+/* A state of a run that was not heard before. */
+static void tell_run(ear_t *ear, int64_t before, int64_t utime) {
+    if (before > 0 && ear->runs > before && !ear->ended) {
+        ear->ended = !ear->live->run(ear->live->user, ear->runs, utime);
+    }
 }
 
 static void tell(ear_t *ear, const wh_state_t *state) {
@@ -63,6 +71,7 @@ static void tell(ear_t *ear, const wh_state_t *state) {
 
 static void on_state(void *user, const void *data, size_t size) {
     ear_t *ear = user;
+    const int64_t runs = ear->runs;
     waferhand_state message;
     wh_state_t state;
     if (!wh_link_decode_state(data, size, &message)) {
@@ -70,6 +79,7 @@ static void on_state(void *user, const void *data, size_t size) {
     }
     if (ear->cell.layout && ear->cell.hash == (uint64_t)message.layout_hash && message.seq > 0 &&
         wh_link_state_is_sound(&message, ear->cell.layout, &ear->arrays, &state) && is_news(ear, &message)) {
+        tell_run(ear, runs, state.utime);
         tell(ear, &state);
     }
     (void)waferhand_state_decode_cleanup(&message);

@@ -2,12 +2,16 @@
 #ifndef WH_APP_EVENTS_LIVE_H
 #define WH_APP_EVENTS_LIVE_H
 
+#include "../log/log_layout.h"
 #include "../record/record.h"
 
 typedef struct {
     const char *url; /* null: the default */
     /* A cell is heard for the first time, or another one. False ends it. */
-    bool (*cell)(void *user, const wh_layout_t *layout);
+    bool (*cell)(void *user, const wh_log_layout_t *cell);
+    /* Another run is heard, counted from the first one heard, which is not told: after RESET, RESTORE or UNDO
+     * too. `utime` is where it goes on. False ends it. */
+    bool (*run)(void *user, int64_t number, int64_t utime);
     /* The record's i-th event has happened; the record has those of one slice. False ends it. */
     bool (*event)(void *user, const wh_record_t *record, size_t i);
     void *user;

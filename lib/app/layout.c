@@ -17,7 +17,7 @@ const wh_option_t wh_layout_options[] = {
      "Hand the layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
      WH_OPTION_LIST, .variable = offsetof(wh_layout_arguments_t, parameters)},
     {"memory", 0, "MIB", "Let the layout use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(wh_layout_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
+     .variable = offsetof(wh_layout_arguments_t, memory_mib), 1, 1e6},
     {0}};
 
 const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {

@@ -1,6 +1,7 @@
 #include "log_arguments.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "app.h"
 
@@ -8,7 +9,7 @@ const wh_option_t wh_log_options[] = {
     {"layout", 0, "FILE", "The layout's file, if it is not where the log says; another layout is refused",
      WH_OPTION_TEXT, .variable = offsetof(wh_log_arguments_t, layout)},
     {"run", 0, "N", "The log's N-th run that has slices (default: the last)", WH_OPTION_COUNT,
-     .variable = offsetof(wh_log_arguments_t, number), .least = 1, .expected = "a whole number from 1"},
+     .variable = offsetof(wh_log_arguments_t, number), .least = 1},
     {"set", 0, "NAME=VALUE",
      "Hand the log's layout, and the checks, a parameter, params.NAME: a number if VALUE is one, true, false "
      "or "
@@ -20,9 +21,9 @@ const wh_option_t wh_log_options[] = {
 
 const wh_option_t wh_log_window_options[] = {
     {"from", 0, "S", "From this time of the run on, in simulated seconds", WH_OPTION_REAL,
-     .variable = offsetof(wh_log_window_t, from), 0, LATEST, "a number from 0 to 1e+09"},
+     .variable = offsetof(wh_log_window_t, from), 0, LATEST},
     {"to", 0, "S", "Up to this time, which is still in it", WH_OPTION_REAL,
-     .variable = offsetof(wh_log_window_t, to), 0, LATEST, "a number from 0 to 1e+09"},
+     .variable = offsetof(wh_log_window_t, to), 0, LATEST},
     {0}};
 
 void wh_log_window_check(const void *given, struct argp_state *state) {
@@ -31,6 +32,14 @@ void wh_log_window_check(const void *given, struct argp_state *state) {
         argp_error(state, "--to: %g (expected a time that is not before --from, %g)", window->to,
                    window->from);
     }
+}
+
+bool wh_log_window_begins_in(const wh_log_window_t *window, const wh_log_run_t *run) {
+    const double end = wh_log_run_end(run);
+    if (window->from > end) {
+        fprintf(stderr, "--from: %g (expected a time of the run, which ends at %.6f s)\n", window->from, end);
+    }
+    return window->from <= end;
 }
 
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
@@ -44,37 +53,42 @@ bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_liste
     const bool read = wh_log_run_read(run, &wanted);
     if (!read) {
         fprintf(stderr, "%s\n", run->message);
+    } else if (run->run_count > 1) {
+        fprintf(stderr, "%s: run %zu of %zu (--run N takes another)\n", arguments->path,
+                (size_t)(run->wanted - run->runs) + 1, run->run_count);
     }
     return read;
 }
 
-bool wh_log_arguments_are_set_read(const wh_log_run_t *run) {
-    return run->options.layout.parameter_count > 0 && run->cell.is_whole &&
-           wh_sandbox_reads_parameters(run->cell.sandbox);
-}
-
-bool wh_log_arguments_check_set(const wh_log_run_t *run) {
-    char unread[WH_SANDBOX_MESSAGE_BYTES];
+bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks) {
     const wh_log_run_options_t *given = &run->options;
-    if (given->layout.parameter_count == 0 || wh_log_arguments_are_set_read(run)) {
-        return true;
+    const wh_log_layout_t *cell = &run->cell;
+    for (size_t i = 0; i < given->layout.parameter_count; ++i) {
+        const char *assignment = given->layout.parameters[i];
+        const int name = (int)strcspn(assignment, "=");
+        const bool is_unread = !cell->is_whole || wh_sandbox_is_unread(cell->sandbox, assignment);
+        if (!checks && !cell->is_whole) {
+            fprintf(stderr, "--set %s: %s (expected the log's layout, which --layout FILE names)\n",
+                    assignment, cell->note);
+            return false;
+        }
+        if (is_unread && (!checks || wh_sandbox_is_unread(checks, assignment))) {
+            fprintf(
+                stderr, "%s: --set %.*s: nobody read params.%.*s (expected one that the log's layout%s)\n",
+                given->path, name, assignment, name, assignment, checks ? " or the checks read" : " reads");
+            return false;
+        }
     }
-    if (!run->cell.is_whole) {
-        fprintf(stderr, "--set %s: %s (expected the log's layout, which --layout FILE names)\n",
-                given->layout.parameters[0], run->cell.note);
-        return false;
-    }
-    const bool is_unread = wh_sandbox_find_unread(run->cell.sandbox, unread);
-    if (is_unread) {
-        fprintf(stderr, "%s: %s\n", given->path, unread);
-    }
-    return !is_unread;
+    return true;
 }
 
 int wh_log_arguments_judge(const wh_log_arguments_t *arguments, const wh_log_run_t *run) {
-    if (run->worth.reason[0] == '\0') {
-        return WH_EXIT_MET;
+    if (run->worth.reason[0] != '\0') {
+        fprintf(stderr, "%s: %s: %s\n", arguments->path, run->worth.verdict, run->worth.reason);
     }
-    fprintf(stderr, "%s: %s: %s\n", arguments->path, run->worth.verdict, run->worth.reason);
-    return WH_EXIT_FAILED;
+    if (wh_log_run_is_part(run)) {
+        fprintf(stderr, "%s: part %d of a recording: the other parts are not read\n", arguments->path,
+                (int)run->worth.part);
+    }
+    return run->worth.reason[0] == '\0' && !wh_log_run_is_part(run) ? WH_EXIT_MET : WH_EXIT_FAILED;
 }

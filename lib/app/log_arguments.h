@@ -17,21 +17,18 @@ typedef struct {
 /* --layout, --run and --set, into a wh_log_arguments_t; the log is the subcommand's operand. */
 extern const wh_option_t wh_log_options[];
 
-/* Reads the run (wh_log_run_read), with a listener or null. False, and standard error says why, if there is
+/* Reads the run (wh_log_run_read), with a listener or null; of several runs standard error says which one it
+ * is. False, and standard error says why, if there is
  * nothing to show. To be closed in any case, and freed. */
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
                            wh_log_run_t *run);
 
-/* True if parameters are given and the layout's file is the log's and reads some: then those that nobody
- * reads may be the script's. */
-bool wh_log_arguments_are_set_read(const wh_log_run_t *run);
+/* True if each parameter that is given was read by the log's layout or by the checks' sandbox (null: there is
+ * none). Else standard error names the first that was not. */
+bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks);
 
-/* The same for whom the layout alone reads them: true also if none are given. Else standard error says
- * why. */
-bool wh_log_arguments_check_set(const wh_log_run_t *run);
-
-/* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay
- * says. */
+/* WH_EXIT_MET if a replay calls the log the same, and it is no part of a recording of several; else
+ * WH_EXIT_FAILED, and standard error says what a replay says, or which part it is. */
 int wh_log_arguments_judge(const wh_log_arguments_t *arguments, const wh_log_run_t *run);
 
 /* A stretch of time, s. Zero `from`, and `to` HUGE_VAL, to begin with. */
@@ -42,6 +39,9 @@ typedef struct {
 /* --from and --to, into a wh_log_window_t; its check refuses one that ends before it begins. */
 extern const wh_option_t wh_log_window_options[];
 void wh_log_window_check(const void *window, struct argp_state *state);
+
+/* False, and standard error says when the run ends, if it begins behind the run's end. */
+bool wh_log_window_begins_in(const wh_log_window_t *window, const wh_log_run_t *run);
 
 /* True if the moment is in it, its ends included. */
 static inline bool wh_log_window_has(const wh_log_window_t *window, double time_s) {

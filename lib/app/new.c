@@ -1,10 +1,12 @@
 /* waferhand new NAME */
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "../text/options.h"
+#include "../text/output.h"
 #include "app.h"
 #include "new_cell.h"
 
@@ -17,9 +19,9 @@ static const wh_option_t options[] = {
     {"wafer", 0, "MM", "The wafers' diameter: 100, 125, 150, 200 or 300 (default)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.wafer), 100, 300, "100, 125, 150, 200 or 300"},
     {"foups", 0, "N", "So many FOUPs, or cassettes below 200 mm (default 2)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS, "a whole number from 1 to 4"},
+     .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS},
     {"blades", 0, "N", "So many blades on the robot (default 1)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES, "1 or 2"},
+     .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES},
     {"aligner", 0, NULL, "A prealigner, too", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, cell.aligner)},
     {"collision", 0, NULL, "Look for collisions while stepping", WH_OPTION_FLAG,
@@ -131,6 +133,10 @@ int wh_app_new(int argc, char **argv) {
         !wh_new_cell_make(&arguments.cell, arguments.folder)) {
         return WH_EXIT_USAGE;
     }
-    printf("waferhand run %s/script.lua\n", arguments.folder);
+    char script[PATH_MAX];
+    (void)snprintf(script, sizeof script, "%s/script.lua", arguments.folder);
+    fputs("waferhand run ", stdout);
+    wh_output_word(stdout, script);
+    putchar('\n');
     return wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
 }

@@ -19,7 +19,7 @@ static const wh_option_t options[] = {
      "Of a log: its layout's file, if it is not where the log says; another layout is refused",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout)},
     {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
-     .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
+     .variable = offsetof(arguments_t, number), .least = 1},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
@@ -71,7 +71,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     if (!wh_run_files_are_apart(&arguments->run, run->cell.layout->path)) {
         return false;
     }
-    if (!wh_log_arguments_check_set(run)) {
+    if (!wh_log_arguments_check_set(run, NULL)) {
         return false;
     }
     if (run->worth.reason[0] != '\0') {

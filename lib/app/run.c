@@ -1,6 +1,6 @@
 /* waferhand run SCRIPT */
-#include "../link/sim_process.h"
 #include "app.h"
+#include "broadcast.h"
 #include "connection.h"
 #include "run_arguments.h"
 #include "watch.h"
@@ -58,130 +58,16 @@ static const wh_command_line_t command_line = {
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script)};
 
-/* ---------------------------------------------------------------------------------------------- broadcast */
-
-/* Motion control and simulator, coupled by calls, while all that would travel between them is published for
- * whoever watches, and recorded. */
-typedef struct {
-    wh_link_t link; /* first */
-    wh_node_t node;
-    wh_recording_t record;
-    bool is_watched;          /* the messages are wanted one by one, not slices in a record alone */
-    wh_mcs_process_t control; /* tells the commands; its client is not used */
-    wh_sim_process_t simulation;
-    wh_link_identity_t identity;
-    bool connected;
-} broadcast_t;
-
-/* Records command and answer of a slice that fits no block. */
-static void record_messages(broadcast_t *broadcast, const waferhand_command *message) {
-    const wh_protocol_server_t *server = &broadcast->simulation.server;
-    wh_protocol_client_publish(&broadcast->node, message);
-    wh_recording_message(&broadcast->record, WH_CHANNEL_STATE, server->encoded, server->encoded_size);
-}
-
-/* Steps the command for a record of slices alone: of most slices no message is made. */
-static wh_status_t record(broadcast_t *broadcast, const waferhand_command *message, wh_state_t *state) {
-    wh_protocol_server_t *server = &broadcast->simulation.server;
-    const wh_protocol_server_result_t result = wh_protocol_server_command(server, message, NULL);
-    *state = server->state;
-    if (result != WH_SERVER_STEPPED && result != WH_SERVER_NEW_RUN) {
-        record_messages(broadcast, message);
-        state->status = (wh_status_t)server->room.message.status;
-        return state->status;
-    }
-    const wh_recorded_t recorded =
-        wh_recording_slice(&broadcast->record, message, server->simulator.physics.told, server->missed,
-                           wh_protocol_server_hash(server), server->state.event_count > 0);
-    if (recorded != WH_RECORDED) {
-        wh_protocol_server_encode(server);
-    }
-    if (recorded == WH_RECORDED_STATE) {
-        wh_recording_state(&broadcast->record, server->encoded, server->encoded_size);
-    } else if (recorded == WH_NOT_RECORDED) {
-        record_messages(broadcast, message);
-    }
-    return state->status;
-}
-
-/* The command goes out as a client would send it, but the simulator is called, so that nothing can be lost
- * between the two. */
-static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
-    broadcast_t *broadcast = (broadcast_t *)link;
-    waferhand_command message;
-    wh_link_command_to_message(command, &broadcast->identity, true, &message);
-    broadcast->control.identity = broadcast->identity;
-    broadcast->control.utime = command->utime;
-    broadcast->control.seq = command->seq;
-    if (!broadcast->is_watched) {
-        return record(broadcast, &message, state);
-    }
-    wh_protocol_client_publish(&broadcast->node, &message);
-    return wh_sim_process_step(&broadcast->simulation, &message, state);
-}
-
-static uint64_t last_hash(wh_link_t *link) {
-    return wh_protocol_server_hash(&((broadcast_t *)link)->simulation.server);
-}
-
-static int64_t missed_slices(wh_link_t *link) {
-    (void)link;
-    return 0;
-}
-
-/* `user` is the broadcast's motion control. */
-static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
-    broadcast_t *broadcast = (broadcast_t *)(void *)((char *)user - offsetof(broadcast_t, control));
-    if (wh_sim_process_open(&broadcast->simulation, &broadcast->node, mcs->layout, false) != WH_OK) {
-        return NULL;
-    }
-    broadcast->identity.run = wh_protocol_client_draw_run();
-    broadcast->identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
-    broadcast->simulation.server.encodes_later = !broadcast->is_watched;
-    broadcast->connected = true;
-    broadcast->control.identity = broadcast->identity;
-    wh_mcs_process_catch_up(&broadcast->control, mcs);
-    return &broadcast->link;
-}
-
-static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
-    const wh_mcs_partners_t told = wh_mcs_process_partners(&broadcast->control);
-    const wh_mcs_partners_t partners = {.connect = connect_simulation,
-                                        .watch = told.watch,
-                                        .expected = told.expected,
-                                        .cycle = told.cycle,
-                                        .edge = told.edge,
-                                        .centring = told.centring,
-                                        .finished = told.finished,
-                                        .user = told.user};
-    const wh_protocol_client_options_t lockstep = {.rate = 0};
-    if (!wh_mcs_process_open(&broadcast->control, &broadcast->node, &lockstep)) {
-        return WH_EXIT_USAGE;
-    }
-    arguments->run.partners = partners;
-    const int status = wh_run_and_print(arguments);
-    wh_mcs_process_finish(&broadcast->control);
-    wh_mcs_process_close(&broadcast->control);
-    if (broadcast->connected) {
-        wh_sim_process_close(&broadcast->simulation);
-    }
-    return status;
-}
-
 /* Runs with messages: over LCM, or within the process if only a record of them is wanted. */
 static int run_published(arguments_t *arguments) {
-    static broadcast_t broadcast = {.link = {exchange, last_hash, missed_slices}};
-    const char *url = arguments->lcm ? arguments->url : "memq://";
-    broadcast.is_watched = arguments->lcm || arguments->record.all;
-    wh_record_arguments_apply(&arguments->record, "run", true, &broadcast.record);
-    if ((arguments->lcm && !wh_node_reaches_others(url)) ||
-        !wh_node_open(&broadcast.node, url, &broadcast.record)) {
+    static wh_broadcast_t broadcast;
+    if (!wh_broadcast_open(&broadcast, "run", &arguments->record, arguments->lcm, arguments->url)) {
         return WH_EXIT_USAGE;
     }
     arguments->run.recording = broadcast.record.options.path ? &broadcast.record : NULL;
-    const int status = run_on(&broadcast, &arguments->run);
-    wh_node_close(&broadcast.node);
-    return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
+    arguments->run.run.partners = wh_broadcast_partners(&broadcast);
+    const int status = wh_run_and_print(&arguments->run);
+    return wh_broadcast_close(&broadcast) ? status : WH_EXIT_USAGE;
 }
 
 static int play(void *user) {

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../layout/axes.h"
+#include "../layout/grips.h"
 #include "../link/outputs.h"
 #include "../report/page.h"
 #include "../report/plots.h"
@@ -27,10 +29,9 @@ const wh_option_t wh_run_options[] = {
     {"gantt", 0, NULL, "Also print who was busy when, and what each command's time went into", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, sections.gantt)},
     {"from", 0, "S", "With --gantt: from this time of the run on, in simulated seconds", WH_OPTION_REAL,
-     .variable = offsetof(wh_run_arguments_t, sections.from_s), 0, LATEST, "a number from 0 to 1e+09"},
+     .variable = offsetof(wh_run_arguments_t, sections.from_s), 0, LATEST},
     {"to", 0, "S", "With --gantt: up to this time", WH_OPTION_REAL,
-     .variable = offsetof(wh_run_arguments_t, sections.to_s), SOONEST, LATEST,
-     "a number from 1e-06 to 1e+09"},
+     .variable = offsetof(wh_run_arguments_t, sections.to_s), SOONEST, LATEST},
     {"cycle", 0, NULL,
      "Also print the first steady cycle by itself: how long it takes, what is in it, its wafers per hour; or "
      "why there is none",
@@ -48,9 +49,9 @@ const wh_option_t wh_run_options[] = {
     {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, run.limits.trust)},
     {"budget", 0, "N", "End the script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
-     WH_OPTION_REAL, .variable = offsetof(wh_run_arguments_t, budget), 1, 1e18, "a number from 1 to 1e+18"},
+     WH_OPTION_REAL, .variable = offsetof(wh_run_arguments_t, budget), 1, 1e18},
     {"memory", 0, "MIB", "Let the script use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
+     .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6},
     {0}};
 
 const wh_option_t wh_run_files_options[] = {
@@ -112,7 +113,8 @@ const wh_option_t wh_run_error_options[] = {
     {"error", 0, "NAME.FIELD=VALUE",
      "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's "
      "dx, "
-     "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
+     "dy, dz, tilt_x, tilt_y, turn, of its rim diameter and what else a study draws, a gripper's valve, or "
+     "vacuum; may be given again",
      WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, errors)},
     {0}};
 
@@ -276,13 +278,34 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
+/* What a layout must be for its segments to be written: null if it is that. */
+static const char *segments_expect(const wh_layout_t *layout) {
+    if (!layout) {
+        return NULL;
+    }
+    if (layout->machine.carrier) {
+        return WH_AXES_USUAL;
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        if (layout->stations[s].via_count > 0) {
+            return "a layout without `via`";
+        }
+    }
+    if (wh_layout_has_grips(layout)) {
+        return "a layout whose wafers lie face up, on grippers with vacuum";
+    }
+    return wh_layout_has_loaded(layout) ? "a layout without `loaded`" : NULL;
+}
+
 /* False, and says so, for a run that would not be the same when it is played again. */
 static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
-    if (!arguments->segments_path || !mcs->unplayed) {
+    const char *expected = segments_expect(mcs->layout);
+    if (!arguments->segments_path || (!mcs->unplayed && !expected)) {
         return true;
     }
-    fprintf(stderr, "--segments: %s: not written (expected a script without %s)\n", arguments->segments_path,
-            mcs->unplayed);
+    const bool is_unplayed = mcs->unplayed && !(mcs->layout && mcs->layout->machine.carrier);
+    fprintf(stderr, "--segments: %s: not written (expected %s%s)\n", arguments->segments_path,
+            is_unplayed ? "a script without " : "", is_unplayed ? mcs->unplayed : expected);
     return false;
 }
 

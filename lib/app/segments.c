@@ -142,6 +142,19 @@ static void write_robot(FILE *out, const wh_robot_t *robot) {
     fputs("},\n    ", out);
 }
 
+/* The rest of a mount. */
+static void write_slides(FILE *out, const wh_mount_t *mount) {
+    static const char *const kinds[] = {"WH_MOUNT_CHUCK", "WH_MOUNT_STAGE", "WH_MOUNT_PINS",
+                                        "WH_MOUNT_FLIPPER"};
+    fprintf(out, ", %s, ", kinds[mount->kind]);
+    write_numbers(out, (const wh_real_t[]){mount->travel.min, mount->travel.max}, 2);
+    fputs(", ", out);
+    write_limits(out, &mount->limits);
+    fputs(", ", out);
+    write_real(out, mount->height);
+    fputs("}", out);
+}
+
 static void write_machine(const writer_t *writer) {
     const wh_machine_t *machine = &writer->mcs->real->machine;
     FILE *out = writer->out;
@@ -152,11 +165,12 @@ static void write_machine(const writer_t *writer) {
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         fprintf(out, "%s{%" PRId32 ", ", g > 0 ? ",\n     " : "", machine->mounts[g].axis);
         write_pose(out, &machine->mounts[g].base_from_station);
-        fputs(machine->mounts[g].is_shifted ? ", true, " : ", false, ", out);
+        fprintf(out, ", %s, %d, %d, ", machine->mounts[g].is_shifted ? "true" : "false",
+                machine->mounts[g].robot, machine->mounts[g].arm);
         write_pose(out, &machine->mounts[g].effector_from_gripper);
-        fputs("}", out);
+        write_slides(out, &machine->mounts[g]);
     }
-    fputs("}};\n\n", out);
+    fputs("},\n    NULL,\n    NULL,\n    0};\n\n", out);
 }
 
 /* ----------------------------------------------------------------------------------------------- segments */
@@ -217,7 +231,8 @@ static void write_segment(const writer_t *writer, size_t index) {
     }
     fprintf(out, "}, %" PRId32 ", ", segment->gripper);
     write_real(out, segment->reach);
-    fprintf(out, "}, %" PRId64 "}", kept->ended ? 0 : kept->slices);
+    fprintf(out, ", NULL, 0}, %" PRId64 "}",
+            kept->ended ? 0 : kept->slices); /* a run by via points is refused */
 }
 
 /* ------------------------------------------------------------------------------------------------- faults */
@@ -310,7 +325,9 @@ static void write_cell(const writer_t *writer) {
     write_real(writer->out, cell->off_centre);
     fputs(", ", writer->out);
     write_real(writer->out, cell->askew);
-    fprintf(writer->out, ", %s},\n", cell->settle ? "true" : "false");
+    fprintf(writer->out, ", %s, 0, ", cell->settle ? "true" : "false");
+    write_real(writer->out, cell->drop);
+    fputs("},\n", writer->out);
 }
 
 /* A run without ways does not link what they need. */

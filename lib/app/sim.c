@@ -13,6 +13,7 @@
 #include "../view/view.h"
 #include "apart.h"
 #include "app.h"
+#include "broadcast.h"
 #include "connection.h"
 #include "layout_arguments.h"
 
@@ -124,9 +125,12 @@ static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_proces
 }
 
 static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) {
-    static const int32_t closed[WH_GRIPPERS] = {1, 1, 1, 1, 1, 1, 1, 1};
+    int32_t closed[WH_GRIPPERS];
     if (!path) {
         return true;
+    }
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        closed[g] = WH_VALVE_CLOSED;
     }
     const int problem = wh_outputs_open(outputs, path, closed, count);
     if (problem != 0) {
@@ -134,22 +138,6 @@ static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) 
                 problem == EINVAL ? "this is a folder" : strerror(problem));
     }
     return problem == 0;
-}
-
-static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout) {
-    static const char *const left_out[WH_VIEW_DETAILS] = {
-        [WH_VIEW_ALL] = "",
-        [WH_VIEW_NO_LEDGES] = "; its ledges are left out",
-        [WH_VIEW_BOXES] = "; its ledges are left out, its meshes are boxes",
-    };
-    if (wh_viewer_open(view, node, layout) != WH_OK) {
-        fprintf(stderr, "%s: --view: too many parts (expected a cell that fits %d bytes)\n", layout->path,
-                WH_VIEW_BYTES);
-        return false;
-    }
-    wh_node_say(node, "shown to viewers: %d bodies in %d bytes%s", view->cell.bodies.load.num_links,
-                view->cell_bytes.load_size, left_out[view->cell.detail]);
-    return true;
 }
 
 /* Members that were not opened are all zero. */
@@ -172,7 +160,7 @@ static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *la
         return false;
     }
     return open_outputs(&served->outputs, arguments->outputs, layout->machine.gripper_count) &&
-           (!arguments->view || open_view(&served->view, node, layout));
+           (!arguments->view || wh_app_open_view(&served->view, node, layout));
 }
 
 static void close_served(served_t *served) {

@@ -19,13 +19,13 @@ static const wh_option_t options[] = {
     {"svg", 0, "FILE", "Also draw what the runs measure over the first parameter", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, svg)},
     {"threads", 0, "N", "On so many threads (default: one for each processor)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, threads), 1, 1024, "a number from 1 to 1024"},
+     .variable = offsetof(arguments_t, threads), 1, 1024},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"budget", 0, "N", "End a run's script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
-     WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18, "a number from 1 to 1e+18"},
+     WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18},
     {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6, "a number from 1 to 1000000"},
+     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
@@ -46,6 +46,11 @@ static bool write_plot(void *user, FILE *out) {
 }
 
 static int hand_on(const arguments_t *arguments, wh_script_sweep_t *sweep) {
+    const size_t undone = wh_sweep_count(sweep, WH_SWEEP_UNDONE);
+    if (undone > 0) {
+        fprintf(stderr, "interrupted: %zu of %zu runs are done\n", sweep->point_count - undone,
+                sweep->point_count);
+    }
     if (wh_sweep_count(sweep, WH_SWEEP_BAD) == sweep->point_count) {
         fprintf(stderr, "%s\n", sweep->points[0].reason);
         return WH_EXIT_USAGE;

@@ -19,9 +19,9 @@ typedef struct {
 
 static const wh_option_t options[] = {
     {"jobs", 'j', "N", "Play so many scripts at a time (default: one for each processor)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, jobs), 1, 1024, "a number from 1 to 1024"},
+     .variable = offsetof(arguments_t, jobs), 1, 1024},
     {"timeout", 0, "S", "End a script that has not ended after S seconds (default 600): it has failed",
-     WH_OPTION_REAL, .variable = offsetof(arguments_t, timeout), 1e-3, 1e6, "a number from 0.001 to 1e+06"},
+     WH_OPTION_REAL, .variable = offsetof(arguments_t, timeout), 1e-3, 1e6},
     {"tap", 0, NULL, "Print the results as TAP, the Test Anything Protocol", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, tap)},
     {"junit", 0, "FILE", "Also write the results as JUnit's XML", WH_OPTION_TEXT,
@@ -29,9 +29,9 @@ static const wh_option_t options[] = {
     {"set", 0, "NAME=VALUE", "Hand each script a parameter, which each must read, as with run",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
     {"budget", 0, "N", "End a script after N steps: 1 each of Lua, 20 a slice (default 1e9)", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, run.budget), 1, 1e18, "a number from 1 to 1e+18"},
+     .variable = offsetof(arguments_t, run.budget), 1, 1e18},
     {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
+     .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};

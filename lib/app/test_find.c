@@ -64,7 +64,11 @@ static bool look_at(wh_test_found_t *found, const char *folder, const char *name
     bool taken = true;
     if (lstat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
         taken = search(found, path, depth + 1);
-    } else if (is_lua(name) && stat(path, &status) == 0 && S_ISREG(status.st_mode)) {
+    } else if (is_lua(name) && stat(path, &status) != 0) {
+        taken = refuse(path, strerror(errno));
+    } else if (is_lua(name) && !S_ISREG(status.st_mode)) {
+        taken = refuse(path, S_ISDIR(status.st_mode) ? "it is a link to a folder" : "it is no regular file");
+    } else if (is_lua(name)) {
         wh_test_found_add(found, path, true);
     }
     free(path);
@@ -93,7 +97,11 @@ bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) {
         if (stat(paths->items[i], &status) != 0) {
             taken = refuse(paths->items[i], strerror(errno));
         } else if (S_ISDIR(status.st_mode)) {
+            const size_t before = found->count;
             taken = search(found, paths->items[i], 0);
+            if (taken && found->count == before) {
+                taken = refuse(paths->items[i], "no scripts found");
+            }
         } else {
             wh_test_found_add(found, paths->items[i], false);
         }

@@ -17,7 +17,7 @@
 typedef struct {
     wh_test_verdict_t verdict;
     bool reads_output;
-    uint64_t expectations;
+    uint64_t expectations, errors;
     double simulated_s;
     char reason[WH_SANDBOX_MESSAGE_BYTES + 80];
 } told_t;
@@ -44,6 +44,20 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
+/* Waiting and switching valves is no motion. */
+static bool has_moved(const wh_record_t *record) {
+    const int64_t *shares = record->activity.shares;
+    return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] > 0;
+}
+
+static uint64_t count_errors(const wh_record_t *record) {
+    uint64_t errors = 0;
+    for (size_t i = 0; i < record->command_count; ++i) {
+        errors += record->commands[i].error != WH_OK ? 1 : 0;
+    }
+    return errors;
+}
+
 static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, bool was_found, told_t *told) {
     const wh_record_t *record = &run->record;
     if (outcome == WH_RUN_BAD_INPUT) {
@@ -52,7 +66,7 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, b
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
         wh_record_reason(record, told->reason, sizeof told->reason);
-    } else if (record->slices == 0 && record->expectation_count == 0) {
+    } else if (!has_moved(record) && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it moves nothing and expects nothing");
     }
@@ -69,6 +83,7 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &options);
     judge(&run, outcome, job->was_found, &told);
     told.expectations = run.record.expectation_count;
+    told.errors = count_errors(&run.record);
     told.simulated_s = run.record.simulated_s;
     told.reads_output = crew->options->output && wh_output_is_kept(crew->options->output);
     (void)fflush(stdout);
@@ -176,6 +191,7 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
         result->verdict = told->verdict;
         result->reason = told->reason[0] != '\0' ? wh_text_copy(told->reason) : NULL;
         result->expectations = told->expectations;
+        result->errors = told->errors;
         result->simulated_s = told->simulated_s;
     }
 }

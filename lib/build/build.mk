@@ -63,7 +63,7 @@ SETTINGS := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell 
 # What the users of the library have to define as well: number type and what is left out, be it said by FLOAT and WITHOUT,
 # in CFLAGS, or in the header that WH_CONFIG_FILE names.
 DEFINES := $(if $(GNU),$(shell $(CC) $(CFLAGS) $(EXTRA) $(SETTINGS) -ffreestanding -dM -E lib/math/config.h 2>/dev/null | \
-    sed -nE 's/^.define (WH_FLOAT|WH_WITHOUT_SWEEP|WH_WITHOUT_INDEX)\b ?(.*)$$/-D\1=\2/p' | sed 's/=1$$//' | sort),$(SETTINGS))
+    sed -nE 's/^.define (WH_FLOAT|WH_WITHOUT_SWEEP|WH_WITHOUT_INDEX|WH_MOST_AXES|WH_MOST_GRIPPERS)\b ?(.*)$$/-D\1=\2/p' | sed 's/=1$$//' | sort),$(SETTINGS))
 ABI := $(call defined,WH_ABI)$(if $(filter -DWH_FLOAT%,$(DEFINES)),f)
 # The prefix map keeps the folder's name out of what is built.
 BASE := $(SAME_BITS) $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \
@@ -78,7 +78,9 @@ MESSAGE_FLAGS := -std=c99 -D_GNU_SOURCE -ffile-prefix-map=$(CURDIR)=.
 LCM_FLAGS := -isystem $(B)/lcm
 package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>/dev/null))
 LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
-PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols libedit zlib libzstd)
+# liburdfdom's pkg-config file may name /usr/include itself, which is to stay behind C++'s own folders.
+URDF_FLAGS := $(patsubst -I%,-idirafter %,$(shell $(PKG_CONFIG) --cflags urdfdom qhull_r 2>/dev/null))
+PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols libedit zlib libzstd) $(URDF_FLAGS)
 # Eigen without its heap, which no matrix of ours needs: what throws or asks for C++'s own library is left out, and C links it.
 PROGRAM_CXX_FLAGS := -std=c++17 -fno-exceptions -fno-rtti $(BASE) $(NUMBER_WARNINGS) -DEIGEN_NO_MALLOC -DEIGEN_MPL2_ONLY $(call package_flags,eigen3)
 TEST_FLAGS := $(HOST_FLAGS) $(if $(FLOAT),,$(NUMBER_WARNINGS)) -Ilib -Itests $(LCM_FLAGS) $(call package_flags,$(LUA) jansson)
@@ -91,10 +93,12 @@ LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a li
 MPI := $(firstword $(foreach name,ompi-c ompi,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 RANKS := $(if $(MPI),$(B)/waferhand_mpi.so)
 
+# liburdfdom is C++; C links it all the same.
+URDF_LIBS = -Wl,--as-needed $(shell $(PKG_CONFIG) --libs urdfdom qhull_r) -lstdc++ -Wl,--no-as-needed
 # LCM's pkg-config file asks for GLib's headers, which its own do not need: hence -llcm.
 # Before libwaferhand.a, which it uses.
 COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed
-PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit zlib libzstd) -llcm -ldl -lpthread -lm
+PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit zlib libzstd) $(URDF_LIBS) -llcm -ldl -lpthread -lm
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
@@ -132,6 +136,8 @@ $(PROGRAM_CXX_OBJECTS): FLAGS = $(PROGRAM_CXX_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
+# liburdfdom's headers throw.
+$(B)/obj/lib/layout/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
 # Its pow must not be taken for the one that the compiler knows.
 $(B)/obj/lib/script/pow.o: FLAGS += -fno-builtin-pow
 $(B)/obj/tests/%.o: FLAGS = $(TEST_FLAGS)

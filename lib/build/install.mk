@@ -20,7 +20,7 @@ PROGRAM_PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/lua/5.4/wh.so $(PREFIX)/shar
                   $(if $(RANKS),$(LIBDIR)/waferhand/waferhand_mpi.so)
 PLACES := $(LIBRARY_PLACES) $(COLLISION_PLACES) $(PROGRAM_PLACES)
 SHARE := $(PREFIX)/share/waferhand
-EXAMPLES := $(filter lua/layouts/% lua/examples/%,$(LUA_SOURCES))
+EXAMPLES := $(filter lua/layouts/% lua/examples/% lua/dialects/%,$(LUA_SOURCES))
 
 # $(call place,FILE,PLACE): a step of a chain of commands that stops at the first failure
 place = install -D -m $(if $(filter %/bin/waferhand,$(2)),755,644) $(1) '$(DESTDIR)$(2)' &&

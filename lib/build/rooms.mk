@@ -3,4 +3,4 @@
 LIBRARY_ROOMS := math grasp batch motion cell align sim
 # Over libccd, and in double only.
 COLLISION_ROOM := collision
-HOST_ROOMS := text script layout record estimate mcs link log view study report print app
+HOST_ROOMS := text script layout record estimate mcs link host log view study report print app

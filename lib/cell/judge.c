@@ -13,7 +13,7 @@ static void find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         for (int32_t slot = 1; slot <= station->slots; ++slot) {
-            const wh_place_t place = wh_station_measure(station, slot, base_from_wafer);
+            const wh_place_t place = wh_cell_measure(cell, station, slot, base_from_wafer);
             const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
             if (aside < cell->tolerance.projxy && place.dz > -cell->tolerance.projz &&
                 (!found || place.dz < said->height)) {
@@ -63,6 +63,21 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
     }
 }
 
+/* True, and reported, if it was let go in the air over its slot. */
+static bool judge_drop(const wh_cell_t *cell, wh_event_list_t *list, size_t release,
+                       const wh_place_t *place) {
+    if (!(cell->drop > 0) || place->dz <= cell->drop) {
+        return false;
+    }
+    wh_event_t *said = append_as(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
+    if (said != NULL) {
+        said->height = place->dz;
+        said->value = 0;
+        said->limit = cell->drop;
+    }
+    return true;
+}
+
 static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t release, const wh_place_t *place) {
     const int32_t other = find_other(cell, table, list->events[release].wafer, place);
@@ -88,6 +103,9 @@ static void judge_release(const wh_cell_t *cell, const wh_grasp_t *table, wh_eve
     wh_place_t place;
     if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place)) {
         judge_unsupported(cell, table, list, release);
+        return;
+    }
+    if (judge_drop(cell, list, release, &place)) {
         return;
     }
     judge_occupied(cell, table, list, release, &place);
@@ -126,6 +144,14 @@ static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
     wh_mat3_orthonormalise(R);
 }
 
+/* Turns a wafer about the centre of the face that it lies on. */
+static void lay_flat(const wh_cell_t *cell, wh_face_t lies_on, const wh_vec3_t *up, wh_pose_t *pose) {
+    wh_pose_t face;
+    wh_face_frame(pose, cell->thickness, lies_on, &face);
+    turn_towards(&face.R, up);
+    wh_face_frame(&face, cell->thickness, lies_on, pose);
+}
+
 /* Within the tolerance below its plane a wafer is on its support. */
 static bool is_supported(const wh_cell_t *cell, const wh_place_t *place) {
     return place->dz < 0 && place->dz > -cell->tolerance.projz;
@@ -147,7 +173,7 @@ static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *li
     const wh_vec3_t down = wh_vec3_scale(place.dz, &up);
     pose.r = wh_vec3_subtract(&pose.r, &down);
     if (cell->settle) {
-        turn_towards(&pose.R, &up);
+        lay_flat(cell, place.face, &up, &pose);
     }
     const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
     wh_event_t *said = moved && place.dz > 0 ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
@@ -171,5 +197,5 @@ bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, cons
         (place.dz < -SUPPORT_TOUCH && !is_supported(cell, &place))) {
         return false;
     }
-    return wh_station_measure(&cell->stations[place.station], place.slot, next).dz < SUPPORT_TOUCH;
+    return wh_cell_measure(cell, &cell->stations[place.station], place.slot, next).dz < SUPPORT_TOUCH;
 }

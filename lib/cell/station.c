@@ -1,5 +1,6 @@
 #include "station.h"
 
+#include "../grasp/face.h"
 #include "../math/trig.h"
 
 #define MOST_SLOTS 1000
@@ -20,7 +21,8 @@ static wh_status_t validate_cell(const wh_cell_t *cell) {
     if (cell->count > INT32_MAX) {
         return WH_STATUS_BAD_CAPACITY;
     }
-    if (!is_limit(cell->off_centre, WH_REAL(1e6)) || !is_limit(cell->askew, 10)) {
+    if (!is_limit(cell->off_centre, WH_REAL(1e6)) || !is_limit(cell->askew, 10) ||
+        !is_limit(cell->thickness, WH_FACE_THICKEST) || !is_limit(cell->drop, WH_REAL(1e6))) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     return cell->count == 0 ? WH_OK : wh_tolerance_validate(&cell->tolerance);
@@ -57,6 +59,27 @@ wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const w
     place.dy = slot_from_wafer.r.y;
     place.dz = slot_from_wafer.r.z;
     place.tilt = wh_atan2(sine, R->m[2][2]);
+    place.face = WH_FACE_BACK;
+    return place;
+}
+
+/* The face of a wafer that looks at the station's slots; of a front, its frame into `room`. */
+static wh_face_t face_seen(const wh_cell_t *cell, const wh_station_t *station,
+                           const wh_pose_t *base_from_wafer, wh_pose_t *room) {
+    if (!(cell->thickness > 0) ||
+        wh_face_towards(base_from_wafer, &station->base_from_station) == WH_FACE_BACK) {
+        return WH_FACE_BACK;
+    }
+    wh_face_frame(base_from_wafer, cell->thickness, WH_FACE_FRONT, room);
+    return WH_FACE_FRONT;
+}
+
+wh_place_t wh_cell_measure(const wh_cell_t *cell, const wh_station_t *station, int32_t slot,
+                           const wh_pose_t *base_from_wafer) {
+    wh_pose_t room;
+    const wh_face_t face = face_seen(cell, station, base_from_wafer, &room);
+    wh_place_t place = wh_station_measure(station, slot, face == WH_FACE_BACK ? base_from_wafer : &room);
+    place.face = face;
     return place;
 }
 
@@ -90,11 +113,15 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
     bool found = false;
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
-        const int32_t slot = nearest_slot_of(station, base_from_wafer);
-        wh_place_t here = wh_station_measure(station, slot, base_from_wafer);
+        wh_pose_t room;
+        const wh_face_t face = face_seen(cell, station, base_from_wafer, &room);
+        const wh_pose_t *seen = face == WH_FACE_BACK ? base_from_wafer : &room;
+        const int32_t slot = nearest_slot_of(station, seen);
+        wh_place_t here = wh_station_measure(station, slot, seen);
         const wh_real_t square = here.dx * here.dx + here.dy * here.dy + here.dz * here.dz;
-        if (lies_in(cell, station, base_from_wafer, &here) && (!found || square < best)) {
+        if (lies_in(cell, station, seen, &here) && (!found || square < best)) {
             here.station = (int32_t)s;
+            here.face = face;
             *place = here;
             best = square;
             found = true;

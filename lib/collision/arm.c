@@ -1,5 +1,7 @@
 #include "arm.h"
 
+#include "../math/trig.h"
+
 static wh_vec3_t wrist_of(const wh_arm_t *arm, const wh_pose_t *base_from_effector) {
     const wh_vec3_t x = wh_mat3_column(&base_from_effector->R, 0);
     const wh_vec3_t back = wh_vec3_scale(arm->reach, &x);
@@ -48,4 +50,73 @@ void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_p
     bodies[WH_ARM_FOREARM] = level_towards(&elbow, &wrist, &out);
     bodies[WH_ARM_HAND] = *base_from_effector;
     bodies[WH_ARM_HAND].r = wrist;
+}
+
+/* ---------------------------------------------------------------------------------------- of any kind */
+
+/* Base's view of the column's foot, and of its lift. */
+static void place_column(const wh_chain_t *chain, const wh_real_t q[], wh_pose_t bodies[]) {
+    wh_pose_t foot = wh_pose_identity();
+    foot.r.x = q[WH_CHAIN_RAIL];
+    bodies[WH_ARM_BASE] = chain->is_placed ? wh_pose_compose(&chain->base_from_robot, &foot) : foot;
+    const wh_pose_t up = {wh_mat3_identity(), {0, 0, q[WH_CHAIN_Z]}};
+    bodies[WH_ARM_LIFT] = wh_pose_compose(&bodies[WH_ARM_BASE], &up);
+}
+
+/* Rx(tilt_x) Ry(tilt_y). */
+static wh_mat3_t tilt_at(const wh_real_t q[]) {
+    wh_real_t s;
+    wh_real_t c;
+    wh_sin_cos(q[WH_CHAIN_TILT_X], &s, &c);
+    const wh_mat3_t about_x = {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
+    wh_sin_cos(q[WH_CHAIN_TILT_Y], &s, &c);
+    const wh_mat3_t about_y = {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
+    return wh_mat3_multiply(&about_x, &about_y);
+}
+
+/* The links in the plane that the column carries, the hand as it is there. */
+static void place_scara(const wh_chain_t *chain, const wh_real_t q[], const wh_pose_t *hand,
+                        wh_pose_t links[]) {
+    wh_vec3_t at = wh_vec3(0, 0, hand->r.z);
+    wh_real_t s;
+    wh_real_t c;
+    wh_sin_cos(q[WH_CHAIN_THETA], &s, &c);
+    links[WH_ARM_UPPER] = level_at(&at, c, s);
+    at.x = chain->links[0] * c;
+    at.y = chain->links[0] * s;
+    wh_sin_cos(q[WH_CHAIN_THETA] + q[WH_CHAIN_REACH], &s, &c);
+    links[WH_ARM_FOREARM] = level_at(&at, c, s);
+    links[WH_ARM_HAND] = *hand;
+}
+
+void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t axes[],
+                          wh_pose_t bodies[]) {
+    const wh_chain_t *chain = &carrier->chain;
+    wh_real_t q[WH_CHAIN_AXES] = {0};
+    wh_pose_t effector;
+    wh_pose_t links[WH_ARM_BODIES];
+    for (size_t i = 0; i < carrier->axis_count; ++i) {
+        if (carrier->axes[i] != WH_CARRIER_OTHERS) {
+            q[carrier->axes[i]] = axes[i];
+        }
+    }
+    q[WH_CHAIN_FLIP] = 0;
+    wh_chain_forward(chain, q, &effector);
+    place_column(chain, q, bodies);
+    wh_pose_t plane = bodies[WH_ARM_LIFT];
+    const wh_mat3_t tilt = tilt_at(q);
+    plane.R = wh_mat3_multiply(&plane.R, &tilt);
+    const wh_pose_t hand = wh_pose_relative(&plane, &effector);
+    if (chain->kind == WH_CHAIN_SCARA) {
+        place_scara(chain, q, &hand, links);
+    } else {
+        wh_arm_place(arm, &hand, links);
+    }
+    if (wh_real_abs(chain->height) > 0) { /* the hand alone is higher */
+        links[WH_ARM_UPPER].r.z -= chain->height;
+        links[WH_ARM_FOREARM].r.z -= chain->height;
+    }
+    for (size_t i = WH_ARM_UPPER; i < WH_ARM_BODIES; ++i) {
+        bodies[i] = wh_pose_compose(&plane, &links[i]);
+    }
 }

@@ -1,15 +1,20 @@
-/* Where the links of a TRZY robot's arm are. theta, R, Z and yaw leave one choice to the builder: the elbow.
+/* Where the links of a robot's arm are. Of a polar arm theta, R, Z and yaw leave one choice to the builder:
+ * the elbow.
  *
- * The arm is of the usual kind: a column that lifts and turns, an upper arm and a forearm of equal length
+ * A polar arm is of the usual kind: a column that lifts and turns, an upper arm and a forearm of equal length
  * that fold over each other, and a wrist that carries the end-effector, `reach` behind its origin. The
  * end-effector's pose gives the wrist. The elbow is the point from which both links reach, on the left as
- * seen from the column (on the right with `right_handed`). All links are level; mm in base. No heap, no
- * trigonometry.
+ * seen from the column (on the right with `right_handed`). All links are level; mm in base. No heap.
+ *
+ * Of an arm with a height of its own that is the hand's: its links are as high as those of the other arm.
+ *
+ * A SCARA's axes say where its links are, and its wrist carries the end-effector's origin. A robot on a rail
+ * takes its column along; a tilt turns the arm, not the column; a flip turns the blade, not the hand.
  */
 #ifndef WH_COLLISION_ARM_H
 #define WH_COLLISION_ARM_H
 
-#include "../math/pose.h"
+#include "../motion/carrier.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(arm);
@@ -38,6 +43,12 @@ bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector) WH
  * checked. Cost: three square roots. */
 void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[])
     WH_SYMBOL(wh_arm_place);
+
+/* The same for a robot of any kind at these axes, in the machine's order. `arm` counts for polar arms only.
+ * The upper arm's origin is on theta's axis, the hand's at the wrist, as if nothing was flipped. Cost: that
+ * of wh_chain_forward and of six products of poses. */
+void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t axes[],
+                          wh_pose_t bodies[]) WH_SYMBOL(wh_arm_place_carrier);
 
 WH_HEADER_END
 

@@ -30,10 +30,12 @@ static bool owner_fits(const wh_world_config_t *config, const wh_part_t *part) {
         return wh_is_index(part->owner, config->cell->count) &&
                wh_is_index(part->slot - 1, (size_t)config->cell->stations[part->owner].slots);
     case WH_PART_ARM:
-        return wh_is_index(part->owner, WH_ARM_BODIES);
+        return wh_is_index(part->owner, wh_world_arms(config) * WH_ARM_BODIES);
     case WH_PART_BLADE:
     case WH_PART_CHUCK:
         return wh_is_index(part->owner, config->gripper_count);
+    case WH_PART_DOOR:
+        return wh_is_index(part->owner, config->door_count);
     case WH_PART_WAFER:
         break;
     }
@@ -66,19 +68,36 @@ static wh_status_t validate_parts(const wh_world_config_t *config, int32_t *part
 }
 
 static bool exceeds_capacity(const wh_world_config_t *config) {
-    return config->gripper_count > WH_WORLD_GRIPPERS || count_hanging(config) > WH_WORLD_MOVING ||
+    return config->gripper_count > WH_WORLD_GRIPPERS || config->arm_count > WH_WORLD_ARMS ||
+           config->door_count > WH_WORLD_DOORS || count_hanging(config) > WH_WORLD_MOVING ||
            config->part_count > 1000000 || config->wafer_count > 1000000;
+}
+
+static bool carriers_fit(const wh_world_config_t *config) {
+    bool fit = true;
+    for (size_t g = 0; config->arm_count > 0 && g < config->gripper_count; ++g) {
+        fit = fit && (config->carried_by[g] == WH_WORLD_NO_ARM || config->carried_by[g] < config->arm_count);
+    }
+    return fit;
+}
+
+static bool lacks(const wh_world_config_t *config) {
+    return !config->cell || (!config->parts && config->part_count > 0) ||
+           (config->arm_count > 0 && (!config->arms || !config->carried_by));
 }
 
 wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     int32_t unused = WH_NONE;
     int32_t *const where = part ? part : &unused;
     *where = WH_NONE;
-    if (!config || !config->cell || (!config->parts && config->part_count > 0)) {
+    if (!config || lacks(config)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     if (exceeds_capacity(config)) {
         return WH_STATUS_BAD_CAPACITY;
+    }
+    if (!carriers_fit(config)) {
+        return WH_STATUS_OUT_OF_RANGE;
     }
     const wh_status_t status = validate_parts(config, where);
     return status == WH_OK ? wh_convex_validate(&config->wafer) : status;
@@ -148,6 +167,9 @@ static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
 }
 
 static int32_t body_of(const wh_part_t *part) {
+    if (part->kind == WH_PART_DOOR) {
+        return wh_world_door_body((size_t)part->owner);
+    }
     return part->kind == WH_PART_ARM ? part->owner : wh_world_gripper_body((size_t)part->owner);
 }
 
@@ -156,6 +178,7 @@ static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t 
     memset(mover, 0, sizeof *mover);
     mover->part = part;
     mover->body = body;
+    mover->kind = part == WH_NONE ? WH_PART_WAFER : world->config->parts[part].kind;
     mover->near = &world->near[index * WH_NEAR_CAPACITY];
     mover->radius = wh_convex_radius(part == WH_NONE ? &world->config->wafer : wh_world_convex(world, part));
 }
@@ -178,7 +201,8 @@ static void set_up_movers(wh_world_t *world) {
 static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mover_t *b) {
     return a->part != WH_NONE && b->part != WH_NONE &&
            (wh_world_is_known(world, a->part, b->part) ||
-            wh_world_belong_together(&world->config->parts[a->part], &world->config->parts[b->part]));
+            wh_world_belong_together(world->config, &world->config->parts[a->part],
+                                     &world->config->parts[b->part]));
 }
 
 static void set_up_pairs(wh_world_t *world) {
@@ -189,6 +213,8 @@ static void set_up_pairs(wh_world_t *world) {
                 memset(pair, 0, sizeof *pair);
                 pair->a = (int32_t)a;
                 pair->b = (int32_t)b;
+                wh_world_forget(world, pair);
+                pair->near.kinds = wh_world_kinds(world->movers[a].kind, world->movers[b].kind);
             }
         }
     }
@@ -205,9 +231,10 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         const wh_real_t gap = config->known ? config->limits[kind] : WH_CLEARANCE_RANGE;
         world->range = gap > world->range ? gap : world->range;
-        world->clearances[kind].gap = gap;
+        world->clearances[kind].gap = world->least[kind] = gap;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
+    wh_world_weigh(world);
     world->curves.first = input->slice;
     world->curves.slices = FIRST_BIN;
     set_up_boxes(world, input->wafers);

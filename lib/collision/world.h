@@ -14,11 +14,13 @@
  *
  * These may touch, and nothing else:
  *   - a gripper's parts and the wafer that it holds, is about to take or has just let go: within the
- *     tolerance sideways and near_projz in height, with an open valve or from another gripper or a chuck, and
- *     until the gripper has gone 1 mm sideways;
+ *     tolerance sideways and near_projz in height, with an open valve, an edge grip, or from another gripper
+ *     or a chuck, and until the gripper has gone 1 mm sideways;
  *   - a wafer and the ledges of its slot, or the chuck that it lies on;
- *   - neighbours in the chain of the arm;
- *   - parts that do not move against each other.
+ *   - neighbours in the chain of an arm; two arms of one robot where they meet: their upper arms, and at one
+ *     wrist the hands, and a hand and the other one's blade;
+ *   - parts that do not move against each other;
+ *   - a door's parts and what stands, but for wafers: a door goes in its frame.
  *
  * No heap; the memory is the caller's. A world reads wafers and grippers and never changes them.
  */
@@ -33,17 +35,21 @@
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(world);
 
-/* The most grippers of a world. */
-#define WH_WORLD_GRIPPERS 8
-#define WH_WORLD_MOVING 64 /* the most parts of robot and grippers together */
+/* The most grippers of a world, and the most arms: six robots with two each. */
+#define WH_WORLD_GRIPPERS 16
+#define WH_WORLD_ARMS 12
+#define WH_WORLD_NO_ARM 255 /* of a gripper that is on no robot */
+#define WH_WORLD_DOORS 8    /* the most doors */
+#define WH_WORLD_MOVING 192 /* the most parts of robots, grippers and doors together */
 
 /* The kind of a part, for the rules of what may touch what. */
 typedef enum WH_FOUR_BYTES {
     WH_PART_FIXED, /* walls, tables, shells; `owner` is the caller's */
     WH_PART_LEDGE, /* of station `owner`, slot `slot` */
-    WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
-    WH_PART_BLADE, /* of gripper `owner`, which is on the robot */
+    WH_PART_ARM,   /* of an arm's body: `owner` is the arm times WH_ARM_BODIES, and a wh_arm_body_t */
+    WH_PART_BLADE, /* of gripper `owner`, which is on a robot */
     WH_PART_CHUCK, /* of gripper `owner`, which is a chuck */
+    WH_PART_DOOR,  /* of door `owner` */
     WH_PART_WAFER  /* wafer `owner` */
 } wh_part_kind_t;
 
@@ -56,17 +62,24 @@ typedef struct {
     wh_convex_t convex;
 } wh_part_t;
 
+/* An arm. A robot with two arms has the second one's bodies from its upper arm on twice, one with two wrists
+ * its hand: parts hang on those of the first arm before. */
+typedef struct {
+    int32_t robot;     /* the same for the arms of one robot, and for no others */
+    wh_arm_body_t own; /* the first body that it does not share with an arm before it */
+} wh_world_arm_t;
+
 /* Kinds of pairs whose smallest gap is kept. */
 typedef enum WH_FOUR_BYTES {
     /* a blade and a wafer above it that it does not hold and is not about to take */
     WH_CLEARANCE_BLADE_WAFER_ABOVE,
     WH_CLEARANCE_BLADE_WAFER_BELOW,
-    WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks or fixed parts */
+    WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks, fixed parts or another robot's blade */
     WH_CLEARANCE_WAFER_WAFER, /* a held wafer and another one */
     WH_CLEARANCE_WAFER_LEDGE, /* a held wafer and a ledge of a slot that it does not lie in */
     WH_CLEARANCE_WAFER_OTHER, /* a held wafer and fixed parts, chucks, or another gripper's blade */
-    WH_CLEARANCE_ARM_OTHER,   /* the arm and fixed parts, ledges, chucks or wafers */
-    WH_CLEARANCE_ARM_ITSELF,  /* the arm and its own blades and held wafers */
+    WH_CLEARANCE_ARM_OTHER,   /* an arm and fixed parts, ledges, chucks, wafers or another robot */
+    WH_CLEARANCE_ARM_ITSELF,  /* a robot's arms, its own blades and held wafers */
     WH_CLEARANCES
 } wh_clearance_kind_t;
 
@@ -88,7 +101,9 @@ typedef struct {
     uint64_t slice; /* steps so far */
     const wh_wafer_t *wafers;
     const wh_gripper_t *grippers;
-    wh_pose_t base_from_effector;
+    /* WH_ARM_BODIES for each arm, from collision/arm.h; read during the call */
+    const wh_pose_t *base_from_arm;
+    const wh_pose_t *base_from_door; /* door_count of them, as the config has; may be null without doors */
 } wh_world_input_t;
 
 /* A description; immutable while a world uses it. */
@@ -96,11 +111,16 @@ typedef struct {
     const wh_part_t *parts; /* fixed ones and ledges first, then those that hang on something */
     size_t part_count;
     wh_convex_t wafer; /* in a wafer's frame; wafer w is part part_count + w */
-    wh_arm_t arm;
-    size_t gripper_count, wafer_count;
+    size_t gripper_count, wafer_count, door_count;
+    /* The arms, and by gripper which of them carries it, or WH_WORLD_NO_ARM. Count 0: there is one arm, and
+     * no array is read. */
+    size_t arm_count;
+    const wh_world_arm_t *arms;
+    const uint8_t *carried_by;
     const wh_cell_t *cell;
     /* its tolerance says how near a gripper comes to a wafer that it may take */
     const wh_grasp_config_t *grasp;
+    uint32_t edges; /* bit g: gripper g has an edge grip, which comes to a wafer with its plunger open */
     wh_real_t limits[WH_CLEARANCES]; /* a gap below it gives WH_EVENT_TOO_CLOSE; 0: none */
     /* For each part, then for each wafer: it goes where it went in a run of which the events are known. Pairs
      * of two such are not judged, and clearances and curves not kept: the events alone count. Null: all are
@@ -114,9 +134,9 @@ typedef struct wh_world wh_world_t;
 const char *wh_clearance_name(wh_clearance_kind_t kind) WH_SYMBOL(wh_clearance_name);
 
 /* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too
- * many grippers or parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts
- * out of order; else what wh_convex_validate says. `part` (may be null) is then the index of the part,
- * or WH_NONE. */
+ * many grippers, arms, doors or parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot,
+ * an arm that carries a gripper, or parts out of order; else what wh_convex_validate says. `part` (may be
+ * null) is then the index of the part, or WH_NONE. */
 wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) WH_SYMBOL(wh_world_validate);
 
 /* Bytes that wh_world_init needs. */
@@ -143,8 +163,8 @@ void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world) WH_SYMBOL(wh_world_clearances);
 
 /* The smallest gaps over time. A run is divided into bins of equal numbers of slices. When all bins are full,
- * two become one, and bins hold twice as many slices. Gaps are measured at the ends of bins. The run's
- * smallest gap is in its bin whenever it occurred. */
+ * two become one, and bins hold twice as many slices. A bin has the smallest gaps from its
+ * begin to its end, at the ends of slices, exact to 1e-3 mm. */
 #define WH_CURVE_BINS 600
 
 typedef struct {

@@ -1,5 +1,5 @@
-/* The smallest gaps over time. At the end of a bin everything near is measured again, without the lists of
- * what is near. Those belong to the judgement, whose result must not depend on who watches. */
+/* The smallest gaps over time. The judgement finds those of what moves, slice by slice. At a bin's end all
+ * that is near is measured again, without the lists of what is near: also what has not moved in the bin. */
 #include "world_internal.h"
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
@@ -32,7 +32,8 @@ static void measure_rest(const wh_look_t *look, wh_mover_t *mover, wh_real_t lea
 static void measure_pair(const wh_look_t *look, const wh_mover_pair_t *pair, wh_real_t least[]) {
     wh_mover_t *a = &look->world->movers[pair->a];
     wh_mover_t *b = &look->world->movers[pair->b];
-    if (a->part != WH_NONE && b->part != WH_NONE && pair->near.slack < WH_CLEARANCE_RANGE) {
+    if (a->part != WH_NONE && b->part != WH_NONE &&
+        wh_world_slack(pair, look->world->movers) < WH_CLEARANCE_RANGE) {
         const wh_side_t one = wh_world_side_of_mover(look->world, a);
         const wh_side_t two = wh_world_side_of_mover(look->world, b);
         measure(look, &one, &two, pair->near.axis, least);
@@ -51,9 +52,9 @@ static void halve(wh_curves_t *curves) {
     curves->slices *= 2;
 }
 
-static void close_bin(wh_curves_t *curves, const wh_real_t least[]) {
+static void close_bin(wh_curves_t *curves, const wh_real_t least[], const wh_real_t now[]) {
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        curves->gaps[kind][curves->count] = least[kind];
+        curves->gaps[kind][curves->count] = least[kind] < now[kind] ? least[kind] : now[kind];
     }
     ++curves->count;
     if (curves->count == WH_CURVE_BINS) {
@@ -61,27 +62,33 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[]) {
     }
 }
 
+/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. */
+static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        world->least[kind] = now[kind];
+    }
+    wh_world_weigh(world);
+}
+
 /* If slices are lost, as in a free-running run, their bins show what came after them. */
 void wh_world_draw_curves(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_curves_t *curves = &world->curves;
-    wh_real_t least[WH_CLEARANCES];
-    const uint64_t begin = curves->first + curves->count * curves->slices;
-    if (look->input->slice < begin + curves->slices) {
+    wh_real_t now[WH_CLEARANCES];
+    if (look->input->slice < curves->first + (curves->count + 1) * curves->slices) {
         return;
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        const wh_clearance_t *of_run = &world->clearances[kind];
-        const bool in_bin = of_run->parts[0] != WH_NONE && of_run->slice > begin;
-        least[kind] = in_bin ? of_run->gap : WH_CLEARANCE_RANGE;
+        now[kind] = WH_CLEARANCE_RANGE;
     }
     for (size_t i = 0; i < world->mover_count; ++i) {
-        measure_rest(look, &world->movers[i], least);
+        measure_rest(look, &world->movers[i], now);
     }
     for (size_t i = 0; i < world->pair_count; ++i) {
-        measure_pair(look, &world->pairs[i], least);
+        measure_pair(look, &world->pairs[i], now);
     }
     while (look->input->slice >= curves->first + (curves->count + 1) * curves->slices) {
-        close_bin(curves, least);
+        close_bin(curves, world->least, now);
     }
+    begin_bin(world, now);
 }

@@ -20,26 +20,39 @@ typedef struct {
     wh_pose_t before, now; /* base_from_body */
     wh_real_t way;         /* of its origin, mm */
     wh_real_t turn;        /* about its origin, rad; an upper bound */
+    wh_real_t lean;        /* how much of that brings points 1 mm from the origin up or down, mm */
 } wh_body_t;
 
-/* A pair and its state: after the last slice the gap was at least `slack`, and `axis` (zero: none yet)
- * separated them. */
+/* The slack of pairs with what is not there: no way is as long, mm. */
+#define WH_WORLD_NOWHERE WH_REAL(1e30)
+
+/* The ways that movers have gone are summed up twice: all of them, and those up and down. Arms turn and reach
+ * at one height for most of the time. */
+typedef enum WH_FOUR_BYTES { WH_GONE_ANYWHERE, WH_GONE_UPRIGHT, WH_GONE_WAYS } wh_gone_t;
+
+/* A pair and its state: when its movers had gone `since` together, the gap was at least `slack`, and so was
+ * the separation along `axis` (zero: none yet, and no slack above 0). */
 typedef struct {
     int32_t other; /* an item of the tree, or a mover */
-    wh_real_t slack;
+    int32_t kinds; /* of both parts: which of world->worth */
+    wh_gone_t way; /* by which the pair can come closer: UPRIGHT if the axis is */
+    wh_real_t slack, since;
     wh_vec3_t axis;
 } wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
 typedef struct {
-    int32_t part;          /* WH_NONE: this gripper holds none */
-    int32_t body;          /* index in world->bodies */
+    int32_t part; /* WH_NONE: this gripper holds none */
+    int32_t body; /* index in world->bodies */
+    wh_part_kind_t kind;
     wh_pose_t before, now; /* base_from_shape, once someone has asked in this slice: is_placed */
     bool is_placed;
-    wh_real_t radius; /* of a ball about the body's origin that holds the part */
-    wh_real_t motion; /* the most that a point of it moved in this slice, mm */
-    wh_real_t bulge;  /* the most that a point left its straight way */
-    wh_pair_t *near;  /* things that rest, room for WH_NEAR_CAPACITY */
+    wh_real_t radius;             /* of a ball about the body's origin that holds the part */
+    wh_real_t motion;             /* the most that a point of it moved in this slice, mm */
+    wh_real_t rise;               /* the same, up or down */
+    wh_real_t gone[WH_GONE_WAYS]; /* the sums of both */
+    wh_real_t bulge;              /* the most that a point left its straight way */
+    wh_pair_t *near;              /* things that rest, room for WH_NEAR_CAPACITY */
     size_t near_count;
     wh_real_t reach; /* how much farther it may move before the list must be made again */
     bool crowded;    /* more things are near than the list can hold */
@@ -57,14 +70,20 @@ typedef struct {
     wh_vec3_t at;
 } wh_left_t;
 
+#define WH_PART_KINDS (WH_PART_WAFER + 1)
+
+/* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
+#define WH_SAME_GAP WH_REAL(1e-4)
+
 struct wh_world {
     const wh_world_config_t *config;
     size_t fixed_count; /* parts that hang on nothing. The tree's items are these, then the wafers */
     wh_tree_t tree;
-    wh_box_t *boxes;                                         /* of the tree's items, for building it */
-    wh_pose_t *wafers;                                       /* base_from_wafer, as of the last slice */
-    size_t set_down;                                         /* wafers set down since the tree was built */
-    wh_body_t bodies[WH_ARM_BODIES + 2 * WH_WORLD_GRIPPERS]; /* arm, grippers, what each holds */
+    wh_box_t *boxes;   /* of the tree's items, for building it */
+    wh_pose_t *wafers; /* base_from_wafer, as of the last slice */
+    size_t set_down;   /* wafers set down since the tree was built */
+    /* of the arms, then the grippers', then of what each holds, then the doors' */
+    wh_body_t bodies[WH_ARM_BODIES * WH_WORLD_ARMS + 2 * WH_WORLD_GRIPPERS + WH_WORLD_DOORS];
     wh_mover_t *movers;
     size_t mover_count;
     wh_mover_pair_t *pairs;
@@ -76,9 +95,40 @@ struct wh_world {
     bool too_close[WH_CLEARANCES]; /* reported */
     bool struck;                   /* contact was reported and is no longer judged */
     wh_real_t range;               /* a gap above it comes to nothing */
+    /* The smallest gaps of the bin of the curves that is not finished; of the run if no curves are kept. */
+    wh_real_t least[WH_CLEARANCES];
+    /* For two kinds of parts (wh_world_kinds): nor does a gap above this, which is no new `least`. */
+    wh_real_t worth[WH_PART_KINDS * WH_PART_KINDS];
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
+
+/* How far both have gone, in the way that counts for the pair. `b` is null if the other one rests. */
+static inline wh_real_t wh_world_gone(const wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
+    return a->gone[near->way] + (b ? b->gone[near->way] : 0);
+}
+
+/* A lower bound of the gap of two movers by now. */
+static inline wh_real_t wh_world_slack(const wh_mover_pair_t *pair, const wh_mover_t movers[]) {
+    const wh_pair_t *near = &pair->near;
+    const wh_real_t gone = movers[pair->a].gone[near->way] + movers[pair->b].gone[near->way];
+    return near->slack - (gone - near->since);
+}
+
+/* To be called when slack and axis are those at the end of this slice. */
+static inline void wh_world_remember(wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
+    near->way =
+        near->axis.x == 0 && near->axis.y == 0 && near->axis.z != 0 ? WH_GONE_UPRIGHT : WH_GONE_ANYWHERE;
+    near->since = wh_world_gone(near, a, b);
+}
+
+/* Forgets all that was known of a pair. A pair with what is not there needs no look. */
+static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pair) {
+    const bool is_there = world->movers[pair->a].part != WH_NONE && world->movers[pair->b].part != WH_NONE;
+    pair->near.slack = is_there ? 0 : WH_WORLD_NOWHERE;
+    pair->near.since = 0;
+    pair->near.axis = wh_vec3(0, 0, 0);
+}
 
 /* One part of a pair, as the judgement sees it. */
 typedef struct {
@@ -104,9 +154,14 @@ int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(w
 int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer) WH_SYMBOL(wh_world_item_of_wafer);
 const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) WH_SYMBOL(wh_world_convex);
 
-/* The body index of a gripper, and of the wafer that it holds. */
+static inline size_t wh_world_arms(const wh_world_config_t *config) {
+    return config->arm_count > 0 ? config->arm_count : 1;
+}
+
+/* The body index of a gripper, of the wafer that it holds, and of a door. */
 int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
 int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);
+int32_t wh_world_door_body(size_t door) WH_SYMBOL(wh_world_door_body);
 
 wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
     WH_SYMBOL(wh_world_side_of_mover);
@@ -127,18 +182,30 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world
 /* Reports contact as undecided: more is near to this mover than its list can hold. */
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) WH_SYMBOL(wh_world_report_crowd);
 
+/* True if nothing can come of the pair in this slice: it stays apart, and by more than its smallest gaps so
+ * far. `b` is null if the other one rests. */
+bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b)
+    WH_SYMBOL(wh_world_is_far);
+
 /* Judges one pair for this slice. */
 void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near)
     WH_SYMBOL(wh_world_judge);
 
-/* Keeps the smallest gaps at the end of a bin. Changes nothing else. */
+/* Finishes the bin of the curves if this slice is its end, and begins the next one. */
 void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
+
+/* The index of two kinds of parts in world->worth. */
+int32_t wh_world_kinds(wh_part_kind_t a, wh_part_kind_t b) WH_SYMBOL(wh_world_kinds);
+
+/* Writes world->worth anew, after one of world->least has changed. */
+void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);
 
 /* True if the pair need not be judged: config->known. */
 bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) WH_SYMBOL(wh_world_is_known);
 
 /* True for parts that never move against each other, or are neighbours by design. */
-bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b) WH_SYMBOL(wh_world_belong_together);
+bool wh_world_belong_together(const wh_world_config_t *config, const wh_part_t *a, const wh_part_t *b)
+    WH_SYMBOL(wh_world_belong_together);
 
 /* True if the two may touch now. */
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b)

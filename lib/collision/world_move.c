@@ -5,11 +5,15 @@
 #define LEFT_BEHIND WH_REAL(1.0)
 
 int32_t wh_world_gripper_body(size_t gripper) {
-    return (int32_t)(WH_ARM_BODIES + gripper);
+    return (int32_t)((size_t)WH_ARM_BODIES * WH_WORLD_ARMS + gripper);
 }
 
 int32_t wh_world_held_body(size_t gripper) {
-    return (int32_t)(WH_ARM_BODIES + WH_WORLD_GRIPPERS + gripper);
+    return (int32_t)(WH_ARM_BODIES * WH_WORLD_ARMS + WH_WORLD_GRIPPERS + gripper);
+}
+
+int32_t wh_world_door_body(size_t door) {
+    return (int32_t)(WH_ARM_BODIES * WH_WORLD_ARMS + 2 * WH_WORLD_GRIPPERS + door);
 }
 
 int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item) {
@@ -41,12 +45,19 @@ static wh_real_t angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
     return s < 1 ? 2 * s * (1 + WH_REAL(0.5708) * s * s) : WH_REAL(3.1416);
 }
 
+static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
+    const wh_vec3_t change =
+        wh_vec3(a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]);
+    return wh_vec3_norm(&change);
+}
+
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
     body->before = body->now;
     body->now = *now;
     const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
     body->way = wh_vec3_norm(&way);
     body->turn = angle_between(&body->now.R, &body->before.R);
+    body->lean = upright_change(&body->now.R, &body->before.R);
 }
 
 static void move_mover(wh_world_t *world, wh_mover_t *mover) {
@@ -57,6 +68,9 @@ static void move_mover(wh_world_t *world, wh_mover_t *mover) {
     mover->is_placed = false;
     mover->motion = body->way + body->turn * mover->radius;
     mover->bulge = body->turn * body->turn * mover->radius / 8;
+    mover->rise = wh_real_abs(body->now.r.z - body->before.r.z) + body->lean * mover->radius;
+    mover->gone[WH_GONE_ANYWHERE] += mover->motion;
+    mover->gone[WH_GONE_UPRIGHT] += mover->rise;
     mover->reach -= mover->motion;
 }
 
@@ -72,8 +86,7 @@ static void forget_pairs(wh_world_t *world, const wh_mover_t *mover) {
     const int32_t index = (int32_t)(mover - world->movers);
     for (size_t i = 0; i < world->pair_count; ++i) {
         if (world->pairs[i].a == index || world->pairs[i].b == index) {
-            world->pairs[i].near.slack = 0;
-            world->pairs[i].near.axis = wh_vec3(0, 0, 0);
+            wh_world_forget(world, &world->pairs[i]);
         }
     }
 }
@@ -102,6 +115,7 @@ static void end_carrying(wh_world_t *world, size_t gripper) {
     world->left[gripper].at = world->bodies[wh_world_gripper_body(gripper)].now.r;
     world->held[gripper] = WH_NONE;
     mover_of_gripper(world, gripper)->part = WH_NONE;
+    forget_pairs(world, mover_of_gripper(world, gripper));
 }
 
 /* Forgets what the lists know of an item that has moved. */
@@ -210,14 +224,15 @@ static void leave_behind(wh_world_t *world, size_t gripper) {
 
 void wh_world_move(const wh_look_t *look) {
     wh_world_t *world = look->world;
-    wh_pose_t arm[WH_ARM_BODIES];
-    wh_arm_place(&world->config->arm, &look->input->base_from_effector, arm);
-    for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
-        move_body(&world->bodies[i], &arm[i]);
+    for (size_t i = 0; i < WH_ARM_BODIES * wh_world_arms(world->config); ++i) {
+        move_body(&world->bodies[i], &look->input->base_from_arm[i]);
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         move_body(&world->bodies[wh_world_gripper_body(g)], &look->input->grippers[g].base_from_gripper);
         leave_behind(world, g);
+    }
+    for (size_t d = 0; d < world->config->door_count; ++d) {
+        move_body(&world->bodies[wh_world_door_body(d)], &look->input->base_from_door[d]);
     }
     take_wafers(look);
     move_held(look);

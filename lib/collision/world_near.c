@@ -86,6 +86,17 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
     }
 }
 
+static wh_part_kind_t kind_of_item(const wh_world_t *world, int32_t item) {
+    return (size_t)item < world->fixed_count ? world->config->parts[item].kind : WH_PART_WAFER;
+}
+
+/* True if nothing can come of the two: what rests is known as the mover is, or stands, and the mover is a
+ * door in its frame. */
+static bool may_pass(const wh_world_t *world, const wh_mover_t *mover, int32_t item) {
+    return (mover->kind == WH_PART_DOOR && kind_of_item(world, item) != WH_PART_WAFER) ||
+           wh_world_is_known(world, mover->part, wh_world_part_of_item(world, item));
+}
+
 /* Keeps what the old list knew of a thing. False if it was not on that list. */
 static bool take_over(const wh_pair_t known[], size_t count, wh_pair_t *near) {
     for (size_t i = 0; i < count; ++i) {
@@ -111,14 +122,17 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
     const size_t count = find_near(world, mover, &box, found);
     mover->near_count = 0;
     for (size_t i = 0; i < count; ++i) {
-        if (wh_world_is_known(world, mover->part, wh_world_part_of_item(world, found[i]))) {
+        if (may_pass(world, mover, found[i])) {
             continue;
         }
         wh_pair_t *near = &mover->near[mover->near_count++];
         near->other = found[i];
+        near->kinds = wh_world_kinds(mover->kind, kind_of_item(world, found[i]));
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);
             near->slack = box_gap(&box, &other, &near->axis);
+            near->way = WH_GONE_ANYWHERE;
+            near->since = mover->gone[near->way] - mover->motion;
         }
     }
     ++world->counters.relisted;

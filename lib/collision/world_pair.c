@@ -8,8 +8,51 @@
 /* The most halvings of a step: a shorter one is below any distance that matters. */
 #define MOST_HALVINGS 40
 
-/* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
-#define SAME_GAP WH_REAL(1e-4)
+/* ---------------------------------------------------------------------------------------------- far apart */
+
+/* How far turning in this slice can bring a point of the mover along the axis, at most. */
+static wh_real_t turned_along(const wh_body_t *body, wh_real_t radius, const wh_vec3_t *axis) {
+    if (!(body->turn > 0)) {
+        return 0;
+    }
+    const wh_vec3_t before = wh_mat3_transform_back(&body->before.R, axis);
+    const wh_vec3_t now = wh_mat3_transform_back(&body->now.R, axis);
+    const wh_vec3_t change = wh_vec3_subtract(&now, &before);
+    return wh_vec3_norm(&change) * radius;
+}
+
+static wh_real_t gone_along(const wh_body_t *body, const wh_vec3_t *axis) {
+    const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
+    return wh_vec3_dot(&way, axis);
+}
+
+/* By how much less the pair may be separated along its axis, which leads from a to b, after this slice. */
+static wh_real_t lost_along(const wh_world_t *world, const wh_pair_t *near, const wh_mover_t *a,
+                            const wh_mover_t *b) {
+    const wh_body_t *body = &world->bodies[a->body];
+    wh_real_t lost = gone_along(body, &near->axis) + turned_along(body, a->radius, &near->axis);
+    if (b) {
+        body = &world->bodies[b->body];
+        lost += turned_along(body, b->radius, &near->axis) - gone_along(body, &near->axis);
+    }
+    return lost;
+}
+
+static wh_real_t moved(const wh_pair_t *near, const wh_mover_t *mover) {
+    return near->way == WH_GONE_UPRIGHT ? mover->rise : mover->motion;
+}
+
+bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
+    const wh_real_t slack = near->slack - (wh_world_gone(near, a, b) - near->since);
+    if (slack > world->range) {
+        return true;
+    }
+    const wh_real_t bulge = a->bulge + (b ? b->bulge : 0);
+    const wh_real_t before = slack + moved(near, a) + (b ? moved(near, b) : 0);
+    near->slack = before - lost_along(world, near, a, b);
+    wh_world_remember(near, a, b);
+    return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->worth[near->kinds];
+}
 
 /* ----------------------------------------------------------------------------------------- between slices */
 
@@ -142,7 +185,11 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
     wh_clearance_t *least = &world->clearances[kind];
     const wh_real_t limit = world->config->limits[kind];
     const wh_real_t found = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
-    if (!(found < least->gap)) {
+    if (found < world->least[kind]) {
+        world->least[kind] = found;
+        wh_world_weigh(world);
+    }
+    if (!(found < least->gap - WH_SAME_GAP)) {
         return;
     }
     least->gap = found;
@@ -184,7 +231,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_t gap;
     wh_gap_t worst;
     const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
-    const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;
+    const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->least[kind];
     wh_gap_measure(a->convex, &a->now, b->convex, &b->now, enough > wanted ? enough : wanted, near->axis,
                    &gap);
     ++world->counters.measured;
@@ -204,8 +251,8 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near) {
     wh_world_t *world = look->world;
     const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
-    const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;
-    if ((world->struck && kind == WH_CLEARANCES) || is_parted(a, b, least - SAME_GAP, near)) {
+    const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->least[kind];
+    if ((world->struck && kind == WH_CLEARANCES) || is_parted(a, b, least - WH_SAME_GAP, near)) {
         ++world->counters.planes;
     } else if (wh_world_may_touch(look, a, b)) {
         near->slack = 0;

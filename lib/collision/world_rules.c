@@ -5,25 +5,62 @@ static bool is_on_robot(const wh_part_t *part) {
     return part->kind == WH_PART_ARM || part->kind == WH_PART_BLADE;
 }
 
-/* The part's place in the chain of the arm. Blades hang on the hand. */
+/* The part's place in the chain of its arm. Blades hang on the hand. */
 static int32_t link_of(const wh_part_t *part) {
-    return part->kind == WH_PART_ARM ? part->owner : (int32_t)WH_ARM_BODIES;
+    return part->kind == WH_PART_ARM ? part->owner % (int32_t)WH_ARM_BODIES : (int32_t)WH_ARM_BODIES;
 }
 
-bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b) {
+/* The arm of a part that is on a robot. */
+static int32_t arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner) {
+    if (config->arm_count == 0) {
+        return 0;
+    }
+    return kind == WH_PART_ARM ? owner / (int32_t)WH_ARM_BODIES : config->carried_by[owner];
+}
+
+static bool is_one_robot(const wh_world_config_t *config, int32_t arm, int32_t other) {
+    return arm == other || config->arms[arm].robot == config->arms[other].robot;
+}
+
+/* Of two arms of one robot: what they share belongs to both; where the second one begins, both meet. The
+ * hands of two wrists are on one axis, and each one's blade passes the other hand. */
+static bool meet_at_robot(const wh_world_config_t *config, int32_t arm, int32_t link, int32_t other,
+                          int32_t other_link) {
+    const int32_t own = (int32_t)config->arms[arm > other ? arm : other].own;
+    const int32_t low = link < other_link ? link : other_link;
+    const int32_t high = link < other_link ? other_link : link;
+    if (low < own || (low == (int32_t)WH_ARM_HAND && own == low)) {
+        return high - low <= 1;
+    }
+    return low == own && high == own;
+}
+
+bool wh_world_belong_together(const wh_world_config_t *config, const wh_part_t *a, const wh_part_t *b) {
     if (a->kind == WH_PART_CHUCK && b->kind == WH_PART_CHUCK) {
         return true;
     }
     if (!is_on_robot(a) || !is_on_robot(b)) {
         return false;
     }
+    const int32_t one = arm_of(config, a->kind, a->owner);
+    const int32_t two = arm_of(config, b->kind, b->owner);
     const int32_t apart = link_of(a) - link_of(b);
-    return apart >= -1 && apart <= 1;
+    if (one == two) {
+        return apart >= -1 && apart <= 1;
+    }
+    return is_one_robot(config, one, two) && meet_at_robot(config, one, link_of(a), two, link_of(b));
 }
 
 bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) {
     const bool *known = world->config->known;
     return known && known[one] && known[other];
+}
+
+/* A door goes in its frame. */
+static bool may_stand(const wh_side_t *a, const wh_side_t *b) {
+    const bool a_door = a->kind == WH_PART_DOOR;
+    const wh_part_kind_t other = a_door ? b->kind : a->kind;
+    return (a_door || b->kind == WH_PART_DOOR) && (other == WH_PART_FIXED || other == WH_PART_LEDGE);
 }
 
 static bool is_gripper(const wh_side_t *side) {
@@ -86,14 +123,15 @@ static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_
     }
     /* Let go in this slice: the world keeps it as held until the slice is over. */
     const bool released = look->world->held[gripper->owner] == wafer->owner;
-    return state->valve == WH_VALVE_OPEN || gripper->kind == WH_PART_CHUCK || released ||
+    const bool is_edge = (look->world->config->edges >> (unsigned)gripper->owner & 1U) != 0;
+    return state->valve == WH_VALVE_OPEN || is_edge || gripper->kind == WH_PART_CHUCK || released ||
            look->world->left[gripper->owner].wafer == wafer->owner || is_offered(look, w);
 }
 
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {
     put_in_order(&a, &b);
     if (a->kind != WH_PART_WAFER) {
-        return false;
+        return may_stand(a, b);
     }
     if (is_gripper(b)) {
         return wafer_of(look, a)->holder == b->owner || do_business(look, a, b) || lies_in(look, a, b);
@@ -116,6 +154,18 @@ static wh_clearance_kind_t wafer_and_gripper(const wh_look_t *look, const wh_sid
                                              : WH_CLEARANCE_BLADE_WAFER_BELOW;
 }
 
+/* True if a wafer that moves hangs on the robot of the arm. */
+static bool is_own_load(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *arm) {
+    const wh_world_t *world = look->world;
+    if (!wafer->body || world->config->arm_count == 0) {
+        return wafer->body != NULL;
+    }
+    const int32_t gripper = (int32_t)(wafer->body - world->bodies) - wh_world_held_body(0);
+    const int32_t carrier = arm_of(world->config, WH_PART_BLADE, gripper);
+    return carrier != WH_WORLD_NO_ARM &&
+           is_one_robot(world->config, carrier, arm_of(world->config, WH_PART_ARM, arm->owner));
+}
+
 static wh_clearance_kind_t of_wafer(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *other) {
     switch (other->kind) {
     case WH_PART_WAFER:
@@ -126,11 +176,20 @@ static wh_clearance_kind_t of_wafer(const wh_look_t *look, const wh_side_t *wafe
     case WH_PART_CHUCK:
         return wafer_and_gripper(look, wafer, other);
     case WH_PART_ARM:
-        return wafer->body ? WH_CLEARANCE_ARM_ITSELF : WH_CLEARANCE_ARM_OTHER;
+        return is_own_load(look, wafer, other) ? WH_CLEARANCE_ARM_ITSELF : WH_CLEARANCE_ARM_OTHER;
+    case WH_PART_DOOR:
     case WH_PART_FIXED:
         break;
     }
     return WH_CLEARANCE_WAFER_OTHER;
+}
+
+static bool is_on_arm(const wh_side_t *side) {
+    return side->kind == WH_PART_ARM || side->kind == WH_PART_BLADE;
+}
+
+static bool are_of_one_robot(const wh_world_config_t *config, const wh_side_t *a, const wh_side_t *b) {
+    return is_one_robot(config, arm_of(config, a->kind, a->owner), arm_of(config, b->kind, b->owner));
 }
 
 wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {
@@ -138,13 +197,60 @@ wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t
     if (a->kind == WH_PART_WAFER) {
         return of_wafer(look, a, b);
     }
-    const bool a_arm = a->kind == WH_PART_ARM;
-    const bool b_arm = b->kind == WH_PART_ARM;
-    if ((a_arm || a->kind == WH_PART_BLADE) && (b_arm || b->kind == WH_PART_BLADE)) {
+    const bool has_arm = a->kind == WH_PART_ARM || b->kind == WH_PART_ARM;
+    const bool has_blade = a->kind == WH_PART_BLADE || b->kind == WH_PART_BLADE;
+    if (is_on_arm(a) && is_on_arm(b) && are_of_one_robot(look->world->config, a, b)) {
         return WH_CLEARANCE_ARM_ITSELF;
     }
-    if (a_arm || b_arm) {
+    if (has_arm) {
         return WH_CLEARANCE_ARM_OTHER;
     }
-    return a->kind == WH_PART_BLADE || b->kind == WH_PART_BLADE ? WH_CLEARANCE_BLADE_OTHER : WH_CLEARANCES;
+    return has_blade ? WH_CLEARANCE_BLADE_OTHER : WH_CLEARANCES;
+}
+
+/* The clearances that pairs of two kinds of parts may count for, as bits. */
+static unsigned clearances_of_wafer(wh_part_kind_t other) {
+    switch (other) {
+    case WH_PART_WAFER:
+        return 1U << WH_CLEARANCE_WAFER_WAFER;
+    case WH_PART_LEDGE:
+        return 1U << WH_CLEARANCE_WAFER_LEDGE;
+    case WH_PART_BLADE:
+        return 1U << WH_CLEARANCE_BLADE_WAFER_ABOVE | 1U << WH_CLEARANCE_BLADE_WAFER_BELOW;
+    case WH_PART_ARM:
+        return 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_ARM_OTHER;
+    case WH_PART_CHUCK:
+    case WH_PART_DOOR:
+    case WH_PART_FIXED:
+        break;
+    }
+    return 1U << WH_CLEARANCE_WAFER_OTHER;
+}
+
+static unsigned clearances_of(wh_part_kind_t a, wh_part_kind_t b) {
+    const bool has_arm = a == WH_PART_ARM || b == WH_PART_ARM;
+    const bool has_blade = a == WH_PART_BLADE || b == WH_PART_BLADE;
+    if (a == WH_PART_WAFER || b == WH_PART_WAFER) {
+        return clearances_of_wafer(a == WH_PART_WAFER ? b : a);
+    }
+    if (has_arm) {
+        return 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_ARM_OTHER;
+    }
+    return has_blade ? 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_BLADE_OTHER : 0;
+}
+
+int32_t wh_world_kinds(wh_part_kind_t a, wh_part_kind_t b) {
+    return (int32_t)a * WH_PART_KINDS + (int32_t)b;
+}
+
+void wh_world_weigh(wh_world_t *world) {
+    for (int32_t i = 0; i < WH_PART_KINDS * WH_PART_KINDS; ++i) {
+        const unsigned bits =
+            clearances_of((wh_part_kind_t)(i / WH_PART_KINDS), (wh_part_kind_t)(i % WH_PART_KINDS));
+        world->worth[i] = 0;
+        for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+            const wh_real_t gap = world->least[kind] - WH_SAME_GAP;
+            world->worth[i] = (bits >> kind & 1U) && gap > world->worth[i] ? gap : world->worth[i];
+        }
+    }
 }

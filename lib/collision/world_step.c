@@ -6,39 +6,25 @@
 
 /* --------------------------------------------------------------------------------------------- in a slice */
 
-/* A pair that was so far apart needs no check: no result could come of it. */
-static bool is_far(const wh_world_t *world, wh_pair_t *near, wh_real_t motion) {
-    near->slack -= motion;
-    return near->slack > world->range;
-}
-
-static void judge_near(const wh_look_t *look, wh_mover_t *mover) {
-    const wh_side_t a = wh_world_side_of_mover(look->world, mover);
-    if (mover->crowded) {
-        wh_world_report_crowd(look, &a);
-    }
-    for (size_t i = 0; i < mover->near_count; ++i) {
-        wh_pair_t *near = &mover->near[i];
-        if (!(near->slack > look->world->range)) {
-            const wh_side_t b = wh_world_side_of_item(look->world, near->other);
-            wh_world_judge(look, &a, &b, near);
-        }
-    }
-}
-
 static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     wh_world_t *world = look->world;
-    bool is_near = false;
     if (mover->part == WH_NONE || !(mover->motion > 0)) {
         return;
     }
     wh_world_list_near(world, mover);
     world->counters.pairs += mover->near_count;
-    for (size_t i = 0; i < mover->near_count; ++i) {
-        is_near = !is_far(world, &mover->near[i], mover->motion) || is_near;
+    if (mover->crowded) {
+        const wh_side_t a = wh_world_side_of_mover(world, mover);
+        wh_world_report_crowd(look, &a);
     }
-    if (is_near || mover->crowded) {
-        judge_near(look, mover);
+    for (size_t i = 0; i < mover->near_count; ++i) {
+        wh_pair_t *near = &mover->near[i];
+        if (!wh_world_is_far(world, near, mover, NULL)) {
+            const wh_side_t a = wh_world_side_of_mover(world, mover);
+            const wh_side_t b = wh_world_side_of_item(world, near->other);
+            wh_world_judge(look, &a, &b, near);
+            wh_world_remember(near, mover, NULL);
+        }
     }
 }
 
@@ -55,25 +41,32 @@ static bool hold_each_other(const wh_look_t *look, const wh_mover_t *a, const wh
            look->input->wafers[wafer].holder == config->parts[hung].owner;
 }
 
-/* Of known pairs and, where events alone count, of holder and wafer no event can come. */
-static bool needs_no_look(const wh_look_t *look, const wh_mover_t *a, const wh_mover_t *b) {
-    const wh_world_t *world = look->world;
-    return world->config->known &&
-           (wh_world_is_known(world, a->part, b->part) || hold_each_other(look, a, b));
-}
-
 static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_t *world = look->world;
     wh_mover_t *a = &world->movers[pair->a];
     wh_mover_t *b = &world->movers[pair->b];
-    if (a->part == WH_NONE || b->part == WH_NONE || !(a->motion + b->motion > 0) ||
-        is_far(world, &pair->near, a->motion + b->motion) || needs_no_look(look, a, b)) {
+    if (hold_each_other(look, a, b) || wh_world_is_far(world, &pair->near, a, b) ||
+        wh_world_is_known(world, a->part, b->part)) {
         return;
     }
     const wh_side_t one = wh_world_side_of_mover(world, a);
     const wh_side_t two = wh_world_side_of_mover(world, b);
     ++world->counters.pairs;
     wh_world_judge(look, &one, &two, &pair->near);
+    wh_world_remember(&pair->near, a, b);
+}
+
+/* Most pairs are so far apart that nothing else need be known of them. */
+static void judge_pairs(const wh_look_t *look) {
+    const wh_world_t *world = look->world;
+    const wh_mover_t *movers = world->movers;
+    for (size_t i = 0; i < world->pair_count; ++i) {
+        wh_mover_pair_t *pair = &world->pairs[i];
+        if (!(wh_world_slack(pair, movers) > world->range) &&
+            movers[pair->a].motion + movers[pair->b].motion > 0) {
+            judge_movers(look, pair);
+        }
+    }
 }
 
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list) {
@@ -82,9 +75,7 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
     for (size_t i = 0; i < world->mover_count; ++i) {
         judge_rest(&look, &world->movers[i]);
     }
-    for (size_t i = 0; i < world->pair_count; ++i) {
-        judge_movers(&look, &world->pairs[i]);
-    }
+    judge_pairs(&look);
     wh_world_settle(&look);
     if (!world->config->known) {
         wh_world_draw_curves(&look);

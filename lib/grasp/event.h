@@ -2,7 +2,7 @@
 #ifndef WH_GRASP_EVENT_H
 #define WH_GRASP_EVENT_H
 
-#include "proximity.h"
+#include "face.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(event);
@@ -71,7 +71,8 @@ typedef enum WH_FOUR_BYTES {
 
 typedef struct {
     wh_event_kind_t kind;
-    uint64_t slice;          /* number of the step in which it is reported; the first step is 1 */
+    wh_face_t face; /* of the wafer, that looks at `gripper`; WH_FACE_BACK but for events of grips.h */
+    uint64_t slice; /* number of the step in which it is reported; the first step is 1 */
     uint64_t measured_slice; /* number of the step whose values `measured` holds */
     int32_t wafer;           /* index from 0, or WH_NONE */
     int32_t gripper;         /* index from 0, or WH_NONE */

@@ -70,10 +70,12 @@ static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer
     return placed ? status : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* A wafer is taken within the tolerances. One held from much farther off could be carried beyond all finite
- * numbers. */
-static bool is_within_reach(const wh_tolerance_t *tolerance, const wh_vec3_t *r) {
-    const wh_real_t reach = 2 * (tolerance->projz + tolerance->projxy);
+/* A wafer is taken within the tolerances, one that shows its front by a frame beyond its thickness. One held
+ * from much farther off could be carried beyond all finite numbers. */
+static bool is_within_reach(const wh_tolerance_t *tolerance, const wh_pose_t *gripper_from_wafer) {
+    const wh_vec3_t *r = &gripper_from_wafer->r;
+    const wh_real_t through = gripper_from_wafer->R.m[2][2] < 0 ? WH_FACE_THICKEST : 0;
+    const wh_real_t reach = 2 * (tolerance->projz + tolerance->projxy) + through;
     return wh_real_abs(r->x) <= reach && wh_real_abs(r->y) <= reach && wh_real_abs(r->z) <= reach;
 }
 
@@ -88,7 +90,7 @@ static wh_status_t check_held(const wh_grasp_t *table, size_t g, const wh_wafer_
     }
     const wh_status_t status = wh_pose_validate(&gripper->gripper_from_wafer);
     const bool reached =
-        status != WH_OK || is_within_reach(&table->config.tolerance, &gripper->gripper_from_wafer.r);
+        status != WH_OK || is_within_reach(&table->config.tolerance, &gripper->gripper_from_wafer);
     return reached ? status : WH_STATUS_OUT_OF_RANGE;
 }
 

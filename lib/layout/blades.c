@@ -1,4 +1,4 @@
-/* Blades that are in each other's way on the end-effector. */
+/* Blades that are in each other's way on the end-effector, or on two arms at home. */
 #include <stdio.h>
 
 #include "../collision/gap.h"
@@ -36,6 +36,18 @@ static const char *name_of(const wh_layout_t *layout, int32_t gripper, size_t n)
     return part ? layout->part_names[part - layout->world.parts] : "a wafer";
 }
 
+/* Seen from the end-effector; of two arms or wrists from base, at home. */
+static wh_pose_t pose_of(const wh_machine_t *machine, int32_t gripper, bool has_two) {
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_real_t home[WH_AXES];
+    if (!has_two) {
+        return machine->mounts[gripper].effector_from_gripper;
+    }
+    wh_machine_home(machine, home);
+    wh_machine_grippers(machine, home, poses);
+    return poses[gripper];
+}
+
 /* True if two shapes of different grippers overlap, on the end-effector. */
 static bool is_in_the_way(const wh_layout_t *layout, int32_t a, size_t n, int32_t b, size_t m) {
     const wh_convex_t *one = shape_of(layout, a, n);
@@ -44,9 +56,12 @@ static bool is_in_the_way(const wh_layout_t *layout, int32_t a, size_t n, int32_
     if (!one || !other || is_wrist) {
         return false;
     }
-    const wh_mount_t *mounts = layout->machine.mounts;
-    const wh_pose_t from_one = wh_pose_compose(&mounts[a].effector_from_gripper, &one->body_from_shape);
-    const wh_pose_t from_other = wh_pose_compose(&mounts[b].effector_from_gripper, &other->body_from_shape);
+    const wh_machine_t *machine = &layout->machine;
+    const bool has_two = machine->mounts[a].arm != machine->mounts[b].arm;
+    const wh_pose_t one_at = pose_of(machine, a, has_two);
+    const wh_pose_t other_at = pose_of(machine, b, has_two);
+    const wh_pose_t from_one = wh_pose_compose(&one_at, &one->body_from_shape);
+    const wh_pose_t from_other = wh_pose_compose(&other_at, &other->body_from_shape);
     wh_gap_t gap;
     wh_gap_measure(one, &from_one, other, &from_other, 0, wh_vec3(0, 0, 0), &gap);
     return gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
@@ -78,7 +93,8 @@ void wh_feasibility_blades(wh_feasibility_t *check) {
     const int32_t count = (int32_t)layout->machine.gripper_count;
     for (int32_t a = 0; a < count; ++a) {
         for (int32_t b = a + 1; b < count; ++b) {
-            if (is_on_robot(layout, a) && is_on_robot(layout, b)) {
+            if (is_on_robot(layout, a) && is_on_robot(layout, b) &&
+                layout->machine.mounts[a].robot == layout->machine.mounts[b].robot) {
                 compare_blades(check, a, b);
             }
         }

@@ -1,34 +1,20 @@
 #include "collision.h"
 
-bool wh_collision_effector(const wh_machine_t *machine, const wh_pose_t base_from_grippers[],
-                           wh_pose_t *base_from_effector) {
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const wh_mount_t *mount = &machine->mounts[g];
-        if (mount->axis != WH_NONE) {
-            continue;
-        }
-        *base_from_effector = base_from_grippers[g];
-        if (mount->is_shifted) {
-            const wh_pose_t identity = wh_pose_identity();
-            const wh_pose_t gripper_from_effector =
-                wh_pose_relative(&mount->effector_from_gripper, &identity);
-            *base_from_effector = wh_pose_compose(&base_from_grippers[g], &gripper_from_effector);
-        }
-        return true;
-    }
-    return false;
-}
+#include "doors.h"
 
 /* After a step that left wafers and grippers so. */
-static void look_at(wh_collision_t *collision, uint64_t slice, const wh_wafer_t wafers[],
-                    const wh_gripper_t grippers[], wh_event_list_t *list) {
+static void look_at(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
+                    const wh_state_t *state, wh_event_list_t *list) {
     const wh_layout_t *layout = collision->layout;
+    wh_pose_t base_from_door[WH_DOORS];
     wh_pose_t poses[WH_GRIPPERS];
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        poses[g] = grippers[g].base_from_gripper;
+        poses[g] = state->grippers[g].base_from_gripper;
     }
-    (void)wh_collision_effector(&layout->machine, poses, &collision->base_from_effector);
-    const wh_world_input_t input = {slice, wafers, grippers, collision->base_from_effector};
+    wh_links_follow(&collision->links, layout, poses, axes, WH_LINKS_SAME);
+    wh_layout_place_doors(layout, state->physics ? &state->physics->doors : NULL, axes, base_from_door);
+    const wh_world_input_t input = {slice, state->wafers, state->grippers, collision->links.bodies,
+                                    base_from_door};
     if (collision->world) {
         wh_world_step(collision->world, &input, list);
     } else {
@@ -43,17 +29,25 @@ static void place(wh_collision_t *collision, const wh_wafer_t wafers[], int32_t 
     }
 }
 
-static void on_step(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                    wh_event_list_t *list) {
+/* Null if the command has not all of the machine's. */
+static const wh_real_t *axes_of(const wh_collision_t *collision, const wh_command_t *command) {
+    return command->axis_count == collision->layout->machine.axis_count ? command->axes : NULL;
+}
+
+static void on_step(void *user, const wh_command_t *command, const wh_gripper_input_t inputs[],
+                    const wh_grasp_t *table, wh_event_list_t *list) {
     (void)inputs; /* the table's grippers are there by now */
-    look_at(user, table->slice, table->storage.wafers, table->storage.grippers, list);
+    const wh_collision_t *collision = user;
+    const wh_state_t state = {
+        .wafers = table->storage.wafers, .grippers = table->storage.grippers, .physics = collision->physics};
+    look_at(user, table->slice, axes_of(user, command), &state, list);
 }
 
 static void on_placed(void *user, const wh_grasp_t *table, int32_t wafer) {
     place(user, table->storage.wafers, wafer);
 }
 
-void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state) {
+void wh_collision_observe(wh_collision_t *collision, const wh_real_t axes[], const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         const bool by_fault = event->kind == WH_EVENT_FAULT_ARMED || event->kind == WH_EVENT_FAULT_CLEARED;
@@ -61,7 +55,7 @@ void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state) {
             place(collision, state->wafers, event->wafer);
         }
     }
-    look_at(collision, (uint64_t)state->seq, state->wafers, state->grippers, NULL);
+    look_at(collision, (uint64_t)state->seq, axes, state, NULL);
 }
 
 size_t wh_collision_bytes(const wh_layout_t *layout) {
@@ -73,6 +67,7 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
     collision->layout = layout;
     collision->memory = memory;
     collision->world = NULL;
-    wh_robot_forward(layout->machine.robot.home, &collision->base_from_effector);
+    collision->physics = &simulator->physics;
+    wh_links_home(&collision->links, layout);
     simulator->observer = (wh_observer_t){on_step, on_placed, collision};
 }

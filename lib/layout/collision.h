@@ -3,14 +3,15 @@
 #define WH_LAYOUT_COLLISION_H
 
 #include "../sim/simulator.h"
-#include "layout.h"
+#include "links.h"
 
 /* Must not be moved once attached. All zero: no check. */
 typedef struct {
     const wh_layout_t *layout;
     void *memory;
     wh_world_t *world; /* null before the first step */
-    wh_pose_t base_from_effector;
+    wh_links_t links;
+    const wh_physics_state_t *physics; /* of the simulator that is looked at */
 } wh_collision_t;
 
 /* Bytes that wh_collision_attach needs. */
@@ -22,13 +23,9 @@ size_t wh_collision_bytes(const wh_layout_t *layout);
 void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, wh_simulator_t *simulator,
                          void *memory);
 
-/* For a simulator in another process: the same check, fed with the states that it sends. It keeps clearances
- * and curves; what is hit, the simulator reports. Set `layout` and `memory` before, as above. */
-void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state);
-
-/* Finds the end-effector by the first gripper on it, for a fault may keep both from where the axes should
- * have brought them. False, and nothing written, if no gripper is on the robot. */
-bool wh_collision_effector(const wh_machine_t *machine, const wh_pose_t base_from_grippers[],
-                           wh_pose_t *base_from_effector);
+/* For a simulator in another process: the same check, fed with the states that it sends, and with the axes of
+ * the machine as the command has them, or null if they are not known. It keeps clearances and curves; what is
+ * hit, the simulator reports. Set `layout` and `memory` before, as above, and `links` by wh_links_home. */
+void wh_collision_observe(wh_collision_t *collision, const wh_real_t axes[], const wh_state_t *state);
 
 #endif

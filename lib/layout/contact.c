@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "doors.h"
 #include "feasibility_internal.h"
 
 /* How many contacts are named; the others are counted. */
@@ -23,7 +24,9 @@ static size_t find_contacts(const wh_feasibility_t *check, const wh_world_config
         grippers[g].wafer = WH_NONE;
         grippers[g].valve = WH_VALVE_CLOSED;
     }
-    const wh_world_input_t input = {0, wafers, grippers, check->base_from_effector};
+    wh_pose_t base_from_door[WH_DOORS];
+    wh_layout_place_doors(check->layout, NULL, NULL, base_from_door);
+    const wh_world_input_t input = {0, wafers, grippers, check->links.bodies, base_from_door};
     const size_t count =
         wh_world_check_rest(wh_world_init(world, &input, memory, bytes), &input, pairs, capacity);
     free(memory);

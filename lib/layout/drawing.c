@@ -4,6 +4,8 @@
 
 #include "../math/trig.h"
 #include "../text/svg.h"
+#include "arms.h"
+#include "axes.h"
 #include "inks.h"
 #include "outline.h"
 
@@ -38,10 +40,30 @@ static size_t count_parts(const wh_feasibility_t *check) {
     return check->has_parts ? check->layout->world.part_count + check->layout->wafer_count : 0;
 }
 
+static const wh_chain_t *chain_of(const wh_layout_t *layout, size_t robot) {
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+    return carrier ? &carrier->chain : NULL;
+}
+
+/* Where theta's axis is, at one end or the other of the rail if there is one. */
+static wh_vec3_t foot_of(const wh_layout_t *layout, size_t robot, int end) {
+    const wh_chain_t *chain = chain_of(layout, robot);
+    wh_vec3_t foot = wh_vec3(0, 0, 0);
+    if (chain) {
+        const wh_travel_t *rail = &chain->travel[WH_CHAIN_RAIL];
+        foot.x = !chain->has_rail ? 0 : end == 0 ? rail->min : rail->max;
+        foot = chain->is_placed ? wh_pose_point(&chain->base_from_robot, &foot) : foot;
+    }
+    return foot;
+}
+
 static void measure(drawing_t *d) {
     const wh_layout_t *layout = d->check->layout;
-    const wh_real_t reach = layout->machine.robot.travel[WH_AXIS_R].max;
-    grow(d, wh_vec3(-reach, -reach, 0), wh_vec3(reach, reach, 0));
+    for (size_t i = 0; i < 2 * wh_machine_robots(&layout->machine); ++i) {
+        const wh_real_t reach = wh_axis_reach(&layout->machine, i / 2).max;
+        const wh_vec3_t foot = foot_of(layout, i / 2, (int)(i % 2));
+        grow(d, wh_vec3(foot.x - reach, foot.y - reach, 0), wh_vec3(foot.x + reach, foot.y + reach, 0));
+    }
     for (size_t part = 0; part < count_parts(d->check); ++part) {
         const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
         wh_vec3_t low;
@@ -99,6 +121,9 @@ static const char *group_of(const wh_layout_t *layout, size_t part, wh_part_ink_
     const int32_t owner = layout->world.parts[part].owner;
     if (ink == WH_INK_SHELL || ink == WH_INK_LEDGE) {
         return layout->stations[owner].name;
+    }
+    if (ink == WH_INK_ARM && layout->robot_count > 1) {
+        return layout->robots[layout->arms[owner / (int32_t)WH_ARM_BODIES].robot].name;
     }
     return ink == WH_INK_ARM ? "robot" : layout->grippers[owner].name;
 }
@@ -192,26 +217,56 @@ static void label_all(const drawing_t *d, wh_projection_t view) {
                      view == WH_VIEW_TOP ? 0.3 * d->letter : -0.8 * d->letter, layout->grippers[g].name);
         }
     }
-    label_at(&labels, view, wh_vec3(0, 0, layout->shapes.lowest / 2), 0.3 * d->letter, "robot");
+    for (size_t r = 0; r < wh_machine_robots(&layout->machine); ++r) {
+        wh_vec3_t foot = r == 0 ? d->check->links.bodies[WH_ARM_BASE].r : foot_of(layout, r, 0);
+        foot.z += wh_layout_lowest(layout, r) / 2;
+        label_at(&labels, view, foot, 0.3 * d->letter,
+                 layout->robot_count > 1 ? layout->robots[r].name : "robot");
+    }
     label_obstacles(d, view, &labels);
 }
 
 /* -------------------------------------------------------------------------------------------------- views */
 
+/* The circles that the end-effector reaches with theta's axis there. */
+static void draw_circles(const drawing_t *d, size_t robot, const wh_vec3_t *foot) {
+    const wh_layout_t *layout = d->check->layout;
+    const wh_travel_t reach = wh_axis_reach(&layout->machine, robot);
+    for (int end = 0; end < 2; ++end) {
+        const double radius = (double)(end == 0 ? reach.min : reach.max);
+        char place[80] = "";
+        if (layout->machine.carrier) {
+            (void)snprintf(place, sizeof place, " cx=\"%.1f\" cy=\"%.1f\"", (double)foot->x,
+                           (double)-foot->y);
+        }
+        fprintf(d->out,
+                "<circle class=\"rule\"%s r=\"%.1f\" stroke-dasharray=\"%.1f\"><title>R = %g mm: how %s the "
+                "robot reaches"
+                "</title></circle>\n",
+                place, radius, d->letter / 2, radius, end == 0 ? "near" : "far");
+    }
+}
+
+static void draw_robot(const drawing_t *d, size_t robot) {
+    const wh_layout_t *layout = d->check->layout;
+    const wh_vec3_t foot = foot_of(layout, robot, 0);
+    const wh_chain_t *chain = chain_of(layout, robot);
+    draw_circles(d, robot, &foot);
+    if (chain && chain->has_rail) {
+        const wh_vec3_t far = foot_of(layout, robot, 1);
+        draw_circles(d, robot, &far);
+        fprintf(d->out, "<path class=\"rule\" d=\"M%.1f %.1fL%.1f %.1f\"><title>the rail</title></path>\n",
+                (double)foot.x, (double)-foot.y, (double)far.x, (double)-far.y);
+    }
+}
+
 static void draw_travel(const drawing_t *d, wh_projection_t view) {
-    const wh_robot_t *robot = &d->check->layout->machine.robot;
     if (view == WH_VIEW_SIDE) {
         fprintf(d->out, "<path class=\"rule\" d=\"M%.1f 0H%.1f\"/>\n", (double)d->low.x, (double)d->high.x);
         return;
     }
-    for (int end = 0; end < 2; ++end) {
-        const double radius =
-            (double)(end == 0 ? robot->travel[WH_AXIS_R].min : robot->travel[WH_AXIS_R].max);
-        fprintf(d->out,
-                "<circle class=\"rule\" r=\"%.1f\" stroke-dasharray=\"%.1f\"><title>R = %g mm: how %s the "
-                "robot reaches"
-                "</title></circle>\n",
-                radius, d->letter / 2, radius, end == 0 ? "near" : "far");
+    for (size_t robot = 0; robot < wh_machine_robots(&d->check->layout->machine); ++robot) {
+        draw_robot(d, robot);
     }
 }
 

@@ -1,16 +1,18 @@
 /* A layout's `study`: how wide the errors are, and what a trial draws of them. */
 #include "errors.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "../script/wh_module_values.h"
+#include "grips.h"
 #include "layout_internal.h"
 
 /* --------------------------------------------------------------------------------------------------- read */
 
 static const char *const shapes[] = {"normal", "uniform", NULL};
 
-static wh_shape_t read_shape(wh_reader_t *reader, wh_shape_t fallback) {
+wh_shape_t wh_layout_read_spread_shape(wh_reader_t *reader, wh_shape_t fallback) {
     return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
 }
 
@@ -18,13 +20,18 @@ static const char *const placement_names[] = {"dx", "dy", "dz", "tilt", "turn", 
 
 static const char *const teaching_names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
 
+static wh_real_t most_of(const char *name, size_t index) {
+    return index < 3                   ? WH_ERRORS_MOST_MM
+           : strcmp(name, "turn") == 0 ? WH_ERRORS_MOST_TURN_DEG
+                                       : WH_ERRORS_MOST_DEG;
+}
+
 /* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
 static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spreads_t *spreads) {
     for (size_t i = 0; names[i]; ++i) {
         wh_spread_t *spread = &spreads->of[i];
-        spread->shape = read_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, names[i], spread->width, 0,
-                                         i < 3 ? WH_ERRORS_MOST_MM : WH_ERRORS_MOST_DEG);
+        spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
+        spread->width = wh_reader_number(reader, names[i], spread->width, 0, most_of(names[i], i));
     }
 }
 
@@ -42,7 +49,7 @@ static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread
 }
 
 static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_errors_t *errors) {
-    errors->vacuum.shape = read_shape(reader, errors->vacuum.shape);
+    errors->vacuum.shape = wh_layout_read_spread_shape(reader, errors->vacuum.shape);
     errors->vacuum.width = wh_reader_number(reader, "vacuum", 0, 0, WH_ERRORS_MOST_S);
     errors->valves[0].shape = errors->vacuum.shape;
     read_valve(reader, layout, &errors->valves[0]);
@@ -61,12 +68,40 @@ static void refuse_width(const wh_reader_t *reader, const wh_spread_t *spread, w
                    spread->shape == WH_SHAPE_NORMAL ? "8.6 standard deviations" : "all");
 }
 
+/* The first draw that, as far as it goes, makes of this rim one that an edge grip cannot take. */
+static wh_rim_draw_t too_wide_for_edges(const wh_layout_t *layout, const wh_rim_spreads_t *spreads,
+                                        const wh_rim_t *rim) {
+    for (int i = 0; i < (int)WH_RIM_WIDTHS; ++i) {
+        const double reach =
+            wh_rim_draw_concerns((wh_rim_draw_t)i, rim) ? (double)wh_spread_reach(&spreads->of[i]) : 0;
+        for (int sign = -1; sign <= 1; sign += 2) {
+            double drawn[WH_RIM_DRAWS] = {0};
+            wh_rim_t changed = *rim;
+            drawn[i] = sign * reach;
+            if (i <= (int)WH_RIM_NOTCH_BOTTOM && wh_rim_draw_apply(drawn, &changed) &&
+                !wh_layout_edges_take(layout, &changed)) {
+                return (wh_rim_draw_t)i;
+            }
+        }
+    }
+    return WH_RIM_DRAWS;
+}
+
 /* The widths, which no draw may take out of what rims can be. */
 static void check_rim(const wh_reader_t *reader, const wh_layout_t *layout, size_t wafer,
                       const wh_rim_spreads_t *spreads) {
     const wh_rim_draw_t wide = wh_rim_draw_too_wide(spreads, layout->rims[wafer]);
     if (wide != WH_RIM_DRAWS) {
         refuse_width(reader, &spreads->of[wide], wide, layout->wafers[wafer].name);
+    }
+    const wh_rim_draw_t much = too_wide_for_edges(layout, spreads, layout->rims[wafer]);
+    if (much != WH_RIM_DRAWS) {
+        lua_pushnumber(reader->L, spreads->of[much].width);
+        wh_reader_fail(
+            reader, wh_rim_draw_name(much),
+            "a width that leaves %s a wafer for an edge grip, whatever is drawn: within 2 mm of "
+            "wafer.diameter, with a notch of 0.2 mm to a hundredth of that and of 85 to 120 degrees",
+            layout->wafers[wafer].name);
     }
 }
 
@@ -91,17 +126,20 @@ static void check_concerned(const wh_reader_t *reader, const wh_layout_t *layout
     }
 }
 
-/* Reads the table of widths for the wafers from `first` on; none of them means anything without a sensor. */
+/* Reads the table of widths for the wafers from `first` on; none of them means anything without a sensor,
+ * beams or an edge grip. */
 static void read_rim_widths(wh_reader_t *reader, const wh_layout_t *layout, size_t first, size_t end,
                             wh_rim_spreads_t *spreads) {
-    if (layout->scanner_count == 0) {
-        wh_reader_fail(reader, NULL,
-                       "nothing: no prealigner of this layout has a `sensor` that would see it");
+    if (!wh_layout_has_rims(layout)) {
+        wh_reader_fail(
+            reader, NULL,
+            "nothing: no prealigner of this layout has a `sensor` that would see it, no station `beams`, no "
+            "gripper an edge grip that would meet it");
     }
     for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
         const wh_rim_draw_t draw = (wh_rim_draw_t)i;
         wh_spread_t *spread = &spreads->of[i];
-        spread->shape = read_shape(reader, spread->shape);
+        spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
         spread->width = wh_reader_number(reader, wh_rim_draw_name(draw), spread->width, 0,
                                          (wh_real_t)wh_rim_draw_most(draw));
         check_concerned(reader, layout, first, end, draw, spread->width);
@@ -135,13 +173,24 @@ static void read_own_rim(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     read_rim_widths(reader, layout, index, index + 1, &layout->errors->rims[index]);
 }
 
+static void read_own_beams(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        if (layout->beams[b].station == (int32_t)index) {
+            wh_layout_read_beam_widths(reader, layout, (int32_t)index, &layout->errors->beams[b]);
+        }
+    }
+    if (wh_layout_beams_at(layout, index).count == 0) {
+        wh_reader_fail(reader, NULL, "nothing: this station has no `beams`");
+    }
+}
+
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     read_spreads(reader, teaching_names, &layout->errors->stations[index]);
 }
 
 static void read_gripper(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     wh_spread_t *valve = &layout->errors->valves[index];
-    valve->shape = read_shape(reader, valve->shape);
+    valve->shape = wh_layout_read_spread_shape(reader, valve->shape);
     read_valve(reader, layout, valve);
 }
 
@@ -198,6 +247,20 @@ static void read_rims_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape
     }
 }
 
+static void read_beams_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
+    wh_beam_spreads_t beams;
+    for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
+        beams.of[i] = (wh_spread_t){0, shape};
+    }
+    if (wh_reader_open(reader, "beam", wh_layout_beam_width_fields)) {
+        wh_layout_read_beam_widths(reader, layout, WH_NONE, &beams);
+        wh_reader_leave(reader);
+    }
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        layout->errors->beams[b] = beams;
+    }
+}
+
 static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
     wh_spreads_t placement = {{{0, shape}}};
     for (size_t i = 1; i < WH_SPREADS; ++i) {
@@ -222,6 +285,24 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
     }
 }
 
+/* The blade of an arm without a wrist turns with where it was taught, of one that tilts out of its plane. */
+static void refuse_beside(wh_reader_t *reader, const wh_layout_t *layout) {
+    for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
+        const wh_spread_t *widths = layout->errors->stations[s].of;
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            const wh_chain_t *chain = &layout->robots[r].carrier.chain;
+            const double widest = fmax(widths[0].width, fmax(widths[1].width, widths[2].width));
+            if (layout->stations[s].by[r].serves && chain->kind == WH_CHAIN_TRZ && chain->has_tilt &&
+                widest > 0) {
+                lua_pushnumber(reader->L, widest);
+                wh_reader_fail(reader, "teaching",
+                               "0 as x, y and z of %s: %s tilts, and its blade points along the arm",
+                               layout->stations[s].name, layout->robots[r].name);
+            }
+        }
+    }
+}
+
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     const section_t sections[] = {
         {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers,
@@ -230,6 +311,8 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
          layout->station_count, wh_layout_find_station, read_station},
         {"rims", "wafer", wh_layout_rim_width_fields, layout->wafers, sizeof *layout->wafers,
          layout->wafer_count, wh_layout_find_wafer, read_own_rim},
+        {"beams", "station", wh_layout_beam_width_fields, layout->stations, sizeof *layout->stations,
+         layout->station_count, wh_layout_find_station, read_own_beams},
         {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {
@@ -239,13 +322,16 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     errors->wafers = wh_layout_memory(reader->L, layout->wafer_count, sizeof *errors->wafers);
     errors->stations = wh_layout_memory(reader->L, layout->station_count, sizeof *errors->stations);
     errors->rims = wh_layout_memory(reader->L, layout->wafer_count, sizeof *errors->rims);
+    errors->robot_count = layout->robot_count;
     layout->errors = errors;
-    const wh_shape_t shape = read_shape(reader, WH_SHAPE_NORMAL);
+    const wh_shape_t shape = wh_layout_read_spread_shape(reader, WH_SHAPE_NORMAL);
     read_for_all(reader, layout, shape);
     read_rims_for_all(reader, layout, shape);
+    read_beams_for_all(reader, layout, shape);
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; ++i) {
         read_section(reader, layout, &sections[i]);
     }
+    refuse_beside(reader, layout);
     wh_reader_leave(reader);
 }
 
@@ -295,7 +381,25 @@ wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_tri
     if (errors->given) {
         return errors->given->stations[station];
     }
-    return draw_components(&errors->stations[station], components, trial, station);
+    wh_displacement_t drawn = draw_components(&errors->stations[station], components, trial, station);
+    if (errors->robot_count > 1) {
+        drawn.moved = wh_vec3(0, 0, 0);
+    }
+    return drawn;
+}
+
+wh_vec3_t wh_errors_draw_taught(const wh_errors_t *errors, const wh_trial_t *trial, size_t station,
+                                size_t robot) {
+    const bool is_any = errors->robot_count > 1 && (!errors->given || errors->given->taught);
+    wh_real_t drawn[3] = {0, 0, 0};
+    if (is_any && errors->given) {
+        return errors->given->taught[station * errors->robot_count + robot];
+    }
+    for (uint32_t i = 0; is_any && i < 3; ++i) {
+        const uint32_t field = 0x210 + 0x10 * (uint32_t)robot + i;
+        drawn[i] = wh_spread_draw(&errors->stations[station].of[i], trial, field, station);
+    }
+    return wh_vec3(drawn[0], drawn[1], drawn[2]);
 }
 
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper) {
@@ -310,11 +414,13 @@ wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *tri
 
 void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer, const wh_rim_t *rim,
                         double drawn[WH_RIM_DRAWS]) {
-    if (errors->given || !errors->rims) {
+    if (errors->given) {
+        memcpy(drawn, errors->given->rims[wafer], WH_RIM_DRAWS * sizeof *drawn);
+    } else if (errors->rims) {
+        wh_rim_draw_all(&errors->rims[wafer], trial, wafer, rim, drawn);
+    } else {
         memset(drawn, 0, WH_RIM_DRAWS * sizeof *drawn);
-        return;
     }
-    wh_rim_draw_all(&errors->rims[wafer], trial, wafer, rim, drawn);
 }
 
 bool wh_displacement_is_any(const wh_displacement_t *displacement) {

@@ -1,14 +1,16 @@
 /* The errors of a study: how wide each is, and what a trial draws of it.
  *
  * Placement says where a wafer lies in its slot. Teaching says how far a station stands from where it was
- * taught. Timing says how late valves and vacuum act. Rims are what edge sensors see of wafers. Lengths in
- * mm, angles in degrees, times in s. A width of 0 draws 0.
+ * taught. Timing says how late valves and vacuum act. Rims are what edge sensors and beams see of wafers.
+ * Beams stand beside where they are taken to be, and latch late. Lengths in mm, angles in degrees, times in
+ * s. A width of 0 draws 0.
  */
 #ifndef WH_LAYOUT_ERRORS_H
 #define WH_LAYOUT_ERRORS_H
 
 #include "../math/pose.h"
 #include "../motion/machine.h"
+#include "../sim/faults.h"
 #include "rim_errors.h"
 
 /* In this order, where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x
@@ -25,18 +27,35 @@ typedef struct {
     wh_real_t turn[3]; /* about x, y, z; deg */
 } wh_displacement_t;
 
-/* Errors that are given, not drawn: for each wafer, station and gripper of a layout. */
+/* What is drawn of a beam: see beam_errors.h. */
+typedef enum {
+    WH_BEAM_DX,   /* mm, in the station's frame */
+    WH_BEAM_DY,   /* mm */
+    WH_BEAM_LATE, /* s */
+    WH_BEAM_DRAWS
+} wh_beam_draw_t;
+
+typedef struct {
+    wh_spread_t of[WH_BEAM_DRAWS];
+} wh_beam_spreads_t;
+
+/* Errors that are given, not drawn: for each wafer, station, gripper and beam of a layout. */
 typedef struct {
     wh_displacement_t *wafers, *stations;
+    wh_vec3_t *taught;            /* robot_count times of each station; null: all 0 */
+    double (*rims)[WH_RIM_DRAWS]; /* of each wafer */
+    double beams[WH_BEAMS][WH_BEAM_DRAWS];
     wh_real_t valves[WH_GRIPPERS], vacuum; /* s, at least 0 */
 } wh_given_t;
 
-/* One entry for each wafer, station and gripper of a layout. A delay is the magnitude of the draw: never
- * early. */
+/* One entry for each wafer, station, gripper and beam of a layout. A delay is the magnitude of the draw:
+ * never early. */
 typedef struct {
     const wh_given_t *given; /* what each trial then draws, whatever the widths; null: it goes by them */
+    size_t robot_count;      /* the layout's */
     wh_spreads_t *wafers, *stations;
-    wh_rim_spreads_t *rims;          /* of each wafer */
+    wh_rim_spreads_t *rims; /* of each wafer */
+    wh_beam_spreads_t beams[WH_BEAMS];
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
 } wh_errors_t;
@@ -44,9 +63,16 @@ typedef struct {
 /* Each draw depends on seed, trial, field and index alone. Cost: about 70 ns for each width that is not 0. */
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer);
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
+
+/* With several robots a station stands where it should, only turned, and each robot was taught it by itself:
+ * so far, mm along base's axes, it stands from where this robot was taught it. Of one robot 0. */
+wh_vec3_t wh_errors_draw_taught(const wh_errors_t *errors, const wh_trial_t *trial, size_t station,
+                                size_t robot);
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper);
 void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer, const wh_rim_t *rim,
                         double drawn[WH_RIM_DRAWS]);
+void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, size_t beam,
+                         double drawn[WH_BEAM_DRAWS]);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
 
 /* True if any of it is not 0. */
@@ -57,9 +83,11 @@ bool wh_displacement_is_any(const wh_displacement_t *displacement);
 const char *wh_errors_teaching_name(size_t axis);
 wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis);
 
-/* The largest width that is drawn, and the largest error that is given: mm, degrees, s. */
+/* The largest width that is drawn, and the largest error that is given: mm, degrees (a wafer's turn about its
+ * own axis: all round), s. */
 #define WH_ERRORS_MOST_MM 100
 #define WH_ERRORS_MOST_DEG 45
+#define WH_ERRORS_MOST_TURN_DEG 180
 #define WH_ERRORS_MOST_S 1
 
 #endif

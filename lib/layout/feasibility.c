@@ -7,14 +7,17 @@
 
 #include "../math/trig.h"
 #include "../text/array.h"
+#include "arms.h"
+#include "doors.h"
 #include "travel.h"
 
 /* How many of the wafers in no slot, or tilted too far, are named; the others are counted. */
 #define NAMED_STRAYS 20
 
 const char *wh_finding_name(wh_finding_kind_t kind) {
-    static const char *const names[] = {"contact", "space",   "reach", "links", "wafer",   "entry", "ledges",
-                                        "blades",  "retract", "tilt",  "gap",   "release", "play"};
+    static const char *const names[] = {"contact", "space",   "reach",  "links",   "wafer",
+                                        "entry",   "ledges",  "blades", "retract", "tilt",
+                                        "gap",     "release", "sight",  "rest",    "play"};
     return names[kind];
 }
 
@@ -46,10 +49,16 @@ void wh_feasibility_warn(wh_feasibility_t *check) {
 static void go_home(wh_feasibility_t *check) {
     const wh_machine_t *machine = &check->layout->machine;
     wh_real_t axes[WH_AXES] = {0};
-    memcpy(axes, machine->robot.home, sizeof machine->robot.home);
-    wh_robot_forward(axes, &check->base_from_effector);
+    wh_machine_home(machine, axes);
     wh_machine_grippers(machine, axes, check->base_from_grippers);
-    wh_arm_place(&check->layout->shapes.arm, &check->base_from_effector, check->base_from_arm);
+    wh_links_at(&check->links, check->layout, axes);
+}
+
+/* A door's part at home. */
+static wh_pose_t place_of_door(const wh_layout_t *layout, const wh_part_t *part) {
+    wh_pose_t base_from_door[WH_DOORS];
+    wh_layout_place_doors(layout, NULL, NULL, base_from_door);
+    return wh_pose_compose(&base_from_door[part->owner], &part->convex.body_from_shape);
 }
 
 wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
@@ -61,10 +70,12 @@ wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
     const wh_part_t *from = &world->parts[part];
     switch (from->kind) {
     case WH_PART_ARM:
-        return wh_pose_compose(&check->base_from_arm[from->owner], &from->convex.body_from_shape);
+        return wh_pose_compose(&check->links.bodies[from->owner], &from->convex.body_from_shape);
     case WH_PART_BLADE:
     case WH_PART_CHUCK:
         return wh_pose_compose(&check->base_from_grippers[from->owner], &from->convex.body_from_shape);
+    case WH_PART_DOOR:
+        return place_of_door(check->layout, from);
     case WH_PART_FIXED:
     case WH_PART_LEDGE:
     case WH_PART_WAFER:
@@ -75,14 +86,67 @@ wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
 
 /* -------------------------------------------------------------------------------------------------- links */
 
-wh_pose_t wh_feasibility_slot(const wh_station_t *station, int32_t slot) {
-    const wh_pose_t base_from_slot = wh_station_slot(station, slot);
+/* If the robot that serves a station tilts. */
+static bool tilts(const wh_layout_t *layout, size_t station) {
+    const wh_mount_t *mount = &layout->machine.mounts[layout->stations[station].effector];
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, mount->robot, NULL);
+    return carrier && carrier->chain.has_tilt;
+}
+
+/* The links of the robot that serves a station. */
+static const wh_arm_t *lengths_at(const wh_layout_t *layout, size_t station) {
+    const int32_t effector = layout->stations[station].effector;
+    return wh_layout_arm_lengths(layout, layout->machine.mounts[effector].robot);
+}
+
+/* Of a station that is none of the layout's the first one: all are of one robot then. */
+static size_t index_of(const wh_layout_t *layout, const wh_station_t *station) {
+    size_t s = 0;
+    while (s < layout->station_count && station != &layout->places[s]) {
+        ++s;
+    }
+    return s < layout->station_count ? s : 0;
+}
+
+/* With several robots the one that serves the station comes in its own way. */
+static void turn_in(const wh_layout_t *layout, const wh_station_t *station, wh_pose_t *base_from_slot) {
+    for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
+        const wh_layout_station_t *of = &layout->stations[s];
+        const wh_layout_approach_t *by = &of->by[layout->machine.mounts[of->effector].robot];
+        if (station == &layout->places[s] && by->is_turned) {
+            base_from_slot->R = by->R;
+        }
+    }
+}
+
+wh_pose_t wh_feasibility_slot(const wh_layout_t *layout, const wh_station_t *station, int32_t slot) {
+    wh_pose_t base_from_slot = wh_station_slot(station, slot);
+    turn_in(layout, station, &base_from_slot);
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];
     const wh_real_t length = wh_real_sqrt(x * x + y * y);
     const wh_pose_t level = {{{{x / length, -y / length, 0}, {y / length, x / length, 0}, {0, 0, 1}}},
                              base_from_slot.r};
-    return level;
+    return tilts(layout, index_of(layout, station)) ? base_from_slot : level;
+}
+
+/* True also where the robot's axes do not come: the survey says that. */
+static bool carrier_reaches(const wh_layout_t *layout, size_t station, const wh_pose_t *base_from_gripper) {
+    const wh_layout_station_t *s = &layout->stations[station];
+    const wh_chain_choice_t choice = {.rail = s->rail, .elbow = s->elbow};
+    wh_pose_t bodies[WH_ARM_BODIES];
+    wh_real_t axes[WH_AXES];
+    size_t first;
+    wh_machine_home(&layout->machine, axes);
+    const wh_carrier_t *arm = wh_machine_arm(&layout->machine, (size_t)s->effector, &first);
+    if (arm->chain.kind == WH_CHAIN_SCARA ||
+        wh_machine_bring(&layout->machine, (size_t)s->effector, base_from_gripper, &choice, axes, axes) !=
+            WH_OK) {
+        return true;
+    }
+    wh_arm_place_carrier(lengths_at(layout, station), arm, &axes[first], bodies);
+    const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
+    return wh_vec3_norm(&out) <= 2 * lengths_at(layout, station)->link;
 }
 
 /* Checks that the links reach with the station's gripper so far before a slot. They are stretched most at one
@@ -91,10 +155,13 @@ static bool links_reach(const wh_layout_t *layout, size_t station, int32_t slot,
     const wh_mount_t *mount = &layout->machine.mounts[layout->stations[station].effector];
     const wh_pose_t identity = wh_pose_identity();
     const wh_pose_t gripper_from_effector = wh_pose_relative(&mount->effector_from_gripper, &identity);
-    wh_pose_t base_from_gripper = wh_feasibility_slot(&layout->places[station], slot);
+    wh_pose_t base_from_gripper = wh_feasibility_slot(layout, &layout->places[station], slot);
     const wh_vec3_t in = wh_mat3_column(&base_from_gripper.R, 0);
     const wh_vec3_t way = wh_vec3_scale(before, &in);
     base_from_gripper.r = wh_vec3_subtract(&base_from_gripper.r, &way);
+    if (layout->machine.carrier) {
+        return carrier_reaches(layout, station, &base_from_gripper);
+    }
     const wh_pose_t base_from_effector = wh_pose_compose(&base_from_gripper, &gripper_from_effector);
     return wh_arm_reaches(&layout->shapes.arm, &base_from_effector);
 }
@@ -109,7 +176,7 @@ static void check_links(wh_feasibility_t *check, size_t station) {
                 wh_feasibility_add(check, WH_FINDING_LINKS, (int32_t)station,
                                    "%s%s slot %d: two links of %.4g mm do not reach the wrist",
                                    before == 1 ? "the way into " : "", s->name, (int)ends[i],
-                                   (double)layout->shapes.arm.link)
+                                   (double)lengths_at(layout, station)->link)
                     ->slot = ends[i];
             }
         }
@@ -141,12 +208,13 @@ static bool is_too_tilted(const wh_layout_t *layout, const wh_pose_t *pose, doub
     return !(pose->R.m[2][2] > layout->grasp.tolerance.planar);
 }
 
-/* The robot is level, so the layout alone decides. */
+/* Where the robot keeps level the layout alone decides. */
 static void check_tilt(wh_feasibility_t *check, size_t station) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *s = &layout->stations[station];
     double tilt;
-    if (s->taught && is_too_tilted(layout, &layout->places[station].base_from_station, &tilt)) {
+    if (s->taught && !tilts(layout, station) &&
+        is_too_tilted(layout, &layout->places[station].base_from_station, &tilt)) {
         (void)wh_feasibility_add(check, WH_FINDING_TILT, (int32_t)station,
                                  "%s is tilted by %.4g deg (limit %.4g deg): the level blade takes no wafer "
                                  "that lies there",
@@ -177,12 +245,13 @@ static void check_release(wh_feasibility_t *check, size_t station) {
 static void say_stray(wh_feasibility_t *check, size_t w) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_wafer_t *wafer = &layout->wafers[w];
-    const wh_place_t place =
-        wh_station_measure(&layout->places[wafer->station], wafer->slot, &layout->start[w].base_from_wafer);
+    const wh_place_t place = wh_cell_measure(&layout->cell, &layout->places[wafer->station], wafer->slot,
+                                             &layout->start[w].base_from_wafer);
     const wh_vec3_t normal = wh_mat3_column(&layout->start[w].base_from_wafer.R, 2);
     const wh_vec3_t up = wh_mat3_column(&layout->places[wafer->station].base_from_station.R, 2);
+    const wh_real_t upright = wh_vec3_dot(&normal, &up);
     char tilt[80] = "";
-    if (!(wh_vec3_dot(&normal, &up) > layout->cell.tolerance.planar)) {
+    if (!((place.face == WH_FACE_FRONT ? -upright : upright) > layout->cell.tolerance.planar)) {
         snprintf(tilt, sizeof tilt, ", tilted against it by %.4g deg (limit %.4g deg)",
                  degrees_of(place.tilt), tilt_limit(layout));
     }
@@ -211,15 +280,22 @@ static void check_wafers(wh_feasibility_t *check) {
     }
 }
 
+static bool is_face_too_tilted(const wh_layout_t *layout, const wh_pose_t *base_from_wafer, wh_face_t face,
+                               double *tilt) {
+    wh_pose_t base_from_face;
+    wh_face_frame(base_from_wafer, layout->cell.thickness, face, &base_from_face);
+    return is_too_tilted(layout, &base_from_face, tilt);
+}
+
 /* True if a wafer lies in a slot where the blade could take one, but is itself tilted too far. */
 static bool is_askew(const wh_layout_t *layout, size_t w, double *tilt) {
     const int32_t station = layout->wafers[w].station;
     const wh_pose_t *base_from_wafer = &layout->start[w].base_from_wafer;
     wh_place_t place;
-    return layout->stations[station].taught &&
+    return layout->stations[station].taught && !tilts(layout, (size_t)station) &&
            !is_too_tilted(layout, &layout->places[station].base_from_station, tilt) &&
-           is_too_tilted(layout, base_from_wafer, tilt) &&
-           wh_cell_locate(&layout->cell, base_from_wafer, &place);
+           wh_cell_locate(&layout->cell, base_from_wafer, &place) &&
+           is_face_too_tilted(layout, base_from_wafer, place.face, tilt);
 }
 
 static void check_askew(wh_feasibility_t *check) {
@@ -251,6 +327,19 @@ static void check_parts(wh_feasibility_t *check) {
     }
 }
 
+/* True if several robots serve a station. */
+static bool has_shared_station(const wh_layout_t *layout) {
+    bool has = false;
+    for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
+        size_t count = 0;
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            count += layout->stations[s].by[r].serves ? 1 : 0;
+        }
+        has = has || count > 1;
+    }
+    return has;
+}
+
 void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
     memset(check, 0, sizeof *check);
     check->layout = layout;
@@ -267,6 +356,15 @@ void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
     }
     check_wafers(check);
     check_askew(check);
+    if (has_shared_station(layout)) {
+        (void)wh_feasibility_add(
+            check, WH_FINDING_LINKS, WH_NONE,
+            "of a station that several of %s, %s%s serve, the room of one of them alone is looked at",
+            layout->robots[0].name, layout->robots[1].name, layout->robot_count > 2 ? " and others" : "");
+        wh_feasibility_warn(check);
+    }
+    wh_feasibility_sight(check);
+    wh_feasibility_rests(check);
 }
 
 void wh_feasibility_free(wh_feasibility_t *check) {

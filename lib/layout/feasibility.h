@@ -6,7 +6,7 @@
 #ifndef WH_LAYOUT_FEASIBILITY_H
 #define WH_LAYOUT_FEASIBILITY_H
 
-#include "layout.h"
+#include "links.h"
 
 typedef enum {
     WH_FINDING_CONTACT, /* two parts overlap that must not */
@@ -21,6 +21,8 @@ typedef enum {
     WH_FINDING_TILT,    /* a station, or a wafer, is tilted more than a level blade takes it */
     WH_FINDING_GAP,     /* the room in a station is not more than `clearance` asks for */
     WH_FINDING_RELEASE, /* a PUT lets go only after the wafer has gone into its support */
+    WH_FINDING_SIGHT,   /* a beam or an edge sensor cannot see what it is there for */
+    WH_FINDING_REST,    /* a notch points to where a rest of an edge grip is */
     WH_FINDING_PLAY     /* GET or PUT, played at a slot, fails or hits something: see mcs/survey.h */
 } wh_finding_kind_t;
 
@@ -52,10 +54,10 @@ typedef struct {
 
 typedef struct {
     const wh_layout_t *layout;
-    bool has_parts; /* false: too many parts; only links and wafers were checked */
-    wh_pose_t base_from_effector, base_from_grippers[WH_GRIPPERS]; /* at home */
-    wh_pose_t base_from_arm[WH_ARM_BODIES];
-    wh_entry_t *entries; /* by station */
+    bool has_parts;                            /* false: too many parts; only links and wafers were checked */
+    wh_links_t links;                          /* at home */
+    wh_pose_t base_from_grippers[WH_GRIPPERS]; /* the same */
+    wh_entry_t *entries;                       /* by station */
     wh_finding_t *findings;
     size_t count, capacity; /* of findings */
     size_t wrong;           /* those that are no warnings */

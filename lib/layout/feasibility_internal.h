@@ -1,11 +1,12 @@
-/* Shared by the files that judge a layout: feasibility.c, contact.c, room.c, blades.c, lifted.c. */
+/* Shared by the files that judge a layout: feasibility.c, contact.c, room.c, blades.c, lifted.c, sight.c,
+ * rests.c. */
 #ifndef WH_LAYOUT_FEASIBILITY_INTERNAL_H
 #define WH_LAYOUT_FEASIBILITY_INTERNAL_H
 
 #include "feasibility.h"
 
-/* base_from_gripper with the end-effector level in a slot, heading in. */
-wh_pose_t wh_feasibility_slot(const wh_station_t *station, int32_t slot);
+/* base_from_gripper with the end-effector in a slot, heading in: level, unless the robot tilts. */
+wh_pose_t wh_feasibility_slot(const wh_layout_t *layout, const wh_station_t *station, int32_t slot);
 
 /* How far a station is tilted, deg. */
 double wh_feasibility_tilt(const wh_station_t *station);
@@ -16,6 +17,12 @@ void wh_feasibility_full(wh_feasibility_t *check);
 
 /* The room of a wafer that a GET lifts. Needs parts. */
 void wh_feasibility_lifted(wh_feasibility_t *check, size_t station);
+
+/* What beams and edge sensors cannot see. */
+void wh_feasibility_sight(wh_feasibility_t *check);
+
+/* Notches that an edge grip would take over one of its rests. */
+void wh_feasibility_rests(wh_feasibility_t *check);
 
 /* The room at a station, and of the robot's blades beside one another. Both need parts. */
 void wh_feasibility_room(wh_feasibility_t *check, size_t station);

@@ -30,6 +30,7 @@ const wh_colour_t wh_ink_stage = {0xeef1f4, 0x131a21};
 wh_part_ink_t wh_ink_of(const wh_part_t *part) {
     static const wh_part_ink_t of_kind[] = {
         [WH_PART_FIXED] = WH_INK_WALL,  [WH_PART_LEDGE] = WH_INK_LEDGE, [WH_PART_ARM] = WH_INK_ARM,
-        [WH_PART_BLADE] = WH_INK_BLADE, [WH_PART_CHUCK] = WH_INK_CHUCK, [WH_PART_WAFER] = WH_INK_WAFER};
+        [WH_PART_BLADE] = WH_INK_BLADE, [WH_PART_CHUCK] = WH_INK_CHUCK, [WH_PART_DOOR] = WH_INK_WALL,
+        [WH_PART_WAFER] = WH_INK_WAFER};
     return part->kind == WH_PART_FIXED && part->owner != WH_NONE ? WH_INK_SHELL : of_kind[part->kind];
 }

@@ -7,6 +7,8 @@
 
 #include "../math/trig.h"
 #include "../text/nearest.h"
+#include "arms.h"
+#include "grips.h"
 #include "layout_internal.h"
 
 /* The registry's list of all memory of layouts. It is never cleared, for a record may outlive a second
@@ -21,6 +23,12 @@ void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
     lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
     lua_pop(L, 1);
     return memory;
+}
+
+void wh_layout_path(char *path, size_t size, const char *beside, const char *name) {
+    const char *slash = strrchr(beside, '/');
+    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - beside) + 1;
+    snprintf(path, size, "%.*s%s", folder, beside, name);
 }
 
 /* ------------------------------------------------------------------------------------ how a run is judged */
@@ -157,6 +165,7 @@ static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     wh_reader_open_section(reader, "placing", wh_layout_placing_fields);
     cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
     cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
+    cell->drop = wh_reader_number(reader, "drop", 0, 0, 1000);
     wh_reader_leave(reader);
 }
 
@@ -201,9 +210,15 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_robot(&reader, layout);
     wh_layout_read_stations(&reader, layout);
     wh_layout_read_grippers(&reader, layout);
+    wh_layout_read_doors(&reader, layout);
+    wh_layout_read_vias(&reader, layout);
     wh_layout_read_effectors(&reader, layout);
     wh_layout_read_wafers(&reader, layout);
+    wh_layout_find_faces(layout);
     wh_layout_read_sensing(&reader, layout);
+    wh_layout_find_arms(layout);
+    wh_layout_read_edge_wafers(&reader, layout);
+    wh_layout_take_supports(layout, wh_layout_memory(L, wh_layout_count_supports(layout), sizeof(wh_pose_t)));
     wh_layout_read_shapes(&reader, layout);
     wh_layout_read_blades(layout);
     wh_layout_read_world(&reader, layout);
@@ -258,6 +273,18 @@ int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name) {
     return find(layout->wafers, layout->wafer_count, sizeof *layout->wafers, name);
 }
 
+int32_t wh_layout_find_door(const wh_layout_t *layout, const char *name) {
+    return find(layout->door_list, layout->machine.door_count, sizeof *layout->door_list, name);
+}
+
+int32_t wh_layout_find_beam(const wh_layout_t *layout, const char *name) {
+    return *name != '\0' ? find(layout->beams, layout->beam_count, sizeof *layout->beams, name) : WH_NONE;
+}
+
+int32_t wh_layout_find_robot(const wh_layout_t *layout, const char *name) {
+    return find(layout->robots, layout->robot_count, sizeof *layout->robots, name);
+}
+
 /* Among how many names the nearest one is looked for. */
 #define MOST_NAMES 1000
 
@@ -265,6 +292,9 @@ int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name) {
 static const char *name_at(const wh_layout_t *layout, wh_layout_find_t *lookup, size_t i) {
     if (lookup == wh_layout_find_station) {
         return i < layout->station_count ? layout->stations[i].name : NULL;
+    }
+    if (lookup == wh_layout_find_door) {
+        return i < layout->machine.door_count ? layout->door_list[i].name : NULL;
     }
     if (lookup == wh_layout_find_gripper) {
         return i < layout->machine.gripper_count ? layout->grippers[i].name : NULL;

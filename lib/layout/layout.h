@@ -9,7 +9,9 @@
 
 #include "../cell/station.h"
 #include "../collision/world.h"
+#include "../grasp/grips.h"
 #include "../motion/machine.h"
+#include "../motion/via.h"
 #include "../script/reader.h"
 #include "../script/sandbox.h"
 #include "../sim/physics.h"
@@ -18,6 +20,10 @@
 
 /* The longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
+
+/* The most robots of a layout, and the most arms of all of them. */
+#define WH_LAYOUT_ROBOTS (WH_AXES / WH_ROBOT_AXES)
+#define WH_LAYOUT_ARMS WH_WORLD_ARMS
 
 /* The most wafers, stations, and slots of a station that a layout may have. */
 #define WH_LAYOUT_WAFERS 1000000
@@ -37,8 +43,38 @@
 typedef struct {
     char name[WH_NAME_SIZE];
     char valve[WH_NAME_SIZE]; /* the output's name, such as eeVacValve[0] */
-    int32_t station;          /* the prealigner whose chuck it is; WH_NONE: on the robot's end-effector */
+    /* the prealigner whose chuck or pins it is, or the flipper; WH_NONE: on a robot's end-effector */
+    int32_t station;
+    wh_limits_t loaded; /* its own, of each 0: no limit; see wh_layout_loaded */
 } wh_layout_gripper_t;
+
+/* A door: machine.doors has how it moves at the same index. */
+typedef struct {
+    char name[WH_NAME_SIZE];
+    double timeout; /* how long a command waits for it once it should be there, s */
+} wh_layout_door_t;
+
+/* A robot: machine.mounts[].robot counts them. */
+typedef struct {
+    char name[WH_NAME_SIZE]; /* "robot" of a layout that has one */
+    wh_elbow_t elbow;        /* SCARA: its usual side */
+    wh_carrier_t carrier;    /* what machine.carrier and its `next` point to, unless that is null */
+    wh_limits_t loaded;      /* while any gripper on it carries a wafer, of each 0: no limit */
+    wh_arm_t arm;            /* of any but the first, of which shapes.arm says it: its links, and */
+    wh_real_t lowest;        /* the least height of its contact plane, mm */
+    wh_real_t transit;       /* mm, see transit.h; 0: the arm turns as it stands */
+} wh_layout_robot_t;
+
+/* How one of several robots comes to a station. */
+typedef struct {
+    bool serves;      /* the layout says so, or the robot alone decides by its reach */
+    bool is_turned;   /* its way in is not the station's own */
+    wh_mat3_t R;      /* then: x is its way in, z goes up through the slots */
+    double rail;      /* where its rail stands, mm */
+    wh_elbow_t elbow; /* and a SCARA's elbow */
+    int32_t effector; /* its gripper that serves the station unless a command names another one */
+    int32_t door;     /* that it comes through, or WH_NONE */
+} wh_layout_approach_t;
 
 /* The order in which the valves switch when a chuck and an end-effector pass a wafer on. */
 typedef enum {
@@ -54,11 +90,44 @@ typedef enum {
     WH_VACUUM_CHECK_NONE
 } wh_vacuum_check_t;
 
+/* Which face of a wafer points up in a station. */
+typedef enum { WH_STATION_ANY_FACE, WH_STATION_FACE_UP, WH_STATION_FACE_DOWN } wh_station_face_t;
+
+/* What of a station a probe touches: a block with flat faces, along the station's axes. */
+typedef struct {
+    bool is_there;
+    double at[3];   /* middle of its upper face, mm */
+    double size[3]; /* mm */
+} wh_layout_block_t;
+
+/* Its faces: towards the robot, to the right, upwards. */
+#define WH_BLOCK_FACES 3
+
+/* A pin with a ball and a switch, on a gripper. */
+typedef struct {
+    bool is_there;
+    int32_t gripper;
+    double at[3]; /* of the ball's centre in the gripper's frame, mm */
+    double radius, noise;
+    uint64_t seed;
+    wh_beam_stuck_t stuck;
+} wh_layout_probe_t;
+
+/* The most points of a station that an arm passes: on a way between two stations those of both. */
+#define WH_LAYOUT_VIAS 2
+
+/* One of them, by axes: theta, R, Z, yaw. */
+typedef struct {
+    bool is_given[WH_ROBOT_AXES]; /* false: as in front of the station */
+    wh_via_point_t point;
+} wh_layout_via_t;
+
 /* The station parameters that GET and PUT use. The geometry is in wh_layout_t.places at the same index. */
 typedef struct {
     char name[WH_NAME_SIZE];
     bool prealigner;
     bool foup;              /* with walls and a load port around its slots */
+    bool flipper;           /* its one gripper clamps wafers and turns them over */
     bool counts;            /* a wafer that is put here is done: for wafers per hour */
     wh_real_t stroke;       /* from entry below the wafer to exit above it */
     wh_real_t offset;       /* how far above the slot a GET leaves and a PUT starts */
@@ -66,6 +135,7 @@ typedef struct {
     bool retract_default;   /* the layout does not say it */
     wh_real_t pickup_speed; /* of the strokes, mm/s */
     wh_real_t release;      /* height above the slot's plane at which a PUT switches the valves */
+    bool release_default;   /* the layout does not say it: an edge grip lets go in the plane */
     wh_real_t vacuum_delay; /* from the stroke's end until the sensor is asked, s */
     wh_real_t timeout;      /* the longest wait for the sensor after that, s */
     wh_handover_t handover;
@@ -78,7 +148,18 @@ typedef struct {
     int32_t retries;               /* how often a GET that took nothing repeats its stroke */
     /* the gripper on the robot that serves the station unless a command names another one */
     int32_t effector;
-    bool centre; /* a PUT corrects by what the station's beams say */
+    wh_station_face_t face; /* as wafers must lie there */
+    bool centre;            /* a PUT corrects by what the station's beams say */
+    wh_layout_block_t block;
+    double rail;      /* where the robot's rail stands for it, mm */
+    wh_elbow_t elbow; /* and a SCARA's elbow */
+    int32_t door;     /* that wafers come through, or WH_NONE */
+    size_t via_count; /* from the way to the station on */
+    wh_layout_via_t vias[WH_LAYOUT_VIAS];
+    /* With several robots: how each comes there, and who serves the station unless a command says otherwise;
+     * WH_NONE: a command must say. Else null and 0. */
+    wh_layout_approach_t *by;
+    int32_t robot;
 } wh_layout_station_t;
 
 typedef struct {
@@ -94,8 +175,11 @@ typedef struct {
 /* A beam of light at a station's door, as motion control believes in it, and how it truly is. In the
  * station's frame, upright. */
 typedef struct {
+    char
+        name[WH_NAME_SIZE + 8]; /* as "LL.beam1": the station's name, and its number there; a face has none */
     int32_t station;
     double x, y, low, high;     /* mm; from `low` to `high` over the station's z = 0 */
+    double sd;                  /* how well x and y are known, mm: standard deviation */
     double delay_on, delay_off; /* s */
     double dx, dy, late;        /* truly it stands there beside, and both delays are longer by `late` */
 } wh_layout_beam_t;
@@ -112,11 +196,18 @@ typedef struct {
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
-    wh_physics_t physics;         /* vacuum, pads, faults at the start */
-    wh_machine_t machine;         /* machine.gripper_count is the number of grippers */
-    wh_real_t transit;            /* mm, see transit.h; 0: the arm turns as it stands */
-    bool homed;                   /* false: commands that rely on the arm's position need a HOME first */
-    wh_corrections_t corrections; /* the largest ones that a command may ask for */
+    wh_physics_t physics; /* vacuum, pads, faults at the start */
+    wh_machine_t machine; /* machine.gripper_count is the number of grippers */
+    size_t robot_count;
+    wh_layout_robot_t *robots;           /* sorted by name */
+    wh_carrier_t carrier;                /* the first one's, unless machine.carrier is null */
+    wh_elbow_t elbow;                    /* the first one's */
+    wh_world_arm_t arms[WH_LAYOUT_ARMS]; /* robot by robot: see arms.h */
+    size_t arm_count;
+    uint8_t carried_by[WH_GRIPPERS]; /* the arm of each gripper, or WH_WORLD_NO_ARM */
+    bool homed;                      /* false: commands that rely on the arm's position need a HOME first */
+    wh_layout_door_t *door_list;     /* machine.door_count of them, sorted by name */
+    wh_corrections_t corrections;    /* the largest ones that a command may ask for */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */
@@ -124,15 +215,23 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
+    /* Wafers may come to lie face down: cell.thickness is theirs, and simulators have grips (grips.h). */
+    bool has_faces;
+    wh_grip_t grips[WH_GRIPPERS];
+    const wh_edge_wafer_t *edge_wafers; /* by wafer what edge grips meet; null where there are none */
+    const wh_pose_t *supports;          /* the planes that take wafers over from passive pads */
+    size_t support_count;
     /* The beams at stations' doors, those of a station one after another, with their electronics as they
      * truly are, and by gripper the blades that break them. */
     wh_layout_beam_t beams[WH_BEAMS];
     wh_door_beam_t doors[WH_BEAMS];
-    size_t beam_count;
+    size_t beam_count; /* with the faces of the stations' blocks, which come behind the beams, likewise */
     wh_blade_outline_t blades[WH_GRIPPERS];
-    /* The edge sensors, and by wafer the rims that they and beams see: without either these mean nothing.
-     * Wafers of which the layout says nothing have the nominal one. */
+    wh_layout_probe_t probe;
+    /* The edge sensors, and by wafer the rims that they, beams and edge grips meet: without any of these they
+     * mean nothing. Wafers of which the layout says nothing have the nominal one. */
     wh_scanner_t scanners[WH_GRIPPERS];
+    wh_sensor_error_t believed[WH_GRIPPERS]; /* what motion control takes each one's errors to be */
     size_t scanner_count;
     const wh_rim_t *nominal_rim;
     const wh_rim_t *const *rims;
@@ -140,10 +239,11 @@ typedef struct {
     bool collision;  /* check for contact in each slice */
     bool look_ahead; /* and before each command that moves */
     wh_shapes_t shapes;
-    wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
+    const wh_part_list_t *urdf; /* the arm's parts of a URDF; null: the usual ones of shapes.h */
+    wh_world_config_t world;    /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
     wh_errors_t *errors; /* what a study draws; null: no `study` */
-    size_t hung_count; /* how many of the last parts of `world` are obstacles on the robot and on grippers */
+    size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
 } wh_layout_t;
 
 /* Reads the table on top of L's stack, which the layout file returned; it stays there. Fills in the defaults
@@ -167,8 +267,10 @@ typedef struct {
 extern const wh_station_range_t wh_station_ranges[];
 
 /* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
- * reader's errors. `first` is the slice that `after = 0` means. */
-wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first);
+ * reader's errors. `wafers` are the layout's as they lie now, and `first` is the slice that `after = 0`
+ * means. */
+wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, const wh_wafer_t wafers[],
+                                int64_t first);
 
 /* Reads the collision world again, for a copy of a layout whose stations stand elsewhere. The layout's table
  * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
@@ -185,6 +287,22 @@ void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layou
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
+/* What the way of a wafer on this gripper must keep to: mm/s, mm/s^2, mm/s^3 of its centre in base, the
+ * stricter ones of the gripper's own and of its robot's; of each 0: no limit. */
+wh_limits_t wh_layout_loaded(const wh_layout_t *layout, size_t gripper);
+
+/* True if there is such a limit for any gripper. */
+bool wh_layout_has_loaded(const wh_layout_t *layout);
+
+/* True for a gripper that is pins beside a prealigner's chuck, for one that is a flipper's clamp; and the
+ * pins of a station, or WH_NONE. */
+bool wh_layout_is_pins(const wh_layout_t *layout, size_t gripper);
+bool wh_layout_is_flipper(const wh_layout_t *layout, size_t gripper);
+int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station);
+
+/* The door of a station for a robot, or WH_NONE. */
+int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot);
+
 /* The edge sensors as a simulator takes them: a view of the layout. */
 wh_scanning_t wh_layout_scanning(const wh_layout_t *layout);
 
@@ -197,6 +315,18 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout);
 /* The order that arms a station's beams; count 0 if it has none. */
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
 
+/* The order that arms a face of a station's block; count 0 if it has none. */
+wh_latch_order_t wh_layout_face_at(const wh_layout_t *layout, size_t station, size_t face);
+
+/* A face of a block in its station's frame: its middle, which of x, y and z its normal is along, and the
+ * normal's sign. */
+typedef struct {
+    double middle[3];
+    size_t axis;
+    double sign;
+} wh_block_face_t;
+wh_block_face_t wh_layout_block_face(const wh_layout_block_t *block, size_t face);
+
 /* Sets up doors[b] anew, where its station stands. */
 void wh_layout_place_beam(wh_layout_t *layout, size_t b);
 
@@ -205,12 +335,19 @@ void wh_layout_place_beam(wh_layout_t *layout, size_t b);
  * left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
+/* 64 bits over what the layout's hash leaves out of a collision check: shapes, the arm, and the limits of
+ * gaps; 0: the layout asks for no check. Cost: linear in the parts' points. */
+uint64_t wh_layout_world_hash(const wh_layout_t *layout);
+
 /* The name of a part of the collision world, wafers included; null if there is no such part. */
 const char *wh_layout_part_name(const wh_layout_t *layout, int32_t part);
 
 /* The index of a name, or WH_NONE. Cost: linear. */
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_gripper(const wh_layout_t *layout, const char *name);
+int32_t wh_layout_find_robot(const wh_layout_t *layout, const char *name);
+int32_t wh_layout_find_door(const wh_layout_t *layout, const char *name);
+int32_t wh_layout_find_beam(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name);
 
 /* Counts the parts of stations, robot and grippers. Obstacles are not among them. */

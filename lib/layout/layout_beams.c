@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "axes.h"
 #include "layout_internal.h"
 
 /* Two beams of a station that are nearer to being at the same distance from the way cannot tell which of two
@@ -39,12 +40,15 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     wh_layout_beam_t *beam = &layout->beams[layout->beam_count];
     wh_door_beam_t *door = &layout->doors[layout->beam_count];
     const double top = (place->slots - 1) * place->pitch;
+    (void)snprintf(beam->name, sizeof beam->name, "%s.beam%zu", layout->stations[s].name,
+                   layout->beam_count - first + 1);
     beam->station = (int32_t)s;
     beam->x = wh_reader_number(reader, "x", -layout->stations[s].retract / 2, -10000, 10000);
     beam->y = read_across(reader, layout, first);
     beam->low = wh_reader_number(reader, "low", -30, -1000, 1000);
     const double high = top + 30 > beam->low ? top + 30 : beam->low + 60;
     beam->high = wh_reader_number(reader, "high", high, beam->low + 1, 1e4);
+    beam->sd = wh_reader_number(reader, "sd", 0, 0, 0.5);
     beam->dx = wh_reader_number(reader, "dx", 0, -5, 5);
     beam->dy = wh_reader_number(reader, "dy", 0, -5, 5);
     beam->delay_on = wh_reader_number(reader, "delay_on", 0, 0, 0.009);
@@ -68,6 +72,14 @@ static void check_centring(wh_reader_t *reader, const wh_layout_t *layout, size_
         const wh_layout_beam_t *beam = &layout->beams[b];
         const double chord = chord_of(layout, beam->y);
         const double least = chord + ROOM - layout->stations[s].retract;
+        if (least > -chord - ROOM) {
+            lua_pushnumber(reader->L, layout->stations[s].retract);
+            wh_reader_fail(
+                reader, "retract",
+                "%.6g mm or more, so that all of a wafer passes the beam at y = %.6g on the way in, "
+                "for `centre`",
+                ceil(2 * (chord + ROOM)), beam->y);
+        }
         if (beam->x < least || beam->x > -chord - ROOM) {
             char path[40];
             snprintf(path, sizeof path, "beams[%zu].x", b - first + 1);
@@ -84,6 +96,9 @@ void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     const size_t first = layout->beam_count;
     if (wh_reader_enter(reader, "beams")) {
         const size_t count = wh_reader_list(reader);
+        if (layout->machine.carrier) {
+            wh_reader_fail(reader, NULL, "nothing: beams are for " WH_AXES_USUAL);
+        }
         if (count + first > WH_BEAMS) {
             wh_reader_fail(reader, NULL, "at most %d beams in all of the cell", WH_BEAMS);
         }
@@ -116,6 +131,10 @@ void wh_layout_read_blades(wh_layout_t *layout) {
 }
 
 void wh_layout_place_beam(wh_layout_t *layout, size_t b) {
+    if (layout->doors[b].kind == WH_DOOR_TOUCH) {
+        wh_layout_place_face(layout, b);
+        return;
+    }
     const wh_layout_beam_t *beam = &layout->beams[b];
     const wh_pose_t *place = &layout->places[beam->station].base_from_station;
     layout->doors[b].beam = wh_beam_at(place, beam->x + beam->dx, beam->y + beam->dy, beam->low, beam->high);
@@ -129,7 +148,7 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout) {
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station) {
     wh_latch_order_t order = {WH_LATCH_ARM, 0, 0};
     for (size_t b = 0; b < layout->beam_count; ++b) {
-        if ((size_t)layout->beams[b].station == station) {
+        if (layout->doors[b].kind == WH_DOOR_LIGHT && (size_t)layout->beams[b].station == station) {
             order.first = order.count == 0 ? (int32_t)b : order.first;
             ++order.count;
         }

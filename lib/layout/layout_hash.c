@@ -1,5 +1,6 @@
 #include "../math/hash.h"
-#include "layout.h"
+#include "grips.h"
+#include "layout_internal.h"
 
 static uint64_t hash_text(uint64_t hash, const char *text) {
     for (const char *c = text; *c; ++c) {
@@ -29,6 +30,69 @@ static uint64_t hash_checks(uint64_t hash, const wh_layout_t *layout) {
     return wh_hash_word(hash, (uint64_t)layout->slice_us);
 }
 
+static uint64_t hash_second(uint64_t hash, const wh_carrier_t *carrier) {
+    const wh_chain_t *chain = &carrier->chain;
+    const wh_chain_t *second = carrier->second ? &carrier->second->chain : NULL;
+    if (second) {
+        const wh_real_t reals[] = {chain->arm_heading,  chain->height,  chain->home[WH_CHAIN_YAW],
+                                   second->arm_heading, second->height, second->home[WH_CHAIN_YAW]};
+        hash = hash_reals(hash_text(hash, "second"), reals, sizeof reals / sizeof reals[0]);
+    }
+    return hash;
+}
+
+/* What a robot has beyond the four axes of the usual one. */
+static uint64_t hash_carrier(uint64_t hash, const wh_layout_t *layout) {
+    const wh_chain_t *chain = &layout->carrier.chain;
+    hash = wh_hash_int(hash_text(hash, "carrier"), (int32_t)chain->kind);
+    hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
+    hash = hash_reals(hash, chain->links, 2);
+    for (size_t axis = WH_ROBOT_AXES; axis < layout->carrier.axis_count; ++axis) {
+        size_t of;
+        (void)wh_carrier_axis(&layout->carrier, axis, &of); /* which both arms have alike */
+        const wh_real_t reals[] = {chain->travel[of].min, chain->travel[of].max, chain->home[of]};
+        hash = hash_limits(hash_reals(wh_hash_word(hash, of), reals, 3), &chain->limits[of]);
+    }
+    hash = chain->has_flip ? wh_hash_real(hash, chain->flip_height) : hash;
+    return hash_second(hash, &layout->carrier);
+}
+
+/* The others of several robots, and the first one's name. */
+static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
+    for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
+        const wh_carrier_t *carrier = &layout->robots[r].carrier;
+        const wh_chain_t *chain = &carrier->chain;
+        hash = wh_hash_int(hash_text(hash, layout->robots[r].name), (int32_t)chain->kind);
+        hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
+        hash = hash_reals(hash, chain->links, 2);
+        for (size_t axis = 0; axis < carrier->axis_count; ++axis) {
+            size_t of;
+            (void)wh_carrier_axis(carrier, axis, &of);
+            const wh_real_t reals[] = {chain->travel[of].min, chain->travel[of].max, chain->home[of]};
+            hash = hash_limits(hash_reals(wh_hash_word(hash, of), reals, 3), &chain->limits[of]);
+        }
+        hash = chain->has_flip ? wh_hash_real(hash, chain->flip_height) : hash;
+        hash = hash_second(hash, carrier);
+    }
+    for (size_t g = 0; layout->robot_count > 1 && g < layout->machine.gripper_count; ++g) {
+        const wh_mount_t *mount = &layout->machine.mounts[g];
+        hash = wh_hash_int(hash, mount->robot);
+        hash = mount->arm > 0 ? wh_hash_int(hash_text(hash, "arm"), mount->arm) : hash;
+    }
+    return hash;
+}
+
+/* Of stages and pins, which not every chuck has. */
+static uint64_t hash_slides(uint64_t hash, const wh_mount_t *mount) {
+    if (mount->axis == WH_NONE || mount->kind == WH_MOUNT_CHUCK) {
+        return hash;
+    }
+    static const char *const words[] = {"chuck", "stage", "pins", "flipper"};
+    hash = hash_text(hash, words[mount->kind]);
+    hash = hash_reals(hash, (const wh_real_t[]){mount->travel.min, mount->travel.max}, 2);
+    return hash_limits(hash, &mount->limits);
+}
+
 static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
     const wh_machine_t *machine = &layout->machine;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
@@ -37,8 +101,13 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         hash = hash_limits(hash, &machine->robot.limits[axis]);
     }
     hash = hash_limits(hash, &machine->chuck_limits);
-    if (layout->transit > 0) {
-        hash = wh_hash_real(hash_text(hash, "transit"), layout->transit);
+    if (machine->carrier) {
+        hash = hash_carrier(hash, layout);
+    }
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const wh_real_t transit = layout->robots[r].transit;
+        hash = transit > 0 ? wh_hash_real(hash_text(hash, "transit"), transit) : hash;
+        hash = transit > 0 && r > 0 ? wh_hash_word(hash, r) : hash;
     }
     hash = wh_hash_word(hash, machine->axis_count);
     hash = wh_hash_word(hash, machine->gripper_count);
@@ -49,6 +118,21 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         if (machine->mounts[g].is_shifted) {
             hash = wh_hash_pose(hash, &machine->mounts[g].effector_from_gripper);
         }
+        hash = hash_slides(hash, &machine->mounts[g]);
+        if (machine->mounts[g].arm > 0) {
+            hash = wh_hash_int(hash_text(hash, "arm"), machine->mounts[g].arm);
+        }
+    }
+    return hash_robots(hash, layout);
+}
+
+static uint64_t hash_doors(uint64_t hash, const wh_layout_t *layout) {
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        const wh_door_t *door = &layout->machine.doors[d];
+        hash = hash_text(hash_text(hash, "door"), layout->door_list[d].name);
+        hash = wh_hash_vec3(hash, &door->way);
+        hash = wh_hash_int(wh_hash_real(hash, door->travel), door->is_open ? 1 : 0);
+        hash = hash_limits(hash, &door->limits);
     }
     return hash;
 }
@@ -73,7 +157,7 @@ static uint64_t hash_placing(uint64_t hash, const wh_cell_t *cell) {
         hash = wh_hash_real(hash, cell->off_centre);
         hash = wh_hash_real(hash, cell->askew);
     }
-    return hash;
+    return cell->drop > 0 ? wh_hash_real(wh_hash_int(hash, 1), cell->drop) : hash;
 }
 
 /* Only what differs from the paper's gripper, so that a layout without these sections keeps its hash. */
@@ -110,6 +194,52 @@ static uint64_t hash_fault(uint64_t hash, const wh_fault_t *fault) {
     return wh_hash_word(hash, (uint64_t)fault->until);
 }
 
+static uint64_t hash_part(uint64_t hash, const wh_part_t *part) {
+    const wh_convex_t *convex = &part->convex;
+    hash = wh_hash_int(wh_hash_int(wh_hash_int(hash, (int32_t)part->kind), part->owner), part->slot);
+    hash = wh_hash_pose(wh_hash_int(hash, (int32_t)convex->kind), &convex->body_from_shape);
+    if (convex->kind != WH_CONVEX_MESH) {
+        return wh_hash_vec3(hash, &convex->half);
+    }
+    for (size_t i = 0; i < convex->point_count; ++i) {
+        hash = wh_hash_vec3(hash, &convex->points[i]);
+    }
+    return wh_hash_word(hash, convex->point_count);
+}
+
+uint64_t wh_layout_world_hash(const wh_layout_t *layout) {
+    const wh_world_config_t *world = &layout->world;
+    if (!layout->collision) {
+        return 0;
+    }
+    uint64_t hash = hash_part(WH_HASH_START, &(wh_part_t){WH_PART_WAFER, 0, 0, world->wafer});
+    for (size_t i = 0; i < world->part_count; ++i) {
+        hash = hash_part(hash, &world->parts[i]);
+    }
+    hash = hash_reals(hash, (const wh_real_t[]){layout->shapes.arm.reach, layout->shapes.arm.link}, 2);
+    hash = wh_hash_int(hash, layout->shapes.arm.right_handed ? 1 : 0);
+    for (size_t robot = 1; robot < layout->robot_count; ++robot) {
+        const wh_arm_t *arm = &layout->robots[robot].arm;
+        hash = hash_reals(hash, (const wh_real_t[]){arm->reach, arm->link}, 2);
+        hash = wh_hash_int(hash, arm->right_handed ? 1 : 0);
+    }
+    return hash_reals(hash, world->limits, WH_CLEARANCES);
+}
+
+/* Only what has another grip than vacuum. */
+static uint64_t hash_grips(uint64_t hash, const wh_layout_t *layout) {
+    bool is_new = false;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        is_new = is_new || layout->grips[g].kind != WH_GRIP_VACUUM;
+    }
+    if (!is_new) {
+        return hash;
+    }
+    const wh_grips_parts_t parts = wh_layout_grips(layout);
+    return wh_gripping_hash(&parts, layout->machine.gripper_count, layout->wafer_count,
+                            hash_text(hash, "grips"));
+}
+
 /* Recordings and messages carry this hash: what is new goes behind, and only where it differs from the
  * default. */
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
@@ -127,6 +257,10 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         hash = hash_fault(hash, &layout->physics.faults[i]);
     }
     hash = hash_placing(hash, &layout->cell);
+    if (layout->cell.thickness > 0) {
+        hash = wh_hash_real(hash_text(hash, "faces"), layout->cell.thickness);
+    }
+    hash = wh_layout_hash_loaded(hash, layout);
     if (layout->scanner_count > 0) {
         const wh_scanning_t scanning = wh_layout_scanning(layout);
         hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
@@ -136,5 +270,5 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
                                 hash_text(hash, "beams"));
     }
-    return hash;
+    return wh_layout_hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
 }

@@ -9,6 +9,9 @@
 /* Zeroed memory for `count` items that lives as long as the Lua state. */
 void *wh_layout_memory(lua_State *L, size_t count, size_t size);
 
+/* The path of a file that another one names: relative to that one's folder. */
+void wh_layout_path(char *path, size_t size, const char *beside, const char *name);
+
 /* As wh_layout_find_wafer: the index of a name, or WH_NONE. */
 typedef int32_t wh_layout_find_t(const wh_layout_t *layout, const char *name);
 
@@ -34,22 +37,87 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_doors(wh_reader_t *reader, wh_layout_t *layout);
+
+/* The points that the arm passes on its way to stations, and what they add to the hash of a layout. */
+void wh_layout_read_vias(wh_reader_t *reader, wh_layout_t *layout);
+uint64_t wh_layout_hash_vias(uint64_t hash, const wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_find_faces(wh_layout_t *layout);
+
+/* `grip` of the gripper at which the reader is; and once rims are read, what edge grips meet. */
+void wh_layout_read_grip(wh_reader_t *reader, wh_layout_t *layout, size_t g);
+void wh_layout_read_edge_wafers(wh_reader_t *reader, wh_layout_t *layout);
+
 void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);
 
+/* Reads the arm's links from the URDF that `robot` names, if it does, once the arm itself is read. */
+void wh_layout_read_urdf(wh_reader_t *reader, wh_layout_t *layout);
+
+/* Fails at a field that must not be there. */
+void wh_layout_refuse_field(wh_reader_t *reader, const char *field, const char *expected);
+
+/* `robots`; and one of them, at which the reader is. */
+void wh_layout_read_robots(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_carrier(wh_reader_t *reader, wh_layout_robot_t *robot);
+
+/* Makes the layout's robots, all of them read, the machine's; the layout goes by the first where it asks for
+ * one. */
+void wh_layout_take_carriers(wh_layout_t *layout);
+
+/* Reads how robots come to the station at which the reader is: the rail's place and the elbow's side, and
+ * with several robots the way in of each. */
+void wh_layout_read_approach(wh_reader_t *reader, const wh_layout_t *layout, size_t s);
+
+/* speed, acceleration and jerk; degrees where it turns. */
+void wh_layout_read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limits);
+
+/* How fast a way of mm or rad is that takes `seconds`, which the table at which the reader is has. */
+void wh_layout_read_seconds(wh_reader_t *reader, wh_real_t way, wh_limits_t *limits);
+
+/* Where the shape at which the reader is sits, and what it is: box, cylinder, capsule or mesh. */
+void wh_layout_read_shape(wh_reader_t *reader, const wh_layout_t *layout, const char *name,
+                          wh_convex_t *convex);
+
+/* Once grippers are read, and with several robots: which of them serve the station at which the reader is. */
+void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s);
+
+/* The names of the table at which the reader is, sorted, for Lua's own order differs from run to run: `count`
+ * items of `size` bytes that begin with their name. More than `most` are refused. */
+void *wh_layout_read_keys(wh_reader_t *reader, size_t most, size_t size, const char *what, size_t *count);
+
 /* Wafers that sensors and beams can see, mm. */
 #define WH_SENSED_LEAST 20
 #define WH_SENSED_MOST 600
 
+/* `shape` of errors that are spread. */
+wh_shape_t wh_layout_read_spread_shape(wh_reader_t *reader, wh_shape_t fallback);
+
+/* Reads how widely the beams of a station are off, WH_NONE: of all, once beams are read. */
+void wh_layout_read_beam_widths(wh_reader_t *reader, const wh_layout_t *layout, int32_t station,
+                                wh_beam_spreads_t *spreads);
+
 /* Reads the beams of the station at which the reader is. */
 void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s);
 
+/* Reads the probe of a gripper and the blocks of stations, once beams are read. */
+void wh_layout_read_blocks(wh_reader_t *reader, wh_layout_t *layout);
+
+/* Sets up doors[b], a face of its station's block, where the station stands. */
+void wh_layout_place_face(wh_layout_t *layout, size_t b);
+
 /* Fills in `blades`, once grippers and shapes are read. */
 void wh_layout_read_blades(wh_layout_t *layout);
+
+/* Reads `loaded` of the robot or gripper at which the reader is. */
+void wh_layout_read_loaded(wh_reader_t *reader, wh_limits_t *loaded);
+
+/* Continues a layout's hash with it, where there is any. */
+uint64_t wh_layout_hash_loaded(uint64_t hash, const wh_layout_t *layout);
 
 void wh_layout_read_faults(wh_reader_t *reader, wh_layout_t *layout);
 

@@ -1,104 +1,122 @@
-/* A layout's robot, and the mounts of its grippers. */
+/* The mounts of a layout's grippers. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../math/trig.h"
+#include "axes.h"
 #include "layout_internal.h"
 
-/* Degrees in a layout, radians in the library; lengths are mm in both. */
-static wh_real_t to_layout(bool turns, wh_real_t value) {
-    return turns ? wh_deg_from_rad(value) : value;
+bool wh_layout_is_pins(const wh_layout_t *layout, size_t gripper) {
+    const wh_mount_t *mount = &layout->machine.mounts[gripper];
+    return mount->axis != WH_NONE && mount->kind == WH_MOUNT_PINS;
 }
 
-/* Conversion to degrees and back would round: a field with the value that is shown keeps the default's
- * bits. */
-static wh_real_t read_quantity(wh_reader_t *reader, const char *field, bool turns, wh_real_t fallback,
-                               wh_real_t min, wh_real_t max) {
-    const wh_real_t shown = to_layout(turns, fallback);
-    const wh_real_t value = wh_reader_number(reader, field, shown, min, max);
-    return value == shown ? fallback : turns ? wh_rad_from_deg(value) : value;
+bool wh_layout_is_flipper(const wh_layout_t *layout, size_t gripper) {
+    const wh_mount_t *mount = &layout->machine.mounts[gripper];
+    return mount->axis != WH_NONE && mount->kind == WH_MOUNT_FLIPPER;
 }
 
-static void read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limits) {
-    limits->speed = read_quantity(reader, "speed", turns, limits->speed, 1e-6, 1e6);
-    limits->acceleration = read_quantity(reader, "acceleration", turns, limits->acceleration, 1e-6, 1e8);
-    limits->jerk = read_quantity(reader, "jerk", turns, limits->jerk, 1e-6, 1e10);
-}
-
-/* Checks defaults too: a travel that the layout gives may exclude the default home. */
-static void check_travel(wh_reader_t *reader, bool turns, const wh_travel_t *travel, wh_real_t home) {
-    const double min = to_layout(turns, travel->min);
-    const double max = to_layout(turns, travel->max);
-    if (!(travel->min < travel->max)) {
-        lua_pushnumber(reader->L, max);
-        wh_reader_fail(reader, "max", "a number above min, which is %.12g", min);
+int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station) {
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        if (layout->grippers[g].station == station && wh_layout_is_pins(layout, g)) {
+            return (int32_t)g;
+        }
     }
-    if (!(home >= travel->min && home <= travel->max)) {
-        lua_pushnumber(reader->L, to_layout(turns, home));
-        wh_reader_fail(reader, "home", "a number from %.12g to %.12g", min, max);
-    }
+    return WH_NONE;
 }
 
-static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const char *name) {
-    const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
-    const wh_real_t reach = turns ? WH_REAL(1e6) : WH_REAL(1e5);
-    wh_travel_t *travel = &robot->travel[axis];
-    wh_reader_open_section(reader, name,
-                           turns ? wh_layout_turning_axis_fields : wh_layout_straight_axis_fields);
-    travel->min = read_quantity(reader, "min", turns, travel->min, axis == WH_AXIS_R ? 0 : -reach, reach);
-    travel->max = read_quantity(reader, "max", turns, travel->max, to_layout(turns, travel->min), reach);
-    robot->home[axis] = read_quantity(reader, "home", turns, robot->home[axis], to_layout(turns, travel->min),
-                                      to_layout(turns, travel->max));
-    check_travel(reader, turns, travel, robot->home[axis]);
-    read_axis_limits(reader, turns, &robot->limits[axis]);
+static void read_slides(wh_reader_t *reader, wh_mount_t *mount) {
+    mount->limits.speed = wh_reader_number(reader, "speed", 50, 1e-6, 1e6);
+    mount->limits.acceleration = wh_reader_number(reader, "acceleration", 500, 1e-6, 1e8);
+    mount->limits.jerk = wh_reader_number(reader, "jerk", 5000, 1e-6, 1e10);
     wh_reader_leave(reader);
 }
 
-static void read_robot(wh_reader_t *reader, wh_robot_t *robot, wh_real_t *transit) {
-    static const char *const kinds[] = {"TRZY", NULL};
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    wh_reader_open_section(reader, "robot", wh_layout_robot_fields);
-    wh_reader_choice(reader, "kind", 0, kinds);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        read_axis(reader, robot, axis, names[axis]);
+/* What the axes of a gripper on a prealigner do; a chuck turns, if nothing is said. */
+static void read_kind(wh_reader_t *reader, wh_mount_t *mount) {
+    mount->kind = WH_MOUNT_CHUCK;
+    if (wh_reader_open(reader, "stage", wh_layout_stage_fields)) {
+        mount->kind = WH_MOUNT_STAGE;
+        mount->travel.max = wh_reader_number(reader, "travel", 10, 0.1, 1000);
+        mount->travel.min = -mount->travel.max;
+        read_slides(reader, mount);
     }
-    if (wh_robot_validate(robot) != WH_OK) {
-        wh_reader_fail(reader, NULL, "axes whose min is below max and whose home is between them");
+    if (wh_reader_open(reader, "pins", wh_layout_pins_fields)) {
+        if (mount->kind == WH_MOUNT_STAGE) {
+            wh_reader_fail(reader, NULL,
+                           "nothing: this gripper is a chuck on a stage, and pins are one of their own");
+        }
+        mount->kind = WH_MOUNT_PINS;
+        mount->travel.min = -wh_reader_number(reader, "down", 3, 0.6, 1000);
+        mount->travel.max = wh_reader_number(reader, "up", 5, 0.6, 1000);
+        read_slides(reader, mount);
     }
-    *transit = wh_reader_has(reader, "transit") ? wh_reader_number(reader, "transit", 0, 1, 1e5) : 0;
+}
+
+/* A flipper's clamp, which turns over about the middle of a wafer. */
+static void read_flipper(wh_reader_t *reader, const wh_layout_t *layout, wh_mount_t *mount) {
+    wh_layout_refuse_field(reader, "stage", "nothing: the gripper of a flipper clamps and turns over");
+    wh_layout_refuse_field(reader, "pins", "nothing: the gripper of a flipper clamps and turns over");
+    mount->kind = WH_MOUNT_FLIPPER;
+    mount->height = layout->wafer_thickness / 2;
+    mount->travel.max = WH_PI;
+    mount->limits = (wh_limits_t){wh_rad_from_deg(180), wh_rad_from_deg(720), wh_rad_from_deg(7200)};
+    wh_reader_open_section(reader, "flipper", wh_layout_flipper_fields);
+    if (wh_reader_has(reader, "seconds")) {
+        wh_layout_read_seconds(reader, WH_PI, &mount->limits);
+    } else {
+        wh_layout_read_axis_limits(reader, true, &mount->limits);
+    }
     wh_reader_leave(reader);
 }
 
-void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
-    wh_machine_t *machine = &layout->machine;
-    wh_robot_default(&machine->robot);
-    machine->axis_count = WH_ROBOT_AXES;
-    machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
-    read_robot(reader, &machine->robot, &layout->transit);
-    layout->homed = wh_reader_boolean(reader, "homed", true);
-    wh_reader_open_section(reader, "chuck", wh_layout_chuck_fields);
-    read_axis_limits(reader, true, &machine->chuck_limits);
-    wh_reader_leave(reader);
-}
-
-/* Mounts a gripper on the chuck of a prealigner, and gives the chuck an axis. */
-static void mount_on_chuck(wh_reader_t *reader, wh_layout_t *layout, size_t g, const char *on) {
-    wh_machine_t *machine = &layout->machine;
+static int32_t find_host(wh_reader_t *reader, const wh_layout_t *layout, const char *on) {
     const int32_t station = wh_layout_find_station(layout, on);
-    if (station == WH_NONE || !layout->stations[station].prealigner) {
-        wh_reader_refuse(reader, "on", on, "\"robot\" or the name of a station of kind \"prealigner\"");
+    if (station == WH_NONE || !(layout->stations[station].prealigner || layout->stations[station].flipper)) {
+        wh_reader_refuse(reader, "on", on,
+                         "%s or the name of a station of kind \"prealigner\" or \"flipper\"",
+                         layout->robot_count > 1 ? "a robot's name" : "\"robot\"");
     }
-    if (layout->places[station].chuck != WH_NONE) {
-        wh_reader_refuse(reader, "on", on, "a prealigner without a gripper; grippers[%d] is on this one",
-                         (int)layout->places[station].chuck + 1);
+    return station;
+}
+
+/* Each has one gripper of a sort. */
+static void check_alone(wh_reader_t *reader, const wh_layout_t *layout, int32_t station, bool is_pins) {
+    const int32_t other = is_pins ? wh_layout_find_pins(layout, station) : layout->places[station].chuck;
+    if (other != WH_NONE) {
+        wh_reader_refuse(reader, "on", layout->stations[station].name,
+                         "a %s without %s; grippers[%d] is on this one",
+                         layout->stations[station].flipper ? "flipper" : "prealigner",
+                         is_pins ? "pins" : "a gripper", (int)other + 1);
     }
-    if (machine->axis_count == WH_AXES) {
-        wh_reader_refuse(reader, "on", on, "at most %d grippers on prealigners", WH_AXES - WH_ROBOT_AXES);
+}
+
+/* Mounts a gripper on a prealigner, as its chuck or as its pins, or on a flipper, and gives it axes. */
+static void mount_on_station(wh_reader_t *reader, wh_layout_t *layout, size_t g, const char *on) {
+    wh_machine_t *machine = &layout->machine;
+    wh_mount_t *mount = &machine->mounts[g];
+    const int32_t station = find_host(reader, layout, on);
+    if (layout->stations[station].flipper) {
+        read_flipper(reader, layout, mount);
+    } else {
+        wh_layout_refuse_field(reader, "flipper", "nothing: this is of a gripper on a station of that kind");
+        read_kind(reader, mount);
     }
-    layout->places[station].chuck = (int32_t)g;
+    const bool is_pins = mount->kind == WH_MOUNT_PINS;
+    check_alone(reader, layout, station, is_pins);
+    mount->axis = (int32_t)machine->axis_count;
+    mount->base_from_station = layout->places[station].base_from_station;
+    machine->axis_count += wh_mount_axes(mount);
+    if (machine->axis_count > WH_AXES) {
+        wh_reader_refuse(
+            reader, "on", on,
+            "at most %d axes at stations: a chuck has one, on a stage three, pins and a flipper have one",
+            (int)(WH_AXES - wh_machine_robot_axes(machine)));
+    }
     layout->grippers[g].station = station;
-    machine->mounts[g].axis = (int32_t)machine->axis_count++;
-    machine->mounts[g].base_from_station = layout->places[station].base_from_station;
+    if (!is_pins) {
+        layout->places[station].chuck = (int32_t)g;
+    }
 }
 
 static void fail_at_vector(wh_reader_t *reader, const char *field, const char *expected) {
@@ -121,27 +139,48 @@ static void read_shift(wh_reader_t *reader, wh_mount_t *mount) {
     }
 }
 
-static void refuse_shift(wh_reader_t *reader) {
-    static const char *const fields[] = {"at", "rpy"};
+/* Which arm or wrist of a robot that has two. */
+static void read_arm(wh_reader_t *reader, const wh_machine_t *machine, wh_mount_t *mount) {
+    static const char *const fields[] = {"arm", "wrist"};
+    const wh_carrier_t *carrier = wh_machine_carrier(machine, mount->robot, NULL);
+    const wh_carrier_t *second = carrier ? carrier->second : NULL;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
+        if (second && (second->chain.kind == WH_CHAIN_SCARA) == (i == 1)) {
+            mount->arm = (uint8_t)(wh_reader_whole(reader, fields[i], 1, 1, 2) - 1);
+        } else if (wh_reader_has(reader, fields[i])) {
+            (void)wh_reader_push(reader, fields[i]);
+            wh_reader_fail(reader, fields[i], "nothing: the robot does not have two %ss", fields[i]);
+        }
+    }
+}
+
+static void refuse_fields(wh_reader_t *reader, const char *const fields[], size_t count,
+                          const char *expected) {
+    for (size_t i = 0; i < count; ++i) {
         if (wh_reader_has(reader, fields[i])) {
-            fail_at_vector(reader, fields[i], "nothing: a chuck sits where its station is");
+            fail_at_vector(reader, fields[i], expected);
         }
     }
 }
 
 static void read_mount(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
     char on[WH_NAME_SIZE];
-    wh_reader_text(reader, "on", "robot", on, sizeof on);
+    wh_reader_text(reader, "on", layout->robot_count > 1 ? NULL : layout->robots[0].name, on, sizeof on);
+    const int32_t robot = wh_layout_find_robot(layout, on);
     layout->grippers[g].station = WH_NONE;
     layout->machine.mounts[g].axis = WH_NONE;
     layout->machine.mounts[g].base_from_station = wh_pose_identity();
     layout->machine.mounts[g].effector_from_gripper = wh_pose_identity();
-    if (strcmp(on, "robot") == 0) {
+    if (robot != WH_NONE) {
+        static const char *const of_station[] = {"stage", "pins", "flipper"};
+        refuse_fields(reader, of_station, 3, "nothing: this is of a gripper at a station");
+        layout->machine.mounts[g].robot = (uint8_t)robot;
         read_shift(reader, &layout->machine.mounts[g]);
+        read_arm(reader, &layout->machine, &layout->machine.mounts[g]);
     } else {
-        refuse_shift(reader);
-        mount_on_chuck(reader, layout, g, on);
+        static const char *const of_robot[] = {"at", "rpy", "arm", "wrist"};
+        refuse_fields(reader, of_robot, 4, "nothing: a chuck sits where its station is");
+        mount_on_station(reader, layout, g, on);
     }
 }
 
@@ -162,21 +201,51 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
         }
     }
     read_mount(reader, layout, g);
+    wh_layout_read_loaded(reader, &gripper->loaded);
+    wh_layout_read_grip(reader, layout, g);
     ++layout->machine.gripper_count;
 }
 
-static void check_grippers(wh_reader_t *reader, const wh_layout_t *layout) {
+static void check_robot(wh_reader_t *reader, const wh_layout_t *layout, size_t robot) {
     bool on_robot = false;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        on_robot = on_robot || layout->grippers[g].station == WH_NONE;
+        on_robot =
+            on_robot || (layout->grippers[g].station == WH_NONE && layout->machine.mounts[g].robot == robot);
     }
     if (!on_robot) {
-        wh_reader_fail(reader, NULL, "at least one gripper on = \"robot\"");
+        wh_reader_fail(reader, NULL, "at least one gripper on = \"%s\"", layout->robots[robot].name);
+    }
+}
+
+static bool has_gripper_on_second(const wh_layout_t *layout, size_t robot) {
+    bool has = false;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        const wh_mount_t *mount = &layout->machine.mounts[g];
+        has = has || (layout->grippers[g].station == WH_NONE && mount->robot == robot && mount->arm == 1);
+    }
+    return has;
+}
+
+static void check_second_arm(wh_reader_t *reader, const wh_layout_t *layout, size_t robot) {
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+    const bool is_named = layout->robot_count > 1;
+    if (carrier && carrier->second && !has_gripper_on_second(layout, robot)) {
+        wh_reader_fail(reader, NULL, "at least one gripper with %s = 2%s%s",
+                       carrier->chain.kind == WH_CHAIN_SCARA ? "wrist" : "arm", is_named ? " on " : "",
+                       is_named ? layout->robots[robot].name : "");
+    }
+}
+
+static void check_grippers(wh_reader_t *reader, const wh_layout_t *layout) {
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        check_robot(reader, layout, robot);
+        check_second_arm(reader, layout, robot);
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        if (layout->stations[s].prealigner && layout->places[s].chuck == WH_NONE) {
-            wh_reader_fail(reader, NULL, "a gripper on = \"%s\", which is a prealigner",
-                           layout->stations[s].name);
+        const bool is_flipper = layout->stations[s].flipper;
+        if ((layout->stations[s].prealigner || is_flipper) && layout->places[s].chuck == WH_NONE) {
+            wh_reader_fail(reader, NULL, "a gripper on = \"%s\", which is a %s", layout->stations[s].name,
+                           is_flipper ? "flipper" : "prealigner");
         }
     }
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../math/trig.h"
+#include "grips.h"
 #include "layout_internal.h"
 
 /* ------------------------------------------------------------------------------------------------- vacuum */
@@ -94,24 +95,49 @@ static int32_t read_onto(wh_reader_t *reader, const wh_layout_t *layout, int32_t
     return onto;
 }
 
-/* Turned about the wafer's x, which is the way in: one edge lies `height` above the other, the lower one in
- * the slot's plane. */
-static wh_pose_t crossed(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer) {
-    const wh_real_t pitch = layout->places[layout->wafers[wafer].station].pitch;
-    const wh_real_t most = layout->wafer_diameter / 2;
-    const wh_real_t height = wh_reader_number(reader, "value", pitch < most ? pitch : most, 0, most);
-    const wh_real_t sine = height / layout->wafer_diameter;
-    const wh_real_t cosine = wh_real_sqrt(1 - sine * sine);
-    const wh_pose_t pose = {{{{1, 0, 0}, {0, cosine, -sine}, {0, sine, cosine}}}, {0, 0, height / 2}};
+/* The station in whose slots the wafer lies: that of the layout, unless it lies in another one's. */
+static int32_t station_of(const wh_layout_t *layout, int32_t wafer, const wh_pose_t *base_from_wafer) {
+    wh_place_t place;
+    const bool found = wh_cell_locate(&layout->cell, base_from_wafer, &place);
+    return found ? place.station : layout->wafers[wafer].station;
+}
+
+/* A tilt in the slot's frame, in the wafer's, which may be turned in its slot. One that is not keeps the
+ * tilt's bits. */
+static wh_pose_t in_wafer(const wh_pose_t *tilt, const wh_mat3_t *base_from_slot,
+                          const wh_mat3_t *base_from_wafer) {
+    const wh_mat3_t turn = wh_mat3_multiply_back(base_from_slot, base_from_wafer);
+    wh_pose_t pose = *tilt;
+    if (!(turn.m[0][0] > 1 - WH_REAL(1e-12) && turn.m[1][1] > 1 - WH_REAL(1e-12))) {
+        const wh_mat3_t turned = wh_mat3_multiply(&tilt->R, &turn);
+        pose.R = wh_mat3_multiply_back(&turn, &turned);
+        pose.r = wh_mat3_transform_back(&turn, &tilt->r);
+    }
     return pose;
 }
 
-static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, const wh_fault_t *fault) {
+/* Turned about the slot's x, which is the way in: one edge lies `height` above the other, the lower one in
+ * the slot's plane. */
+static wh_pose_t crossed(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer,
+                         const wh_pose_t *base_from_wafer) {
+    const wh_station_t *place = &layout->places[station_of(layout, wafer, base_from_wafer)];
+    const wh_real_t most = layout->wafer_diameter / 2;
+    const wh_real_t usual = place->pitch < most ? place->pitch : most;
+    const wh_real_t height = wh_reader_number(reader, "value", usual, 0, most);
+    const wh_real_t sine = height / layout->wafer_diameter;
+    const wh_real_t cosine = wh_real_sqrt(1 - sine * sine);
+    const wh_pose_t tilt = {{{{1, 0, 0}, {0, cosine, -sine}, {0, sine, cosine}}}, {0, 0, height / 2}};
+    return in_wafer(&tilt, &place->base_from_station.R, &base_from_wafer->R);
+}
+
+static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, const wh_wafer_t wafers[],
+                             const wh_fault_t *fault) {
     wh_pose_t pose = fault->offset;
     if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
-        pose.r.z = layout->wafer_thickness;
+        pose.r.z = wafers[fault->other].base_from_wafer.R.m[2][2] < 0 ? -layout->wafer_thickness
+                                                                      : layout->wafer_thickness;
     } else if (fault->kind == WH_FAULT_WAFER_CROSSED) {
-        pose = crossed(reader, layout, fault->target);
+        pose = crossed(reader, layout, fault->target, &wafers[fault->target].base_from_wafer);
     } else if (fault->kind == WH_FAULT_WAFER_SHIFTED) {
         pose.r.x = wh_reader_number(reader, "dx", 0, -1000, 1000);
         pose.r.y = wh_reader_number(reader, "dy", 0, -1000, 1000);
@@ -123,9 +149,57 @@ static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, con
     return pose;
 }
 
+static int32_t read_station(wh_reader_t *reader, const wh_layout_t *layout) {
+    return wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,
+                               "the name of a station of this layout");
+}
+
+static int32_t read_beam(wh_reader_t *reader, const wh_layout_t *layout) {
+    const int32_t station = read_station(reader, layout);
+    const wh_latch_order_t beams = wh_layout_beams_at(layout, (size_t)station);
+    if (beams.count == 0) {
+        wh_reader_refuse(reader, "station", layout->stations[station].name, "a station with `beams`");
+    }
+    return beams.first + wh_reader_whole(reader, "beam", 1, 1, beams.count) - 1;
+}
+
+static int32_t read_edge_sensor(wh_reader_t *reader, const wh_layout_t *layout) {
+    const int32_t station = read_station(reader, layout);
+    const int32_t chuck = layout->places[station].chuck;
+    if (!wh_layout_scanner(layout, chuck)) {
+        wh_reader_refuse(reader, "station", layout->stations[station].name, "a station with a `sensor`");
+    }
+    return chuck;
+}
+
+static int32_t read_probe(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_kind_t kind) {
+    if (!layout->probe.is_there) {
+        wh_reader_refuse(reader, "kind", wh_fault_name(kind),
+                         "a fault of what is there: no gripper has a `probe`");
+    }
+    return layout->probe.gripper;
+}
+
+static bool is_of_probe(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_PROBE_CLOSED || kind == WH_FAULT_PROBE_OPEN;
+}
+
+static bool is_of_edge_sensor(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_EDGE_SENSOR_STUCK || kind == WH_FAULT_EDGE_SENSOR_LATE;
+}
+
 static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_t *fault) {
     if (wh_fault_is_of_wafer(fault->kind)) {
         fault->target = read_wafer(reader, layout, "wafer");
+    } else if (wh_fault_is_of_door(fault->kind)) {
+        fault->target = wh_layout_read_name(reader, layout, "door", NULL, wh_layout_find_door,
+                                            "the name of a door of this layout");
+    } else if (wh_fault_is_of_beam(fault->kind)) {
+        fault->target = read_beam(reader, layout);
+    } else if (is_of_edge_sensor(fault->kind)) {
+        fault->target = read_edge_sensor(reader, layout);
+    } else if (is_of_probe(fault->kind)) {
+        fault->target = read_probe(reader, layout, fault->kind);
     } else if (fault->kind != WH_FAULT_COMMAND_LOST) {
         fault->target =
             wh_layout_read_gripper_name(reader, layout, "gripper", "the name of a gripper of this layout");
@@ -135,11 +209,31 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
     }
 }
 
-static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
-    if (kind == WH_FAULT_SLOW_VACUUM) {
-        return wh_reader_number(reader, "value", WH_REAL(NAN), 0, 3600);
+/* Only what a grip has can break down. */
+static void check_grip(wh_reader_t *reader, const wh_layout_t *layout, const wh_fault_t *fault) {
+    const bool of_plunger = fault->kind == WH_FAULT_PLUNGER_STUCK || fault->kind == WH_FAULT_PLUNGER_SLOW;
+    const bool of_vacuum = fault->kind == WH_FAULT_NO_VACUUM || fault->kind == WH_FAULT_SLOW_VACUUM ||
+                           fault->kind == WH_FAULT_LEAK;
+    if (fault->kind == WH_FAULT_VALVE_STUCK && layout->grips[fault->target].kind == WH_GRIP_PASSIVE) {
+        wh_reader_refuse(reader, "gripper", layout->grippers[fault->target].name,
+                         "a gripper that is not passive: these have no valve");
     }
-    return kind == WH_FAULT_LEAK ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, 1) : 0;
+    if (!of_plunger && !of_vacuum) {
+        return;
+    }
+    const wh_grip_kind_t wanted = of_plunger ? WH_GRIP_EDGE : WH_GRIP_VACUUM;
+    const wh_grip_kind_t kind = layout->grips[fault->target].kind;
+    if (kind != wanted) {
+        wh_reader_refuse(reader, "gripper", layout->grippers[fault->target].name,
+                         "a gripper with grip = \"%s\" for a fault of kind \"%s\"; this one has \"%s\"",
+                         wh_layout_grip_name(wanted), wh_fault_name(fault->kind), wh_layout_grip_name(kind));
+    }
+}
+
+/* Of crossed wafers it is another one. */
+static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
+    const wh_real_t most = wh_fault_most(kind);
+    return most > 0 ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, most) : 0;
 }
 
 static int64_t slices_of(const wh_layout_t *layout, wh_real_t seconds) {
@@ -154,12 +248,14 @@ static void read_times(wh_reader_t *reader, const wh_layout_t *layout, int64_t f
     fault->until = lasting < 0 ? WH_FAULT_FOREVER : fault->from + (slices > 1 ? slices : 1);
 }
 
-wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first) {
+wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, const wh_wafer_t wafers[],
+                                int64_t first) {
     wh_fault_t fault = wh_fault_make(read_kind(reader), WH_NONE, 0, first, WH_FAULT_FOREVER);
     wh_reader_refuse_unknown(reader, wh_layout_fault_fields[fault.kind]);
     read_target(reader, layout, &fault);
+    check_grip(reader, layout, &fault);
     fault.value = read_value(reader, fault.kind);
-    fault.offset = read_offset(reader, layout, &fault);
+    fault.offset = read_offset(reader, layout, wafers, &fault);
     read_times(reader, layout, first, &fault);
     return fault;
 }
@@ -174,7 +270,7 @@ void wh_layout_read_faults(wh_reader_t *reader, wh_layout_t *layout) {
     }
     for (size_t i = 0; i < count; ++i) {
         wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        layout->physics.faults[i] = wh_layout_read_fault(reader, layout, 1);
+        layout->physics.faults[i] = wh_layout_read_fault(reader, layout, layout->start, 1);
         wh_reader_leave(reader);
     }
     layout->physics.fault_count = count;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "grips.h"
 #include "layout_internal.h"
 
 /* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder
@@ -77,6 +78,13 @@ static int32_t read_encoder(wh_reader_t *reader, int32_t samples) {
     return encoder;
 }
 
+static void read_believed(wh_reader_t *reader, wh_sensor_error_t *believed) {
+    if (wh_reader_open(reader, "believed", wh_layout_believed_fields)) {
+        read_errors(reader, believed);
+        wh_reader_leave(reader);
+    }
+}
+
 static void read_sensor(wh_reader_t *reader, const wh_layout_t *layout, wh_scanner_t *scanner) {
     wh_sensor_t *sensor = &scanner->sensor;
     const double radius = layout->wafer_diameter / 2;
@@ -110,6 +118,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     scanner->gripper = layout->places[s].chuck;
     scanner->base_from_station = layout->places[s].base_from_station;
     read_sensor(reader, layout, scanner);
+    read_believed(reader, &layout->believed[layout->scanner_count]);
     ++layout->scanner_count;
     wh_reader_leave(reader);
 }
@@ -130,7 +139,7 @@ static wh_rim_t nominal_rim(wh_reader_t *reader, const wh_layout_t *layout) {
     if (wh_rim_validate(&rim, &bad) != WH_OK) {
         lua_pushnumber(reader->L, layout->notch_depth);
         wh_reader_fail(reader, "wafer.notch.depth",
-                       "0, or a depth from 0.27 to 3 mm for an edge sensor or beams");
+                       "0, or a depth from 0.27 to 3 mm for an edge sensor, beams or an edge grip");
     }
     return rim;
 }
@@ -192,6 +201,19 @@ static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
     }
 }
 
+/* The value of a field that is wrong, given or not; of another one than the notch's nil. */
+static void push_rim_field(lua_State *L, const wh_rim_t *rim, const char *name) {
+    const char *const names[] = {"notch.depth", "notch.bottom", "notch.corner"};
+    const double values[] = {rim->notch.depth, rim->notch.bottom, rim->notch.corner};
+    lua_pushnil(L);
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        if (strcmp(name, names[i]) == 0) {
+            lua_pop(L, 1);
+            lua_pushnumber(L, values[i]);
+        }
+    }
+}
+
 static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *rim) {
     wh_bad_field_t bad = {NULL, WH_NONE};
     rim->radius =
@@ -204,10 +226,10 @@ static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *r
     rim->saddle_direction = read_angle(reader, "saddle_at", 0);
     rim->transmission = wh_reader_number(reader, "glass", 0, 0, 0.9);
     if (wh_rim_validate(rim, &bad) != WH_OK) {
-        wh_reader_refuse(
-            reader, bad.name, NULL,
-            "a notch of depth 0, or one from 0.2 mm on whose roundings leave straight flanks, and "
-            "flats shorter than 1.4 radii");
+        push_rim_field(reader->L, rim, bad.name);
+        wh_reader_fail(reader, bad.name,
+                       "a notch of depth 0, or one from 0.2 mm on whose roundings leave straight flanks, and "
+                       "flats shorter than 1.4 radii");
     }
 }
 
@@ -215,10 +237,10 @@ static const wh_rim_t *read_wafer(wh_reader_t *reader, const wh_layout_t *layout
     if (!wh_reader_open(reader, "rim", wh_layout_rim_fields)) {
         return nominal;
     }
-    if (layout->scanner_count + layout->beam_count == 0) {
+    if (!wh_layout_has_rims(layout)) {
         wh_reader_fail(reader, NULL,
                        "nothing: no prealigner of this layout has a `sensor` that would see it, no station "
-                       "`beams`");
+                       "`beams`, no gripper an edge grip");
     }
     wh_rim_t *rim = wh_layout_memory(reader->L, 1, sizeof *rim);
     *rim = *nominal;
@@ -230,7 +252,7 @@ static const wh_rim_t *read_wafer(wh_reader_t *reader, const wh_layout_t *layout
 static void read_rims(wh_reader_t *reader, wh_layout_t *layout) {
     wh_rim_t *nominal = wh_layout_memory(reader->L, 1, sizeof *nominal);
     const wh_rim_t **rims = wh_layout_memory(reader->L, layout->wafer_count, sizeof *rims);
-    if (layout->scanner_count + layout->beam_count > 0) {
+    if (wh_layout_has_rims(layout)) {
         *nominal = nominal_rim(reader, layout);
     }
     layout->nominal_rim = nominal;
@@ -255,6 +277,7 @@ void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout) {
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
+    wh_layout_read_blocks(reader, layout);
     read_rims(reader, layout);
 }
 

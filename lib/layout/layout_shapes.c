@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "arms.h"
+#include "axes.h"
 #include "layout_internal.h"
 #include "stl.h"
 
@@ -41,13 +43,6 @@ static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *conv
     wh_reader_leave(reader);
 }
 
-/* A path relative to the layout's own folder. */
-static void path_of(char *path, size_t size, const wh_layout_t *layout, const char *name) {
-    const char *slash = strrchr(layout->path, '/');
-    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - layout->path) + 1;
-    snprintf(path, size, "%.*s%s", folder, layout->path, name);
-}
-
 static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
     static const char *const units[] = {"mm", "cm", "m", "inch", NULL};
     static const double mm_per_unit[] = {1, 10, 1000, 25.4};
@@ -60,7 +55,7 @@ static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_
     if (unit < 0) {
         wh_reader_refuse(reader, "unit", NULL, "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
     }
-    path_of(path, sizeof path, layout, name);
+    wh_layout_path(path, sizeof path, layout->path, name);
     if (!wh_stl_read(path, mm_per_unit[unit], &points, &convex->point_count, message, sizeof message)) {
         wh_reader_refuse(reader, "mesh", name, "a convex mesh in an STL file: %s", message);
     }
@@ -104,68 +99,120 @@ static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex
 
 /* -------------------------------------------------------------------------------------------------- place */
 
-/* What the obstacle hangs on: base, a body of the arm, or a gripper. */
+/* The body of an arm that has this name; WH_NONE: none. */
+static int32_t find_body(const wh_layout_t *layout, const char *on) {
+    for (size_t number = 0; number < wh_layout_arms(layout) * WH_ARM_BODIES; ++number) {
+        char name[2 * WH_NAME_SIZE];
+        wh_layout_name_body(layout, number, "column", name, sizeof name);
+        if (wh_layout_has_body(layout, number) && strcmp(on, name) == 0) {
+            return (int32_t)number;
+        }
+    }
+    return WH_NONE;
+}
+
+/* What the obstacle hangs on: base, a body of an arm, or a gripper. */
 static void read_mount(wh_reader_t *reader, const wh_layout_t *layout, wh_part_t *part) {
-    static const char *const bodies[WH_ARM_BODIES] = {"column", "lift", "upper arm", "forearm", "hand"};
-    char on[WH_NAME_SIZE];
+    char on[2 * WH_NAME_SIZE];
     wh_reader_text(reader, "on", "base", on, sizeof on);
     part->kind = WH_PART_FIXED;
     part->owner = WH_NONE;
     if (strcmp(on, "base") == 0) {
         return;
     }
-    for (int32_t body = 0; body < (int32_t)WH_ARM_BODIES; ++body) {
-        if (strcmp(on, bodies[body]) == 0) {
-            part->kind = WH_PART_ARM;
-            part->owner = body;
-            return;
-        }
+    part->owner = find_body(layout, on);
+    if (part->owner != WH_NONE) {
+        part->kind = WH_PART_ARM;
+        return;
+    }
+    part->owner = wh_layout_find_door(layout, on);
+    if (part->owner != WH_NONE) {
+        part->kind = WH_PART_DOOR;
+        return;
     }
     part->owner = wh_layout_find_gripper(layout, on);
-    if (part->owner == WH_NONE) {
+    if (part->owner == WH_NONE && layout->robot_count > 1) {
         wh_reader_refuse(reader, "on", on,
-                         "\"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name");
+                         "\"base\", a gripper's name, or \"%s lift\", \"%s upper arm\", \"%s forearm\", \"%s "
+                         "hand\" and so on",
+                         layout->robots[0].name, layout->robots[0].name, layout->robots[0].name,
+                         layout->robots[0].name);
+    }
+    if (part->owner == WH_NONE) {
+        wh_reader_refuse(
+            reader, "on", on,
+            "\"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\", a gripper's or a door's name");
     }
     part->kind = layout->grippers[part->owner].station == WH_NONE ? WH_PART_BLADE : WH_PART_CHUCK;
 }
 
-static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t index,
-                          obstacle_t *obstacle) {
+void wh_layout_read_shape(wh_reader_t *reader, const wh_layout_t *layout, const char *name,
+                          wh_convex_t *convex) {
     static const wh_vec3_t level = {0, 0, 0};
-    char fallback[WH_NAME_SIZE];
-    wh_convex_t *convex = &obstacle->part.convex;
-    wh_reader_refuse_unknown(reader, wh_layout_obstacle_fields);
-    snprintf(fallback, sizeof fallback, "obstacle %zu", index + 1);
-    wh_reader_text(reader, "name", fallback, obstacle->name, WH_NAME_SIZE);
-    read_mount(reader, layout, &obstacle->part);
     read_shape(reader, layout, convex);
     const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
     convex->body_from_shape.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     convex->body_from_shape.r = wh_reader_vector(reader, "at", NULL);
     const wh_status_t status = wh_convex_validate(convex);
     if (status != WH_OK) {
-        wh_reader_refuse(reader, NULL, obstacle->name, "a shape of at least %g mm in each direction: %s",
+        wh_reader_refuse(reader, NULL, name, "a shape of at least %g mm in each direction: %s",
                          (double)WH_CONVEX_THINNEST, wh_status_text(status));
     }
 }
 
-static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, obstacles_t *obstacles) {
-    memset(obstacles, 0, sizeof *obstacles);
-    if (!wh_reader_enter(reader, "obstacles")) {
+static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t index,
+                          obstacle_t *obstacle) {
+    char fallback[WH_NAME_SIZE];
+    wh_reader_refuse_unknown(reader, wh_layout_obstacle_fields);
+    snprintf(fallback, sizeof fallback, "obstacle %zu", index + 1);
+    wh_reader_text(reader, "name", fallback, obstacle->name, WH_NAME_SIZE);
+    read_mount(reader, layout, &obstacle->part);
+    wh_layout_read_shape(reader, layout, obstacle->name, &obstacle->part.convex);
+}
+
+/* Each door's wall, behind the obstacles that were read. */
+static void read_walls(wh_reader_t *reader, const wh_layout_t *layout, obstacles_t *obstacles) {
+    if (!wh_reader_enter(reader, "doors")) {
         return;
     }
-    obstacles->count = wh_reader_list(reader);
-    if (obstacles->count > WH_LAYOUT_OBSTACLES) {
-        lua_pushinteger(reader->L, (lua_Integer)obstacles->count);
-        wh_reader_fail(reader, NULL, "at most %d obstacles", WH_LAYOUT_OBSTACLES);
-    }
-    obstacles->items = wh_layout_memory(reader->L, obstacles->count, sizeof *obstacles->items);
-    for (size_t i = 0; i < obstacles->count; ++i) {
-        wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        read_obstacle(reader, layout, i, &obstacles->items[i]);
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        obstacle_t *wall = &obstacles->items[obstacles->count++];
+        (void)snprintf(wall->name, sizeof wall->name, "%s", layout->door_list[d].name);
+        wall->part.kind = WH_PART_DOOR;
+        wall->part.owner = (int32_t)d;
+        wh_reader_enter(reader, wall->name);
+        wh_layout_read_shape(reader, layout, wall->name, &wall->part.convex);
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
+}
+
+/* How many obstacles there are; `items` then has room for them and for the doors' walls. */
+static size_t open_obstacles(wh_reader_t *reader, const wh_layout_t *layout, bool is_given,
+                             obstacles_t *obstacles) {
+    const size_t count = is_given ? wh_reader_list(reader) : 0;
+    if (count > WH_LAYOUT_OBSTACLES) {
+        lua_pushinteger(reader->L, (lua_Integer)count);
+        wh_reader_fail(reader, NULL, "at most %d obstacles", WH_LAYOUT_OBSTACLES);
+    }
+    obstacles->items =
+        wh_layout_memory(reader->L, count + layout->machine.door_count, sizeof *obstacles->items);
+    return count;
+}
+
+static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, obstacles_t *obstacles) {
+    memset(obstacles, 0, sizeof *obstacles);
+    const bool is_given = wh_reader_enter(reader, "obstacles");
+    const size_t count = open_obstacles(reader, layout, is_given, obstacles);
+    for (; obstacles->count < count; ++obstacles->count) {
+        wh_reader_enter_item(reader, (lua_Integer)obstacles->count + 1);
+        read_obstacle(reader, layout, obstacles->count, &obstacles->items[obstacles->count]);
+        wh_reader_leave(reader);
+    }
+    if (is_given) {
+        wh_reader_leave(reader);
+    }
+    read_walls(reader, layout, obstacles);
 }
 
 static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
@@ -180,12 +227,85 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
     wh_reader_leave(reader);
 }
 
+static bool is_scara(const wh_layout_t *layout, size_t robot) {
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+    return carrier && carrier->chain.kind == WH_CHAIN_SCARA;
+}
+
+/* The reader is at a polar robot's arm. */
 static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
-    wh_reader_open_section(reader, "arm", wh_layout_arm_fields);
     arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
     arm->link = wh_reader_number(reader, "link", arm->link, 10, 5000);
     arm->right_handed = wh_reader_boolean(reader, "right_handed", arm->right_handed);
-    wh_reader_leave(reader);
+}
+
+/* A SCARA's links are the robot's, and its wrist carries the end-effector's origin. */
+static void take_scara(wh_reader_t *reader, const char *field, const wh_chain_t *chain, wh_arm_t *arm) {
+    if (wh_reader_has(reader, field)) {
+        (void)wh_reader_push(reader, field);
+        wh_reader_fail(reader, field, "nothing: the links of a robot of kind \"SCARA\" are in its `links`");
+    }
+    arm->reach = 0;
+    arm->link = chain->links[0];
+}
+
+static void read_one_arm(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_arm_t *arm = &layout->shapes.arm;
+    if (is_scara(layout, 0)) {
+        take_scara(reader, "arm", &layout->carrier.chain, arm);
+    } else {
+        wh_reader_open_section(reader, "arm", wh_layout_arm_fields);
+        read_arm(reader, arm);
+        wh_reader_leave(reader);
+    }
+    wh_layout_refuse_field(reader, "arms", "nothing: it is for a layout with several robots; this has `arm`");
+}
+
+static void read_arm_of(wh_reader_t *reader, wh_layout_t *layout, size_t robot) {
+    wh_layout_robot_t *of = &layout->robots[robot];
+    wh_arm_t *arm = robot == 0 ? &layout->shapes.arm : &of->arm;
+    const wh_chain_t *chain = &of->carrier.chain;
+    if (is_scara(layout, robot)) {
+        take_scara(reader, of->name, chain, arm);
+    } else if (wh_reader_open(reader, of->name, wh_layout_arm_fields)) {
+        read_arm(reader, arm);
+        wh_reader_leave(reader);
+    }
+}
+
+static void refuse_other_arms(wh_reader_t *reader, const wh_layout_t *layout) {
+    size_t count = 0;
+    const wh_layout_robot_t *said =
+        wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof *said, "robots", &count);
+    for (size_t i = 0; i < count; ++i) {
+        if (wh_layout_find_robot(layout, said[i].name) == WH_NONE) {
+            lua_pushstring(reader->L, said[i].name);
+            wh_reader_fail(reader, NULL, "robots of this layout by name");
+        }
+    }
+}
+
+/* With several robots, `arms` has those of each by name. */
+static void read_arms(wh_reader_t *reader, wh_layout_t *layout) {
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        wh_layout_robot_t *of = &layout->robots[robot];
+        of->arm = layout->shapes.arm;
+        of->arm.link = wh_shapes_link(wh_axis_reach(&layout->machine, robot).max);
+        of->lowest = of->carrier.chain.travel[WH_CHAIN_Z].min;
+    }
+    wh_layout_refuse_field(reader, "arm", "nothing: with several robots `arms` has each one's by name");
+    const bool is_said = wh_reader_enter(reader, "arms");
+    if (is_said) {
+        refuse_other_arms(reader, layout);
+    }
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        if (is_said || is_scara(layout, robot)) {
+            read_arm_of(reader, layout, robot);
+        }
+    }
+    if (is_said) {
+        wh_reader_leave(reader);
+    }
 }
 
 static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
@@ -218,16 +338,22 @@ static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
 
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_travel_t *travel = layout->machine.robot.travel;
+    const wh_real_t farthest = wh_axis_reach(&layout->machine, 0).max;
     wh_shapes_t *shapes = &layout->shapes;
-    *shapes = wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, travel[WH_AXIS_R].max,
-                                travel[WH_AXIS_Z].min);
+    *shapes =
+        wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, farthest, travel[WH_AXIS_Z].min);
     wh_reader_open_section(reader, "shapes", wh_layout_shapes_fields);
     read_blade(reader, &shapes->blade);
-    read_arm(reader, &shapes->arm);
+    if (layout->robot_count > 1) {
+        read_arms(reader, layout);
+    } else {
+        read_one_arm(reader, layout);
+    }
     read_ledge(reader, &shapes->ledge);
     read_shell(reader, &shapes->shell);
     read_chuck(reader, &shapes->chuck);
     wh_reader_leave(reader);
+    wh_layout_read_urdf(reader, layout);
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */
@@ -247,11 +373,18 @@ static wh_stand_t stand_of(const wh_layout_station_t *station) {
     if (station->prealigner) {
         return WH_STAND_CHUCK;
     }
+    if (station->flipper) {
+        return WH_STAND_NOTHING;
+    }
     return station->foup ? WH_STAND_FOUP : WH_STAND_LEDGES;
 }
 
 size_t wh_layout_count_parts(const wh_layout_t *layout) {
-    size_t count = WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+    size_t count = layout->urdf ? layout->urdf->count : WH_SHAPES_ROBOT * wh_layout_arms(layout);
+    count += WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        count += layout->grips[g].kind == WH_GRIP_EDGE ? WH_SHAPES_EDGE : 0;
+    }
     for (size_t s = 0; s < layout->station_count; ++s) {
         count += wh_shapes_count_station(stand_of(&layout->stations[s]), layout->places[s].slots);
     }
@@ -265,16 +398,64 @@ static void add_stations(const wh_layout_t *layout, wh_part_list_t *list) {
     }
 }
 
+/* The links of one arm by their usual shapes. */
+static void add_arm(const wh_layout_t *layout, wh_part_list_t *list, size_t arm) {
+    const size_t robot = arm == 0 ? 0 : (size_t)layout->arms[arm].robot;
+    const wh_carrier_t *carrier = wh_layout_arm(layout, arm, NULL);
+    const wh_arm_t *lengths = wh_layout_arm_lengths(layout, robot);
+    char name[WH_NAME_SIZE + 1] = "";
+    wh_shapes_arm_t shape = {.links = {lengths->link, lengths->link},
+                             .reach = lengths->reach,
+                             .lowest = wh_layout_lowest(layout, robot),
+                             .first = arm * WH_ARM_BODIES,
+                             .robot = name,
+                             .number = "",
+                             .own = arm == 0 ? WH_ARM_BASE : layout->arms[arm].own};
+    if (is_scara(layout, robot)) {
+        memcpy(shape.links, carrier->chain.links, sizeof shape.links);
+    }
+    if (layout->robot_count > 1) {
+        (void)snprintf(name, sizeof name, "%s ", layout->robots[robot].name);
+    }
+    if (shape.own != WH_ARM_BASE) {
+        shape.number = " 2";
+    }
+    wh_shapes_add_arm(list, &layout->shapes, &shape);
+}
+
+static void add_robots(const wh_layout_t *layout, wh_part_list_t *list) {
+    for (size_t arm = 0; !layout->urdf && arm < wh_layout_arms(layout); ++arm) {
+        add_arm(layout, list, arm);
+    }
+    for (size_t i = 0; layout->urdf && i < layout->urdf->count; ++i) {
+        wh_shapes_add(list, &layout->urdf->parts[i], "%s", layout->urdf->names[i]);
+    }
+}
+
+static void add_gripper(wh_layout_t *layout, wh_part_list_t *list, size_t g) {
+    const wh_mount_t *mount = &layout->machine.mounts[g];
+    const bool on_robot = layout->grippers[g].station == WH_NONE;
+    /* Pins and clamps have none, unless obstacles give them one. */
+    if (wh_layout_is_pins(layout, g) || wh_layout_is_flipper(layout, g)) {
+        return;
+    }
+    wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g,
+                          wh_layout_arm_lengths(layout, mount->robot)->reach,
+                          on_robot ? &mount->effector_from_gripper : NULL, layout->grippers[g].name);
+    if (layout->grips[g].kind == WH_GRIP_EDGE) {
+        layout->world.edges |= UINT32_C(1) << g;
+        wh_shapes_add_edge(list, &layout->shapes, (int32_t)g, &layout->grips[g].edge,
+                           layout->grippers[g].name);
+    }
+}
+
 /* Fixed parts come first, then those that hang on something: wh_world_validate asks for that order. */
 static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
     add_stations(layout, list);
     add_obstacles(list, obstacles, true);
-    wh_shapes_add_robot(list, &layout->shapes);
+    add_robots(layout, list);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        const bool on_robot = layout->grippers[g].station == WH_NONE;
-        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g,
-                              on_robot ? &layout->machine.mounts[g].effector_from_gripper : NULL,
-                              layout->grippers[g].name);
+        add_gripper(layout, list, g);
     }
     layout->hung_count = list->count;
     add_obstacles(list, obstacles, false);
@@ -295,8 +476,8 @@ static void set_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles
     add_parts(layout, list, obstacles);
     take_list(layout, list);
     world->wafer = wh_shapes_wafer(&layout->shapes);
-    world->arm = layout->shapes.arm;
     world->gripper_count = layout->machine.gripper_count;
+    world->door_count = layout->machine.door_count;
     world->wafer_count = layout->wafer_count;
 }
 
@@ -320,26 +501,35 @@ void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list) {
     set_parts(layout, list, &none);
 }
 
-/* How many parts hang on each gripper, its own included, and last on the arm. */
-static void count_hanging(const wh_world_config_t *world, int counts[WH_GRIPPERS + 1]) {
-    memset(counts, 0, (WH_GRIPPERS + 1) * sizeof *counts);
+/* Of what carries parts: the grippers, then the arm and the doors. */
+enum { ON_ARM = WH_GRIPPERS, ON_DOORS, CARRIERS };
+
+/* How many parts hang on each of them, a gripper's own included. */
+static void count_hanging(const wh_world_config_t *world, int counts[CARRIERS]) {
+    memset(counts, 0, CARRIERS * sizeof *counts);
     for (size_t i = 0; i < world->part_count; ++i) {
         const wh_part_t *part = &world->parts[i];
         if (part->kind == WH_PART_BLADE || part->kind == WH_PART_CHUCK) {
             ++counts[part->owner];
         } else if (part->kind == WH_PART_ARM) {
-            ++counts[WH_GRIPPERS];
+            ++counts[ON_ARM];
+        } else if (part->kind == WH_PART_DOOR) {
+            ++counts[ON_DOORS];
         }
     }
 }
 
+static const char *name_carrier(const wh_layout_t *layout, size_t carrier) {
+    return carrier == ON_DOORS ? "doors" : carrier == ON_ARM ? "the arm" : layout->grippers[carrier].name;
+}
+
 /* The world's limit, told with the body that has most of the parts. */
 static void check_hanging(const wh_reader_t *reader, const wh_layout_t *layout) {
-    int counts[WH_GRIPPERS + 1];
-    size_t fullest = WH_GRIPPERS;
+    int counts[CARRIERS];
+    size_t fullest = ON_ARM;
     int sum = 0;
     count_hanging(&layout->world, counts);
-    for (size_t i = 0; i <= WH_GRIPPERS; ++i) {
+    for (size_t i = 0; i < CARRIERS; ++i) {
         sum += counts[i];
         fullest = counts[i] > counts[fullest] ? i : fullest;
     }
@@ -347,10 +537,9 @@ static void check_hanging(const wh_reader_t *reader, const wh_layout_t *layout) 
         lua_pushinteger(reader->L, sum);
         wh_reader_fail(
             reader, "obstacles",
-            "at most %d parts on robot and grippers together, their own included; %s has %d of them: "
+            "at most %d parts on robot, grippers and doors together, their own included; %s has %d of them: "
             "join obstacles on it into one convex shape or mesh, or leave some out",
-            WH_WORLD_MOVING, fullest == WH_GRIPPERS ? "the arm" : layout->grippers[fullest].name,
-            counts[fullest]);
+            WH_WORLD_MOVING, name_carrier(layout, fullest), counts[fullest]);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "../math/deviate.h"
 #include "../math/trig.h"
+#include "grips.h"
 #include "layout_internal.h"
 
 /* ----------------------------------------------------------------------------------------------- stations */
@@ -54,7 +55,7 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     place->base_from_station.r = wh_reader_vector(reader, "at", NULL);
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
-                                   station->prealigner ? 1 : WH_LAYOUT_SLOTS);
+                                   station->prealigner || station->flipper ? 1 : WH_LAYOUT_SLOTS);
     place->pitch = wh_layout_sized(reader, layout, "pitch", default_pitch(layout, place->slots), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
@@ -109,6 +110,7 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     station->retract = read_number(reader, "retract", 300);
     station->pickup_speed = read_number(reader, "pickup_speed", 20);
     const double bottom = station->offset - station->stroke;
+    station->release_default = !wh_reader_has(reader, "release");
     station->release =
         wh_reader_number(reader, "release", lowered > bottom ? lowered : bottom, bottom, station->offset);
     station->vacuum_delay = read_number(reader, "vacuum_delay", 0);
@@ -131,45 +133,65 @@ static void read_checks(wh_reader_t *reader, wh_layout_station_t *station) {
 }
 
 static int compare_names(const void *a, const void *b) {
-    return strcmp(((const wh_layout_station_t *)a)->name, ((const wh_layout_station_t *)b)->name);
+    return strcmp(a, b); /* with which each item begins */
 }
 
-/* Reads the names first and sorts them: Lua's own order differs from run to run. */
-static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
+void *wh_layout_read_keys(wh_reader_t *reader, size_t most, size_t size, const char *what, size_t *count) {
     lua_State *L = reader->L;
-    size_t count = 0;
+    size_t needed = 0;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        if (++count > WH_LAYOUT_STATIONS) {
-            wh_reader_fail(reader, NULL, "at most %d stations", WH_LAYOUT_STATIONS);
+        if (++needed > most) {
+            wh_reader_fail(reader, NULL, "at most %d %s", (int)most, what);
         }
     }
-    layout->stations = wh_layout_memory(L, count, sizeof *layout->stations);
-    layout->places = wh_layout_memory(L, count, sizeof *layout->places);
+    char *items = wh_layout_memory(L, needed, size);
+    *count = 0;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         size_t length = 0;
         const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tolstring(L, -2, &length) : "";
         if (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length)) {
             const bool fits = length > 0 && length < WH_NAME_SIZE;
             lua_pushvalue(L, -2);
-            wh_reader_fail(reader, NULL, "stations by name, of 1 to %d bytes%s", WH_NAME_SIZE - 1,
+            wh_reader_fail(reader, NULL, "%s by name, of 1 to %d bytes%s", what, WH_NAME_SIZE - 1,
                            fits ? " without control characters" : "");
         }
-        memcpy(layout->stations[layout->station_count++].name, name, length + 1);
+        memcpy(items + (*count)++ * size, name, length + 1);
     }
-    qsort(layout->stations, layout->station_count, sizeof *layout->stations, compare_names);
+    qsort(items, *count, size, compare_names);
+    return items;
+}
+
+static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
+    layout->stations = wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof *layout->stations, "stations",
+                                           &layout->station_count);
+    layout->places = wh_layout_memory(reader->L, layout->station_count, sizeof *layout->places);
+}
+
+static wh_station_face_t read_face(wh_reader_t *reader, wh_station_face_t fallback) {
+    static const char *const faces[] = {"up", "down", NULL};
+    return wh_reader_has(reader, "face")
+               ? (wh_station_face_t)(wh_reader_choice(reader, "face", 0, faces) + WH_STATION_FACE_UP)
+               : fallback;
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    static const char *const kinds[] = {"slots", "prealigner", "foup", NULL};
+    static const char *const kinds[] = {"slots", "prealigner", "foup", "flipper", NULL};
     wh_layout_station_t *station = &layout->stations[index];
     wh_reader_enter(reader, station->name);
     wh_reader_refuse_unknown(reader, wh_layout_station_fields);
     const int kind = wh_reader_choice(reader, "kind", 0, kinds);
     station->prealigner = kind == 1;
     station->foup = kind == 2;
+    station->flipper = kind == 3;
     read_place(reader, layout, station, &layout->places[index]);
     read_moves(reader, layout, &layout->places[index], station);
     read_checks(reader, station);
+    if (station->flipper) {
+        wh_layout_refuse_field(reader, "face", "nothing: a flipper turns wafers over");
+    }
+    station->face = read_face(reader, WH_STATION_ANY_FACE);
+    layout->has_faces = layout->has_faces || station->flipper || station->face == WH_STATION_FACE_DOWN;
+    wh_layout_read_approach(reader, layout, index);
     wh_reader_leave(reader);
 }
 
@@ -178,7 +200,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
 static int rank_of(const wh_layout_t *layout, size_t s) {
     const wh_layout_station_t *station = &layout->stations[s];
     const int by_slots = layout->places[s].slots > 1 ? 2 : 1;
-    return station->prealigner ? 0 : station->foup ? 3 : by_slots;
+    return station->prealigner || station->flipper ? 0 : station->foup ? 3 : by_slots;
 }
 
 static bool says_counts(wh_reader_t *reader, const wh_layout_station_t *station) {
@@ -218,7 +240,8 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_effector(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
-    static const char expected[] = "the name of a gripper on = \"robot\"";
+    static const char of_one[] = "the name of a gripper on = \"robot\"";
+    const char *expected = layout->robot_count > 1 ? "the name of a gripper on a robot" : of_one;
     station->effector = wh_layout_read_gripper_name(reader, layout, "effector", expected);
     const wh_layout_gripper_t *gripper = &layout->grippers[station->effector];
     if (gripper->station != WH_NONE) {
@@ -231,6 +254,7 @@ void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_reader_enter(reader, layout->stations[s].name);
         read_effector(reader, layout, &layout->stations[s]);
+        wh_layout_read_server(reader, layout, s);
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
@@ -238,7 +262,20 @@ void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
-static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,
+/* A wafer's own field, else its station's, else face up. Refuses what the station does not allow. */
+static wh_station_face_t read_wafer_face(wh_reader_t *reader, const wh_layout_station_t *station) {
+    const wh_station_face_t usual = station->face == WH_STATION_ANY_FACE ? WH_STATION_FACE_UP : station->face;
+    const wh_station_face_t face = read_face(reader, usual);
+    if (face != usual && station->face != WH_STATION_ANY_FACE) {
+        (void)wh_reader_push(reader, "face");
+        wh_reader_fail(reader, "face", "\"%s\", as all wafers of %s lie: its own `face` says so",
+                       wh_layout_face_name(station->face), station->name);
+    }
+    return face;
+}
+
+/* What the fields give is the place of the face that lies on the slot. */
+static void read_position(wh_reader_t *reader, wh_layout_t *layout, const wh_layout_wafer_t *wafer,
                           wh_pose_t *base_from_wafer) {
     static const wh_vec3_t none = {0, 0, 0};
     const wh_pose_t base_from_slot = wh_station_slot(&layout->places[wafer->station], wafer->slot);
@@ -249,6 +286,11 @@ static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const 
     slot_from_wafer.r.z = wh_reader_number(reader, "dz", 0, -1000, 1000);
     slot_from_wafer.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     *base_from_wafer = wh_pose_compose(&base_from_slot, &slot_from_wafer);
+    if (read_wafer_face(reader, &layout->stations[wafer->station]) == WH_STATION_FACE_DOWN) {
+        const wh_pose_t base_from_front = *base_from_wafer;
+        wh_face_frame(&base_from_front, layout->wafer_thickness, WH_FACE_FRONT, base_from_wafer);
+        layout->has_faces = true;
+    }
 }
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {

@@ -36,7 +36,7 @@ static lifted_t lift(const wh_layout_t *layout, size_t station) {
     const wh_layout_station_t *s = &layout->stations[station];
     const wh_station_t *place = &layout->places[station];
     const wh_convex_t *wafer = &layout->world.wafer;
-    wh_pose_t pose = layout->grasp.seat ? wh_feasibility_slot(place, 1) : wh_station_slot(place, 1);
+    wh_pose_t pose = layout->grasp.seat ? wh_feasibility_slot(layout, place, 1) : wh_station_slot(place, 1);
     pose.r.z += s->offset + find_height(layout, s) * pose.R.m[2][2];
     const lifted_t lifted = {wafer, wh_pose_compose(&pose, &wafer->body_from_shape), FAR, false};
     return lifted;

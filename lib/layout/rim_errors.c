@@ -23,8 +23,8 @@ static const struct {
                          [WH_RIM_BOW] = {"bow", "mm", 2, 0x119, false},
                          [WH_RIM_SADDLE] = {"saddle", "mm", 2, 0x11A, false},
                          [WH_RIM_GLASS] = {"glass", "", 0.9, 0x11B, true},
-                         [WH_RIM_CHIP_AT] = {"chip_at", "deg", 0, 0x11C, false},
-                         [WH_RIM_SADDLE_AT] = {"saddle_at", "deg", 0, 0x11D, false}};
+                         [WH_RIM_CHIP_AT] = {"chip_at", "deg", 360, 0x11C, false},
+                         [WH_RIM_SADDLE_AT] = {"saddle_at", "deg", 360, 0x11D, false}};
 
 /* A chip is never narrower, mm. */
 #define LEAST_CHIP_WIDTH 0.01
@@ -117,7 +117,7 @@ bool wh_rim_draw_apply(const double drawn[WH_RIM_DRAWS], wh_rim_t *rim) {
 
 /* ------------------------------------------------------------------------------------------------- bounds */
 
-static bool is_rim(const wh_rim_t *rim, const double drawn[WH_RIM_DRAWS]) {
+bool wh_rim_draw_leaves_rim(const double drawn[WH_RIM_DRAWS], const wh_rim_t *rim) {
     wh_rim_t changed = *rim;
     (void)wh_rim_draw_apply(drawn, &changed);
     /* A depth of 0 is no notch, a length of 0 no flat: what has one keeps it. */
@@ -137,7 +137,7 @@ static wh_rim_draw_t find_alone(const wh_rim_spreads_t *spreads, const wh_rim_t 
         bool good = true;
         for (int sign = draws[i].is_size ? 1 : -1; sign <= 1; sign += 2) {
             drawn[i] = sign * reach_of(spreads, rim, i);
-            good = good && is_rim(rim, drawn);
+            good = good && wh_rim_draw_leaves_rim(drawn, rim);
         }
         /* Of a chip without a depth nothing is drawn, so that its width is looked at here. */
         const double chip = i == (int)WH_RIM_CHIP_WIDTH ? fabs(drawn[i]) : 0;
@@ -157,7 +157,7 @@ static bool is_notch_good(const wh_rim_spreads_t *spreads, const wh_rim_t *rim) 
             const int draw = (int)WH_RIM_NOTCH_DEPTH + i;
             drawn[draw] = ((corner >> i & 1U) != 0 ? 1 : -1) * reach_of(spreads, rim, draw);
         }
-        good = good && is_rim(rim, drawn);
+        good = good && wh_rim_draw_leaves_rim(drawn, rim);
     }
     return good;
 }

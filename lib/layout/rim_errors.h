@@ -36,7 +36,8 @@ typedef struct {
     wh_spread_t of[WH_RIM_WIDTHS];
 } wh_rim_spreads_t;
 
-/* Its field's name, "mm", "deg" or "" for a part, and the largest width. Names are constant texts. */
+/* Its field's name, "mm", "deg" or "" for a part, and the largest width, or the largest error that is given:
+ * of directions, which have no width, 360. Names are constant texts. */
 const char *wh_rim_draw_name(wh_rim_draw_t draw);
 const char *wh_rim_draw_unit(wh_rim_draw_t draw);
 double wh_rim_draw_most(wh_rim_draw_t draw);
@@ -51,6 +52,10 @@ bool wh_rim_draw_concerns(wh_rim_draw_t draw, const wh_rim_t *rim);
  * depends on seed, trial, field and wafer alone. Cost: about 70 ns for each width that is not 0. */
 void wh_rim_draw_all(const wh_rim_spreads_t *spreads, const wh_trial_t *trial, size_t wafer,
                      const wh_rim_t *rim, double drawn[WH_RIM_DRAWS]);
+
+/* True if a rim that is changed by what was drawn is one that wh_rim_validate accepts, and has its notch and
+ * its flats still. */
+bool wh_rim_draw_leaves_rim(const double drawn[WH_RIM_DRAWS], const wh_rim_t *rim);
 
 /* Changes a rim by what was drawn. False, and the rim is as it was, if nothing was. */
 bool wh_rim_draw_apply(const double drawn[WH_RIM_DRAWS], wh_rim_t *rim);

@@ -91,11 +91,18 @@ static void measure_wafer(const carried_t *carried, size_t station, int32_t slot
     measure_wafer_at(carried, &carried->layout->places[station], slot, room);
 }
 
+/* Along its own normal, as the strokes go. */
+static void go_up(wh_pose_t *pose, wh_real_t height) {
+    const wh_vec3_t normal = wh_mat3_column(&pose->R, 2);
+    const wh_vec3_t up = wh_vec3_scale(height, &normal);
+    pose->r = wh_vec3_add(&pose->r, &up);
+}
+
 /* The station's gripper, entered in a slot and so much above its plane. */
 static carried_t enter(const wh_layout_t *layout, size_t station, int32_t slot, wh_real_t height) {
     carried_t carried = {.layout = layout, .gripper = layout->stations[station].effector};
-    carried.base_from_gripper = wh_feasibility_slot(&layout->places[station], slot);
-    carried.base_from_gripper.r.z += height;
+    carried.base_from_gripper = wh_feasibility_slot(layout, &layout->places[station], slot);
+    go_up(&carried.base_from_gripper, height);
     return carried;
 }
 
@@ -107,16 +114,16 @@ static room_t find_entry(const wh_layout_t *layout, size_t station, const wh_sta
     const wh_layout_station_t *s = &layout->stations[station];
     carried_t carried = {.layout = layout, .gripper = s->effector};
     room_t room = {.found = false};
-    carried.base_from_gripper = wh_feasibility_slot(place, slot);
-    carried.base_from_gripper.r.z += s->offset - s->stroke;
+    carried.base_from_gripper = wh_feasibility_slot(layout, place, slot);
+    go_up(&carried.base_from_gripper, s->offset - s->stroke);
     measure_wafer_at(&carried, place, other, &room);
     return room;
 }
 
 /* The same place, as if the station stood upright there. */
-static wh_station_t upright(const wh_station_t *place) {
+static wh_station_t upright(const wh_layout_t *layout, const wh_station_t *place) {
     wh_station_t level = *place;
-    level.base_from_station.R = wh_feasibility_slot(place, 1).R;
+    level.base_from_station.R = wh_feasibility_slot(layout, place, 1).R;
     return level;
 }
 
@@ -150,7 +157,7 @@ static bool is_hung(const wh_layout_t *layout, int32_t part) {
 static void say_cause(const wh_layout_t *layout, size_t station, const room_t *room, int32_t slot,
                       int32_t other, char *cause, size_t size) {
     const wh_station_t *place = &layout->places[station];
-    const wh_station_t level = upright(place);
+    const wh_station_t level = upright(layout, place);
     const wh_real_t room_upright = find_entry(layout, station, &level, slot, other).least;
     if (room_upright > 0) {
         snprintf(cause, size, "it is tilted by %.4g deg, upright it would have %.4g mm",
@@ -315,20 +322,41 @@ static void check_before(wh_feasibility_t *check, size_t station) {
 
 /* ------------------------------------------------------------------------------------------- other blades */
 
-/* Where another gripper on the robot is when the station's has entered a slot, and what it sweeps as that one
- * goes up. */
-static carried_t beside(const wh_layout_t *layout, size_t station, int32_t slot, int32_t other) {
+/* From a gripper's pose to that of another one on the robot: on the same arm, or on the other arm at home.
+ * False if the robot does not come there. */
+static bool go_over(const wh_layout_t *layout, size_t station, int32_t other, wh_pose_t *pose) {
     const wh_layout_station_t *s = &layout->stations[station];
-    const wh_mount_t *mounts = layout->machine.mounts;
-    carried_t carried = enter(layout, station, slot, 0);
-    const wh_pose_t gripper_from_other =
-        wh_pose_relative(&mounts[s->effector].effector_from_gripper, &mounts[other].effector_from_gripper);
-    carried.base_from_gripper = wh_pose_compose(&carried.base_from_gripper, &gripper_from_other);
-    carried.gripper = other;
-    carried.down = s->stroke - s->offset;
-    carried.up = s->offset;
-    carried.holds = true;
-    return carried;
+    const wh_machine_t *machine = &layout->machine;
+    const wh_mount_t *mounts = machine->mounts;
+    const wh_chain_choice_t choice = {.rail = s->rail, .elbow = s->elbow};
+    wh_real_t axes[WH_AXES];
+    wh_pose_t poses[WH_GRIPPERS];
+    if (mounts[other].arm == mounts[s->effector].arm) {
+        const wh_pose_t gripper_from_other = wh_pose_relative(&mounts[s->effector].effector_from_gripper,
+                                                              &mounts[other].effector_from_gripper);
+        *pose = wh_pose_compose(pose, &gripper_from_other);
+        return true;
+    }
+    wh_machine_home(machine, axes);
+    if (wh_machine_bring(machine, (size_t)s->effector, pose, &choice, axes, axes) != WH_OK) {
+        return false;
+    }
+    wh_machine_grippers(machine, axes, poses);
+    *pose = poses[other];
+    return true;
+}
+
+/* Where another gripper on the robot is when the station's has entered a slot, and what it sweeps as that one
+ * goes up. False if the robot does not come there. */
+static bool beside(const wh_layout_t *layout, size_t station, int32_t slot, int32_t other,
+                   carried_t *carried) {
+    const wh_layout_station_t *s = &layout->stations[station];
+    *carried = enter(layout, station, slot, 0);
+    carried->gripper = other;
+    carried->down = s->stroke - s->offset;
+    carried->up = s->offset;
+    carried->holds = true;
+    return go_over(layout, station, other, &carried->base_from_gripper);
 }
 
 /* The first slot of a station whose wafer it meets, or 0. */
@@ -349,8 +377,9 @@ static void check_beside(wh_feasibility_t *check, size_t station, int32_t other)
     const wh_layout_station_t *s = &layout->stations[station];
     const int32_t ends[] = {1, layout->places[station].slots};
     for (int i = 0; i < (ends[1] > 1 ? 2 : 1); ++i) {
-        const carried_t carried = beside(layout, station, ends[i], other);
-        const int32_t slot = meets(&carried, station);
+        carried_t carried;
+        const bool comes = beside(layout, station, ends[i], other, &carried);
+        const int32_t slot = comes ? meets(&carried, station) : 0;
         if (slot > 0) {
             wh_feasibility_add(check, WH_FINDING_BLADES, (int32_t)station,
                                "%s: with %s in slot %d, %s or a wafer on it touches the wafer in slot %d",
@@ -444,7 +473,9 @@ void wh_feasibility_room(wh_feasibility_t *check, size_t station) {
     check_before(check, station);
     check_neighbours(check, station);
     for (int32_t g = 0; g < (int32_t)layout->machine.gripper_count; ++g) {
-        if (is_on_robot(layout, g) && g != layout->stations[station].effector) {
+        const int32_t effector = layout->stations[station].effector;
+        if (is_on_robot(layout, g) && g != effector &&
+            layout->machine.mounts[g].robot == layout->machine.mounts[effector].robot) {
             check_beside(check, station, g);
         }
     }

@@ -4,12 +4,18 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "../math/trig.h"
+
 /* Heights of the arm's links below the end-effector's contact plane, mm: the links fold over each other. */
 enum { HAND_BOTTOM = -60, FOREARM_TOP = -65, FOREARM_BOTTOM = -110, UPPER_TOP = -115, UPPER_BOTTOM = -160 };
 enum { LIFT_TOP = -165, LINK_HALF_WIDTH = 35, HAND_RADIUS = 40, LIFT_RADIUS = 90, COLUMN_RADIUS = 120 };
 /* A wrist farther aside than this, mm, makes the neck askew. */
 #define NECK_STRAIGHT WH_REAL(1e-6)
 enum { BODY_BOTTOM = -220 }; /* of a prealigner, below the chuck's upper side */
+
+wh_real_t wh_shapes_link(wh_real_t farthest) {
+    return farthest > 300 ? WH_REAL(0.53) * (farthest - 250) : 100;
+}
 
 wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t farthest, wh_real_t lowest) {
     const wh_real_t scale = diameter / 300;
@@ -19,7 +25,7 @@ wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t
         .wafer_radius = radius,
         .wafer_thickness = thickness,
         .lowest = lowest,
-        .arm = {.reach = 250, .link = farthest > 300 ? WH_REAL(0.53) * (farthest - 250) : 100},
+        .arm = {.reach = 250, .link = wh_shapes_link(farthest)},
         .blade = {.thickness = blade,
                   .half_width = 75 * scale,
                   .finger = 25 * scale,
@@ -66,25 +72,29 @@ wh_convex_t wh_shapes_wafer(const wh_shapes_t *shapes) {
 
 /* -------------------------------------------------------------------------------------------------- robot */
 
-static void add_arm(wh_part_list_t *list, wh_arm_body_t body, wh_convex_t convex, const char *name) {
-    const wh_part_t part = {.kind = WH_PART_ARM, .owner = (int32_t)body, .convex = convex};
-    wh_shapes_add(list, &part, "%s", name);
+static wh_convex_t link_box(wh_real_t length, wh_real_t bottom, wh_real_t top) {
+    return box(-LINK_HALF_WIDTH, length + LINK_HALF_WIDTH, -LINK_HALF_WIDTH, LINK_HALF_WIDTH, bottom, top);
 }
 
-static wh_convex_t link_box(const wh_arm_t *arm, wh_real_t bottom, wh_real_t top) {
-    return box(-LINK_HALF_WIDTH, arm->link + LINK_HALF_WIDTH, -LINK_HALF_WIDTH, LINK_HALF_WIDTH, bottom, top);
+static void add_body(wh_part_list_t *list, const wh_shapes_arm_t *arm, wh_arm_body_t body, wh_convex_t convex,
+                     const char *name) {
+    const wh_part_t part = {
+        .kind = WH_PART_ARM, .owner = (int32_t)(arm->first + (size_t)body), .convex = convex};
+    if (body >= arm->own) {
+        wh_shapes_add(list, &part, "%s%s%s", arm->robot, name, arm->number);
+    }
 }
 
 /* The lift slides in the column. The column ends where the lift's head stops at its lowest. */
-void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes) {
-    const wh_real_t column = shapes->lowest + LIFT_TOP - 10;
+void wh_shapes_add_arm(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_shapes_arm_t *arm) {
+    const wh_real_t column = arm->lowest + LIFT_TOP - 10;
     if (column > 20) {
-        add_arm(list, WH_ARM_BASE, cylinder(COLUMN_RADIUS, 0, column), "column");
-        add_arm(list, WH_ARM_LIFT, cylinder(LIFT_RADIUS, LIFT_TOP - column, LIFT_TOP), "lift");
+        add_body(list, arm, WH_ARM_BASE, cylinder(COLUMN_RADIUS, 0, column), "column");
+        add_body(list, arm, WH_ARM_LIFT, cylinder(LIFT_RADIUS, LIFT_TOP - column, LIFT_TOP), "lift");
     }
-    add_arm(list, WH_ARM_UPPER, link_box(&shapes->arm, UPPER_BOTTOM, UPPER_TOP), "upper arm");
-    add_arm(list, WH_ARM_FOREARM, link_box(&shapes->arm, FOREARM_BOTTOM, FOREARM_TOP), "forearm");
-    add_arm(list, WH_ARM_HAND, cylinder(HAND_RADIUS, HAND_BOTTOM, -shapes->blade.thickness), "hand");
+    add_body(list, arm, WH_ARM_UPPER, link_box(arm->links[0], UPPER_BOTTOM, UPPER_TOP), "upper arm");
+    add_body(list, arm, WH_ARM_FOREARM, link_box(arm->links[1], FOREARM_BOTTOM, FOREARM_TOP), "forearm");
+    add_body(list, arm, WH_ARM_HAND, cylinder(HAND_RADIUS, HAND_BOTTOM, -shapes->blade.thickness), "hand");
 }
 
 static void add_blade(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, const char *name) {
@@ -106,8 +116,8 @@ static bool is_too_short(wh_real_t half) {
 }
 
 /* The wrist's axis meets the blade's plane here, in the gripper's frame; z is the wrist's height. */
-static wh_vec3_t wrist_of(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper) {
-    const wh_vec3_t wrist = {-shapes->arm.reach, 0, 0};
+static wh_vec3_t wrist_of(wh_real_t reach, const wh_pose_t *effector_from_gripper) {
+    const wh_vec3_t wrist = {-reach, 0, 0};
     const wh_vec3_t from_gripper = wh_vec3_subtract(&wrist, &effector_from_gripper->r);
     return wh_mat3_transform_back(&effector_from_gripper->R, &from_gripper);
 }
@@ -159,10 +169,10 @@ static void add_post(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gr
     wh_shapes_add(list, &part, "%s post", name);
 }
 
-void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
+void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, wh_real_t reach,
                            const wh_pose_t *effector_from_gripper, const char *name) {
     if (effector_from_gripper) {
-        const wh_vec3_t wrist = wrist_of(shapes, effector_from_gripper);
+        const wh_vec3_t wrist = wrist_of(reach, effector_from_gripper);
         add_blade(list, shapes, gripper, name);
         add_neck(list, shapes, gripper, &wrist, name);
         add_post(list, shapes, gripper, &wrist, name);
@@ -172,6 +182,26 @@ void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int3
                             .owner = gripper,
                             .convex = cylinder(shapes->chuck.radius, -shapes->chuck.height, 0)};
     wh_shapes_add(list, &part, "%s chuck", name);
+}
+
+void wh_shapes_add_edge(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
+                        const wh_edge_t *edge, const char *name) {
+    const wh_real_t height = shapes->wafer_thickness;
+    const wh_real_t out = (wh_real_t)(edge->radius + edge->rest);
+    for (int side = 1; side >= -1; side -= 2) {
+        wh_part_t rest = {.kind = WH_PART_BLADE, .owner = gripper};
+        rest.convex = cylinder((wh_real_t)edge->rest, 0, height);
+        rest.convex.body_from_shape.r.x = out * wh_cos((wh_real_t)edge->alpha);
+        rest.convex.body_from_shape.r.y = side * out * wh_sin((wh_real_t)edge->alpha);
+        wh_shapes_add(list, &rest, "%s rest %d", name, side > 0 ? 1 : 2);
+    }
+    const wh_real_t wide = (wh_real_t)edge->plunger;
+    const wh_real_t rear = (wh_real_t)(edge->retracted - edge->radius - 2 * edge->plunger);
+    const wh_part_t plunger = {.kind = WH_PART_BLADE,
+                               .owner = gripper,
+                               .convex =
+                                   box(rear, (wh_real_t)(edge->end - edge->radius), -wide, wide, 0, height)};
+    wh_shapes_add(list, &plunger, "%s plunger", name);
 }
 
 static void add_corner(wh_blade_outline_t *outline, wh_real_t x, wh_real_t y) {
@@ -184,7 +214,7 @@ static void add_corner(wh_blade_outline_t *outline, wh_real_t x, wh_real_t y) {
 wh_blade_outline_t wh_shapes_outline(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper) {
     const wh_blade_t *b = &shapes->blade;
     const wh_real_t inner = b->half_width - b->finger;
-    const wh_vec3_t wrist = wrist_of(shapes, effector_from_gripper);
+    const wh_vec3_t wrist = wrist_of(shapes->arm.reach, effector_from_gripper);
     const wh_real_t dx = wrist.x + b->palm;
     const wh_real_t length = wh_real_sqrt(dx * dx + wrist.y * wrist.y);
     wh_blade_outline_t outline = {.count = 0};
@@ -211,6 +241,9 @@ wh_blade_outline_t wh_shapes_outline(const wh_shapes_t *shapes, const wh_pose_t 
 /* ----------------------------------------------------------------------------------------------- stations */
 
 size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {
+    if (stand == WH_STAND_NOTHING) {
+        return 0;
+    }
     const size_t shell = stand == WH_STAND_FOUP ? 6 : 0;
     return stand == WH_STAND_CHUCK ? 1 : 2 * (size_t)slots + shell;
 }
@@ -265,6 +298,9 @@ static void add_foup(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_s
 
 void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_station_t *station,
                            int32_t index, wh_stand_t stand, const char *name) {
+    if (stand == WH_STAND_NOTHING) {
+        return;
+    }
     if (stand == WH_STAND_CHUCK) {
         add_fixed(list, station, index, cylinder(shapes->chuck.body, BODY_BOTTOM, -shapes->chuck.height - 1),
                   name, "body");

@@ -24,6 +24,7 @@ typedef struct {
     const char *begin;
     unsigned line;
     wh_real_t mm_per_unit;
+    bool any_body;      /* it need not be convex */
     wh_vec3_t *corners; /* three for each facet, room for WH_STL_FACETS */
     size_t facets;
     char *message;
@@ -298,7 +299,7 @@ static bool check_facet(stl_t *stl, size_t facet, const wh_vec3_t *points, size_
 }
 
 static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
-    if (count > WH_STL_POINTS) {
+    if (!stl->any_body && count > WH_STL_POINTS) {
         return refuse(stl, ": %zu different corners (expected at most %d)", count, WH_STL_POINTS);
     }
     const wh_convex_t mesh = {.kind = WH_CONVEX_MESH,
@@ -310,7 +311,7 @@ static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
                       stl->facets, count, WH_CONVEX_THINNEST);
     }
     const extent_t extent = extent_of(points, count);
-    for (size_t facet = 0; facet < stl->facets; ++facet) {
+    for (size_t facet = 0; !stl->any_body && facet < stl->facets; ++facet) {
         if (!check_facet(stl, facet, points, count, extent)) {
             return false;
         }
@@ -320,28 +321,23 @@ static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
 
 /* ----------------------------------------------------------------------------------------------- the file */
 
-bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
-                  wh_vec3_t **points, size_t *count, char *message, size_t size) {
-    stl_t stl = {.path = path,
-                 .at = bytes,
-                 .end = bytes + length,
-                 .begin = bytes,
-                 .line = 1,
-                 .mm_per_unit = mm_per_unit,
-                 .message = message,
-                 .message_size = size};
-    if (!(mm_per_unit > 0 && wh_real_is_finite(mm_per_unit))) {
-        return refuse(&stl, ": %g mm a unit (expected a positive number)", mm_per_unit);
+/* Reads the text or bytes that the rest of `stl` says how to take. */
+static bool parse(stl_t *stl, const char *bytes, size_t length, wh_vec3_t **points, size_t *count) {
+    stl->at = stl->begin = bytes;
+    stl->end = bytes + length;
+    stl->line = 1;
+    if (!(stl->mm_per_unit > 0 && wh_real_is_finite(stl->mm_per_unit))) {
+        return refuse(stl, ": %g mm a unit (expected a positive number)", stl->mm_per_unit);
     }
     if (length > WH_STL_BYTES) {
-        return refuse(&stl, ": more than %zu bytes", WH_STL_BYTES);
+        return refuse(stl, ": more than %zu bytes", WH_STL_BYTES);
     }
-    stl.corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl.corners);
-    bool good = read_facets(&stl);
+    stl->corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl->corners);
+    bool good = read_facets(stl);
     if (good) {
         size_t found = 0;
-        wh_vec3_t *mine = different(stl.corners, 3 * stl.facets, &found);
-        good = check(&stl, mine, found);
+        wh_vec3_t *mine = different(stl->corners, 3 * stl->facets, &found);
+        good = check(stl, mine, found);
         if (good) {
             *points = mine;
             *count = found;
@@ -349,8 +345,14 @@ bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t 
             free(mine);
         }
     }
-    free(stl.corners);
+    free(stl->corners);
     return good;
+}
+
+bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
+                  wh_vec3_t **points, size_t *count, char *message, size_t size) {
+    stl_t stl = {.path = path, .mm_per_unit = mm_per_unit, .message = message, .message_size = size};
+    return parse(&stl, bytes, length, points, count);
 }
 
 /* Opens a regular file. It waits for nobody at the other end of a pipe. Null: the message says why. */
@@ -369,21 +371,31 @@ static FILE *open_regular(stl_t *stl) {
     return wh_memory_need(fdopen(fd, "rb"));
 }
 
-bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
-                 size_t size) {
-    stl_t stl = {.path = path, .message = message, .message_size = size};
-    wh_output_note_input(path);
-    FILE *file = open_regular(&stl);
+static bool read_file(stl_t *stl, wh_vec3_t **points, size_t *count) {
+    wh_output_note_input(stl->path);
+    FILE *file = open_regular(stl);
     if (file == NULL) {
         return false;
     }
-    wh_output_keep(path);
+    wh_output_keep(stl->path);
     char *bytes = wh_array_new(WH_STL_BYTES + 1, 1);
     const size_t length = fread(bytes, 1, WH_STL_BYTES + 1, file);
-    const bool good = ferror(file) != 0
-                          ? refuse(&stl, ": %s", strerror(errno))
-                          : wh_stl_parse(path, bytes, length, mm_per_unit, points, count, message, size);
+    const bool good =
+        ferror(file) != 0 ? refuse(stl, ": %s", strerror(errno)) : parse(stl, bytes, length, points, count);
     free(bytes);
     (void)fclose(file);
     return good;
+}
+
+bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
+                 size_t size) {
+    stl_t stl = {.path = path, .mm_per_unit = mm_per_unit, .message = message, .message_size = size};
+    return read_file(&stl, points, count);
+}
+
+bool wh_stl_read_body(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count,
+                      char *message, size_t size) {
+    stl_t stl = {
+        .path = path, .mm_per_unit = mm_per_unit, .any_body = true, .message = message, .message_size = size};
+    return read_file(&stl, points, count);
 }

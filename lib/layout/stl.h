@@ -33,6 +33,10 @@
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size);
 
+/* The same of a body that need not be convex, whose corners may be more than WH_STL_POINTS. */
+bool wh_stl_read_body(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count,
+                      char *message, size_t size);
+
 /* wh_stl_read from memory; messages call it `path`. */
 bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
                   wh_vec3_t **points, size_t *count, char *message, size_t size);

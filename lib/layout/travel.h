@@ -24,16 +24,30 @@ bool wh_travel_passes_axis(const wh_line_t *line, wh_real_t *least_R);
  * gripper's name. Cost: linear in the axes. */
 void wh_travel_say_axes(const wh_layout_t *layout, const wh_real_t axes[], char text[WH_TRAVEL_BYTES]);
 
-/* Why this gripper, which is on the robot, may not be brought to the point `at` with its x along `heading`,
- * coming from near_q: what wh_machine_inverse refuses. Empty if it may, or if a number is not finite. Cost:
- * some microseconds. */
-void wh_travel_say_point(const wh_layout_t *layout, size_t gripper, const wh_vec3_t *at, wh_real_t heading,
-                         const wh_real_t near_q[WH_ROBOT_AXES], char text[WH_TRAVEL_BYTES]);
+/* Where a gripper on the robot shall go: to the point `at`, level, with its x along `heading`; or, with a
+ * machine's carrier, to a pose. */
+typedef struct {
+    size_t gripper;
+    wh_vec3_t at;
+    wh_real_t heading;
+    const wh_pose_t *pose;           /* base_from_gripper; null: at and heading count */
+    const wh_chain_choice_t *choice; /* with a pose */
+} wh_travel_goal_t;
 
-/* Why the end-effector may not go by `travel` from these axes in a straight line, and after how many mm of it
- * an axis leaves its travel: what wh_line_plan refuses. Empty if it may, or if a number is not finite. Cost:
- * some 100 microseconds. */
-void wh_travel_say_line(const wh_layout_t *layout, const wh_real_t from_q[WH_ROBOT_AXES],
+/* The axes for it, coming from near_q: wh_machine_inverse or wh_machine_bring. */
+wh_status_t wh_travel_find(const wh_layout_t *layout, const wh_travel_goal_t *goal, const wh_real_t near_q[],
+                           wh_real_t q[]);
+
+/* Why it may not be brought there: what wh_travel_find refuses. Empty if it may, or if a number is not
+ * finite. Cost: some microseconds. */
+void wh_travel_say_point(const wh_layout_t *layout, const wh_travel_goal_t *goal, const wh_real_t near_q[],
+                         char text[WH_TRAVEL_BYTES]);
+
+/* Why the end-effector that carries this gripper (WH_NONE: the first) may not go by `travel` from these axes
+ * in a straight line, and after how many mm of it an axis leaves its travel: what wh_line_plan or
+ * wh_chain_line_plan refuses. Empty if it may, or if a number is not finite. Cost: some 100 microseconds; of
+ * a SCARA some 10 ms. */
+void wh_travel_say_line(const wh_layout_t *layout, int32_t gripper, const wh_real_t from_q[],
                         const wh_vec3_t *travel, char text[WH_TRAVEL_BYTES]);
 
 #endif

@@ -2,18 +2,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/grips.h"
 #include "../text/array.h"
 #include "messages.h"
 
 static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
+    message->grips = room->grips;
     message->gripper_names = room->gripper_names;
     message->valve_names = room->valve_names;
     message->stations = room->stations;
     message->wafer_names = room->wafer_names;
     message->wafers = room->wafers;
     message->faults = room->faults;
+    message->grips = room->grips;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        room->grips[g] = (int8_t)layout->grips[g].kind;
         message->gripper_names[g] = wh_link_borrowed(layout->grippers[g].name);
         message->valve_names[g] = wh_link_borrowed(layout->grippers[g].valve);
     }
@@ -31,6 +35,7 @@ static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
         wh_link_put_pose(&layout->start[w].base_from_wafer, message->wafers[w].position,
                          message->wafers[w].rotation);
         message->wafers[w].holder = WH_NONE;
+        message->wafers[w].face = wh_layout_is_face_down(&layout->start[w].base_from_wafer) ? 1 : 0;
     }
     for (size_t i = 0; i < layout->physics.fault_count; ++i) {
         wh_link_put_fault(&layout->physics.faults[i], &message->faults[i]);
@@ -96,6 +101,21 @@ static void put_vector(double x, double y, double z, double out[3]) {
     out[2] = z;
 }
 
+static void put_touch(const wh_door_beam_t *door, waferhand_door_beam *out) {
+    const wh_touch_face_t *touch = &door->touch;
+    out->gripper = door->gripper;
+    out->low = 0;
+    out->high = 0;
+    out->reach[0] = touch->along;
+    out->reach[1] = touch->aside;
+    out->ball_radius = touch->radius;
+    out->noise = door->noise;
+    memcpy(out->ball, touch->ball, sizeof out->ball);
+    memcpy(out->point, touch->middle, sizeof out->point);
+    memcpy(out->direction, touch->normal, sizeof out->direction);
+    memcpy(out->edge, touch->edge, sizeof out->edge);
+}
+
 static void put_beam(const wh_layout_t *layout, size_t b, waferhand_door_beam *out) {
     const wh_door_beam_t *door = &layout->doors[b];
     const wh_beam_t *beam = &door->beam;
@@ -106,9 +126,13 @@ static void put_beam(const wh_layout_t *layout, size_t b, waferhand_door_beam *o
                                  .delay_on = door->delay_on,
                                  .delay_off = door->delay_off,
                                  .jitter = door->jitter,
-                                 .stuck = (int32_t)door->stuck};
+                                 .stuck = (int32_t)door->stuck,
+                                 .gripper = WH_NONE};
     put_vector(beam->x, beam->y, beam->z, out->point);
     put_vector(beam->ex, beam->ey, beam->ez, out->direction);
+    if (door->kind == WH_DOOR_TOUCH) {
+        put_touch(door, out);
+    }
 }
 
 static void put_beams(const wh_layout_t *layout, wh_link_cell_t *room) {
@@ -131,7 +155,7 @@ static void put_beams(const wh_layout_t *layout, wh_link_cell_t *room) {
 static void put_rims(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
     message->rims = room->rims;
-    if (layout->scanner_count + layout->beam_count == 0) {
+    if (!wh_layout_has_rims(layout)) {
         return;
     }
     put_rim(layout->nominal_rim, WH_NONE, room->chips[0], &room->rims[0]);
@@ -144,6 +168,19 @@ static void put_rims(const wh_layout_t *layout, wh_link_cell_t *room) {
     }
 }
 
+static void put_edges(const wh_layout_t *layout, wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
+    message->edges = room->edges;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        const wh_edge_t *edge = &layout->grips[g].edge;
+        if (layout->grips[g].kind == WH_GRIP_EDGE) {
+            room->edges[message->edge_count++] = (waferhand_edge_grip){
+                edge->radius,    edge->rest,         edge->plunger,    edge->alpha, edge->clearance,
+                edge->retracted, edge->gripped_from, edge->gripped_to, edge->end,   edge->speed};
+        }
+    }
+}
+
 static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
     message->sensors = room->sensors;
@@ -151,6 +188,24 @@ static void put_scanning(const wh_layout_t *layout, wh_link_cell_t *room) {
         put_sensor(&layout->scanners[i], room->hidden[i], &room->sensors[i]);
     }
     message->sensor_count = (int32_t)layout->scanner_count;
+}
+
+static void put_doors(const wh_layout_t *layout, wh_link_cell_t *room) {
+    const wh_machine_t *machine = &layout->machine;
+    room->message.door_count = (int32_t)machine->door_count;
+    room->message.doors = room->doors;
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        const wh_door_t *door = &machine->doors[d];
+        waferhand_door *out = &room->doors[d];
+        *out = (waferhand_door){.name = wh_link_borrowed(layout->door_list[d].name),
+                                .axis = (int32_t)wh_machine_door_axis(machine, d),
+                                .travel = door->travel,
+                                .open = door->is_open ? 1 : 0,
+                                .speed = door->limits.speed,
+                                .acceleration = door->limits.acceleration,
+                                .jerk = door->limits.jerk};
+        put_vector(door->way.x, door->way.y, door->way.z, out->way);
+    }
 }
 
 static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
@@ -165,6 +220,14 @@ static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
     message->pads_mass = physics->pads.mass;
     message->pads_gravity = physics->pads.gravity;
     message->fault_count = (int32_t)physics->fault_count;
+}
+
+static int8_t collision_of(const wh_layout_t *layout) {
+    bool has_limit = false;
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        has_limit = has_limit || layout->world.limits[kind] > 0;
+    }
+    return (int8_t)(!layout->collision ? WH_LINK_NO_COLLISION : has_limit ? WH_LINK_GAPS : WH_LINK_CONTACT);
 }
 
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
@@ -188,14 +251,20 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->settle = layout->cell.settle ? 1 : 0;
     message->off_centre = layout->cell.off_centre;
     message->askew = layout->cell.askew;
+    message->drop = layout->cell.drop;
+    message->thickness = layout->cell.thickness;
+    message->collision = collision_of(layout);
+    message->world_hash = (int64_t)wh_layout_world_hash(layout);
     message->gripper_count = (int32_t)layout->machine.gripper_count;
     message->station_count = (int32_t)layout->station_count;
     message->wafer_count = (int32_t)layout->wafer_count;
     put_physics(&layout->physics, message);
     put_lists(layout, room);
+    put_doors(layout, room);
     put_scanning(layout, room);
     put_beams(layout, room);
     put_rims(layout, room);
+    put_edges(layout, room);
     return true;
 }
 
@@ -220,6 +289,15 @@ static bool is_within(double value, double least, double most) {
 }
 
 /* What a layout's file may say of checks and places. */
+static bool checks_fit(const waferhand_cell *cell) {
+    return is_within(cell->eps_projz, 1e-9, 1e6) && is_within(cell->near_projz, 1e-9, 1e6) &&
+           is_within(cell->near_projxy, 1e-9, 1e6) && is_within(cell->off_centre, 0, 1e6) &&
+           is_within(cell->askew, 0, 10) && is_within(cell->drop, 0, 1e6) &&
+           is_within(cell->thickness, 0, WH_FACE_THICKEST) &&
+           is_within(cell->collision, WH_LINK_NO_COLLISION, WH_LINK_GAPS) && cell->slice_us >= 1 &&
+           cell->slice_us <= 1000000;
+}
+
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_grasp_config_t *grasp = &layout->grasp;
     grasp->tolerance.projz = cell->eps_projz;
@@ -233,10 +311,10 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->cell.settle = cell->settle != 0;
     layout->cell.off_centre = cell->off_centre;
     layout->cell.askew = cell->askew;
-    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_within(cell->eps_projz, 1e-9, 1e6) &&
-           is_within(cell->near_projz, 1e-9, 1e6) && is_within(cell->near_projxy, 1e-9, 1e6) &&
-           is_within(cell->off_centre, 0, 1e6) && is_within(cell->askew, 0, 10) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000;
+    layout->cell.drop = cell->drop;
+    layout->cell.thickness = layout->wafer_thickness = cell->thickness;
+    layout->has_faces = cell->thickness > 0;
+    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && checks_fit(cell);
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
@@ -255,6 +333,8 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         sound = take_name(cell->gripper_names[g], layout->grippers[g].name) && sound;
         layout->grippers[g].station = WH_NONE;
+        layout->grips[g].kind = (wh_grip_kind_t)cell->grips[g];
+        sound = cell->grips[g] >= WH_GRIP_VACUUM && cell->grips[g] <= WH_GRIP_PASSIVE && sound;
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
         sound = take_station(&cell->stations[s], layout->machine.gripper_count, &layout->stations[s],
@@ -267,6 +347,26 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
                 take_pose(from->position, from->rotation, &layout->start[w].base_from_wafer) && sound;
     }
     return sound;
+}
+
+/* One for each gripper that has an edge grip. */
+static bool take_edges(const waferhand_cell *cell, wh_layout_t *layout) {
+    int32_t taken = 0;
+    bool sound = true;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        if (layout->grips[g].kind != WH_GRIP_EDGE) {
+            continue;
+        }
+        if (taken == cell->edge_count) {
+            return false;
+        }
+        const waferhand_edge_grip *in = &cell->edges[taken++];
+        layout->grips[g].edge =
+            (wh_edge_t){in->radius,    in->rest,         in->plunger,    in->alpha, in->clearance,
+                        in->retracted, in->gripped_from, in->gripped_to, in->end,   in->speed};
+        sound = sound && wh_edge_validate(&layout->grips[g].edge) == WH_OK;
+    }
+    return sound && taken == cell->edge_count;
 }
 
 /* The layout has times in s, the message has slices in us; lib/layout/layout_physics.c converts them the same
@@ -356,7 +456,24 @@ static bool take_scanning(const waferhand_cell *cell, wh_layout_t *layout) {
     return wh_scanning_validate(&scanning, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
+static wh_door_beam_t take_touch(const waferhand_door_beam *in) {
+    wh_door_beam_t door = {.seed = (uint64_t)in->seed,
+                           .stuck = (wh_beam_stuck_t)in->stuck,
+                           .kind = WH_DOOR_TOUCH,
+                           .touch = {.along = in->reach[0], .aside = in->reach[1], .radius = in->ball_radius},
+                           .gripper = in->gripper,
+                           .noise = in->noise};
+    memcpy(door.touch.middle, in->point, sizeof door.touch.middle);
+    memcpy(door.touch.normal, in->direction, sizeof door.touch.normal);
+    memcpy(door.touch.edge, in->edge, sizeof door.touch.edge);
+    memcpy(door.touch.ball, in->ball, sizeof door.touch.ball);
+    return door;
+}
+
 static wh_door_beam_t take_beam(const waferhand_door_beam *in) {
+    if (in->gripper != WH_NONE) {
+        return take_touch(in);
+    }
     const wh_door_beam_t door = {.beam = {in->point[0], in->point[1], in->point[2], in->direction[0],
                                           in->direction[1], in->direction[2], in->low, in->high},
                                  .delay_on = in->delay_on,
@@ -367,6 +484,13 @@ static wh_door_beam_t take_beam(const waferhand_door_beam *in) {
     return door;
 }
 
+/* Beams come before faces, and either by station. */
+static bool is_behind(const waferhand_door_beam *before, const waferhand_door_beam *beam) {
+    const bool was_touch = before->gripper != WH_NONE;
+    const bool is_touch = beam->gripper != WH_NONE;
+    return was_touch == is_touch ? beam->station >= before->station : is_touch;
+}
+
 static bool take_beams(const waferhand_cell *cell, wh_layout_t *layout) {
     bool sound = cell->outline_count == (cell->beam_count > 0 ? cell->gripper_count : 0);
     layout->beam_count = (size_t)cell->beam_count;
@@ -375,7 +499,7 @@ static bool take_beams(const waferhand_cell *cell, wh_layout_t *layout) {
         layout->doors[b] = take_beam(&cell->beams[b]);
         layout->beams[b].station = station;
         sound = sound && wh_is_index(station, layout->station_count) &&
-                (b == 0 || station >= layout->beams[b - 1].station);
+                (b == 0 || is_behind(&cell->beams[b - 1], &cell->beams[b]));
     }
     for (int32_t g = 0; sound && g < cell->outline_count; ++g) {
         const waferhand_outline *in = &cell->outlines[g];
@@ -388,9 +512,49 @@ static bool take_beams(const waferhand_cell *cell, wh_layout_t *layout) {
            wh_latching_validate(&latching, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
+/* The wafers as edge grips meet them. */
+static bool take_edge_wafers(wh_layout_t *layout) {
+    wh_edge_wafer_t *wafers = wh_array_new(layout->wafer_count, sizeof *wafers);
+    bool sound = true;
+    layout->edge_wafers = wafers;
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        wafers[w] = wh_layout_edge_wafer(layout->rims[w]);
+        for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+            sound = sound && (layout->grips[g].kind != WH_GRIP_EDGE ||
+                              wh_edge_wafer_validate(&layout->grips[g].edge, &wafers[w]) == WH_OK);
+        }
+    }
+    return sound;
+}
+
+static wh_door_t take_door(const waferhand_door *in) {
+    return (wh_door_t){.way = wh_vec3(in->way[0], in->way[1], in->way[2]),
+                       .travel = in->travel,
+                       .is_open = in->open != 0,
+                       .limits = {in->speed, in->acceleration, in->jerk}};
+}
+
+/* The axes of all doors follow one another, behind those of the robot. */
+static bool take_doors(const waferhand_cell *cell, wh_layout_t *layout) {
+    wh_door_t *doors = wh_array_new((size_t)cell->door_count + 1, sizeof *doors);
+    wh_machine_t *machine = &layout->machine;
+    bool sound = true;
+    machine->doors = doors;
+    machine->door_count = (size_t)cell->door_count;
+    layout->door_list = wh_array_new((size_t)cell->door_count + 1, sizeof *layout->door_list);
+    for (int32_t d = 0; sound && d < cell->door_count; ++d) {
+        const waferhand_door *in = &cell->doors[d];
+        doors[d] = take_door(in);
+        sound = take_name(in->name, layout->door_list[d].name) && in->axis == cell->doors[0].axis + d &&
+                in->axis >= WH_ROBOT_AXES && in->axis < WH_AXES && wh_door_validate(&doors[d]) == WH_OK;
+        machine->axis_count = (size_t)in->axis + 1;
+    }
+    return sound;
+}
+
 /* What sees wafers' rims, and these. */
 static bool take_sensing(const waferhand_cell *cell, wh_layout_t *layout) {
-    if (cell->sensor_count + cell->beam_count == 0) {
+    if (cell->sensor_count + cell->beam_count + cell->edge_count == 0) {
         return cell->rim_count == 0 && cell->outline_count == 0;
     }
     wh_rim_t *rims = wh_array_new((size_t)cell->rim_count + 1, sizeof *rims);
@@ -398,7 +562,8 @@ static bool take_sensing(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->nominal_rim = rims;
     layout->rims = by_wafer;
     return cell->rim_count > 0 && take_rims(cell, layout, by_wafer, rims) &&
-           wh_rim_validate(rims, NULL) == WH_OK && take_scanning(cell, layout) && take_beams(cell, layout);
+           wh_rim_validate(rims, NULL) == WH_OK && take_edge_wafers(layout) && take_scanning(cell, layout) &&
+           take_beams(cell, layout);
 }
 
 static wh_layout_t *make_layout(const waferhand_cell *cell) {
@@ -417,11 +582,13 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = make_layout(cell);
     if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_lists(cell, layout) ||
-        !take_physics(cell, layout) || !take_sensing(cell, layout)) {
+        !take_physics(cell, layout) || !take_edges(cell, layout) || !take_doors(cell, layout) ||
+        !take_sensing(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }
     wh_layout_place(layout);
+    wh_layout_take_supports(layout, wh_array_new(wh_layout_count_supports(layout), sizeof(wh_pose_t)));
     return layout;
 }
 
@@ -434,7 +601,11 @@ void wh_link_layout_free(wh_layout_t *layout) {
     free(layout->places);
     free(layout->wafers);
     free(layout->start);
+    free(layout->door_list);
+    free(wh_link_borrowed((const char *)(const void *)layout->machine.doors));
     free(wh_link_borrowed((const char *)(const void *)layout->rims));
     free(wh_link_borrowed((const char *)layout->nominal_rim));
+    free(wh_link_borrowed((const char *)layout->edge_wafers));
+    free(wh_link_borrowed((const char *)layout->supports));
     free(layout);
 }

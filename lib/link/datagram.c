@@ -8,9 +8,9 @@
 /* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
 #define FINGERPRINT 8
 #define HEADER (4 * 8)
-#define WAFER 100
-#define GRIPPER 446
-#define EVENT 156
+#define WAFER 101
+#define GRIPPER 515
+#define EVENT 157
 #define FAULT 132
 #define FAULT_SLOT 328
 #define LATCHING_FIXED (4 + 1 + 2 * 4 + 8 + 3 * 4)
@@ -18,17 +18,19 @@
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
-#define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
+#define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 5 * 4)
 #define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 3 * 8 + 4 + 4 * 8 + 4 + 3 * 8 + 3 * 4)
 #define SAMPLE (4 + 4 + 1)
 #define CENTRING_FIXED (FINGERPRINT + HEADER + 5 * 4)
 #define CROSSING (3 * 4 + 5 * 8)
 #define CENTRE (6 * 8 + 4)
-#define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
+#define CELL_FIXED (8 + 9 * 8 + 3 + 1 + 8 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
-#define BEAM_FIXED (4 + 8 + 11 * 8 + 4)
+#define BEAM_FIXED (4 + 8 + 11 * 8 + 2 * 4 + 10 * 8)
+#define DOOR_FIXED (4 + 3 * 8 + 8 + 1 + 3 * 8)
 #define RIM_FIXED (4 + 14 * 8)
+#define EDGE_GRIP 80
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
 
@@ -132,8 +134,8 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t faults = take_count(&walk, WH_FAULTS);
     const size_t samples = take_count(&walk, WH_SCAN_SLICE);
     skip(&walk, STATE_FIXED - STATE_COUNTS - 5 * 4);
-    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT);
-    skip(&walk, samples * 4);
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT + samples * 4 + 1);
+    skip(&walk, take_count(&walk, WH_DOORS) * 8);
     const size_t waiting = take_count(&walk, WH_LATCHES);
     const size_t latches = take_count(&walk, WH_LATCHES);
     skip(&walk, LATCHING_FIXED + (waiting + latches) * LATCH + CHECK);
@@ -191,6 +193,9 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     const size_t beams = take_count(&walk, WH_BEAMS);
     const size_t outlines = take_count(&walk, WH_GRIPPERS);
     const size_t rims = take_count(&walk, WH_LINK_RIMS);
+    const size_t edges = take_count(&walk, WH_GRIPPERS);
+    const size_t doors = take_count(&walk, WH_DOORS);
+    skip(&walk, grippers);
     skip_texts(&walk, 2 * grippers);
     for (size_t i = 0; i < stations && walk.good; ++i) {
         skip_text(&walk);
@@ -202,6 +207,11 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     skip(&walk, beams * BEAM_FIXED);
     skip_entries(&walk, outlines, 0, WH_OUTLINE_POINTS, 2);
     skip_entries(&walk, rims, RIM_FIXED, WH_RIM_CHIPS, 3);
+    skip(&walk, edges * EDGE_GRIP);
+    for (size_t i = 0; i < doors && walk.good; ++i) {
+        skip_text(&walk);
+        skip(&walk, DOOR_FIXED);
+    }
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
 }
 

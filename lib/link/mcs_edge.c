@@ -42,9 +42,12 @@ static void estimate(const wh_mcs_t *mcs, told_t *told, waferhand_edge_scan *mes
                                  .taken = edge->taken,
                                  .missed = edge->missed,
                                  .samples = edge->samples};
-    wh_edge_sample_t *samples = wh_array_new((size_t)edge->taken + 1, sizeof *samples);
+    wh_edge_point_t *samples = wh_array_new((size_t)edge->taken + 1, sizeof *samples);
     wh_align_result_t result;
-    const wh_status_t status = wh_edge_scan_estimate(&scan, mcs->layout, samples, &result);
+    const int32_t running = mcs->recorder.running;
+    const char *command = running != WH_NONE ? mcs->recorder.record->commands[running].text : NULL;
+    const wh_edge_wish_t wish = wh_edge_wish_of(command);
+    const wh_status_t status = wh_edge_scan_estimate(&scan, mcs->layout, wish, samples, &result);
     put_result(message, status, &result);
     wh_edge_scan_words(&scan, status, &result, &told->words);
     for (int32_t i = 0; i < edge->taken; ++i) {

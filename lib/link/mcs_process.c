@@ -105,7 +105,7 @@ static void finished(void *user, const wh_mcs_t *mcs) {
 }
 
 /* The run is over; the next one, of a session, has its own counts. */
-static void tell_over(wh_mcs_process_t *control) {
+void wh_mcs_process_tell_over(wh_mcs_process_t *control) {
     char text[WH_OUTCOME_BYTES + sizeof control->reason];
     if (control->outcome.verdict == WH_OUTCOME_UNTOLD) {
         control->outcome.verdict = WH_OUTCOME_ENDED;
@@ -116,35 +116,100 @@ static void tell_over(wh_mcs_process_t *control) {
     control->reason[0] = '\0';
 }
 
+/* ----------------------------------------------------------------------------------------------- commands */
+
+/* The command of this task, or null. */
+static wh_mcs_process_running_t *find_running(wh_mcs_process_t *control, int32_t task) {
+    wh_mcs_process_running_t *found = NULL;
+    for (size_t i = 0; i < control->running_count; ++i) {
+        found = control->running[i].task == task ? &control->running[i] : found;
+    }
+    return found;
+}
+
+static void forget_running(wh_mcs_process_t *control, int32_t task) {
+    wh_mcs_process_running_t *gone = find_running(control, task);
+    if (gone) {
+        --control->running_count;
+        const size_t behind = control->running_count - (size_t)(gone - control->running);
+        memmove(gone, gone + 1, behind * sizeof *gone);
+    }
+}
+
+/* A request is executed by the prompt, not by a task. */
+static void tell_running(wh_mcs_process_t *control, const wh_mcs_process_running_t *running, int32_t phase,
+                         const char *command, const char *text) {
+    const bool goes_on = phase == WH_LINK_PHASE_BEGINS || phase == WH_LINK_PHASE_GOES_ON;
+    const int64_t request = goes_on && running->task == 0 ? control->executing.seq : 0;
+    waferhand_mcs message = wh_mcs_process_message(control, request, phase, WH_OK, command, text);
+    message.task = running->task;
+    message.line = running->line;
+    message.axes = (int32_t)running->axes;
+    message.grippers = (int32_t)running->grippers;
+    wh_mcs_process_publish(control, &message);
+}
+
+static void tell_begin(wh_mcs_process_t *control, const wh_command_record_t *command) {
+    forget_running(control, command->task);
+    wh_mcs_process_running_t *running = &control->running[control->running_count++];
+    *running = (wh_mcs_process_running_t){.task = command->task, .line = command->line};
+    wh_utf8_clip(running->text, sizeof running->text, command->text);
+    ++control->outcome.commands;
+    tell_running(control, running, WH_LINK_PHASE_BEGINS, command->text, "");
+}
+
+/* Not as the request's answer: that carries its result, and wh_mcs_process_answer sends it. */
+static void tell_end(wh_mcs_process_t *control, const wh_command_record_t *command) {
+    const int32_t phase = command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED;
+    waferhand_mcs message = wh_mcs_process_message(control, 0, phase, command->error, command->text,
+                                                   command->message ? command->message : "");
+    message.task = command->task;
+    message.line = command->line;
+    wh_mcs_process_publish(control, &message);
+}
+
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     wh_mcs_process_t *control = user;
     (void)mcs;
-    control->outcome.commands += ended ? 0 : 1;
-    wh_utf8_clip(control->running, sizeof control->running, ended ? "" : command->text);
-    control->running_line = command->line;
     if (!ended) {
-        wh_mcs_process_tell(control, control->executing.seq, WH_LINK_PHASE_BEGINS, command->line, WH_OK,
-                            command->text, "");
+        tell_begin(control, command);
         return;
     }
+    forget_running(control, command->task);
     control->ended_with = command->error;
     if (control->connected) {
         (void)wh_protocol_client_settle(&control->client, COMMAND_SETTLE_US);
     }
-    /* Not as the request's answer: that carries its result, and wh_mcs_process_answer sends it. */
-    wh_mcs_process_tell(control, 0, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED,
-                        command->line, command->error, command->text,
-                        command->message ? command->message : "");
+    tell_end(control, command);
+}
+
+static void turn(void *user, const wh_mcs_t *mcs, const char *what) {
+    wh_mcs_process_t *control = user;
+    const wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
+    wh_mcs_process_running_t none = {.task = lane->number};
+    wh_mcs_process_running_t *running = find_running(control, lane->number);
+    char names[WH_MCS_MECHANISMS_BYTES];
+    wh_mcs_name_mechanisms(mcs, lane->axes, names);
+    running = running ? running : &none;
+    running->axes = what ? 0 : lane->axes;
+    running->grippers = what ? 0 : lane->grippers;
+    tell_running(control, running, what ? WH_LINK_PHASE_WAITS : WH_LINK_PHASE_ON, running->text,
+                 what ? what : names);
 }
 
 /* ------------------------------------------------------------------------------------------------ the run */
 
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;
-    if (control->running[0] != '\0') {
-        wh_mcs_process_tell(control, control->executing.seq, WH_LINK_PHASE_GOES_ON, control->running_line,
-                            WH_OK, control->running, "");
+    for (size_t i = 0; i < control->running_count; ++i) {
+        const wh_mcs_process_running_t *running = &control->running[i];
+        tell_running(control, running, WH_LINK_PHASE_GOES_ON, running->text, "");
     }
+}
+
+static void tell_wait(void *user) {
+    const wh_mcs_process_t *control = user;
+    control->owner.waits(control->owner.user);
 }
 
 /* A second time, for another run of a session: the one before is over. */
@@ -155,8 +220,9 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
         return NULL;
     }
     control->mcs = mcs;
+    control->options.waits = control->owner.waits ? tell_wait : NULL;
     if (control->connected) {
-        tell_over(control);
+        wh_mcs_process_tell_over(control);
         wh_protocol_client_begin(&control->client, mcs->layout);
         return &control->client.link;
     }
@@ -199,7 +265,7 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
     const wh_status_t status = wh_protocol_client_restore(&control->client, bytes, size, state);
     if (status == WH_OK) {
         control->connected = false; /* so it is told of the run before */
-        tell_over(control);
+        wh_mcs_process_tell_over(control);
         control->connected = true;
     }
     return status;
@@ -219,7 +285,7 @@ static const char *explain(void *user, wh_status_t status) {
     const bool known = control->simulator_path[0] != '\0' && control->simulator_layout == other;
     switch ((int)status) {
     case WH_STATUS_STOPPED:
-        return "by a signal";
+        return control->owner.stops ? NULL : "by a signal";
     case WH_STATUS_OTHER_LAYOUT:
         snprintf(control->explanation, sizeof control->explanation,
                  "%s%shash %016" PRIx64 " (expected %.200s, hash %016" PRIx64 ")",
@@ -295,6 +361,7 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
     return (wh_mcs_partners_t){.connect = connect_client,
                                .watch = watch,
+                               .turn = turn,
                                .resume = resume,
                                .await = await,
                                .reached = reached,
@@ -320,13 +387,16 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
     if (control->connected) {
         wh_protocol_client_heartbeat(&control->client);
     }
-    wh_mcs_process_tell(control, control->executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
+    tell_progress(control);
+    if (control->running_count == 0) {
+        wh_mcs_process_tell(control, control->executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
+    }
 }
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
     control->mcs = NULL;
     wh_mcs_process_stop_waiting(control);
-    tell_over(control);
+    wh_mcs_process_tell_over(control);
 }
 
 void wh_mcs_process_close(wh_mcs_process_t *control) {

@@ -4,7 +4,8 @@
  * tells the commands on WAFERHAND_MCS. Requests from others are kept until a session has time for them, but
  * for three that are answered at once, also while a command runs:
  *
- *   STOP     the command that runs, and the requests that wait, end with WH_STATUS_STOPPED
+ *   STOP     the command that runs, and the requests that wait, end with WH_STATUS_STOPPED; with the name
+ *            of a mechanism behind it: the command that has it, and no other
  *   STATUS   what wh_mcs_describe says
  *   VERSION  the program's
  *
@@ -38,9 +39,26 @@ typedef struct {
     char *text; /* of its own */
 } wh_mcs_process_answer_t;
 
+/* Whose commands motion control plays, if neither a script nor an operator gives them: hosts at ports. Each
+ * function may be null. */
+typedef struct {
+    const char *busy; /* why other requests than STATUS, VERSION and STOP are turned away; null: they wait */
+    void (*stops)(void *user); /* a STOP has come, in place of ending what runs */
+    void (*waits)(void *user); /* within an exchange, each 2 ms that the simulator is waited for */
+    void *user;
+} wh_mcs_process_owner_t;
+
+/* A command that goes on, and what it has of the cell: bits as in the message. Of a task one at a time. */
+typedef struct {
+    int32_t task, line;
+    uint32_t axes, grippers;
+    char text[WH_LINK_LINE];
+} wh_mcs_process_running_t;
+
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t *node;
+    wh_mcs_process_owner_t owner; /* may be set between opening and connecting */
     wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
@@ -48,8 +66,8 @@ typedef struct {
     wh_mcs_t *mcs;               /* of the run or session; null before it connects */
     wh_link_identity_t identity; /* of the run; and where it is (without a client, to be set): */
     int64_t utime, seq;
-    char running[WH_LINK_LINE]; /* the command that goes on; empty: none */
-    int running_line;
+    wh_mcs_process_running_t running[WH_MCS_LANES]; /* in the order in which they began */
+    size_t running_count;
     wh_status_t ended_with;             /* the last command, other than WH_OK if it failed */
     wh_mcs_process_request_t executing; /* seq 0: none */
     int64_t last_beat_us;
@@ -75,8 +93,8 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 /* The partners to hand to a run or a session. */
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
 
-/* While nothing moves: heartbeat to the simulator, what has come from others. To be called at least every 100
- * ms. */
+/* While nothing moves, and between two slices that are far apart: heartbeat to the simulator, what has come
+ * from others. To be called at least every 100 ms. */
 void wh_mcs_process_idle(wh_mcs_process_t *control);
 
 /* Takes the next request out of the queue, if there is one: it is then the one being executed, until
@@ -94,6 +112,9 @@ void wh_mcs_process_stop_waiting(wh_mcs_process_t *control);
 /* Tells what was expected before there was a run to tell it of. Call it once the identity is known, as
  * connecting by the partners does. */
 void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
+
+/* Tells that the run is over, which the identity is of: another one begins. For who has no client. */
+void wh_mcs_process_tell_over(wh_mcs_process_t *control);
 
 /* Answers the requests that wait and those that have come by now, and tells that the run is over, how it
  * ended, and how much was told of it (link/outcome.h). Run or session may be gone by now. */

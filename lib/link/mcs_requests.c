@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "../mcs/session.h"
 #include "../text/array.h"
@@ -118,14 +119,46 @@ void wh_mcs_process_clear(wh_mcs_process_t *control) {
 
 /* Ends the running command, too. A script's next one, if it comes between two. */
 static void stop_all(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
-    if (control->mcs && (control->script || control->running[0] != '\0')) {
+    if (control->mcs && control->owner.stops) {
+        control->owner.stops(control->owner.user);
+    } else if (control->mcs && (control->script || control->running_count > 0)) {
         wh_mcs_stop(control->mcs);
         control->node->interrupted = true; /* also a wait for a simulator that is silent */
     } else if (control->mcs) {
-        wh_mcs_give_up(control->mcs);
+        wh_mcs_give_up(control->mcs, WH_NONE);
     }
     wh_mcs_process_clear(control);
     remember(control, request, WH_OK, "OK");
+}
+
+/* The name behind STOP and a blank, as it is or in quotes; false if the line is no such STOP. */
+static bool find_stopped(const char *line, char name[WH_LINK_LINE]) {
+    line += strspn(line, " ");
+    if (strncasecmp(line, "STOP ", 5) != 0) {
+        return false;
+    }
+    line += 5 + strspn(line + 5, " ");
+    size_t length = strlen(line);
+    while (length > 0 && line[length - 1] == ' ') {
+        --length;
+    }
+    const bool quoted = length > 2 && line[0] == '"' && line[length - 1] == '"';
+    snprintf(name, WH_LINK_LINE, "%.*s", (int)(quoted ? length - 2 : length), quoted ? line + 1 : line);
+    return name[0] != '\0';
+}
+
+static void stop_mechanism(wh_mcs_process_t *control, const wh_mcs_process_request_t *request,
+                           const char *name) {
+    char text[REASON_BYTES];
+    char reason[REASON_BYTES - 100];
+    if (!control->mcs || wh_mcs_stop_mechanism(control->mcs, name)) {
+        remember(control, request, WH_OK, "OK");
+        return;
+    }
+    snprintf(reason, sizeof reason, "mechanism: %.*s (expected robot, or a station with a chuck)",
+             (int)wh_utf8_cut(name, 200), name);
+    wh_session_write_error(text, sizeof text, WH_STATUS_BAD_ARGUMENT, reason);
+    remember(control, request, WH_STATUS_BAD_ARGUMENT, text);
 }
 
 static void enqueue(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
@@ -142,6 +175,7 @@ static void enqueue(wh_mcs_process_t *control, const wh_mcs_process_request_t *r
 static void take_new(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
     const char *line = request->line;
     char status[WH_MCS_DESCRIPTION_BYTES + 4] = "OK phase=over";
+    char name[WH_LINK_LINE];
     if (wh_session_says(line, "STATUS")) {
         if (control->mcs) {
             wh_mcs_describe(control->mcs, status + 3);
@@ -152,11 +186,16 @@ static void take_new(wh_mcs_process_t *control, const wh_mcs_process_request_t *
                             "OK version=" WH_VERSION);
     } else if (wh_session_says(line, "STOP")) {
         stop_all(control, request);
+    } else if (find_stopped(line, name)) {
+        stop_mechanism(control, request, name);
     } else if (control->script) {
         turn_away(
             control, request->seq, line, WH_STATUS_BUSY,
             "another command is being executed; the script %.200s runs (expected STATUS, VERSION or STOP)",
             control->script);
+    } else if (control->owner.busy) {
+        turn_away(control, request->seq, line, WH_STATUS_BUSY, "%s (expected STATUS, VERSION or STOP)",
+                  control->owner.busy);
     } else {
         enqueue(control, request);
     }

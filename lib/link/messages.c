@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "../layout/grips.h"
 #include "../record/counterpart.h"
 
 /* -------------------------------------------------------------------------------------------------- parts */
@@ -166,6 +167,24 @@ static void put_condition(const wh_physics_state_t *condition, size_t g, waferha
     put_vec3(&condition->carry[g].before[1], out->wafer_before[1]);
 }
 
+static void put_grip(const wh_grip_state_t *grip, waferhand_gripper_state *out) {
+    if (grip->phase == WH_GRIP_OPEN) {
+        return;
+    }
+    out->grip_phase = (int8_t)grip->phase;
+    out->grip_wafer = grip->wafer;
+    out->grip_s = grip->s;
+    out->grip_excess = grip->excess;
+    if (grip->phase == WH_GRIP_CLOSING && grip->wafer != WH_NONE) {
+        out->grip_begin[0] = grip->x;
+        out->grip_begin[1] = grip->y;
+        out->grip_lying[0] = grip->lying.x;
+        out->grip_lying[1] = grip->lying.y;
+        out->grip_notch[0] = grip->lying.notch_x;
+        out->grip_notch[1] = grip->lying.notch_y;
+    }
+}
+
 static void put_event(const wh_event_t *event, waferhand_event *out) {
     out->kind = (int32_t)event->kind;
     out->wafer = event->wafer;
@@ -179,6 +198,7 @@ static void put_event(const wh_event_t *event, waferhand_event *out) {
     memcpy(out->parts, event->parts, sizeof out->parts);
     put_vec3(&event->at, out->at);
     put_measured(&event->measured, &out->measured);
+    out->face = event->face == WH_FACE_FRONT ? 1 : 0;
     if (event->kind == WH_EVENT_NEAR_MISS) {
         out->limit = wh_real_abs(event->measured.dr_proj_z) + event->measured.margin_projz;
     }
@@ -189,11 +209,13 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
         wh_link_put_pose(&state->wafers[w].base_from_wafer, room->wafers[w].position,
                          room->wafers[w].rotation);
         room->wafers[w].holder = state->wafers[w].holder;
+        room->wafers[w].face = wh_layout_is_face_down(&state->wafers[w].base_from_wafer) ? 1 : 0;
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         put_gripper(&state->grippers[g], &room->grippers[g]);
         if (state->physics) {
             put_condition(state->physics, g, &room->grippers[g]);
+            put_grip(&state->physics->grips[g], &room->grippers[g]);
         }
     }
     for (size_t e = 0; e < state->event_count; ++e) {
@@ -220,6 +242,12 @@ static void put_scan(const wh_scan_t *scan, wh_link_state_t *room) {
     message->scan_turn = scan->turn;
     message->sample_count = scan->sample_count;
     memcpy(room->samples, scan->samples, sizeof room->samples);
+}
+
+static void put_doors(const wh_doors_t *doors, wh_link_state_t *room) {
+    room->message.door_count = doors->count;
+    room->message.doors = room->doors;
+    memcpy(room->doors, doors->at, sizeof room->doors);
 }
 
 static void put_latch_list(const wh_latch_t latches[], int32_t count, waferhand_latch out[]) {
@@ -250,6 +278,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
                               int64_t missed, wh_link_state_t *room) {
     static const wh_scan_t none;
     static const wh_latches_t unarmed;
+    static const wh_doors_t no_doors;
     waferhand_state *message = &room->message;
     message->utime = state->utime;
     message->seq = state->seq;
@@ -262,6 +291,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->fault_count = state->physics ? (int32_t)state->physics->faults.count : 0;
     message->hash = (int64_t)hash;
     message->missed = missed;
+    message->events_lost = state->has_lost_events ? 1 : 0;
     message->sensors = (int32_t)state->sensors;
     message->wafers = room->wafers;
     message->grippers = room->grippers;
@@ -270,6 +300,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->samples = room->samples;
     message->check = 0;
     put_scan(state->physics ? &state->physics->scan : &none, room);
+    put_doors(state->physics ? &state->physics->doors : &no_doors, room);
     put_latches(state->physics ? &state->physics->latches : &unarmed, room);
     put_arrays(state, room);
 }
@@ -293,6 +324,21 @@ static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physi
     condition->carry[g].known = in->positions_known;
     condition->carry[g].before[0] = take_vec3(in->wafer_before[0]);
     condition->carry[g].before[1] = take_vec3(in->wafer_before[1]);
+}
+
+/* The rest is the layout's to fill in: wh_layout_complete_grips. */
+static void take_grip(const waferhand_gripper_state *in, wh_grip_state_t *grip) {
+    memset(grip, 0, sizeof *grip);
+    grip->phase = (wh_grip_phase_t)in->grip_phase;
+    grip->wafer = in->grip_wafer;
+    grip->s = in->grip_s;
+    grip->excess = in->grip_excess;
+    grip->x = in->grip_begin[0];
+    grip->y = in->grip_begin[1];
+    grip->lying.x = in->grip_lying[0];
+    grip->lying.y = in->grip_lying[1];
+    grip->lying.notch_x = in->grip_notch[0];
+    grip->lying.notch_y = in->grip_notch[1];
 }
 
 /* A near miss between two slices was held against a smaller window, as its limit tells. */
@@ -319,6 +365,7 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     out->limit = in->limit;
     memcpy(out->parts, in->parts, sizeof out->parts);
     out->at = take_vec3(in->at);
+    out->face = in->face == 1 ? WH_FACE_FRONT : WH_FACE_BACK;
     take_measured(&in->measured, tolerance, &out->measured);
     if (out->kind == WH_EVENT_NEAR_MISS) {
         take_near_miss(in->limit, tolerance, out);
@@ -387,12 +434,16 @@ static bool names_fit(const waferhand_event *event, const waferhand_state *messa
            (no_gripper || wh_is_index(event->gripper, (size_t)message->gripper_count));
 }
 
+static bool part_fits(int32_t part) {
+    return part >= WH_NONE && part < WH_LINK_PARTS;
+}
+
 /* True if a step could have yielded the event. Its readers trust its indices. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
     return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
-           other_fits(event, message) && event->parts[0] >= WH_NONE && event->parts[0] < WH_LINK_PARTS &&
-           event->parts[1] >= WH_NONE && event->parts[1] < WH_LINK_PARTS && event->measured_slice >= 0 &&
-           event->measured_slice <= message->seq;
+           other_fits(event, message) && part_fits(event->parts[0]) && part_fits(event->parts[1]) &&
+           event->measured_slice >= 0 && event->measured_slice <= message->seq &&
+           (event->face == 0 || event->face == 1);
 }
 
 static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *tolerance,
@@ -407,6 +458,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     for (int32_t g = 0; g < message->gripper_count; ++g) {
         take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
         take_condition(&message->grippers[g], (size_t)g, &arrays->physics);
+        take_grip(&message->grippers[g], &arrays->physics.grips[g]);
     }
     for (int32_t e = 0; e < message->event_count; ++e) {
         take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);
@@ -414,6 +466,11 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     }
     take_scan(message, &arrays->physics.scan);
     take_latches(&message->latching, &arrays->physics.latches);
+    memset(&arrays->physics.doors, 0, sizeof arrays->physics.doors);
+    arrays->physics.doors.count = message->door_count;
+    for (int32_t d = 0; d < message->door_count; ++d) {
+        arrays->physics.doors.at[d] = message->doors[d];
+    }
     wh_faults_clear(&arrays->physics.faults);
     arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {
@@ -441,6 +498,7 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     state->gripper_count = (size_t)message->gripper_count;
     state->events = arrays->events;
     state->event_count = (size_t)message->event_count;
+    state->has_lost_events = message->events_lost != 0;
     state->sensors = (uint32_t)message->sensors;
     state->physics = &arrays->physics;
     return WH_OK;
@@ -461,7 +519,9 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
                             wh_link_arrays_t *arrays, wh_state_t *state) {
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, arrays, state) != WH_OK ||
         state->wafer_count != layout->wafer_count || state->gripper_count != layout->machine.gripper_count ||
-        message->missed < 0 || message->missed >= message->seq) {
+        (size_t)message->door_count != layout->machine.door_count || message->missed < 0 ||
+        message->missed >= message->seq ||
+        !wh_layout_complete_grips(layout, arrays->grippers, &arrays->physics)) {
         return false;
     }
     const wh_grasp_t table = wh_link_table(message, layout, arrays);
@@ -471,15 +531,15 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
 
 /* ---------------------------------------------------------------------------------------------- proximity */
 
-static void put_counterpart(const wh_state_t *state, size_t g, const wh_tolerance_t *tolerance,
+static void put_counterpart(const wh_state_t *state, size_t g, const wh_layout_t *layout,
                             waferhand_proximity *message) {
     const wh_gripper_t *gripper = &state->grippers[g];
-    const int32_t wafer = wh_counterpart(state, g, tolerance, NULL, state->wafer_count);
+    const int32_t wafer = wh_counterpart(state, g, &layout->cell, NULL, state->wafer_count);
     wh_proximity_t p;
     message->wafer[g] = wafer;
     message->valve[g] = (int8_t)gripper->valve;
-    if (wafer == WH_NONE || wh_proximity_measure(&state->wafers[wafer].base_from_wafer,
-                                                 &gripper->base_from_gripper, tolerance, &p) != WH_OK) {
+    if (wafer == WH_NONE || wh_layout_measure(layout, &state->wafers[wafer].base_from_wafer,
+                                              &gripper->base_from_gripper, &p) != WH_OK) {
         return;
     }
     message->dr_proj_z[g] = p.dr_proj_z;
@@ -488,10 +548,15 @@ static void put_counterpart(const wh_state_t *state, size_t g, const wh_toleranc
     message->n1_proj_n2[g] = p.n1_proj_n2;
     message->ready[g] = p.ready ? 1 : 0;
     message->holds[g] = gripper->wafer == wafer ? 1 : 0;
+    message->face[g] = wh_layout_face_towards(layout, &state->wafers[wafer].base_from_wafer,
+                                              &gripper->base_from_gripper) == WH_FACE_FRONT
+                           ? 1
+                           : 0;
 }
 
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
-                                  const wh_tolerance_t *tolerance, waferhand_proximity *message) {
+                                  const wh_layout_t *layout, waferhand_proximity *message) {
+    const wh_tolerance_t *tolerance = &layout->grasp.tolerance;
     memset(message, 0, sizeof *message);
     message->utime = state->utime;
     message->seq = state->seq;
@@ -502,6 +567,6 @@ void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identit
     message->eps_planar = tolerance->planar;
     message->gripper_count = (int32_t)state->gripper_count;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        put_counterpart(state, g, tolerance, message);
+        put_counterpart(state, g, layout, message);
     }
 }

@@ -31,6 +31,8 @@
 #define WH_LINK_EVENTS WH_SLICE_EVENTS
 /* One for each wafer, and one for those that have none of their own. */
 #define WH_LINK_RIMS (WH_LINK_WAFERS + 1)
+/* A command has room for as many, whatever the cell has. */
+typedef char wh_link_needs_the_usual_counts[WH_AXES == 32 && WH_GRIPPERS == 16 ? 1 : -1];
 /* Parts of a collision world, with which an event's must do. */
 #define WH_LINK_PARTS (1 << 20)
 /* LCM sends what is longer in fragments, which get lost one by one. */
@@ -46,6 +48,9 @@
 /* The longest text of a request, with its terminator. */
 #define WH_LINK_LINE 1001
 
+/* waferhand_cell.collision: what the simulator looks for. */
+enum { WH_LINK_NO_COLLISION, WH_LINK_CONTACT, WH_LINK_GAPS };
+
 /* waferhand_mcs.phase. */
 enum {
     WH_LINK_PHASE_IDLE,
@@ -57,6 +62,8 @@ enum {
     WH_LINK_PHASE_MET,
     WH_LINK_PHASE_UNMET,
     WH_LINK_PHASE_CYCLE,
+    WH_LINK_PHASE_WAITS,
+    WH_LINK_PHASE_ON,
     WH_LINK_PHASES
 };
 
@@ -82,12 +89,14 @@ typedef struct {
     waferhand_event events[WH_LINK_EVENTS];
     waferhand_fault_slot faults[WH_FAULTS];
     int32_t samples[WH_SCAN_SLICE];
+    double doors[WH_DOORS];
     waferhand_latch waiting[WH_LATCHES], latches[WH_LATCHES];
 } wh_link_state_t;
 
 /* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
 typedef struct {
     waferhand_cell message;
+    int8_t grips[WH_GRIPPERS];
     char *gripper_names[WH_GRIPPERS], *valve_names[WH_GRIPPERS];
     waferhand_station stations[WH_LAYOUT_STATIONS];
     char *wafer_names[WH_LINK_WAFERS];
@@ -100,6 +109,8 @@ typedef struct {
     double corners[WH_GRIPPERS][2][WH_OUTLINE_POINTS];
     waferhand_rim rims[WH_LINK_RIMS];
     double chips[WH_LINK_RIMS][3][WH_RIM_CHIPS];
+    waferhand_edge_grip edges[WH_GRIPPERS];
+    waferhand_door doors[WH_DOORS];
 } wh_link_cell_t;
 
 /* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
@@ -148,7 +159,7 @@ wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layo
  * one nearest to the limits (record/counterpart.h); those that other grippers hold count too. Cost: linear
  * in grippers times wafers. */
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
-                                  const wh_tolerance_t *tolerance, waferhand_proximity *message);
+                                  const wh_layout_t *layout, waferhand_proximity *message);
 
 /* Writes the check over the last eight of `size` bytes, the end of a command or a state: a datagram in which
  * a bit has flipped is no message. Nothing happens to less than eight. Cost: about 2 ns a word.

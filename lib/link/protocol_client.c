@@ -20,6 +20,8 @@
 #define RESENDS_AT_FIRST_PACE 20
 /* The longest single wait: between waits the client looks for silence and for a stop. */
 #define WAIT_MOST_US 50000
+/* So often it tells that it still waits. */
+#define WAITS_US 2000
 /* After a stop the answer to what was sent is waited for so long: the simulator has stepped that slice. */
 #define STOP_GRACE_US 100000
 /* A simulator that was started anew may ask for its state several times: it is said once in this time. */
@@ -115,6 +117,8 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
         const size_t count = state->event_count < room ? state->event_count : room;
         memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
         client->event_count += count;
+        client->has_lost_events =
+            client->has_lost_events || state->has_lost_events || count < state->event_count;
     }
     client->state = *state;
     client->state.wafers = client->arrays.wafers;
@@ -252,19 +256,33 @@ static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us
     return waited || (client->silent && is_interrupted(client)) ? WH_STATUS_STOPPED : WH_OK;
 }
 
+static int64_t longest_wait(const wh_protocol_client_t *client) {
+    return client->options.waits ? WAITS_US : WAIT_MOST_US;
+}
+
+static void tell_wait(const wh_protocol_client_t *client, int64_t *told_us) {
+    const int64_t now = wh_node_clock_us();
+    if (client->options.waits && !client->answered && now - *told_us >= WAITS_US) {
+        *told_us = now;
+        client->options.waits(client->options.user);
+    }
+}
+
 /* Waits for the answer to the last command, sending it again and again. */
 static wh_status_t await_answer(wh_protocol_client_t *client) {
     const int64_t begin = wh_node_clock_us();
     int64_t stopped_us = 0;
+    int64_t told_us = begin;
     resend_t resend = {client->resend_us, begin + client->resend_us, client->counters.repeated};
     while (!client->answered && client->refusal == WH_OK) {
         const wh_status_t why = why_give_up(client, &stopped_us);
         if (why != WH_OK) {
             return why;
         }
-        if (wh_node_wait(client->node, clamp(resend.due - wh_node_clock_us(), 0, WAIT_MOST_US)) < 0) {
+        if (wh_node_wait(client->node, clamp(resend.due - wh_node_clock_us(), 0, longest_wait(client))) < 0) {
             return WH_STATUS_NO_NETWORK;
         }
+        tell_wait(client, &told_us);
         restore_simulator(client);
         resend_when_due(client, &resend);
         notice_silence(client);
@@ -349,6 +367,8 @@ static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status
     state->events = client->events;
     state->event_count = client->event_count;
     client->events_delivered = client->event_count;
+    state->has_lost_events = client->has_lost_events;
+    client->has_lost_events = false;
     state->status = status;
 }
 

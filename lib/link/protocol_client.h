@@ -36,6 +36,8 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* not zero: send nothing more; may be null */
     bool (*interrupted)(void);         /* a signal came that is to end a wait for silence; may be null */
     void (*tick)(void *user);          /* called once a second of a long motion; may be null */
+    /* Called each 2 ms while an answer is waited for; may be null. */
+    void (*waits)(void *user);
     /* Called for each state that is taken for the first time, also for those between two exchanges of a free
      * run; may be null. */
     void (*taken)(void *user, const wh_state_t *state);
@@ -72,6 +74,7 @@ typedef struct {
     wh_link_arrays_t spare;
     wh_event_t events[4 * WH_LINK_EVENTS]; /* of all states since the last exchange */
     size_t event_count, events_delivered;
+    bool has_lost_events;              /* since the last exchange */
     uint8_t restore[WH_LINK_DATAGRAM]; /* the last state as it came, to be sent back */
     size_t restore_size;
 } wh_protocol_client_t;

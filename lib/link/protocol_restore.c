@@ -41,6 +41,7 @@ static bool take_again(wh_protocol_client_t *client, const uint8_t bytes[], size
 /* What is taken is no news: the simulator still has to have it. */
 static wh_status_t hand_over(wh_protocol_client_t *client) {
     client->event_count = 0;
+    client->has_lost_events = false;
     client->events_delivered = 0;
     client->answered = false;
     client->pending = true;

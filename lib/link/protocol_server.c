@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "../grasp/restore.h"
+#include "../layout/doors.h"
+#include "../sim/snapshot.h"
 #include "../text/array.h"
 
 static void start_run(wh_protocol_server_t *server, int64_t run) {
@@ -13,7 +15,7 @@ static void start_run(wh_protocol_server_t *server, int64_t run) {
                                   .grippers = server->arrays.grippers,
                                   .gripper_count = layout->machine.gripper_count,
                                   .buckets = server->buckets,
-                                  .bucket_count = sizeof server->buckets / sizeof server->buckets[0]};
+                                  .bucket_count = wh_layout_buckets(layout)};
     if (layout->wafer_count > 0) {
         memcpy(server->arrays.wafers, layout->start, layout->wafer_count * sizeof *layout->start);
     }
@@ -23,6 +25,9 @@ static void start_run(wh_protocol_server_t *server, int64_t run) {
     (void)wh_simulator_set_scanning(&server->simulator, &scanning);
     const wh_latching_t latching = wh_layout_latching(layout);
     (void)wh_simulator_set_latching(&server->simulator, &latching);
+    (void)wh_layout_give_doors(layout, &server->simulator);
+    server->grips.seen = server->seen;
+    (void)wh_layout_give_grips(layout, &server->simulator, &server->grips);
     if (server->collision.memory) {
         wh_collision_attach(&server->collision, layout, &server->simulator, server->collision.memory);
     }
@@ -123,6 +128,8 @@ static wh_protocol_server_result_t step(wh_protocol_server_t *server, const wafe
     server->state = state;
     server->missed += gap;
     server->seq = message->seq;
+    memcpy(server->axes, command.axes, sizeof server->axes);
+    server->has_axes = command.axis_count == server->layout->machine.axis_count;
     if (!server->encodes_later) {
         wh_protocol_server_encode(server);
     }
@@ -215,7 +222,7 @@ wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *ser
         return WH_SERVER_IGNORED;
     }
     if (!wh_link_state_is_sound(message, server->layout, &server->spare, &state) ||
-        !take_over(server, message, &state)) {
+        !wh_simulator_may_have(&server->simulator, state.physics) || !take_over(server, message, &state)) {
         ++server->counters.restore_refused;
         return WH_SERVER_IGNORED;
     }
@@ -224,6 +231,7 @@ wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *ser
     }
     server->identity.run = message->run;
     server->seq = message->seq;
+    server->has_axes = false;
     server->missed = message->missed;
     ++server->counters.restored;
     encode(server, &server->state, &server->identity);

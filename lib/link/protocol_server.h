@@ -12,6 +12,7 @@
 #define WH_LINK_PROTOCOL_SERVER_H
 
 #include "../layout/collision.h"
+#include "../layout/grips.h"
 #include "../sim/simulator.h"
 #include "messages.h"
 
@@ -33,12 +34,16 @@ typedef struct {
     wh_collision_t collision; /* without memory: the layout asks for no check */
     wh_state_t state;         /* after the last step */
     int64_t seq;              /* of the last step; 0: none yet */
+    wh_real_t axes[WH_AXES];  /* of the last step's command */
+    bool has_axes;            /* the command had all of the machine's */
     int64_t missed;           /* slices that never came, in a free-running run */
     bool encodes_later; /* set by the caller: the state of a step is encoded by wh_protocol_server_encode */
     int64_t past_runs[WH_SERVER_PAST_RUNS];
     size_t past_count;
     wh_protocol_server_counters_t counters;
     wh_link_arrays_t arrays; /* the table's memory */
+    wh_grips_room_t grips;
+    wh_wafer_t seen[WH_LINK_WAFERS]; /* by grippers, in a step */
     uint32_t buckets[WH_GRASP_BUCKETS(WH_LINK_WAFERS, WH_GRIPPERS)];
     wh_link_arrays_t spare; /* a restore is tried here first */
     wh_link_state_t room;

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../text/utf8.h"
+
 /* ------------------------------------------------------------------------------------------------ sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
@@ -28,7 +30,7 @@ static void tell_proximity(wh_sim_process_t *simulation) {
     simulation->proximity_waits = false;
     simulation->last_proximity_us = wh_node_clock_us();
     wh_link_proximity_to_message(&simulation->server.state, &simulation->server.identity,
-                                 &simulation->server.layout->grasp.tolerance, &message);
+                                 simulation->server.layout, &message);
     publish(simulation, WH_CHANNEL_PROXIMITY, simulation->encoded,
             waferhand_proximity_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, &message));
 }
@@ -129,12 +131,44 @@ static void on_restore(void *user, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
+/* The task's command has ended, or begins anew; of a run that is over all have. */
+static void forget_commands(wh_sim_process_t *simulation, const waferhand_mcs *message) {
+    size_t kept = 0;
+    for (size_t i = 0; i < simulation->command_count; ++i) {
+        if (message->phase != WH_LINK_PHASE_OVER && simulation->commands[i].task != message->task) {
+            simulation->commands[kept++] = simulation->commands[i];
+        }
+    }
+    simulation->command_count = kept;
+}
+
+static bool command_runs(const waferhand_mcs *message) {
+    return message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
+}
+
 /* The first command of a run begins before the run has a number. An answer, as of STATUS, ends no command. */
-static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
+static bool is_of_commands(const wh_sim_process_t *simulation, const waferhand_mcs *message) {
     const bool is_ours = message->run == 0 || message->run == simulation->server.identity.run;
-    const bool runs = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
-    if (is_ours && (runs || message->request == 0)) {
-        (void)snprintf(simulation->command, sizeof simulation->command, "%s", runs ? message->command : "");
+    const bool rests = message->phase == WH_LINK_PHASE_IDLE || message->phase == WH_LINK_PHASE_OVER;
+    const bool ends = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
+    return is_ours && (command_runs(message) || rests || (ends && message->request == 0));
+}
+
+static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
+    if (!is_of_commands(simulation, message)) {
+        return;
+    }
+    forget_commands(simulation, message);
+    if (command_runs(message) && simulation->command_count < WH_SIMULATION_COMMANDS) {
+        wh_sim_process_command_t *command = &simulation->commands[simulation->command_count++];
+        command->task = message->task;
+        wh_utf8_clip(command->line, sizeof command->line, message->command);
+    }
+    simulation->command[0] = '\0';
+    size_t length = 0;
+    for (size_t i = 0; i < simulation->command_count && length < sizeof simulation->command; ++i) {
+        length += (size_t)snprintf(simulation->command + length, sizeof simulation->command - length, "%s%s",
+                                   i > 0 ? "; " : "", simulation->commands[i].line);
     }
 }
 
@@ -227,6 +261,12 @@ wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_co
     *state = simulation->server.state;
     state->status = (wh_status_t)simulation->server.room.message.status;
     return state->status;
+}
+
+bool wh_sim_process_restore(wh_sim_process_t *simulation, const waferhand_state *message) {
+    const wh_protocol_server_result_t result = wh_protocol_server_restore(&simulation->server, message);
+    act_on(simulation, result);
+    return result == WH_SERVER_RESTORED;
 }
 
 void wh_sim_process_tick(wh_sim_process_t *simulation) {

@@ -21,17 +21,27 @@ typedef struct {
     uint64_t unsent;   /* datagrams that the network refused */
 } wh_sim_process_counters_t;
 
+/* A script has one command at a time, and so has each of its tasks. */
+#define WH_SIMULATION_COMMANDS 65
+
+typedef struct {
+    int32_t task; /* whose command it is */
+    char line[WH_LINK_LINE];
+} wh_sim_process_command_t;
+
 typedef struct {
     wh_node_t *node;
     wh_protocol_server_t server;
     wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
     int64_t last_command_us, last_cell_us, last_proximity_us;
-    bool proximity_waits;       /* of the last slice, until it may go out */
-    int64_t other_run;          /* the last one that was turned away for its layout */
-    bool running;               /* a run has begun and is not over */
-    bool silent;                /* and motion control has fallen silent */
-    char command[WH_LINK_LINE]; /* the line that motion control says it executes; empty: none */
+    bool proximity_waits; /* of the last slice, until it may go out */
+    int64_t other_run;    /* the last one that was turned away for its layout */
+    bool running;         /* a run has begun and is not over */
+    bool silent;          /* and motion control has fallen silent */
+    wh_sim_process_command_t commands[WH_SIMULATION_COMMANDS]; /* that motion control says it executes */
+    size_t command_count;
+    char command[WH_LINK_LINE]; /* their lines, cut to that; empty: none */
     wh_sim_process_counters_t counters;
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_sim_process_t;
@@ -47,6 +57,10 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
  * the answer carries; `state` is a view of the simulator's memory. */
 wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_command *message,
                                 wh_state_t *state);
+
+/* Takes a state over as if it had come from the network, and publishes what comes of it. False if it is not
+ * taken. */
+bool wh_sim_process_restore(wh_sim_process_t *simulation, const waferhand_state *message);
 
 /* What is due by the clock: the cell, the proximity values of a cell that rests, and the silence of motion
  * control. To be called at least every 100 ms. */

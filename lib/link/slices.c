@@ -87,21 +87,22 @@ static void put_valves(bytes_t *bytes, const wh_slices_t *slices, size_t from, s
             ++next;
         }
         put_number(bytes, next - i);
-        put_byte(bytes, slices->valves[i]);
-        put_byte(bytes, slices->told[i]);
+        put_number(bytes, slices->valves[i]);
+        put_number(bytes, slices->told[i]);
     }
 }
 
 static void take_valves(bytes_t *bytes, wh_slices_t *slices) {
-    const unsigned none = ~((1U << slices->grippers) - 1);
+    const uint64_t none = ~((UINT64_C(1) << slices->grippers) - 1);
     for (size_t i = 0; bytes->good && i < slices->count;) {
         const size_t run = take_run(bytes, slices->count - i);
-        const uint8_t valves = take_byte(bytes);
-        const uint8_t told = take_byte(bytes);
+        const uint64_t valves = take_number(bytes);
+        const uint64_t told = take_number(bytes);
         bytes->good = bytes->good && ((valves | told) & none) == 0;
-        memset(slices->valves + i, valves, run);
-        memset(slices->told + i, told, run);
-        i += run;
+        for (const size_t end = i + run; i < end; ++i) {
+            slices->valves[i] = (uint16_t)valves;
+            slices->told[i] = (uint16_t)told;
+        }
     }
 }
 
@@ -336,12 +337,12 @@ static bool follows(const wh_slices_t *slices, const waferhand_command *command)
 }
 
 /* False if a valve is neither 0 nor 1. */
-static bool gather(const int32_t valves[], int32_t count, uint8_t *mask) {
+static bool gather(const int32_t valves[], int32_t count, uint16_t *mask) {
     int32_t any = 0;
     *mask = 0;
     for (int32_t g = 0; g < count; ++g) {
         any |= valves[g];
-        *mask = (uint8_t)(*mask | (valves[g] & 1) << g);
+        *mask = (uint16_t)(*mask | (valves[g] & 1) << g);
     }
     return (any & ~1) == 0;
 }
@@ -366,8 +367,8 @@ static void put_doubles(wh_slices_t *slices, const waferhand_command *command) {
 
 bool wh_slices_add(wh_slices_t *slices, const waferhand_command *command, const int32_t told[],
                    uint64_t hash) {
-    uint8_t valves;
-    uint8_t in_force;
+    uint16_t valves;
+    uint16_t in_force;
     if (slices->count == WH_SLICES_MOST ||
         !is_in_range(command->seq, command->utime, command->gripper_count, command->axis_count,
                      command->lockstep) ||
@@ -451,7 +452,7 @@ size_t wh_slices_encode(const wh_slices_t *slices, size_t *from, uint8_t bytes[W
     const size_t room = WH_SLICES_BYTES - (size_t)waferhand_slices_encoded_size(&message);
     size_t count = slices->count - *from;
     size_t content = put_content(slices, *from, *from + count, data, room);
-    /* A single slice always fits: 104 numbers. */
+    /* A single slice always fits: 224 numbers. */
     while (content == 0) {
         count /= 2;
         content = put_content(slices, *from, *from + count, data, room);

@@ -24,7 +24,7 @@
 #define WH_SLICES_COLUMNS (WH_AXES + 12 * WH_GRIPPERS)
 
 /* waferhand_recording.version: what this program writes. Logs without that message are of version 1. */
-#define WH_RECORDING_VERSION 4
+#define WH_RECORDING_VERSION 7
 
 /* waferhand_recording.mode. */
 enum { WH_RECORDING_SLICES, WH_RECORDING_ALL };
@@ -32,7 +32,7 @@ enum { WH_RECORDING_SLICES, WH_RECORDING_ALL };
 /* waferhand_recording.closed. */
 enum { WH_RECORDING_BEGINS, WH_RECORDING_ENDS, WH_RECORDING_GOES_ON };
 
-/* Slices of a block, as they are collected and as they come out: 0.9 MB. Zero it to begin with: count 0. */
+/* Slices of a block, as they are collected and as they come out: 1.8 MB. Zero it to begin with: count 0. */
 typedef struct {
     wh_link_identity_t identity;
     int64_t first;    /* number of the first slice */
@@ -41,8 +41,8 @@ typedef struct {
     int8_t lockstep;
     size_t grippers, axes;
     size_t count;
-    uint8_t valves[WH_SLICES_MOST]; /* bit g: the command's valve of gripper g is 1 */
-    uint8_t told[WH_SLICES_MOST];   /* bit g: the valve in force before faults is 1 */
+    uint16_t valves[WH_SLICES_MOST]; /* bit g: the command's valve of gripper g is 1 */
+    uint16_t told[WH_SLICES_MOST];   /* bit g: the valve in force before faults is 1 */
     uint64_t hash[WH_SLICES_MOST];
     uint64_t column[WH_SLICES_COLUMNS][WH_SLICES_MOST]; /* bits of axes and poses */
 } wh_slices_t;

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../layout/layout.h"
+#include "../layout/grips.h"
 #include "../link/messages.h"
 #include "../text/array.h"
 
@@ -36,6 +36,12 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
                        " (expected %.200s, hash %016" PRIx64 ")",
                        path, wh_layout_hash(layout), made->told->path, made->hash);
         layout = NULL;
+    } else if (wh_layout_world_hash(layout) != made->world_hash) {
+        (void)snprintf(made->note, sizeof made->note,
+                       "%.200s is not as it was: its shapes, or what collisions are looked for, were other "
+                       "ones when the log was recorded",
+                       path);
+        layout = NULL;
     }
     return layout;
 }
@@ -44,6 +50,7 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
 
 static void fill_machine(wh_layout_t *layout) {
     wh_machine_t *machine = &layout->machine;
+    const size_t end = machine->axis_count; /* of the doors, if it has some */
     machine->axis_count = WH_ROBOT_AXES;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         machine->mounts[g].axis = WH_NONE;
@@ -57,6 +64,7 @@ static void fill_machine(wh_layout_t *layout) {
             layout->grippers[chuck].station = (int32_t)s;
         }
     }
+    machine->axis_count = machine->door_count > 0 ? end : machine->axis_count;
 }
 
 static void fill_shapes(wh_log_layout_t *made) {
@@ -64,7 +72,7 @@ static void fill_shapes(wh_log_layout_t *made) {
     wh_robot_t robot;
     wh_robot_default(&robot);
     layout->wafer_diameter = DIAMETER;
-    layout->wafer_thickness = THICKNESS;
+    layout->wafer_thickness = layout->has_faces ? layout->cell.thickness : THICKNESS;
     layout->notch_depth = 0; /* a log tells of none */
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
@@ -86,6 +94,8 @@ bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
     memset(made, 0, sizeof *made);
     made->told = told;
     made->hash = (uint64_t)cell->layout_hash;
+    made->collision = cell->collision;
+    made->world_hash = (uint64_t)cell->world_hash;
     made->layout = load(made, options->path ? options->path : told->path, options);
     made->is_whole = made->layout != NULL;
     if (!made->is_whole) {
@@ -94,6 +104,36 @@ bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
         made->layout = told;
     }
     return true;
+}
+
+static const char *lacks_placing(const wh_layout_t *layout, wh_event_kind_t kind) {
+    if (kind == WH_EVENT_PLACED_OFF_CENTRE && !(layout->cell.off_centre > 0)) {
+        return "the cell tells of no wafer beside its place (expected a layout with placing.off_centre)";
+    }
+    if (kind == WH_EVENT_PLACED_ASKEW && !(layout->cell.askew > 0)) {
+        return "the cell tells of no wafer that lies askew (expected a layout with placing.askew)";
+    }
+    return NULL;
+}
+
+static const char *lacks_contact(int8_t collision, wh_event_kind_t kind) {
+    if (collision == WH_LINK_NO_COLLISION) {
+        return "collisions were not looked at (expected a layout with collision = true)";
+    }
+    return kind == WH_EVENT_TOO_CLOSE && collision != WH_LINK_GAPS
+               ? "no gap has a limit (expected a layout with clearance)"
+               : NULL;
+}
+
+const char *wh_log_layout_lacks(const wh_log_layout_t *made, wh_event_kind_t kind) {
+    if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE) {
+        return lacks_contact(made->collision, kind);
+    }
+    if (kind == WH_EVENT_SLIPPED && !(made->layout->physics.pads.mass > 0) &&
+        !wh_layout_has_passive(made->layout)) {
+        return "slips were not looked for (expected a layout with pads)";
+    }
+    return lacks_placing(made->layout, kind);
 }
 
 void wh_log_layout_free(wh_log_layout_t *made) {

@@ -1,6 +1,7 @@
 /* The cell of a log as a report needs it: with shapes, which the messages do not tell.
  *
- * The messages tell the layout's path and hash. If that file exists and has this hash, it is the layout. Else
+ * The messages tell the layout's path and hash, and those of its collision check. If that file exists and
+ * has these hashes, it is the layout. Else
  * a layout is made of the message, with the default shapes of 300 mm wafers; the arm's axes are then not
  * known.
  */
@@ -15,6 +16,8 @@ typedef struct {
     const wh_layout_t *layout; /* null: no cell came yet */
     bool is_whole;             /* it is the file's */
     uint64_t hash;
+    int8_t collision; /* what collisions the log's simulator looked for (waferhand_cell) */
+    uint64_t world_hash;
     char note[700];        /* why it is not, or empty */
     wh_sandbox_t *sandbox; /* of the file's */
     wh_layout_t *told;     /* the message's; and what it lacks: */
@@ -33,6 +36,10 @@ typedef struct {
  * options name a file and it is not the layout, is_whole is false: that is an error of who named it. */
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options);
+
+/* Why no event of this kind can be in the log, as its cell was recorded: what nobody looked for, and what the
+ * layout would need. Null: it may be there. */
+const char *wh_log_layout_lacks(const wh_log_layout_t *made, wh_event_kind_t kind);
 
 void wh_log_layout_free(wh_log_layout_t *made);
 

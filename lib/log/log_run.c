@@ -48,13 +48,15 @@ static wh_share_t share_standing(const wh_log_run_t *run, const wh_state_t *stat
     return run->has_opened_valve ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
 }
 
+bool wh_log_run_begins_wait(const wh_log_run_t *run, size_t g) {
+    return run->state.physics->told[g] != run->last.grippers[g].valve;
+}
+
 static void note_valves(wh_log_run_t *run, const wh_state_t *state, const bool moving[WH_AXES]) {
     const bool carried = moving[WH_AXIS_THETA] || moving[WH_AXIS_R] || moving[WH_AXIS_YAW];
     run->has_opened_valve = run->has_opened_valve && !carried;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        const bool opens =
-            state->physics->told[g] == WH_VALVE_OPEN && run->last.grippers[g].valve == WH_VALVE_CLOSED;
-        run->has_opened_valve = run->has_opened_valve || opens;
+        run->has_opened_valve = run->has_opened_valve || wh_log_run_begins_wait(run, g);
         run->last.grippers[g].valve = state->physics->told[g];
     }
 }
@@ -66,6 +68,9 @@ static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
         moving[axis] = wh_real_abs(axes[axis] - run->last.axes[axis]) > 0;
     }
     run->recorder.task = wh_activity_motion(&run->cell.layout->machine, moving, share_standing(run, state));
+    if (run->record.has_tasks) {
+        wh_log_run_count_parts(run, moving);
+    }
     note_valves(run, state, moving);
     run->last.seq = seq;
     memcpy(run->last.axes, axes, sizeof run->last.axes);
@@ -76,7 +81,7 @@ static void start(wh_log_run_t *run, bool from_the_beginning) {
     const wh_machine_t *machine = &run->cell.layout->machine;
     wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
     memset(&run->last, 0, sizeof run->last);
-    memcpy(run->last.axes, machine->robot.home, sizeof machine->robot.home);
+    wh_machine_home(machine, run->last.axes);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         run->last.grippers[g].valve = WH_VALVE_CLOSED;
     }
@@ -108,18 +113,18 @@ static void take_slice(wh_log_run_t *run, const waferhand_command *command, cons
         start(run, message->seq == 1);
     }
     const bool known = find_axes(run, command, axes);
+    const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
     note_gap(run, message);
     run->seq = message->seq;
     run->hash = (uint64_t)message->hash;
     run->missed = message->missed;
     count_slice(run, message->seq, axes);
     if (run->collision.memory) {
-        wh_collision_observe(&run->collision, &run->state);
+        wh_collision_observe(&run->collision, whole ? axes : NULL, &run->state);
     }
     wh_signals_slice(&run->signals, known ? axes : NULL, known ? (size_t)command->axis_count : 0,
                      &run->state);
     if (run->options.listener) {
-        const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
         run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &run->state,
                               run->hash);
     }
@@ -168,9 +173,11 @@ static void on_state(void *user, const waferhand_command *command, const waferha
     const wh_layout_t *layout = run->cell.layout;
     wh_log_run_take_told_before(run, message->seq);
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->state) != WH_OK ||
-        !is_sound(&run->state, layout)) {
+        !is_sound(&run->state, layout) ||
+        !wh_layout_complete_grips(layout, run->arrays.grippers, &run->arrays.physics)) {
         return;
     }
+    wh_log_run_set_parts(run);
     wh_recorder_events(&run->recorder, &run->state);
     if (message->status == WH_OK) {
         take_slice(run, command, message);
@@ -260,7 +267,7 @@ static void follow(wh_log_run_t *run, FILE *file) {
     if (run->cell.is_whole && layout->collision) {
         run->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
         run->collision.layout = layout;
-        wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
+        wh_links_home(&run->collision.links, layout);
     }
     run->replay.only_run = run->run_count > 1 ? run->wanted->run : 0;
     run->replay.listener = on_state;
@@ -287,8 +294,8 @@ static bool ends_early(const wh_log_run_t *run) {
 
 static void finish_run(wh_log_run_t *run) {
     const wh_recorder_end_t end = {run->state.wafers, run->hash, run->missed, run->collision.world};
-    if (run->recorder.running != WH_NONE) {
-        run->record.commands[run->recorder.running].end_s = wh_recorder_now(&run->recorder);
+    for (size_t i = 0; i < run->lane_count; ++i) {
+        run->record.commands[run->lanes[i].running].end_s = wh_recorder_now(&run->recorder);
     }
     wh_log_run_judge(run);
     run->record.is_partial = run->record.is_partial || begins_late(run) || ends_early(run) || run->gaps > 0;
@@ -380,8 +387,13 @@ static bool choose(wh_log_run_t *run, FILE *file) {
         look_at(run);
     }
     const uint64_t events = run->log.count;
+    if (events == 0 && run->log.source.broken > 0) {
+        return refuse(run,
+                      "damaged at byte %" PRIu64 ", within a compressed frame: nothing of it can be read",
+                      run->log.source.first_broken);
+    }
     if (events == 0) {
-        return refuse(run, "no LCM event log (expected one, or a script)");
+        return refuse(run, "no LCM event log (expected one)");
     }
     if (run->run_count == 0) {
         return refuse(run, "no slice of a run in it, in %" PRIu64 " events: nothing to show%s", events,
@@ -445,7 +457,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     const char *fault = NULL;
     FILE *file = wh_log_file(options->path, &fault);
     if (!file) {
-        return refuse(run, "%s (expected an LCM event log, or a script)", fault);
+        return refuse(run, "%s (expected an LCM event log)", fault);
     }
     const bool read = read_runs(run, file);
     (void)fclose(file);

@@ -31,6 +31,14 @@ typedef struct {
     void *user;
 } wh_log_run_options_t;
 
+/* What a task of the script does, or the script itself, as it was told. */
+typedef struct {
+    int32_t task;            /* its number */
+    int32_t running;         /* index of its command in the record, or WH_NONE */
+    uint32_t axes, grippers; /* bits: what the command has */
+    bool has_opened_valve;   /* of these grippers' one, in the running command, since they were carried */
+} wh_log_lane_t;
+
 /* What motion control told of a run. */
 typedef struct {
     waferhand_mcs message;
@@ -58,9 +66,11 @@ typedef struct {
     int64_t seq; /* of the last slice */
     uint64_t hash;
     int64_t missed;
-    size_t gaps;           /* stretches of slices that are not in the log */
-    wh_command_t last;     /* the last slice: its number, axes and valves */
-    bool has_opened_valve; /* in the running command, since an axis other than Z moved */
+    size_t gaps;                            /* stretches of slices that are not in the log */
+    wh_command_t last;                      /* the last slice: its number, axes and valves */
+    bool has_opened_valve;                  /* in the running command, since an axis other than Z moved */
+    wh_log_lane_t lanes[WH_RECORDER_PARTS]; /* once there are tasks, by what they were told of first */
+    size_t lane_count;
     wh_run_told_t outcome;
     int32_t last_expectation, last_cycle; /* the highest numbers that were told */
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
@@ -77,6 +87,17 @@ typedef struct {
  * says that the run passed only if the log tells it and the verdict is WH_READING_SAME: else it is untold. To
  * be closed in any case. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
+
+/* When the last slice of a run that was read ends, s. */
+static inline double wh_log_run_end(const wh_log_run_t *run) {
+    return (double)(run->seq * run->cell.layout->slice_us) / 1e6;
+}
+
+/* True if the log is one part of a recording of several. */
+static inline bool wh_log_run_is_part(const wh_log_run_t *run) {
+    const wh_replay_recording_t *recording = &run->replay.recording;
+    return recording->part > 1 || recording->closed == WH_RECORDING_GOES_ON;
+}
 
 void wh_log_run_close(wh_log_run_t *run);
 

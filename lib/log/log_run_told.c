@@ -8,7 +8,7 @@
 
 /* A command begins once, however often that is said. */
 static bool is_running(const wh_log_run_t *run, const waferhand_mcs *told) {
-    const int32_t running = run->recorder.running;
+    const int32_t running = run->recorder.running; /* of the task that tells it */
     return running != WH_NONE && strcmp(run->record.commands[running].text, told->command) == 0;
 }
 
@@ -45,7 +45,26 @@ static bool is_new(wh_log_run_t *run, const waferhand_mcs *told) {
     return true;
 }
 
-static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
+/* From the first such message on there are tasks. */
+static void take_turn(wh_log_run_t *run, const waferhand_mcs *told) {
+    wh_log_lane_t *lane = wh_log_run_find_lane(run, told->task);
+    const bool waits = told->phase == WH_LINK_PHASE_WAITS;
+    run->record.has_tasks = true;
+    if (lane) {
+        lane->axes = waits ? 0 : (uint32_t)told->axes;
+        lane->grippers = waits ? 0 : (uint32_t)told->grippers;
+    }
+    if (waits) {
+        wh_recorder_wait(&run->recorder, told->text);
+    } else {
+        wh_recorder_go_on(&run->recorder);
+    }
+}
+
+/* True if the message tells of a task's command, or of the script's. */
+static bool take_command(wh_log_run_t *run, const waferhand_mcs *told) {
+    bool is_taken = true;
+    wh_log_run_choose_task(run, told->task);
     switch (told->phase) {
     case WH_LINK_PHASE_BEGINS:
         if (!is_running(run, told)) {
@@ -57,6 +76,23 @@ static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
     case WH_LINK_PHASE_FAILED:
         take_end(run, told);
         break;
+    case WH_LINK_PHASE_WAITS:
+    case WH_LINK_PHASE_ON:
+        take_turn(run, told);
+        break;
+    default:
+        is_taken = false;
+        break;
+    }
+    wh_log_run_keep_task(run);
+    return is_taken;
+}
+
+static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
+    if (take_command(run, told)) {
+        return;
+    }
+    switch (told->phase) {
     case WH_LINK_PHASE_MET:
     case WH_LINK_PHASE_UNMET:
         if (is_new(run, told)) {

@@ -261,7 +261,7 @@ static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
         ++replay->proximities;
         return;
     }
-    wh_link_proximity_to_message(&server->state, &server->identity, &server->layout->grasp.tolerance, &made);
+    wh_link_proximity_to_message(&server->state, &server->identity, server->layout, &made);
     if (waferhand_proximity_encode(bytes, 0, (int)sizeof bytes, &made) != (int)size ||
         memcmp(bytes, data, size) != 0) {
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);

@@ -36,6 +36,7 @@ static const field_t head_fields[] = {{"utime", AT(state, utime), INT64},
                                       {"grippers", AT(state, gripper_count), INT32},
                                       {"faults", AT(state, fault_count), INT32},
                                       {"samples of the edge sensor", AT(state, sample_count), INT32},
+                                      {"doors", AT(state, door_count), INT32},
                                       {"missed slices", AT(state, missed), INT64},
                                       {0}};
 
@@ -69,6 +70,7 @@ static const field_t tail_fields[] = {
 static const field_t wafer_fields[] = {{"rotation", AT(wafer_state, rotation), MATRIX},
                                        {"position", AT(wafer_state, position), VECTOR},
                                        {"index of the holder", AT(wafer_state, holder), INT32},
+                                       {"face", AT(wafer_state, face), INT8},
                                        {0}};
 
 static const field_t gripper_fields[] = {
@@ -100,6 +102,7 @@ static const field_t event_fields[] = {{"kind", AT(event, kind), INT32},
                                        {"first part", AT(event, parts[0]), INT32},
                                        {"second part", AT(event, parts[1]), INT32},
                                        {"place", AT(event, at), VECTOR},
+                                       {"face", AT(event, face), INT8},
                                        {0}};
 
 static const field_t fault_fields[] = {{"phase", AT(fault_slot, phase), INT32},
@@ -259,6 +262,17 @@ static bool scans_differ(const waferhand_state *recorded, const waferhand_state 
     return false;
 }
 
+static bool doors_differ(const wh_layout_t *layout, const waferhand_state *recorded,
+                         const waferhand_state *replayed, wh_replay_difference_t *difference) {
+    static const field_t place[] = {{"how far it is open", 0, REAL}, {0}};
+    bool found = false;
+    for (int32_t d = 0; !found && d < recorded->door_count; ++d) {
+        found =
+            differ(place, layout->door_list[d].name, &recorded->doors[d], &replayed->doors[d], difference);
+    }
+    return found;
+}
+
 static bool latches_differ(const waferhand_latching *recorded, const waferhand_latching *replayed,
                            wh_replay_difference_t *difference) {
     bool found = differ(latches_fields, "beams", recorded, replayed, difference);
@@ -270,6 +284,13 @@ static bool latches_differ(const waferhand_latching *recorded, const waferhand_l
         found = differ(latch_fields, "a latch", &recorded->latches[i], &replayed->latches[i], difference);
     }
     return found;
+}
+
+static bool sensing_differs(const wh_layout_t *layout, const waferhand_state *recorded,
+                            const waferhand_state *replayed, wh_replay_difference_t *difference) {
+    return scans_differ(recorded, replayed, difference) ||
+           doors_differ(layout, recorded, replayed, difference) ||
+           latches_differ(&recorded->latching, &replayed->latching, difference);
 }
 
 /* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
@@ -293,8 +314,7 @@ static bool states_differ(const wh_layout_t *layout, const waferhand_state *reco
         }
     }
     return events_differ(recorded, replayed, difference) || faults_differ(recorded, replayed, difference) ||
-           scans_differ(recorded, replayed, difference) ||
-           latches_differ(&recorded->latching, &replayed->latching, difference) ||
+           sensing_differs(layout, recorded, replayed, difference) ||
            differ(tail_fields, "", recorded, replayed, difference);
 }
 

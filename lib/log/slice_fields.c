@@ -3,47 +3,124 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "../layout/axes.h"
+#include "../layout/grips.h"
+#include "../math/trig.h"
 #include "../record/counterpart.h"
 #include "../record/quaternion.h"
 #include "../record/signals.h"
 
-enum { OF_GRIPPER = 7, OF_WAFER = 8 };
+enum { OF_GRIPPER = 8, OF_WAFER = 13 };
+
+/* In which cells a column is told. */
+typedef enum { IN_ALL, WITH_EDGES, WITH_FACES, WITH_GRIPS } told_t;
 
 static const struct {
     const char *name;
     wh_slice_field_t kind;
-} of_gripper[OF_GRIPPER] = {{"valve", WH_FIELD_NUMBER},        {"sensor", WH_FIELD_NUMBER},
-                            {"vacuum", WH_FIELD_NUMBER},       {"nearest", WH_FIELD_WAFER},
-                            {"dr_proj_z mm", WH_FIELD_NUMBER}, {"dr_proj_xy mm", WH_FIELD_NUMBER},
-                            {"n1_proj_n2", WH_FIELD_NUMBER}},
-  of_wafer[OF_WAFER] = {{"holder", WH_FIELD_GRIPPER}, {"x mm", WH_FIELD_NUMBER}, {"y mm", WH_FIELD_NUMBER},
-                        {"z mm", WH_FIELD_NUMBER},    {"qx", WH_FIELD_NUMBER},   {"qy", WH_FIELD_NUMBER},
-                        {"qz", WH_FIELD_NUMBER},      {"qw", WH_FIELD_NUMBER}};
+    told_t told;
+} of_gripper[OF_GRIPPER] = {{"valve", WH_FIELD_NUMBER, IN_ALL},
+                            {"sensor", WH_FIELD_NUMBER, IN_ALL},
+                            {"vacuum", WH_FIELD_NUMBER, IN_ALL},
+                            {"nearest", WH_FIELD_WAFER, IN_ALL},
+                            {"dr_proj_z mm", WH_FIELD_NUMBER, IN_ALL},
+                            {"dr_proj_xy mm", WH_FIELD_NUMBER, IN_ALL},
+                            {"n1_proj_n2", WH_FIELD_NUMBER, IN_ALL},
+                            {"plunger mm", WH_FIELD_NUMBER, WITH_EDGES}},
+  of_wafer[OF_WAFER] = {{"holder", WH_FIELD_GRIPPER, IN_ALL},
+                        {"x mm", WH_FIELD_NUMBER, IN_ALL},
+                        {"y mm", WH_FIELD_NUMBER, IN_ALL},
+                        {"z mm", WH_FIELD_NUMBER, IN_ALL},
+                        {"qx", WH_FIELD_NUMBER, IN_ALL},
+                        {"qy", WH_FIELD_NUMBER, IN_ALL},
+                        {"qz", WH_FIELD_NUMBER, IN_ALL},
+                        {"qw", WH_FIELD_NUMBER, IN_ALL},
+                        {"face down", WH_FIELD_NUMBER, WITH_FACES},
+                        {"held dx mm", WH_FIELD_NUMBER, WITH_GRIPS},
+                        {"held dy mm", WH_FIELD_NUMBER, WITH_GRIPS},
+                        {"held turn deg", WH_FIELD_NUMBER, WITH_GRIPS},
+                        {"held by front", WH_FIELD_NUMBER, WITH_FACES}};
+
+static bool is_told(const wh_layout_t *layout, told_t told) {
+    switch (told) {
+    case WITH_EDGES:
+        return wh_layout_has_edge(layout);
+    case WITH_FACES:
+        return layout->has_faces;
+    case WITH_GRIPS:
+        return wh_layout_has_grips(layout);
+    case IN_ALL:
+        break;
+    }
+    return true;
+}
+
+static size_t of_each_gripper(const wh_layout_t *layout) {
+    return is_told(layout, WITH_EDGES) ? OF_GRIPPER : OF_GRIPPER - 1;
+}
+
+/* Which of a wafer's columns are told, in their order. */
+static size_t of_each_wafer(const wh_layout_t *layout, size_t told[OF_WAFER]) {
+    size_t count = 0;
+    for (size_t i = 0; i < OF_WAFER; ++i) {
+        told[count] = i;
+        count += is_told(layout, of_wafer[i].told) ? 1 : 0;
+    }
+    return count;
+}
+
+static bool has_axis(const wh_layout_t *layout, size_t axis) {
+    return axis >= wh_machine_robot_axes(&layout->machine) || wh_axis_exists(&layout->machine, axis);
+}
+
+/* All but the yaw of an arm without a wrist. */
+static size_t count_axes(const wh_layout_t *layout) {
+    size_t count = 0;
+    for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
+        count += has_axis(layout, axis) ? 1 : 0;
+    }
+    return count;
+}
+
+/* The machine's axis that is number `i` of these. */
+static size_t axis_of(const wh_layout_t *layout, size_t i) {
+    size_t axis = 0;
+    while (i > 0 || !has_axis(layout, axis)) {
+        i -= has_axis(layout, axis) ? 1 : 0;
+        ++axis;
+    }
+    return axis;
+}
 
 size_t wh_slice_field_count(const wh_layout_t *layout) {
-    return layout->machine.axis_count + OF_GRIPPER * layout->machine.gripper_count +
-           OF_WAFER * layout->wafer_count;
+    size_t told[OF_WAFER];
+    return count_axes(layout) + of_each_gripper(layout) * layout->machine.gripper_count +
+           of_each_wafer(layout, told) * layout->wafer_count;
 }
 
 wh_slice_field_t wh_slice_field_name(const wh_layout_t *layout, size_t i, char name[WH_SLICE_FIELD_NAME]) {
-    const size_t axes = layout->machine.axis_count;
-    const size_t grippers = OF_GRIPPER * layout->machine.gripper_count;
+    const size_t axes = count_axes(layout);
+    const size_t each = of_each_gripper(layout);
+    const size_t grippers = each * layout->machine.gripper_count;
     if (i < axes) {
         char axis[WH_NAME_SIZE + 8];
-        wh_signals_name_axis(layout, i, axis, sizeof axis);
-        (void)snprintf(name, WH_SLICE_FIELD_NAME, "axis %s %s", axis, wh_signals_turns(i) ? "rad" : "mm");
+        wh_layout_name_axis(layout, axis_of(layout, i), axis, sizeof axis);
+        (void)snprintf(name, WH_SLICE_FIELD_NAME, "axis %s %s", axis,
+                       wh_layout_axis_turns(layout, axis_of(layout, i)) ? "rad" : "mm");
         return WH_FIELD_NUMBER;
     }
     if (i < axes + grippers) {
-        const size_t part = (i - axes) % OF_GRIPPER;
-        (void)snprintf(name, WH_SLICE_FIELD_NAME, "%s %s", layout->grippers[(i - axes) / OF_GRIPPER].name,
+        const size_t part = (i - axes) % each;
+        (void)snprintf(name, WH_SLICE_FIELD_NAME, "%s %s", layout->grippers[(i - axes) / each].name,
                        of_gripper[part].name);
         return of_gripper[part].kind;
     }
     const size_t at = i - axes - grippers;
-    (void)snprintf(name, WH_SLICE_FIELD_NAME, "%s %s", layout->wafers[at / OF_WAFER].name,
-                   of_wafer[at % OF_WAFER].name);
-    return of_wafer[at % OF_WAFER].kind;
+    size_t told[OF_WAFER];
+    const size_t fields = of_each_wafer(layout, told);
+    const size_t part = told[at % fields];
+    (void)snprintf(name, WH_SLICE_FIELD_NAME, "%s %s", layout->wafers[at / fields].name, of_wafer[part].name);
+    return of_wafer[part].kind;
 }
 
 const char *wh_slice_field_word(const wh_layout_t *layout, wh_slice_field_t kind, double value) {
@@ -63,14 +140,12 @@ static bool is_near(const wh_proximity_t *measured, const wh_grasp_config_t *gra
 }
 
 static void put_gripper(const wh_layout_t *layout, const wh_state_t *state, size_t g, double values[]) {
-    const wh_tolerance_t *tolerance = &layout->grasp.tolerance;
-    const int32_t nearest = wh_counterpart(state, g, tolerance, NULL, state->wafer_count);
+    const int32_t nearest = wh_counterpart(state, g, &layout->cell, NULL, state->wafer_count);
     wh_proximity_t measured;
-    const bool is_measured =
-        nearest != WH_NONE &&
-        wh_proximity_measure(&state->wafers[nearest].base_from_wafer, &state->grippers[g].base_from_gripper,
-                             tolerance, &measured) == WH_OK &&
-        is_near(&measured, &layout->grasp);
+    const bool is_measured = nearest != WH_NONE &&
+                             wh_layout_measure(layout, &state->wafers[nearest].base_from_wafer,
+                                               &state->grippers[g].base_from_gripper, &measured) == WH_OK &&
+                             is_near(&measured, &layout->grasp);
     values[0] = state->physics->told[g] == WH_VALVE_OPEN ? 0 : 1;
     values[1] = state->sensors >> g & 1U;
     values[2] = state->physics->vacuum[g].level;
@@ -78,26 +153,59 @@ static void put_gripper(const wh_layout_t *layout, const wh_state_t *state, size
     values[4] = is_measured ? fabs(measured.dr_proj_z) : (double)NAN;
     values[5] = is_measured ? measured.dr_proj_xy_norm : (double)NAN;
     values[6] = is_measured ? measured.n1_proj_n2 : (double)NAN;
+    if (is_told(layout, WITH_EDGES)) {
+        values[7] = layout->grips[g].kind == WH_GRIP_EDGE ? state->physics->grips[g].s : (double)NAN;
+    }
 }
 
-static void put_wafer(const wh_wafer_t *wafer, double values[]) {
+/* How the face that looks at its gripper lies there, from values[9] on. */
+static void put_held(const wh_layout_t *layout, const wh_state_t *state, const wh_wafer_t *wafer,
+                     double values[OF_WAFER]) {
+    const bool is_held = wafer->holder != WH_NONE;
+    wh_pose_t seen = wh_pose_identity();
+    wh_face_t face = WH_FACE_BACK;
+    if (is_held) {
+        const wh_pose_t *gripper = &state->grippers[wafer->holder].base_from_gripper;
+        wh_pose_t base_from_face;
+        face = wh_layout_face_towards(layout, &wafer->base_from_wafer, gripper);
+        wh_face_frame(&wafer->base_from_wafer, layout->cell.thickness, face, &base_from_face);
+        seen = wh_pose_relative(gripper, &base_from_face);
+    }
+    values[9] = is_held ? seen.r.x : (double)NAN;
+    values[10] = is_held ? seen.r.y : (double)NAN;
+    values[11] = is_held ? wh_deg_from_rad(wh_atan2(seen.R.m[1][0], seen.R.m[0][0])) : (double)NAN;
+    values[12] = !is_held ? (double)NAN : face == WH_FACE_FRONT ? 1 : 0;
+}
+
+static void put_wafer(const wh_layout_t *layout, const wh_state_t *state, const wh_wafer_t *wafer,
+                      double values[OF_WAFER]) {
     const wh_pose_t *pose = &wafer->base_from_wafer;
     values[0] = wafer->holder;
     values[1] = pose->r.x;
     values[2] = pose->r.y;
     values[3] = pose->r.z;
     wh_quaternion_from_matrix(&pose->R, NULL, values + 4);
+    values[8] = wh_layout_is_face_down(pose) ? 1 : 0;
+    put_held(layout, state, wafer, values);
 }
 
 void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
                      double values[]) {
     for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
-        *values++ = axes ? axes[axis] : (double)NAN;
+        if (has_axis(layout, axis)) {
+            *values++ = axes ? axes[axis] : (double)NAN;
+        }
     }
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g, values += OF_GRIPPER) {
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g, values += of_each_gripper(layout)) {
         put_gripper(layout, state, g, values);
     }
-    for (size_t w = 0; w < layout->wafer_count; ++w, values += OF_WAFER) {
-        put_wafer(&state->wafers[w], values);
+    size_t told[OF_WAFER];
+    const size_t count = of_each_wafer(layout, told);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        double all[OF_WAFER];
+        put_wafer(layout, state, &state->wafers[w], all);
+        for (size_t i = 0; i < count; ++i) {
+            *values++ = all[told[i]];
+        }
     }
 }

@@ -47,6 +47,37 @@
 #if defined(WH_DEBUG_TABLE) && (0 - WH_DEBUG_TABLE - 1) != 1 && (0 - WH_DEBUG_TABLE - 1) != -2
 #error "waferhand: WH_DEBUG_TABLE is 0, or not 1: define it as 1 or as nothing, or leave it out"
 #endif
+/* The most axes and grippers of a machine: by default 32 and 16, and 8 and 8 where there is no operating
+ * system, so that a small firmware's structs stay small. A machine of which both ask for no more has the same
+ * bits and the same hash. Of your own, for the library and for all that includes its headers alike:
+ *   WH_MOST_AXES       4 to 32
+ *   WH_MOST_GRIPPERS   1 to 16 */
+#if defined(__unix__) || defined(__APPLE__) || defined(_WIN32)
+#define WH_IS_HOST 1
+#else
+#define WH_IS_HOST 0
+#endif
+#if defined(WH_MOST_AXES)
+#define WH_AXES WH_MOST_AXES
+#elif WH_IS_HOST
+#define WH_AXES 32
+#else
+#define WH_AXES 8
+#endif
+#if defined(WH_MOST_GRIPPERS)
+#define WH_GRIPPERS WH_MOST_GRIPPERS
+#elif WH_IS_HOST
+#define WH_GRIPPERS 16
+#else
+#define WH_GRIPPERS 8
+#endif
+#if WH_AXES < 4 || WH_AXES > 32
+#error "waferhand: WH_MOST_AXES is 4 to 32: a robot has 4, and bits of a 32-bit word stand for axes"
+#endif
+#if WH_GRIPPERS < 1 || WH_GRIPPERS > 16
+#error "waferhand: WH_MOST_GRIPPERS is 1 to 16"
+#endif
+
 #if defined(WH_WITHOUT_SWEEP)
 #define WH_SWEEP_BUILT false
 #else
@@ -167,12 +198,20 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 #else
 #define WH_SYMBOL_FEATURES /* nothing: complete */
 #endif
+/* And its own counts of axes and grippers. */
+#if defined(WH_MOST_AXES) || defined(WH_MOST_GRIPPERS)
+#define WH_SYMBOL_MOST WH_SYMBOL_COUNTS(WH_AXES, WH_GRIPPERS)
+#define WH_SYMBOL_COUNTS(axes, grippers) WH_SYMBOL_COUNTS_(axes, grippers)
+#define WH_SYMBOL_COUNTS_(axes, grippers) _most_##axes##_##grippers
+#else
+#define WH_SYMBOL_MOST /* nothing: the usual ones */
+#endif
 
-/* Stands after each prototype. To the linker wh_pose_validate is wh_pose_validate_2d: number type, ABI and
- * features end the name. So headers and a library that do not fit do not link, whatever is linked and how:
- * "undefined reference to wh_pose_validate_2d" from a float library means that WH_FLOAT is missing where the
- * headers are included. Debuggers show the name of the source. A compiler that cannot rename a symbol, or
- * -DWH_SYMBOL_MACROS, gets the same names by macros: math/symbols.h. */
+/* Stands after each prototype. To the linker wh_pose_validate is wh_pose_validate_2d: number type, ABI,
+ * features and counts end the name. So headers and a library that do not fit do not link, whatever is linked
+ * and how: "undefined reference to wh_pose_validate_2d" from a float library means that WH_FLOAT is missing
+ * where the headers are included. Debuggers show the name of the source. A compiler that cannot rename a
+ * symbol, or -DWH_SYMBOL_MACROS, gets the same names by macros: math/symbols.h. */
 #if (defined(__GNUC__) || defined(__TINYC__)) && !defined(WH_SYMBOL_MACROS)
 #if defined(__USER_LABEL_PREFIX__)
 #define WH_SYMBOL_START WH_TEXT(__USER_LABEL_PREFIX__)
@@ -180,15 +219,16 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 #define WH_SYMBOL_START ""
 #endif
 #define WH_SYMBOL(name)                                                                                      \
-    __asm__(WH_SYMBOL_START #name "_" WH_TEXT(WH_ABI) WH_SYMBOL_NUMBER WH_TEXT(WH_SYMBOL_FEATURES))
+    __asm__(WH_SYMBOL_START #name "_" WH_TEXT(WH_ABI) WH_SYMBOL_NUMBER WH_TEXT(WH_SYMBOL_FEATURES)           \
+                WH_TEXT(WH_SYMBOL_MOST))
 #else
 #define WH_SYMBOL(name)
-#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_FEATURES)
-#define WH_SYMBOL_JOIN(name, abi, features) WH_SYMBOL_JOIN_(name, abi, features)
+#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_FEATURES, WH_SYMBOL_MOST)
+#define WH_SYMBOL_JOIN(name, abi, features, most) WH_SYMBOL_JOIN_(name, abi, features, most)
 #if defined(WH_FLOAT)
-#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##f##features
+#define WH_SYMBOL_JOIN_(name, abi, features, most) name##_##abi##f##features##most
 #else
-#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##d##features
+#define WH_SYMBOL_JOIN_(name, abi, features, most) name##_##abi##d##features##most
 #endif
 #include "symbols.h"
 #endif

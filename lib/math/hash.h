@@ -35,6 +35,20 @@ static inline uint64_t wh_double_bits(double value) {
     return bits;
 }
 
+static inline uint64_t wh_hash_doubles(uint64_t hash, const double values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_word(hash, wh_double_bits(values[i]));
+    }
+    return hash;
+}
+
+static inline uint64_t wh_hash_ints(uint64_t hash, const int32_t values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_int(hash, values[i]);
+    }
+    return hash;
+}
+
 static inline uint64_t wh_hash_vec3(uint64_t hash, const wh_vec3_t *v) {
     hash = wh_hash_real(hash, v->x);
     hash = wh_hash_real(hash, v->y);

@@ -1,13 +1,18 @@
 /* What a scan of a wafer's edge says of the wafer on the chuck: the estimate of align/align.h over the
  * samples that the states have brought (edge_scan.c).
  *
- * Motion control knows the sensor and the wafers as the layout says they should be. What is truly off, such
- * as a sensor's latency or one wafer's own rim, it does not know. A sample that never came counts as one that
- * something covers: what is not seen is not told to be without a notch. */
+ * Motion control knows the sensor and the wafers as the layout says they should be, and what a calibration
+ * (calibration.c) has found of the sensor. What else is truly off, such as one wafer's own rim, it does
+ * not know. A sample that never came counts as one that something covers: what is not seen is not told to
+ * be without a notch. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "../align/align.h"
+#include "../align/merge.h"
+#include "../record/scans.h"
 #include "../script/wh_module_values.h"
+#include "../text/array.h"
 #include "native.h"
 
 /* What an estimate costs of the instruction budget, for each sample. */
@@ -24,13 +29,15 @@ static void count_sight(sights_t *sights, wh_sight_t sight) {
     sights->covered += sight == WH_SIGHT_COVERED ? 1 : 0;
 }
 
-static void make_points(const wh_mcs_edge_t *edge, const wh_sensor_t *sensor, size_t count,
-                        wh_rim_point_t points[], sights_t *sights) {
+static void make_points(const wh_mcs_edge_t *edge, const wh_sensor_t *sensor,
+                        const wh_sensor_error_t *believed, size_t count, wh_rim_point_t points[],
+                        sights_t *sights) {
     for (size_t i = 0; i < count; ++i) {
         const int32_t sample = (int32_t)i < edge->taken ? edge->samples[i] : WH_NONE;
         const int64_t k = edge->order.first + (edge->order.count > 0 ? (int64_t)i : -(int64_t)i);
-        const wh_glance_t glance = {.turn = wh_sensor_angle(sensor, k)};
-        points[i] = wh_sensor_point(sensor, NULL, &glance, sample < 0 ? 0 : sample);
+        const wh_glance_t glance = {.turn = wh_sensor_angle(sensor, k),
+                                    .speed = sample < 0 ? 0 : edge->speeds[i]};
+        points[i] = wh_sensor_point(sensor, believed, &glance, sample < 0 ? 0 : sample);
         if (sample < 0) {
             points[i].sight = WH_SIGHT_COVERED;
             ++sights->missed;
@@ -40,16 +47,27 @@ static void make_points(const wh_mcs_edge_t *edge, const wh_sensor_t *sensor, si
     }
 }
 
-/* What the wafer should be; without marks if these are not to be looked for. `glass`: the light that comes
- * through it. */
-static wh_rim_t expected_rim(const wh_rim_t *nominal, bool with_marks, double glass) {
-    wh_rim_t rim = *nominal;
-    rim.transmission = glass;
-    if (!with_marks) {
-        rim.notch.depth = 0;
-        memset(rim.flats, 0, sizeof rim.flats);
+/* Where in a turn the scan's sample i is. */
+static size_t place_of(const wh_mcs_edge_t *edge, int32_t samples, size_t i) {
+    const int64_t k = edge->order.first + (edge->order.count > 0 ? (int64_t)i : -(int64_t)i);
+    return (size_t)((k % samples + samples) % samples);
+}
+
+/* The turns that were kept are merged into the last one. */
+static void merge_turns(const wh_mcs_turns_t *turns, const wh_mcs_edge_t *edge, size_t count,
+                        wh_rim_point_t points[]) {
+    for (size_t i = 0; turns->turns > 0 && i < count; ++i) {
+        wh_rim_point_t here[WH_MERGE_TURNS] = {points[i]};
+        for (size_t t = 0; t < turns->turns; ++t) {
+            here[t + 1] = turns->points[t * (size_t)turns->samples + place_of(edge, turns->samples, i)];
+        }
+        points[i] = wh_rim_points_merge(here, turns->turns + 1);
     }
-    return rim;
+}
+
+void wh_mcs_free_turns(wh_mcs_turns_t *turns) {
+    free(turns->points);
+    *turns = (wh_mcs_turns_t){NULL, 0, 0};
 }
 
 /* The direction of the wafer's mark: of a notch, or of the primary flat. */
@@ -95,7 +113,56 @@ static void push_sights(lua_State *L, const sights_t *sights) {
     wh_lua_set_integer(L, "missed", sights->missed);
 }
 
-/* native.estimate_edge(with marks, glass): what the last scan says of its wafer, all in the chuck's frame, mm
+static wh_sensor_error_t read_believed(lua_State *L, int argument) {
+    static const char *const names[] = {"offset", "zero", "gain", "latency"};
+    wh_sensor_error_t error = {0, 0, 0, 0};
+    double *const fields[] = {&error.offset, &error.zero, &error.gain, &error.latency};
+    luaL_checktype(L, argument, LUA_TTABLE);
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        lua_getfield(L, argument, names[i]);
+        *fields[i] = luaL_checknumber(L, -1);
+        lua_pop(L, 1);
+    }
+    return error;
+}
+
+static size_t count_of(const wh_mcs_edge_t *edge) {
+    return (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
+}
+
+/* native.keep_turn(believed): the last scan, a turn, is of the same wafer as the next one: estimates take
+ * both. */
+static int keep_turn(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_mcs_turns_t *turns = &mcs->turns;
+    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
+    const wh_sensor_error_t believed = read_believed(L, 1);
+    luaL_argcheck(L, edge->samples && scanner && turns->turns + 1 < WH_MERGE_TURNS, 1, "no turn to be kept");
+    const size_t count = count_of(edge);
+    const size_t samples = (size_t)scanner->sensor.samples;
+    wh_rim_point_t *points = lua_newuserdatauv(L, count * sizeof *points, 0);
+    sights_t sights = {0, 0, 0, 0};
+    make_points(edge, &scanner->sensor, &believed, count, points, &sights);
+    if (!turns->points) {
+        turns->points = wh_array_new(WH_MERGE_TURNS * samples, sizeof *turns->points);
+        turns->samples = scanner->sensor.samples;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        turns->points[turns->turns * samples + place_of(edge, turns->samples, i)] = points[i];
+    }
+    ++turns->turns;
+    return 0;
+}
+
+/* native.forget_turns(): the next scan is by itself. */
+static int forget_turns(lua_State *L) {
+    wh_mcs_free_turns(&wh_mcs_with_layout(L)->turns);
+    return 0;
+}
+
+/* native.estimate_edge(with marks, glass, believed { offset, zero, gain, latency }): what the last scan, and
+ * the turns that were kept, say of their wafer by a sensor with these errors, all in the chuck's frame, mm
  * and rad: `verdict`, the name of a status; the numbers of samples, by what they see; the `limits`; with a
  * circle its centre, `x` and `y`; with a verdict of OK and a mark the `mark` and its `direction`. */
 static int estimate_edge(lua_State *L) {
@@ -103,10 +170,11 @@ static int estimate_edge(lua_State *L) {
     const wh_mcs_edge_t *edge = &mcs->edge;
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     luaL_argcheck(L, edge->samples && scanner, 1, "there was no scan");
-    const size_t count = (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
-    const wh_rim_t nominal =
-        expected_rim(mcs->layout->nominal_rim, lua_toboolean(L, 1) != 0, luaL_checknumber(L, 2));
+    const size_t count = count_of(edge);
+    const wh_edge_wish_t wish = {lua_toboolean(L, 1) == 0, luaL_checknumber(L, 2)};
+    const wh_rim_t nominal = wh_edge_wish_rim(mcs->layout->nominal_rim, wish);
     const wh_align_limits_t limits = wh_align_limits_default();
+    const wh_sensor_error_t believed = read_believed(L, 3);
     wh_rim_point_t *points = lua_newuserdatauv(L, count * sizeof *points, 0);
     wh_rim_ray_t *rays = lua_newuserdatauv(L, count * sizeof *rays, 0);
     wh_align_result_t result;
@@ -115,8 +183,9 @@ static int estimate_edge(lua_State *L) {
     memset(&sights, 0, sizeof sights);
     wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
     wh_sandbox_charge(L, STEPS_PER_SAMPLE * (uint64_t)count);
-    make_points(edge, &scanner->sensor, count, points, &sights);
-    const wh_rim_scan_t scan = {points, count, 0, scanner->sensor.pixel};
+    make_points(edge, &scanner->sensor, &believed, count, points, &sights);
+    merge_turns(&mcs->turns, edge, count, points);
+    const wh_rim_scan_t scan = {points, count, believed.offset, scanner->sensor.pixel};
     const wh_status_t status = wh_align_estimate(&scan, &scanner->sensor, &nominal, &limits, rays, &result);
     lua_createtable(L, 0, 16);
     wh_lua_set_text(L, "verdict", wh_status_name(status == WH_OK ? result.verdict : status));
@@ -131,4 +200,5 @@ static int estimate_edge(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_align_functions[] = {{"estimate_edge", estimate_edge}, {NULL, NULL}};
+const luaL_Reg wh_mcs_align_functions[] = {
+    {"estimate_edge", estimate_edge}, {"keep_turn", keep_turn}, {"forget_turns", forget_turns}, {NULL, NULL}};

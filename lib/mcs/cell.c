@@ -2,9 +2,12 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "../layout/axes.h"
+#include "../layout/doors.h"
 #include "../layout/given.h"
 #include "../script/wh_module_values.h"
 #include "../text/output.h"
+#include "carrying.h"
 #include "native.h"
 
 /* Shortens "lua/examples/../layouts" to "lua/layouts", if that is the same file: a symbolic link may make it
@@ -51,7 +54,9 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
     const wh_trial_room_t room = {lua_memory(L, layout->station_count * sizeof *room.places),
                                   lua_memory(L, layout->wafer_count * sizeof *room.start),
                                   lua_memory(L, layout->wafer_count * sizeof *room.rims),
-                                  lua_memory(L, layout->wafer_count * sizeof(const wh_rim_t *))};
+                                  lua_memory(L, layout->wafer_count * sizeof(const wh_rim_t *)),
+                                  lua_memory(L, layout->wafer_count * sizeof *room.edge_wafers),
+                                  lua_memory(L, wh_layout_count_supports(layout) * sizeof *room.supports)};
     wh_trial_cell_fill(trial_cell, layout, mcs->trial, &room);
     if (layout->collision) {
         wh_layout_read_trial_world(L, &trial_cell->layout);
@@ -68,13 +73,14 @@ static wh_status_t exchange_late(wh_link_t *link, const wh_command_t *command, w
     return wh_simulator_step(&local->simulator, &late, state);
 }
 
-static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, const wh_layout_t *real) {
+static wh_status_t set_up_simulator(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
+    wh_simulator_t *simulator = &local->simulator;
     const size_t bytes = real->wafer_count * sizeof(wh_wafer_t);
     wh_grasp_storage_t storage = {.wafer_count = real->wafer_count,
                                   .gripper_count = real->machine.gripper_count};
     storage.wafers = lua_memory(L, bytes);
     storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
-    storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
+    storage.bucket_count = wh_layout_buckets(real);
     storage.buckets = lua_memory(L, storage.bucket_count * sizeof(uint32_t));
     if (bytes > 0) {
         memcpy(storage.wafers, real->start, bytes);
@@ -84,11 +90,14 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
     wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
     status = status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
     status = status == WH_OK ? wh_simulator_set_scanning(simulator, &scanning) : status;
-    return status == WH_OK ? wh_simulator_set_latching(simulator, &latching) : status;
+    status = status == WH_OK ? wh_simulator_set_latching(simulator, &latching) : status;
+    status = status == WH_OK ? wh_layout_give_doors(real, simulator) : status;
+    local->grips.seen = lua_memory(L, wh_layout_seen(real) * sizeof(wh_wafer_t));
+    return status == WH_OK ? wh_layout_give_grips(real, simulator, &local->grips) : status;
 }
 
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
-    const wh_status_t status = set_up_simulator(L, &local->simulator, real);
+    const wh_status_t status = set_up_simulator(L, local, real);
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", real->path, wh_record_error_text(status));
     }
@@ -156,6 +165,8 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
     wh_track_take_ways(&mcs->track);
+    wh_track_take_vias(&mcs->track);
+    wh_carrying_start(&mcs->track, layout);
     set_up_look_ahead(L, mcs, layout, real);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
@@ -172,6 +183,62 @@ static bool is_upright(const wh_station_t *place) {
     return !(wh_real_abs(up.x) > 0 || wh_real_abs(up.y) > 0);
 }
 
+/* robot: who serves it unless a command says otherwise, nil: a command must; by: of each robot the gripper
+ * that serves it, or false. */
+static void push_servers(lua_State *L, const wh_layout_t *layout, const wh_layout_station_t *station) {
+    wh_lua_set_index(L, "robot", station->by ? station->robot : 0);
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const bool serves = !station->by || station->by[r].serves;
+        if (serves) {
+            lua_pushinteger(L, (station->by ? station->by[r].effector : station->effector) + 1);
+        } else {
+            lua_pushboolean(L, false);
+        }
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "by");
+}
+
+/* doors: by robot the door of the station, or false; nil: it has none. */
+static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t station) {
+    bool is_any = false;
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const int32_t door = wh_layout_door_of(layout, station, r);
+        if (door == WH_NONE) {
+            lua_pushboolean(L, false);
+        } else {
+            lua_pushinteger(L, door + 1);
+        }
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+        is_any = is_any || door != WH_NONE;
+    }
+    if (!is_any) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+    lua_setfield(L, -2, "doors");
+}
+
+/* via: { { theta, r, z, yaw, blend }, ... }: of the axes those that the layout gives; rad, mm. */
+static void push_vias(lua_State *L, const wh_layout_station_t *station) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
+    lua_createtable(L, (int)station->via_count, 0);
+    for (size_t i = 0; i < station->via_count; ++i) {
+        const wh_layout_via_t *via = &station->vias[i];
+        lua_createtable(L, 0, WH_ROBOT_AXES + 1);
+        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+            if (via->is_given[axis]) {
+                wh_lua_set_number(L, names[axis], via->point.q[axis]);
+            }
+        }
+        wh_lua_set_number(L, "blend", via->point.blend);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "via");
+}
+
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
@@ -184,6 +251,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_number(L, "pickup_speed", station->pickup_speed);
     wh_lua_set_number(L, "pickup_acceleration", station->pickup_acceleration);
     wh_lua_set_number(L, "release", station->release);
+    wh_lua_set_boolean(L, "release_default", station->release_default);
     wh_lua_set_number(L, "vacuum_delay", station->vacuum_delay);
     wh_lua_set_number(L, "timeout", station->timeout);
     wh_lua_set_number(L, "wait", station->wait);
@@ -193,33 +261,125 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_index(L, "index", (int32_t)index);
     wh_lua_set_integer(L, "slots", place->slots);
     wh_lua_set_index(L, "chuck", place->chuck);
+    wh_lua_set_index(L, "pins", wh_layout_find_pins(layout, (int32_t)index));
     wh_lua_set_index(L, "effector", station->effector);
+    push_servers(L, layout, station);
+    push_doors_of(L, layout, index);
+    push_vias(L, station);
     wh_lua_set_boolean(L, "upright", is_upright(place));
+    wh_lua_set_boolean(L, "flipper", station->flipper);
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
     wh_lua_set_boolean(L, "centre", station->centre);
+    if (station->face != WH_STATION_ANY_FACE) {
+        wh_lua_set_text(L, "face", wh_layout_face_name(station->face));
+    }
     wh_lua_set_number(L, "radius", layout->wafer_diameter / 2);
     wh_lua_set_number(L, "notch", layout->notch);
     wh_lua_set_integer(L, "beams", wh_layout_beams_at(layout, index).count);
+    wh_lua_set_boolean(L, "block", station->block.is_there);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
     const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
     if (scanner) {
-        wh_mcs_push_edge_sensor(L, scanner);
+        wh_mcs_push_edge_sensor(L, layout, scanner);
         lua_setfield(L, -2, "sensor");
     }
 }
 
+/* edge: { travel: of the whole stroke, s, clearance, mm }. */
+static void push_edge(lua_State *L, const wh_edge_t *edge) {
+    lua_createtable(L, 0, 2);
+    wh_lua_set_number(L, "travel", (edge->end - edge->retracted) / edge->speed);
+    wh_lua_set_number(L, "clearance", edge->clearance);
+    lua_setfield(L, -2, "edge");
+}
+
+/* { name, on_robot, axis, grip, edge }; of a chuck on a stage, of pins and of a flipper's clamp also `kind`
+ * and its travel, `low` and `high`. */
 static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
+    const wh_mount_t *mount = &layout->machine.mounts[g];
     lua_createtable(L, 0, 3);
     wh_lua_set_text(L, "name", layout->grippers[g].name);
     wh_lua_set_boolean(L, "on_robot", layout->grippers[g].station == WH_NONE);
-    wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
+    if (layout->grippers[g].station == WH_NONE) {
+        wh_lua_set_index(L, "robot", mount->robot);
+    }
+    wh_lua_set_index(L, "axis", mount->axis);
+    wh_lua_set_index(L, "arm", mount->arm);
+    wh_lua_set_text(L, "grip", wh_layout_grip_name(layout->grips[g].kind));
+    if (layout->grips[g].kind == WH_GRIP_EDGE) {
+        push_edge(L, &layout->grips[g].edge);
+    }
+    if (wh_mount_axes(mount) > 0 && mount->kind != WH_MOUNT_CHUCK) {
+        static const char *const kinds[] = {"chuck", "stage", "pins", "flipper"};
+        wh_lua_set_text(L, "kind", kinds[mount->kind]);
+        wh_lua_set_number(L, "low", mount->travel.min);
+        wh_lua_set_number(L, "high", mount->travel.max);
+    }
 }
 
-/* { path, slice, sampled, homed, seat, tolerance, home: the robot's axes, corrections: the largest ones by
- * the field of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other
- * angles in rad, times in s. */
+/* { name, axis, travel, timeout }. */
+static void push_door(lua_State *L, const wh_layout_t *layout, size_t door) {
+    const wh_machine_t *machine = &layout->machine;
+    lua_createtable(L, 0, 4);
+    wh_lua_set_text(L, "name", layout->door_list[door].name);
+    wh_lua_set_index(L, "axis", (int32_t)wh_machine_door_axis(machine, door));
+    wh_lua_set_number(L, "travel", machine->doors[door].travel);
+    wh_lua_set_number(L, "timeout", layout->door_list[door].timeout);
+}
+
+/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns. */
+static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first) {
+    const bool is_wrist = carrier->chain.kind == WH_CHAIN_SCARA;
+    lua_createtable(L, 2, 0);
+    lua_pushinteger(L, (lua_Integer)first + (is_wrist ? WH_AXIS_YAW : WH_AXIS_R) + 1);
+    lua_rawseti(L, -2, 1);
+    lua_pushinteger(L, (lua_Integer)first + (lua_Integer)carrier->axis_count);
+    lua_rawseti(L, -2, 2);
+    lua_setfield(L, -2, "arms");
+    wh_lua_set_boolean(L, "retracts", !is_wrist);
+}
+
+/* { name, first: the index of the robot's first axis, home: by its own axes, axes: of those that it has
+ * the name, the index and if it turns, in order }. */
+static void push_robot(lua_State *L, const wh_layout_t *layout, size_t robot) {
+    const wh_machine_t *machine = &layout->machine;
+    size_t first;
+    const wh_carrier_t *carrier = wh_machine_carrier(machine, robot, &first);
+    const size_t count = carrier ? carrier->axis_count : WH_ROBOT_AXES;
+    wh_real_t home[WH_AXES];
+    wh_machine_home(machine, home);
+    lua_createtable(L, 0, 4);
+    wh_lua_set_text(L, "name", layout->robots[robot].name);
+    wh_lua_set_index(L, "first", (int32_t)first);
+    wh_lua_push_numbers(L, &home[first], count);
+    lua_setfield(L, -2, "home");
+    lua_createtable(L, (int)count, 0);
+    for (size_t axis = first; axis < first + count; ++axis) {
+        if (wh_axis_exists(machine, axis)) {
+            lua_createtable(L, 0, 3);
+            wh_lua_set_text(L, "name", wh_axis_name(machine, axis));
+            wh_lua_set_index(L, "index", (int32_t)axis);
+            wh_lua_set_boolean(L, "turns", wh_axis_turns(machine, axis));
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    lua_setfield(L, -2, "axes");
+    if (carrier && carrier->second) {
+        push_arms(L, carrier, first);
+    }
+}
+
+/* s: from a valve's closing until its gripper lets go. */
+static double time_to_vent(const wh_vacuum_config_t *vacuum) {
+    return vacuum->vent > 0 ? -vacuum->vent * wh_ln(vacuum->release) : 0;
+}
+
+/* { path, slice, sampled, homed, seat, thickness, vent, tolerance, robots in order, corrections: the
+ * largest ones by the field of a command, its turn in degrees, grippers and doors in order, stations by
+ * name }:
+ * lengths in mm, other angles in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);
@@ -227,6 +387,8 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
     wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
     wh_lua_set_boolean(L, "homed", layout->homed);
     wh_lua_set_boolean(L, "seat", layout->grasp.seat);
+    wh_lua_set_number(L, "thickness", layout->wafer_thickness);
+    wh_lua_set_number(L, "vent", time_to_vent(&layout->physics.vacuum));
     wh_lua_push_tolerance(L, &layout->grasp.tolerance);
     lua_setfield(L, -2, "tolerance");
     lua_createtable(L, 0, (int)layout->station_count);
@@ -241,8 +403,18 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
         lua_rawseti(L, -2, (lua_Integer)g + 1);
     }
     lua_setfield(L, -2, "grippers");
-    wh_lua_push_numbers(L, layout->machine.robot.home, WH_ROBOT_AXES);
-    lua_setfield(L, -2, "home");
+    lua_createtable(L, (int)layout->machine.door_count, 0);
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        push_door(L, layout, d);
+        lua_rawseti(L, -2, (lua_Integer)d + 1);
+    }
+    lua_setfield(L, -2, "doors");
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        push_robot(L, layout, r);
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "robots");
     lua_createtable(L, 0, 4);
     wh_lua_set_number(L, "dx", layout->corrections.x);
     wh_lua_set_number(L, "dy", layout->corrections.y);

@@ -129,6 +129,9 @@ static wh_centring_t known_of(lua_State *L, const wh_mcs_t *mcs) {
     for (int32_t b = pass->order.first; b < pass->order.first + pass->order.count; ++b) {
         const double jitter = layout->doors[b].jitter;
         known.sd_time = jitter > known.sd_time ? jitter : known.sd_time;
+        /* Both crossings of a beam have one error: as if each had its own that is larger. */
+        const double place = M_SQRT2 * layout->beams[b].sd;
+        known.sd_place = place > known.sd_place ? place : known.sd_place;
     }
     if (!(layout->nominal_rim->notch.depth > 0)) {
         known.notch_width = 0;
@@ -196,24 +199,28 @@ static void push_centring(lua_State *L, const wh_mcs_t *mcs, const wh_mcs_centri
     lua_setfield(L, -2, "candidates");
 }
 
-/* native.arm_beams(station, gripper): from the end of the next slice on the beams at the station's door latch
- * what crosses them, and this gripper's way is remembered. What was collected before is gone. */
-static int arm_beams(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper) {
     wh_mcs_pass_t *pass = &mcs->pass;
-    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
-    const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
-    luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
     wh_mcs_free_pass(pass);
     *pass = (wh_mcs_pass_t){.order = order,
                             .station = station,
-                            .gripper = wh_mcs_index(L, 2, mcs->state.gripper_count),
+                            .gripper = gripper,
                             .before = pass->number,
                             .number = pass->number,
                             .seq = pass->seq,
                             .goes_on = true};
     mcs->command.latch = order;
     mcs->unplayed = "beams at a station's door";
+}
+
+/* native.arm_beams(station, gripper): from the end of the next slice on the beams at the station's door latch
+ * what crosses them, and this gripper's way is remembered. What was collected before is gone. */
+static int arm_beams(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
+    luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
+    wh_mcs_arm(mcs, order, station, wh_mcs_index(L, 2, mcs->state.gripper_count));
     return 0;
 }
 

@@ -93,7 +93,19 @@ void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
     const bool runs = mcs->recorder.running != WH_NONE;
     end_early(mcs, error, message);
     if (runs) {
-        wh_mcs_give_up(mcs);
+        wh_mcs_give_up(mcs, WH_NONE);
+    }
+}
+
+void wh_mcs_stop_tasks(wh_mcs_t *mcs) {
+    for (size_t i = 0; mcs->lanes && i < WH_MCS_LANES; ++i) {
+        wh_lane_t *lane = &mcs->lanes->of[i];
+        lane->is_busy = false;
+        if ((int32_t)i != mcs->lanes->current && lane->running != WH_NONE) {
+            mcs->recorder.running = lane->running;
+            lane->running = WH_NONE;
+            end_early(mcs, WH_STATUS_STOPPED, "the script had failed");
+        }
     }
 }
 
@@ -104,28 +116,41 @@ void wh_mcs_refuse(wh_mcs_t *mcs, const char *text, wh_status_t error, const cha
 
 /* ------------------------------------------------------------------------------------------------- phases */
 
-void wh_mcs_give_up(wh_mcs_t *mcs) {
-    mcs->held.command[0] = '\0';
+void wh_mcs_give_up(wh_mcs_t *mcs, int32_t robot) {
+    for (int32_t i = 0; i < WH_MCS_ROBOTS; ++i) {
+        if (robot == WH_NONE || robot == i) {
+            mcs->held[i].command[0] = '\0';
+        }
+    }
 }
 
-/* native.hold(text, phase): this command is held from its end on. */
+const wh_mcs_held_t *wh_mcs_find_held(const wh_mcs_t *mcs, int32_t robot) {
+    for (int32_t i = 0; i < WH_MCS_ROBOTS; ++i) {
+        if ((robot == WH_NONE || robot == i) && mcs->held[i].command[0] != '\0') {
+            return &mcs->held[i];
+        }
+    }
+    return NULL;
+}
+
+/* native.hold(robot, text, phase): this command of the robot's is held from its end on. */
 static int hold(lua_State *L) {
-    wh_mcs_held_t *held = &wh_mcs_of(L)->held;
-    wh_utf8_clip(held->command, sizeof held->command, wh_lua_whole_text(L, 1));
-    (void)snprintf(held->phase, sizeof held->phase, "%s", luaL_checkstring(L, 2));
+    wh_mcs_held_t *held = &wh_mcs_of(L)->held[wh_mcs_index(L, 1, WH_MCS_ROBOTS)];
+    wh_utf8_clip(held->command, sizeof held->command, wh_lua_whole_text(L, 2));
+    (void)snprintf(held->phase, sizeof held->phase, "%s", luaL_checkstring(L, 3));
     return 0;
 }
 
-/* native.release(): it is no longer held. */
+/* native.release(robot): it is no longer held. */
 static int release(lua_State *L) {
-    wh_mcs_give_up(wh_mcs_of(L));
+    wh_mcs_give_up(wh_mcs_of(L), wh_mcs_index(L, 1, WH_MCS_ROBOTS));
     return 0;
 }
 
-/* native.is_held(): the phase in which a command is held, or nil. */
+/* native.is_held(robot): the phase in which a command of the robot's is held, or nil. */
 static int find_phase(lua_State *L) {
-    const wh_mcs_held_t *held = &wh_mcs_of(L)->held;
-    lua_pushstring(L, held->command[0] != '\0' ? held->phase : NULL);
+    const wh_mcs_held_t *held = wh_mcs_find_held(wh_mcs_of(L), wh_mcs_index(L, 1, WH_MCS_ROBOTS));
+    lua_pushstring(L, held ? held->phase : NULL);
     return 1;
 }
 
@@ -243,12 +268,11 @@ static int find_let_go(lua_State *L) {
         return 0;
     }
     const wh_pose_t *pose = &mcs->state.wafers[released->wafer].base_from_wafer;
-    const wh_place_t place = wh_station_measure(&mcs->real->places[station], 1, pose);
+    const wh_place_t place = wh_cell_measure(&mcs->real->cell, &mcs->real->places[station], 1, pose);
     wh_event_t miss = *released;
     miss.kind = WH_EVENT_NEAR_MISS;
     miss.gripper = chuck;
-    (void)wh_proximity_measure(pose, &mcs->state.grippers[chuck].base_from_gripper,
-                               &mcs->layout->grasp.tolerance, &miss.measured);
+    (void)wh_layout_measure(mcs->layout, pose, &mcs->state.grippers[chuck].base_from_gripper, &miss.measured);
     lua_pushstring(L, mcs->layout->wafers[released->wafer].name);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
@@ -266,8 +290,14 @@ static int count_events(lua_State *L) {
     return 1;
 }
 
-/* native.complaints(mark): what the cell complained of since then, a list of { kind, wafer, height }. A wafer
- * or a height that says nothing is left out. */
+/* True if nobody else's command led to it: of what runs side by side, each is told of its own. */
+static bool is_own(const wh_mcs_t *mcs, const wh_event_record_t *event) {
+    const wh_record_t *record = mcs->recorder.record;
+    return event->command == WH_NONE || record->commands[event->command].task == mcs->recorder.number;
+}
+
+/* native.complaints(mark): what the cell complained of since then in this task's commands, a list of
+ * { kind, wafer, height }. A wafer or a height that says nothing is left out. */
 static int list_complaints(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
@@ -275,7 +305,7 @@ static int list_complaints(lua_State *L) {
     lua_newtable(L);
     for (size_t i = mark; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
-        if (!wh_record_is_complaint(event->kind)) {
+        if (!wh_record_is_complaint(event->kind) || !is_own(mcs, &record->events[i])) {
             continue;
         }
         lua_createtable(L, 0, 3);

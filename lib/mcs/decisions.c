@@ -109,9 +109,10 @@ int32_t wh_decisions_judge(const wh_decisions_claim_t *claim, const wh_cell_t *c
         place.slot != claim->slot) {
         return 0;
     }
-    place = wh_station_measure(&cell->stations[claim->station], claim->slot, base_from_wafer);
-    return fabs(place.dx - claim->dx) < claim->tolerance && fabs(place.dy - claim->dy) < claim->tolerance ? 2
-                                                                                                          : 1;
+    place = wh_cell_measure(cell, &cell->stations[claim->station], claim->slot, base_from_wafer);
+    const bool is_met = fabs(place.dx - claim->dx) < claim->tolerance &&
+                        fabs(place.dy - claim->dy) < claim->tolerance && fabs(place.dz) < claim->height;
+    return is_met ? 2 : 1;
 }
 
 void wh_decisions_free(wh_decisions_t *decisions) {

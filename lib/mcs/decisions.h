@@ -36,10 +36,11 @@ typedef struct {
     int64_t slice;
 } wh_decisions_entry_t;
 
-/* A claim to be judged: the wafer lies in this slot with this offset, mm. */
+/* A claim to be judged: the wafer lies in this slot with this offset, mm, less than `height` above its plane
+ * or below. */
 typedef struct {
     int32_t wafer, station, slot;
-    double dx, dy, tolerance;
+    double dx, dy, tolerance, height;
 } wh_decisions_claim_t;
 
 /* From slice `slice` on a gripper's valve is told this. */

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../layout/axes.h"
 #include "../math/trig.h"
 #include "../text/utf8.h"
 #include "native.h"
@@ -43,15 +44,17 @@ static void put_name(description_t *to, const char *name) {
     put(to, "\"");
 }
 
-/* A script's command may be longer than is worth telling. */
-static void put_command(description_t *to, const char *text) {
-    char begin[1001];
-    wh_utf8_clip(begin, sizeof begin, text);
+/* So many bytes of a command are told, with a terminator. A script's may be longer than is worth telling. */
+enum { TASK_COMMAND = 101, SCRIPT_COMMAND = 1001 };
+
+static void put_command(description_t *to, const char *text, size_t size) {
+    char begin[SCRIPT_COMMAND];
+    wh_utf8_clip(begin, size, text);
     put_name(to, begin);
 }
 
 /* The shortest decimals that read back as the same double. */
-static void put_number(description_t *to, const char *name, double value) {
+static void put_value(description_t *to, double value) {
     char text[40];
     for (int digits = 15; digits <= 17; ++digits) {
         snprintf(text, sizeof text, "%.*g", digits, value);
@@ -59,11 +62,16 @@ static void put_number(description_t *to, const char *name, double value) {
             break;
         }
     }
-    put(to, " %s=%s", name, text);
+    put(to, "=%s", text);
+}
+
+static void put_number(description_t *to, const char *name, double value) {
+    put(to, " %s", name);
+    put_value(to, value);
 }
 
 /* What the state and these axes, of one slice, tell. */
-static void see(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t axes[WH_ROBOT_AXES]) {
+static void see(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t axes[WH_AXES]) {
     seen->seq = state->seq;
     seen->utime = state->utime;
     memcpy(seen->axes, axes, sizeof seen->axes);
@@ -86,15 +94,29 @@ static void hear_slice(void *user, const wh_command_t *command, const wh_state_t
 
 void wh_mcs_watch_slices(wh_mcs_t *mcs) {
     see(&mcs->seen, &mcs->state, mcs->track.axes);
-    wh_mcs_listen(mcs, hear_slice, mcs);
+    wh_mcs_listen_first(mcs, hear_slice, mcs); /* who else hears of the slice may ask for STATUS */
 }
 
-static void put_robot(description_t *to, const wh_real_t axes[WH_ROBOT_AXES]) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
+/* "theta", or with several robots "VAC.theta". */
+static void put_axis_name(description_t *to, const wh_layout_t *layout, size_t axis) {
+    size_t own = 0;
+    const int32_t robot = wh_machine_robot_of(&layout->machine, axis, &own);
+    put(to, " ");
+    if (layout->robot_count > 1) {
+        put_name(to, layout->robots[robot].name);
+        put(to, ".");
+    }
+    put(to, "%s", wh_axis_name(&layout->machine, axis));
+}
+
+static void put_robots(description_t *to, const wh_layout_t *layout, const wh_real_t axes[]) {
+    const wh_machine_t *machine = &layout->machine;
+    for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
         const double at = axes[axis];
-        put_number(to, names[axis], turns ? wh_deg_from_rad(at) : at);
+        if (wh_axis_exists(machine, axis)) {
+            put_axis_name(to, layout, axis);
+            put_value(to, wh_axis_turns(machine, axis) ? wh_deg_from_rad(at) : at);
+        }
     }
 }
 
@@ -107,6 +129,14 @@ static void put_grippers(description_t *to, const wh_layout_t *layout, const int
     }
 }
 
+static void put_doors(description_t *to, const wh_mcs_t *mcs) {
+    for (size_t d = 0; d < mcs->layout->machine.door_count; ++d) {
+        put(to, " ");
+        put_name(to, mcs->layout->door_list[d].name);
+        put(to, ".door=%s", wh_mcs_door_word(mcs, d));
+    }
+}
+
 static void put_error(description_t *to, const wh_record_t *record) {
     size_t i = record->command_count;
     while (i > 0 && record->commands[i - 1].error == WH_OK) {
@@ -115,22 +145,130 @@ static void put_error(description_t *to, const wh_record_t *record) {
     put(to, " error=%d", i > 0 ? (int)record->commands[i - 1].error : 0);
     if (i > 0) {
         put(to, " error_name=%s error_command=", wh_status_name(record->commands[i - 1].error));
-        put_command(to, record->commands[i - 1].text);
+        put_command(to, record->commands[i - 1].text, SCRIPT_COMMAND);
+    }
+}
+
+uint32_t wh_mcs_robot_axes(const wh_machine_t *machine, size_t robot) {
+    uint32_t axes = 0;
+    for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
+        size_t own;
+        axes |= wh_machine_robot_of(machine, axis, &own) == (int32_t)robot ? 1U << axis : 0;
+    }
+    return axes;
+}
+
+static size_t name_one(char text[WH_MCS_MECHANISMS_BYTES], size_t length, const char *name) {
+    const size_t size = (size_t)(WH_MCS_MECHANISMS_BYTES);
+    return length + (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "", name);
+}
+
+/* True if one of these axes is that of a gripper at a station. */
+static bool turns_gripper(const wh_machine_t *machine, size_t g, uint32_t axes) {
+    return machine->mounts[g].axis != WH_NONE && (axes >> machine->mounts[g].axis & 1U) != 0;
+}
+
+void wh_mcs_name_mechanisms(const wh_mcs_t *mcs, uint32_t axes, char text[WH_MCS_MECHANISMS_BYTES]) {
+    const wh_layout_t *layout = mcs->layout;
+    const wh_machine_t *machine = &layout->machine;
+    size_t length = 0;
+    text[0] = '\0';
+    for (size_t robot = 0; robot < wh_machine_robots(machine); ++robot) {
+        if ((axes & wh_mcs_robot_axes(machine, robot)) != 0) {
+            length = name_one(text, length, layout->robots[robot].name);
+        }
+    }
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        if (turns_gripper(machine, g, axes)) {
+            length = name_one(text, length, layout->grippers[g].name);
+        }
+    }
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        if ((axes >> wh_machine_door_axis(machine, d) & 1U) != 0) {
+            length = name_one(text, length, layout->door_list[d].name);
+        }
+    }
+}
+
+/* The axis that turns or lifts a gripper of this name, or the one at a station of this name; 0: none. */
+static uint32_t find_gripper_axis(const wh_layout_t *layout, size_t g, const char *name) {
+    const wh_layout_gripper_t *gripper = &layout->grippers[g];
+    const int32_t axis = layout->machine.mounts[g].axis;
+    const bool is_station =
+        gripper->station != WH_NONE && strcasecmp(name, layout->stations[gripper->station].name) == 0;
+    const bool is_it = is_station || strcasecmp(name, gripper->name) == 0;
+    return is_it && axis != WH_NONE ? 1U << axis : 0;
+}
+
+bool wh_mcs_find_mechanism(const wh_mcs_t *mcs, const char *name, uint32_t *axes) {
+    const wh_machine_t *machine = &mcs->layout->machine;
+    *axes = strcasecmp(name, "robot") == 0 ? wh_machine_robot_bits(machine) : 0;
+    for (size_t robot = 0; robot < wh_machine_robots(machine); ++robot) {
+        const bool is_it = strcasecmp(name, mcs->layout->robots[robot].name) == 0;
+        *axes |= is_it ? wh_mcs_robot_axes(machine, robot) : 0;
+    }
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        *axes |= find_gripper_axis(mcs->layout, g, name);
+    }
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        const bool is_it = strcasecmp(name, mcs->layout->door_list[d].name) == 0;
+        *axes |= is_it ? 1U << wh_machine_door_axis(machine, d) : 0;
+    }
+    return *axes != 0;
+}
+
+/* The command that the task of a lane runs: an index in the record, or WH_NONE. Without tasks the first lane
+ * has what runs. */
+static int32_t running_in(const wh_mcs_t *mcs, size_t lane) {
+    const wh_lanes_t *lanes = mcs->lanes;
+    return !lanes || (size_t)lanes->current == lane ? mcs->recorder.running : lanes->of[lane].running;
+}
+
+/* Each command that runs; those of tasks with the task's number. False if none does. */
+static bool put_running(description_t *to, const wh_mcs_t *mcs) {
+    bool is_any = false;
+    for (size_t i = 0; i < (mcs->lanes ? WH_MCS_LANES : 1); ++i) {
+        const int32_t running = running_in(mcs, i);
+        if (running != WH_NONE) {
+            const wh_command_record_t *command = &mcs->recorder.record->commands[running];
+            put(to, "%s", is_any ? " " : "phase=running ");
+            if (command->task > 0) {
+                put(to, "task%d.", (int)command->task);
+            }
+            put(to, "command=");
+            put_command(to, command->text, command->task > 0 ? TASK_COMMAND : SCRIPT_COMMAND);
+            is_any = true;
+        }
+    }
+    return is_any;
+}
+
+/* A second one has its robot's name before it. */
+static void put_held(description_t *to, const wh_mcs_held_t *held, const char *robot) {
+    static const char *const parts[] = {"command", "stop"};
+    for (size_t i = 0; i < 2; ++i) {
+        put(to, " ");
+        if (robot) {
+            put_name(to, robot);
+            put(to, ".");
+        }
+        put(to, "%s=", parts[i]);
+        put_command(to, i == 0 ? held->command : held->phase, SCRIPT_COMMAND);
     }
 }
 
 /* What runs, or else what is held. */
 static void put_phase(description_t *to, const wh_mcs_t *mcs) {
-    const int32_t running = mcs->recorder.running;
-    if (running != WH_NONE) {
-        put(to, "phase=running command=");
-        put_command(to, mcs->recorder.record->commands[running].text);
-    } else if (mcs->held.command[0] != '\0') {
-        put(to, "phase=held command=");
-        put_command(to, mcs->held.command);
-        put(to, " stop=%s", mcs->held.phase);
-    } else {
-        put(to, "phase=idle");
+    if (put_running(to, mcs)) {
+        return;
+    }
+    const wh_mcs_held_t *first = wh_mcs_find_held(mcs, WH_NONE);
+    put(to, first ? "phase=held" : "phase=idle");
+    for (int32_t robot = 0; robot < WH_MCS_ROBOTS; ++robot) {
+        const wh_mcs_held_t *held = wh_mcs_find_held(mcs, robot);
+        if (held) {
+            put_held(to, held, held == first ? NULL : mcs->layout->robots[robot].name);
+        }
     }
 }
 
@@ -144,8 +282,9 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     put(&to, " seq=%lld", (long long)seen.seq);
     put_number(&to, "time", (double)seen.utime / 1e6);
     if (mcs->layout) {
-        put_robot(&to, seen.axes);
+        put_robots(&to, mcs->layout, seen.axes);
         put_grippers(&to, mcs->layout, seen.held);
+        put_doors(&to, mcs);
     }
     put_error(&to, mcs->recorder.record);
 }

@@ -3,6 +3,7 @@
  *
  * Each state carries the samples of its own slice, and how many were taken up to it. So states that come
  * twice add nothing; states that never came (of a free run) leave holes, which are counted. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,18 @@ static bool is_of(const wh_mcs_edge_t *edge, const wh_scan_t *scan) {
            scan->count == order->count && scan->first == order->first;
 }
 
+/* How fast the chuck turns, as the sensor sees it. A scan's last state does not tell the turn. */
+static void follow(wh_mcs_edge_t *edge, const wh_scan_t *scan, double slice_s) {
+    if (!scan->armed) {
+        return;
+    }
+    if (edge->turn_seq > 0) {
+        edge->speed = (scan->turn - edge->turn) / ((double)(edge->seq - edge->turn_seq) * slice_s);
+    }
+    edge->turn = scan->turn;
+    edge->turn_seq = edge->seq;
+}
+
 static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
     const int32_t begin = scan->taken - scan->sample_count;
     for (; edge->taken < begin; ++edge->taken) {
@@ -29,6 +42,7 @@ static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
     }
     for (; edge->taken < scan->taken; ++edge->taken) {
         edge->samples[edge->taken] = scan->samples[edge->taken - begin];
+        edge->speeds[edge->taken] = edge->speed;
     }
     edge->armed = scan->armed;
 }
@@ -45,6 +59,7 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     edge->number = scan->number;
     wh_mcs_hear_pass(&mcs->pass, state);
     if (is_of(edge, scan)) {
+        follow(edge, scan, (double)mcs->layout->slice_us / 1e6);
         collect(edge, scan);
         if (was_armed && !edge->armed && mcs->partners.edge) {
             mcs->partners.edge(mcs->partners.user, mcs);
@@ -60,7 +75,9 @@ void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge) {
     free(edge->samples);
+    free(edge->speeds);
     edge->samples = NULL;
+    edge->speeds = NULL;
 }
 
 /* native.arm_edge(gripper, first, count): from the end of the next slice on the sensor at this chuck takes
@@ -78,6 +95,9 @@ static int arm_edge(lua_State *L) {
     luaL_argcheck(L, wh_scanning_check(&scanning, &order) == WH_OK, 3, "no scan of an edge sensor");
     wh_mcs_free_edge(edge);
     edge->samples = wh_array_new((size_t)magnitude(order.count), sizeof *edge->samples);
+    edge->speeds = wh_array_new((size_t)magnitude(order.count), sizeof *edge->speeds);
+    edge->speed = 0;
+    edge->turn_seq = 0;
     edge->order = order;
     edge->before = edge->number;
     edge->taken = 0;
@@ -124,14 +144,26 @@ static int read_edge(lua_State *L) {
     return 1;
 }
 
-void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner) {
+/* How far the chuck turns from rest to its full speed. */
+static double run_up(const wh_limits_t *limits) {
+    const double speed = limits->speed;
+    const bool is_short = speed * limits->jerk < limits->acceleration * limits->acceleration;
+    const double time = is_short ? 2 * sqrt(speed / limits->jerk)
+                                 : speed / limits->acceleration + limits->acceleration / limits->jerk;
+    return speed * time / 2;
+}
+
+void wh_mcs_push_edge_sensor(lua_State *L, const wh_layout_t *layout, const wh_scanner_t *scanner) {
     const wh_sensor_t *sensor = &scanner->sensor;
-    lua_createtable(L, 0, 5);
+    lua_createtable(L, 0, 7);
     wh_lua_set_integer(L, "samples", sensor->samples);
     wh_lua_set_integer(L, "pixels", wh_sensor_pixels(sensor));
     wh_lua_set_number(L, "pixel", sensor->pixel);
     wh_lua_set_number(L, "middle", sensor->middle);
     wh_lua_set_number(L, "length", sensor->length);
+    wh_lua_set_number(L, "run_up", run_up(&layout->machine.chuck_limits));
+    wh_mcs_push_sensor_error(L, &layout->believed[scanner - layout->scanners]);
+    lua_setfield(L, -2, "believed");
 }
 
 const luaL_Reg wh_mcs_edge_functions[] = {

@@ -1,6 +1,7 @@
 /* Faults on purpose: a script's go to the simulator with the next slice's command. */
 #include <string.h>
 
+#include "../script/wh_module_values.h"
 #include "native.h"
 
 static int64_t next_slice(const wh_mcs_t *mcs) {
@@ -52,7 +53,7 @@ static int add_fault(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 1);
     wh_reader_start(&reader, L, "fault");
-    const wh_fault_t fault = wh_layout_read_fault(&reader, mcs->layout, next_slice(mcs));
+    const wh_fault_t fault = wh_layout_read_fault(&reader, mcs->layout, mcs->state.wafers, next_slice(mcs));
     const size_t slot = find_slot(L, mcs);
     send(L, mcs, slot, &fault);
     mcs->fault_count += slot == mcs->fault_count ? 1 : 0;
@@ -60,10 +61,90 @@ static int add_fault(lua_State *L) {
     return 1;
 }
 
-/* native.clear_fault(number): it ends with the next slice. */
+/* ------------------------------------------------------------------------------------------------- alarms */
+
+static bool is_alarm(const wh_mcs_t *mcs, lua_Integer number) {
+    return number > WH_FAULTS && number <= WH_FAULTS + WH_MCS_ALARMS &&
+           mcs->alarms[number - WH_FAULTS - 1] != WH_OK;
+}
+
+/* One that a host has armed waits for a command of its own. */
+static bool waits_for(const wh_mcs_t *mcs, size_t alarm, int32_t job) {
+    return mcs->alarms[alarm] != WH_OK && (mcs->alarm_jobs[alarm] == 0 || mcs->alarm_jobs[alarm] == job);
+}
+
+static int32_t current_job(const wh_mcs_t *mcs) {
+    const int32_t job = mcs->lanes ? mcs->lanes->of[mcs->lanes->current].job : 0;
+    return job != 0 ? job : mcs->asking;
+}
+
+bool wh_mcs_take_alarm(wh_mcs_t *mcs, wh_status_t error, int32_t job) {
+    for (size_t i = 0; error != WH_OK && i < WH_MCS_ALARMS; ++i) {
+        if (mcs->alarms[i] == error && waits_for(mcs, i, job)) {
+            mcs->alarms[i] = WH_OK;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* native.arm_alarm(error): the fault's number. */
+static int arm_alarm(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_status_t error = (wh_status_t)luaL_checkinteger(L, 1);
+    size_t place = 0;
+    while (place < WH_MCS_ALARMS && mcs->alarms[place] != WH_OK) {
+        ++place;
+    }
+    if (place == WH_MCS_ALARMS) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                     "16 errors wait for a command already (expected at most 16: clear one)");
+    }
+    mcs->alarms[place] = error;
+    mcs->alarm_jobs[place] = current_job(mcs);
+    lua_pushinteger(L, (lua_Integer)(WH_FAULTS + place + 1));
+    return 1;
+}
+
+/* native.alarms(): what is armed for the running task, a list of { number, error } in the order of numbers;
+ * nil: nothing is. */
+static int list_alarms(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_of(L);
+    lua_Integer count = 0;
+    for (size_t i = 0; i < WH_MCS_ALARMS; ++i) {
+        if (!waits_for(mcs, i, current_job(mcs))) {
+            continue;
+        }
+        if (count == 0) {
+            lua_newtable(L);
+        }
+        lua_createtable(L, 0, 2);
+        wh_lua_set_integer(L, "number", (lua_Integer)(WH_FAULTS + i + 1));
+        wh_lua_set_integer(L, "error", mcs->alarms[i]);
+        lua_rawseti(L, -2, ++count);
+    }
+    return count > 0 ? 1 : 0;
+}
+
+/* native.disarm(number): it no longer waits. */
+static int disarm(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    const lua_Integer number = luaL_checkinteger(L, 1);
+    if (is_alarm(mcs, number)) {
+        mcs->alarms[number - WH_FAULTS - 1] = WH_OK;
+    }
+    return 0;
+}
+
+/* ----------------------------------------------------------------------------------------------- clearing */
+
+/* native.clear_fault(number): it ends with the next slice; an error that waits no longer does. */
 static int clear_fault(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const lua_Integer number = luaL_checkinteger(L, 1);
+    if (is_alarm(mcs, number)) {
+        return disarm(L);
+    }
     if (number < 1 || number > (lua_Integer)mcs->fault_count ||
         mcs->faults[number - 1].until <= mcs->track.slice) {
         lua_pushfstring(L, "number: %I (expected that of a fault that is not over)", (LUAI_UACINT)number);
@@ -87,5 +168,10 @@ static int list_kinds(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_fault_functions[] = {
-    {"fault", add_fault}, {"clear_fault", clear_fault}, {"fault_kinds", list_kinds}, {NULL, NULL}};
+const luaL_Reg wh_mcs_fault_functions[] = {{"fault", add_fault},
+                                           {"clear_fault", clear_fault},
+                                           {"fault_kinds", list_kinds},
+                                           {"arm_alarm", arm_alarm},
+                                           {"alarms", list_alarms},
+                                           {"disarm", disarm},
+                                           {NULL, NULL}};

@@ -32,6 +32,13 @@ void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
     mcs->listeners[mcs->listener_count++].user = user;
 }
 
+void wh_mcs_listen_first(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
+    memmove(mcs->listeners + 1, mcs->listeners, mcs->listener_count * sizeof mcs->listeners[0]);
+    ++mcs->listener_count;
+    mcs->listeners[0].hear = hear;
+    mcs->listeners[0].user = user;
+}
+
 /* ---------------------------------------------------------------------------------------- numbered errors */
 
 static int numbered_error_text(lua_State *L) {
@@ -118,9 +125,8 @@ static int load_module(lua_State *L) {
 }
 
 static void hear_collisions(void *user, const wh_command_t *command, const wh_state_t *state) {
-    (void)command;
     if (state->status == WH_OK) {
-        wh_collision_observe(user, state);
+        wh_collision_observe(user, command->axes, state);
     }
 }
 
@@ -164,10 +170,11 @@ static const luaL_Reg module_functions[] = {{"module", load_module},
                                             {NULL, NULL}};
 
 /* Registry keys of what lua/mcs/init.lua returned: what opens the prompt, what opens a survey, what makes
- * definitions. */
+ * definitions, what waits for tasks. */
 static char prompt_key;
 static char survey_key;
 static char definitions_key;
+static char tasks_key;
 
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
@@ -177,8 +184,9 @@ static int open_words(lua_State *L) {
         wh_mcs_fault_functions,   wh_mcs_describe_functions,   wh_mcs_plan_functions,
         wh_mcs_play_functions,    wh_mcs_query_functions,      wh_mcs_scan_functions,
         wh_mcs_survey_functions,  wh_mcs_definition_functions, wh_mcs_saved_functions,
-        wh_mcs_edge_functions,    wh_mcs_align_functions,      wh_mcs_centring_functions,
-        wh_mcs_teaching_functions};
+        wh_mcs_edge_functions,    wh_mcs_align_functions,      wh_mcs_calibration_functions,
+        wh_mcs_arrival_functions, wh_mcs_centring_functions,   wh_mcs_teaching_functions,
+        wh_mcs_lane_functions,    wh_mcs_job_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -189,7 +197,8 @@ static int open_words(lua_State *L) {
         lua_pushlightuserdata(L, mcs);
         luaL_setfuncs(L, groups[i], 1);
     }
-    lua_call(L, 1, 3);
+    lua_call(L, 1, 4);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &tasks_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &definitions_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &survey_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &prompt_key);
@@ -198,11 +207,17 @@ static int open_words(lua_State *L) {
 
 void wh_mcs_push_prompt(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &prompt_key);
-    lua_call(L, 0, 2);
+    lua_call(L, 0, 3);
 }
 
 void wh_mcs_push_survey(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &survey_key);
+}
+
+int wh_mcs_wait_for_tasks(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &tasks_key);
+    lua_call(L, 0, 0);
+    return 0;
 }
 
 void wh_mcs_push_definitions(lua_State *L) {
@@ -250,9 +265,10 @@ static void judge_heard(wh_mcs_t *mcs) {
 /* A script that ends while a command is held has left the robot in a station. One that failed says why. */
 static void judge_held(wh_mcs_t *mcs) {
     char text[WH_MCS_HELD_BYTES + 100];
-    if (mcs->held.command[0] != '\0' && !mcs->recorder.record->failure) {
+    const wh_mcs_held_t *held = wh_mcs_find_held(mcs, WH_NONE);
+    if (held && !mcs->recorder.record->failure) {
         snprintf(text, sizeof text, "CONTINUE or STOP after %s; at the script's end it is held, %s",
-                 mcs->held.command, mcs->held.phase);
+                 held->command, held->phase);
         add_expectation(mcs, text, false);
     }
 }
@@ -279,7 +295,9 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     mcs->segments = NULL;
     mcs->kept_faults = NULL;
     mcs->segment_count = 0;
+    wh_mcs_free_lanes(mcs);
     wh_mcs_free_edge(&mcs->edge);
+    wh_mcs_free_turns(&mcs->turns);
     wh_mcs_free_pass(&mcs->pass);
     wh_rehearsal_free(&mcs->rehearsal);
 }

@@ -26,6 +26,9 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 /* From now on this is called for each slice. */
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
 
+/* The same, before all others. */
+void wh_mcs_listen_first(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
+
 /* From now on motion control knows for STATUS which slice's state came last: of a link that is not the local
  * cell's. To be called before the first slice. */
 void wh_mcs_watch_slices(wh_mcs_t *mcs);
@@ -41,6 +44,9 @@ void wh_mcs_start_faults(wh_mcs_t *mcs);
  * cannot be. */
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
 
+/* If a door is "open", "shut" or "moving", as its switches tell. */
+const char *wh_mcs_door_word(const wh_mcs_t *mcs, size_t door);
+
 /* What so many slices cost of the instruction budget: a slice takes as much time as some twenty instructions
  * of Lua. */
 static inline uint64_t wh_mcs_steps(int64_t slices) {
@@ -50,20 +56,33 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
 /* Hears of each slice for what `edge` and `pass` collect; `user` is the wh_mcs_t. */
 void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state);
 
+void wh_mcs_free_lanes(wh_mcs_t *mcs);
+
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
+void wh_mcs_free_turns(wh_mcs_turns_t *turns);
 
 /* A state that comes after all that were heard; and a command that was sent. */
 void wh_mcs_hear_pass(wh_mcs_pass_t *pass, const wh_state_t *state);
+/* From the end of the next slice on these beams latch, and this gripper's way is remembered. What was
+ * collected before is gone. */
+void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper);
 void wh_mcs_follow_pass(wh_mcs_pass_t *pass, const wh_command_t *command);
 
 void wh_mcs_free_pass(wh_mcs_pass_t *pass);
 
-/* Pushes what motion control knows of an edge sensor: { samples: in a turn, pixels: of the line, pixel,
- * middle and length, mm }. Its errors are for a calibration to find. */
-void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner);
+/* Pushes what motion control knows of an edge sensor of the layout: { samples: in a turn, pixels: of the
+ * line, pixel, middle and length, mm, run_up: how far the chuck turns from rest to its full speed,
+ * believed: its errors as the layout says that they are known }. The true ones are for a calibration to
+ * find. */
+void wh_mcs_push_edge_sensor(lua_State *L, const wh_layout_t *layout, const wh_scanner_t *scanner);
+
+/* Pushes { offset, zero, gain, latency }. */
+void wh_mcs_push_sensor_error(lua_State *L, const wh_sensor_error_t *error);
 
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_align_functions[];
+extern const luaL_Reg wh_mcs_arrival_functions[];
+extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
@@ -71,6 +90,8 @@ extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_edge_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
+extern const luaL_Reg wh_mcs_job_functions[];
+extern const luaL_Reg wh_mcs_lane_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];

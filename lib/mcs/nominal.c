@@ -5,7 +5,9 @@
 #include "../grasp/restore.h"
 
 size_t wh_nominal_bytes(const wh_layout_t *layout) {
-    return (sizeof(wh_nominal_t) + 2 * layout->wafer_count * sizeof(wh_wafer_t) + 15) / 16 * 16;
+    return (sizeof(wh_nominal_t) + (2 * layout->wafer_count + wh_layout_seen(layout)) * sizeof(wh_wafer_t) +
+            15) /
+           16 * 16;
 }
 
 wh_nominal_t *wh_nominal_begin(void *memory, const wh_layout_t *layout, const wh_layout_t *real) {
@@ -14,13 +16,16 @@ wh_nominal_t *wh_nominal_begin(void *memory, const wh_layout_t *layout, const wh
     nominal->layout = layout;
     nominal->real = real;
     nominal->next = &nominal->wafers[layout->wafer_count];
+    nominal->grips.seen = &nominal->wafers[2 * layout->wafer_count];
     const wh_grasp_storage_t storage = {.wafers = nominal->wafers,
                                         .wafer_count = layout->wafer_count,
                                         .grippers = nominal->grippers,
                                         .gripper_count = layout->machine.gripper_count};
     memcpy(nominal->wafers, layout->start, layout->wafer_count * sizeof *nominal->wafers);
-    return wh_simulator_init(&nominal->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK ? nominal
-                                                                                                    : NULL;
+    const bool good =
+        wh_simulator_init(&nominal->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK &&
+        wh_layout_give_grips(layout, &nominal->simulator, &nominal->grips) == WH_OK;
+    return good ? nominal : NULL;
 }
 
 void wh_nominal_slice(wh_nominal_t *nominal, const wh_command_t *command) {
@@ -56,9 +61,12 @@ static bool agrees(const wh_nominal_t *nominal, size_t w, const wh_state_t *trut
 /* In the middle of its slot as taught; a wafer that lies in none is where it is. */
 static wh_pose_t taught_place(const wh_nominal_t *nominal, const wh_pose_t *truth) {
     wh_place_t place;
-    return wh_cell_locate(&nominal->real->cell, truth, &place)
-               ? wh_station_slot(&nominal->layout->places[place.station], place.slot)
-               : *truth;
+    wh_pose_t taught = *truth;
+    if (wh_cell_locate(&nominal->real->cell, truth, &place)) {
+        const wh_pose_t slot = wh_station_slot(&nominal->layout->places[place.station], place.slot);
+        wh_face_frame(&slot, nominal->layout->cell.thickness, place.face, &taught);
+    }
+    return taught;
 }
 
 /* The gripper of the true cell, at its believed place; who passes by is not asked. */
@@ -96,6 +104,16 @@ static bool correct(wh_nominal_t *nominal, const wh_state_t *truth) {
            WH_OK;
 }
 
+/* A plunger's sensors tell its phase. */
+static void correct_grips(wh_nominal_t *nominal, const wh_state_t *truth) {
+    wh_grip_state_t *grips = nominal->simulator.physics.grips;
+    for (size_t g = 0; g < truth->gripper_count; ++g) {
+        if (grips[g].phase != truth->physics->grips[g].phase) {
+            grips[g] = truth->physics->grips[g];
+        }
+    }
+}
+
 void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state_t *believed) {
     bool all = true;
     for (size_t w = 0; all && w < truth->wafer_count; ++w) {
@@ -105,6 +123,8 @@ void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state
     if (!all && !correct(nominal, truth)) {
         return;
     }
+    correct_grips(nominal, truth);
+    believed->physics = &nominal->simulator.physics;
     believed->wafers = nominal->wafers;
     believed->grippers = nominal->grippers;
 }

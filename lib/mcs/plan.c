@@ -3,11 +3,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../layout/axes.h"
 #include "../layout/transit.h"
 #include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
+#include "carrying.h"
 #include "native.h"
+#include "playing.h"
 
 /* native.axes(): where all axes stand, rad and mm. */
 static int read_axes(lua_State *L) {
@@ -30,12 +33,41 @@ static void refuse(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *
     wh_mcs_raise(L, mcs, status, reason[0] ? reason : NULL);
 }
 
+/* Of a goal that is before a slot, the request's `place` says how a robot with a carrier comes there: the
+ * table at stack index 2 has it. The flip stays as it is at these axes. False: it has none. */
+static bool read_pose(lua_State *L, const wh_travel_goal_t *goal, const wh_carrier_t *carrier,
+                      const wh_real_t axes[], wh_pose_t *pose, wh_chain_choice_t *choice) {
+    if (lua_getfield(L, 2, "place") != LUA_TTABLE) {
+        return false;
+    }
+    pose->R = wh_mat3_about_z(goal->heading);
+    pose->r = goal->at;
+    *choice = wh_carrier_choice(carrier, axes);
+    lua_getfield(L, -1, "rail");
+    choice->rail = luaL_checknumber(L, -1);
+    lua_getfield(L, -2, "elbow");
+    choice->elbow = (wh_elbow_t)luaL_checkinteger(L, -1);
+    if (lua_getfield(L, -3, "rotation") == LUA_TTABLE) {
+        for (int i = 0; i < 9; ++i) {
+            lua_rawgeti(L, -1, i + 1);
+            pose->R.m[i / 3][i % 3] = luaL_checknumber(L, -1);
+            lua_pop(L, 1);
+        }
+    }
+    if (carrier->chain.has_flip) {
+        wh_chain_turn_over(&pose->R, choice->flip);
+    }
+    return true;
+}
+
 /* native.inverse(request): the axes with the gripper of request.to there, from where they stand. */
 static int find_axes(lua_State *L) {
     static const char *const fields[] = {"x", "y", "z", "heading"};
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_machine_t *machine = &mcs->layout->machine;
     wh_real_t to[4], axes[WH_AXES];
+    wh_pose_t pose;
+    wh_chain_choice_t choice;
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 1);
     lua_getfield(L, 1, "to");
@@ -44,13 +76,19 @@ static int find_axes(lua_State *L) {
         to[i] = luaL_checknumber(L, -1);
     }
     lua_getfield(L, 2, "gripper");
-    const size_t gripper = (size_t)wh_mcs_index(L, -1, machine->gripper_count);
-    const wh_vec3_t at = wh_vec3(to[0], to[1], to[2]);
+    wh_travel_goal_t goal = {(size_t)wh_mcs_index(L, -1, machine->gripper_count),
+                             wh_vec3(to[0], to[1], to[2]), to[3], NULL, NULL};
+    size_t first;
+    const wh_carrier_t *carrier = wh_machine_carrier(machine, machine->mounts[goal.gripper].robot, &first);
+    if (carrier && read_pose(L, &goal, carrier, &mcs->track.axes[first], &pose, &choice)) {
+        goal.pose = &pose;
+        goal.choice = &choice;
+    }
     memcpy(axes, mcs->track.axes, sizeof axes);
-    const wh_status_t status = wh_machine_inverse(machine, gripper, &at, to[3], mcs->track.axes, axes);
+    const wh_status_t status = wh_travel_find(mcs->layout, &goal, mcs->track.axes, axes);
     if (status != WH_OK) {
         char reason[WH_TRAVEL_BYTES];
-        wh_travel_say_point(mcs->layout, gripper, &at, to[3], mcs->track.axes, reason);
+        wh_travel_say_point(mcs->layout, &goal, mcs->track.axes, reason);
         refuse(L, mcs, status, reason);
     }
     wh_lua_push_numbers(L, axes, machine->axis_count);
@@ -78,15 +116,50 @@ static wh_real_t corrected_heading(const wh_mat3_t *R, wh_real_t turn_deg) {
     return wh_atan2(cosine * R->m[1][0] + sine * R->m[1][1], cosine * R->m[0][0] + sine * R->m[0][1]);
 }
 
-/* native.slot(station, slot, dx, dy, dz, turn): { x, y, z, dir_x, dir_y, heading } of the gripper there,
- * displaced in the slot's axes (mm) and turned about its z (degrees). The way in, projected to horizontal, is
- * beside the taught one and goes the same way: it is not turned. */
+/* A robot that tilts comes along the slot's own axes: `up` is its z, `rotation` the gripper's. */
+static void push_tilted(lua_State *L, const wh_mat3_t *R, wh_real_t turn_deg) {
+    const wh_vec3_t up = wh_mat3_column(R, 2);
+    const wh_mat3_t turn = wh_mat3_from_rpy_deg(0, 0, turn_deg);
+    const wh_mat3_t turned = wh_mat3_multiply(R, &turn);
+    wh_lua_set_number(L, "dir_x", R->m[0][0]);
+    wh_lua_set_number(L, "dir_y", R->m[1][0]);
+    wh_lua_set_number(L, "dir_z", R->m[2][0]);
+    wh_lua_push_numbers(L, &up.x, 3);
+    lua_setfield(L, -2, "up");
+    wh_lua_push_numbers(L, turned.m[0], 9);
+    lua_setfield(L, -2, "rotation");
+}
+
+/* With several robots the one at stack index 7 comes its own way, to where it was taught the station. */
+static void take_approach(lua_State *L, const wh_mcs_t *mcs, size_t index, wh_pose_t *base_from_slot,
+                          double *rail, wh_elbow_t *elbow) {
+    const wh_layout_station_t *station = &mcs->layout->stations[index];
+    *rail = station->rail;
+    *elbow = station->elbow;
+    if (station->by) {
+        const int32_t robot = wh_mcs_index(L, 7, mcs->layout->robot_count);
+        const wh_layout_approach_t *by = &station->by[robot];
+        base_from_slot->R = by->is_turned ? by->R : base_from_slot->R;
+        *rail = by->rail;
+        *elbow = by->elbow;
+        if (mcs->local.trial) {
+            wh_trial_cell_teach(mcs->local.trial, index, (size_t)robot, *rail, base_from_slot);
+        }
+    }
+}
+
+/* native.slot(station, slot, dx, dy, dz, turn, robot): { x, y, z, dir_x, dir_y, heading } of the gripper
+ * there, displaced in the slot's axes (mm) and turned about its z (degrees). The way in, projected to
+ * horizontal, is beside the taught one and goes the same way: it is not turned. */
 static int find_slot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
     const wh_station_t *place = &mcs->layout->places[station];
     const int32_t slot = wh_mcs_index(L, 2, (size_t)place->slots) + 1;
-    const wh_pose_t base_from_slot = corrected_slot(L, place, slot);
+    wh_pose_t base_from_slot = corrected_slot(L, place, slot);
+    double rail;
+    wh_elbow_t elbow;
+    take_approach(L, mcs, (size_t)station, &base_from_slot, &rail, &elbow);
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];
     const wh_real_t length = wh_real_sqrt(x * x + y * y);
@@ -97,6 +170,14 @@ static int find_slot(lua_State *L) {
     wh_lua_set_number(L, "dir_x", x / length);
     wh_lua_set_number(L, "dir_y", y / length);
     wh_lua_set_number(L, "heading", corrected_heading(&base_from_slot.R, luaL_checknumber(L, 6)));
+    if (mcs->layout->machine.carrier) {
+        wh_lua_set_number(L, "rail", rail);
+        wh_lua_set_integer(L, "elbow", (lua_Integer)elbow);
+        const size_t robot = (size_t)luaL_optinteger(L, 7, 1) - 1;
+        if (wh_machine_carrier(&mcs->layout->machine, robot, NULL)->chain.has_tilt) {
+            push_tilted(L, &base_from_slot.R, luaL_checknumber(L, 6));
+        }
+    }
     return 1;
 }
 
@@ -111,19 +192,54 @@ static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *seg
     }
 }
 
-/* A turn with R beyond the layout's transit, at one of its ends, is a way that comes in first. */
-static void keep_within_transit(const wh_mcs_t *mcs, wh_segment_t *segment) {
-    const wh_real_t *from = mcs->track.axes;
-    const wh_real_t *to = segment->target;
+/* True if an arm that turns from these axes to those leaves the layout's transit. */
+static bool leaves_transit(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[]) {
     const bool turns = wh_real_abs(to[WH_AXIS_THETA] - from[WH_AXIS_THETA]) > 0 ||
                        wh_real_abs(to[WH_AXIS_YAW] - from[WH_AXIS_YAW]) > 0;
-    if (mcs->layout->transit > 0 && turns) {
-        const wh_real_t reach = wh_transit_reach(mcs->layout, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
-        if (from[WH_AXIS_R] > reach || to[WH_AXIS_R] > reach) {
-            segment->kind = WH_SEGMENT_WAY;
-            segment->reach = reach;
+    const wh_real_t most = wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]);
+    return layout->robots[0].transit > 0 && turns &&
+           most > wh_transit_reach(layout, 0, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
+}
+
+/* A leg that turns must be within the transit as a whole: by via points nothing comes in by itself. */
+static void check_legs(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
+    const wh_real_t *from = mcs->track.axes;
+    for (size_t i = 0; i <= segment->point_count; ++i) {
+        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : segment->target;
+        if (leaves_transit(mcs->layout, from, to)) {
+            char reason[WH_TRAVEL_BYTES];
+            snprintf(
+                reason, sizeof reason,
+                "leg %zu by `via` turns with r at %.6g mm: beyond `robot.transit` of %.10g mm nothing may",
+                i + 1, wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]), mcs->layout->robots[0].transit);
+            refuse(L, mcs, WH_STATUS_OUT_OF_REACH, reason);
         }
+        from = to;
     }
+}
+
+/* The request's `via`, a list of { theta, R, Z, yaw, blend }. False: it has none. */
+static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
+    lua_settop(L, 1);
+    if (lua_getfield(L, 1, "via") != LUA_TTABLE) {
+        return false;
+    }
+    segment->kind = WH_SEGMENT_VIA;
+    segment->points = mcs->via_points;
+    segment->point_count = (size_t)lua_rawlen(L, -1);
+    for (size_t i = 0; i < segment->point_count && i < WH_VIA_POINTS; ++i) {
+        lua_rawgeti(L, 2, (lua_Integer)i + 1);
+        for (size_t axis = 0; axis <= WH_ROBOT_AXES; ++axis) {
+            lua_rawgeti(L, 3, (lua_Integer)axis + 1);
+            *(axis < WH_ROBOT_AXES ? &mcs->via_points[i].q[axis] : &mcs->via_points[i].blend) =
+                luaL_checknumber(L, -1);
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    }
+    lua_settop(L, 1);
+    check_legs(L, mcs, segment);
+    return true;
 }
 
 static void read_line_field(lua_State *L, wh_segment_t *segment) {
@@ -138,7 +254,9 @@ static void read_line_field(lua_State *L, wh_segment_t *segment) {
     segment->speed = luaL_optnumber(L, -1, 0);
     lua_getfield(L, 1, "acceleration");
     segment->acceleration = luaL_optnumber(L, -1, 0);
-    lua_pop(L, 2);
+    lua_getfield(L, 1, "gripper");
+    segment->gripper = (int32_t)luaL_optinteger(L, -1, 0) - 1;
+    lua_pop(L, 3);
 }
 
 static void read_valves_field(lua_State *L, wh_segment_t *segment) {
@@ -158,23 +276,28 @@ static void read_sensor_field(lua_State *L, wh_segment_t *segment) {
     lua_pop(L, 1);
 }
 
-/* The segment table at stack index 1: one of axes, line (with speed and acceleration), valves, dwell, sensor
- * (with timeout). Raises if it is none. */
-static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
-    static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor"};
+/* By via points, within the transit, or straight there. */
+static void read_motion(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
+    read_axes_field(L, mcs, segment);
+    if (!read_vias(L, mcs, segment) && lua_getfield(L, 1, "stays") != LUA_TBOOLEAN) {
+        wh_transit_keep(mcs->layout, mcs->track.axes, segment);
+    }
+}
+
+/* The segment table at stack index 1: one of axes, line (with speed, acceleration and the gripper that
+ * goes), valves, dwell, sensor (with timeout), arrives (likewise). Raises if it is none. */
+static wh_segment_t read_segment(lua_State *L, wh_mcs_t *mcs, wh_awaited_t *awaited) {
+    static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor", "arrives"};
     wh_segment_t segment = wh_track_blank(&mcs->track);
     size_t kind = 0;
     luaL_checktype(L, 1, LUA_TTABLE);
-    while (kind < 5 && lua_getfield(L, 1, kinds[kind]) == LUA_TNIL) {
+    while (kind < 6 && lua_getfield(L, 1, kinds[kind]) == LUA_TNIL) {
         lua_pop(L, 1);
         ++kind;
     }
     switch (kind) {
     case 0:
-        read_axes_field(L, mcs, &segment);
-        if (lua_getfield(L, 1, "stays") != LUA_TBOOLEAN) {
-            keep_within_transit(mcs, &segment);
-        }
+        read_motion(L, mcs, &segment);
         break;
     case 1:
         read_line_field(L, &segment);
@@ -188,8 +311,11 @@ static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
     case 4:
         read_sensor_field(L, &segment);
         break;
+    case 5:
+        wh_mcs_await_arrival(L, mcs, &segment, awaited);
+        break;
     default:
-        luaL_error(L, "a segment needs one of axes, line, valves, dwell, sensor");
+        luaL_error(L, "a segment needs one of axes, line, valves, dwell, sensor, arrives");
     }
     lua_settop(L, 1);
     return segment;
@@ -206,57 +332,139 @@ static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
     return grippers;
 }
 
-static void say_way(const wh_mcs_t *mcs, const wh_segment_t *segment, char reason[WH_TRAVEL_BYTES]) {
-    wh_travel_say_axes(mcs->layout, segment->target, reason);
-    if (reason[0] == '\0') {
-        const wh_real_t least =
-            wh_transit_least(mcs->layout, mcs->track.axes[WH_AXIS_YAW], segment->target[WH_AXIS_YAW]);
-        snprintf(reason, WH_TRAVEL_BYTES,
-                 "`robot.transit` of %.10g mm leaves no room to turn: with r at %.10g mm, where its travel "
-                 "begins, blades and wafers need %.1f mm",
-                 mcs->layout->transit, mcs->layout->machine.robot.travel[WH_AXIS_R].min,
-                 ceil(10 * least) / 10);
-    }
-}
-
 static void refuse_segment(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const wh_segment_t *segment) {
     char reason[WH_TRAVEL_BYTES] = "";
     if (status == WH_STATUS_BAD_SEGMENT) {
         snprintf(reason, sizeof reason, "it would take more than 1e6 s");
-    } else if (segment->kind == WH_SEGMENT_AXES) {
+    } else if (segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_VIA) {
         wh_travel_say_axes(mcs->layout, segment->target, reason);
     } else if (segment->kind == WH_SEGMENT_WAY) {
-        say_way(mcs, segment, reason);
+        wh_travel_say_axes(mcs->layout, segment->target, reason);
+        if (reason[0] == '\0') {
+            wh_transit_say(mcs->layout, mcs->track.axes, segment, reason, sizeof reason);
+        }
     } else if (segment->kind == WH_SEGMENT_LINE) {
-        wh_travel_say_line(mcs->layout, mcs->track.axes, &segment->travel, reason);
+        wh_travel_say_line(mcs->layout, segment->gripper, mcs->track.axes, &segment->travel, reason);
     }
     refuse(L, mcs, status, reason);
 }
 
+/* Motion control reckons with a wafer where a valve is open. Passive pads have none: the request at stack
+ * index 1 tells of what the pattern has done (`told`, by gripper), else their sensor does. */
+static uint32_t find_loaded(lua_State *L, wh_mcs_t *mcs) {
+    uint32_t loaded = 0;
+    const int told = lua_getfield(L, 1, "told");
+    for (size_t g = 0; g < mcs->layout->machine.gripper_count; ++g) {
+        bool carries = mcs->track.valves[g] == WH_VALVE_OPEN;
+        if (mcs->layout->grips[g].kind == WH_GRIP_PASSIVE) {
+            if (told == LUA_TTABLE && lua_rawgeti(L, -1, (lua_Integer)g + 1) == LUA_TBOOLEAN) {
+                carries = lua_toboolean(L, -1) != 0;
+            } else {
+                carries = (mcs->state.sensors >> g & 1U) != 0;
+                wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, (int32_t)g, carries);
+            }
+            lua_settop(L, 2);
+        }
+        loaded |= carries ? 1U << g : 0;
+    }
+    lua_settop(L, 1);
+    return loaded;
+}
+
+static void refuse_slip(lua_State *L, wh_mcs_t *mcs, const wh_carrying_slip_t *slip) {
+    const wh_layout_t *layout = mcs->layout;
+    const char *name = layout->grippers[slip->gripper].name;
+    char axis[2 * WH_NAME_SIZE], reason[8 * WH_NAME_SIZE];
+    wh_layout_name_axis(layout, slip->axis, axis, sizeof axis);
+    if (slip->enough >= 1) {
+        snprintf(reason, sizeof reason,
+                 "%s asks the wafer on %s for %.0f mm/s^2, friction holds %.0f (expected loaded = { "
+                 "acceleration = "
+                 "%.0f } or less, of %s or of its robot)",
+                 axis, name, slip->asked, slip->held, floor(slip->enough), name);
+    } else {
+        snprintf(
+            reason, sizeof reason,
+            "%s makes the pads of %s so steep that the wafer slides: it is asked for %.0f mm/s^2, friction "
+            "holds %.0f",
+            axis, name, slip->asked, slip->held);
+    }
+    refuse(L, mcs, WH_STATUS_SLIP_AHEAD, reason);
+}
+
+/* Begins the segment as slowly as wafers that are carried ask for. */
+static wh_status_t begin_carrying(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
+    const uint32_t loaded = find_loaded(L, mcs);
+    wh_carrying_slip_t slip;
+    int64_t slices;
+    const wh_status_t status = wh_carrying_begin(&mcs->track, mcs->layout, segment, loaded, &slices);
+    wh_sandbox_charge(L, wh_mcs_steps(slices));
+    if (status == WH_OK && wh_carrying_slips(&mcs->track, mcs->layout, loaded, &slip)) {
+        refuse_slip(L, mcs, &slip);
+    }
+    return status;
+}
+
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
-    const wh_segment_t segment = read_segment(L, mcs);
+    planned->awaited = (wh_awaited_t){WH_AWAITED_VACUUM, 0};
+    const wh_segment_t segment = read_segment(L, mcs, &planned->awaited);
     lua_getfield(L, 1, "vacuum");
     const bool for_vacuum = segment.kind == WH_SEGMENT_DWELL && lua_toboolean(L, -1) != 0;
     lua_pop(L, 1);
     planned->task = wh_activity_task(&mcs->track, &segment, for_vacuum);
+    if (planned->awaited.kind != WH_AWAITED_VACUUM) {
+        planned->task.share = WH_SHARE_WAITING;
+    }
     planned->may_lose = may_lose(mcs->track.machine, &planned->task);
-    const wh_status_t status = wh_track_begin(&mcs->track, &segment);
+    const wh_status_t status = wh_carrying_matters(mcs->layout) ? begin_carrying(L, mcs, &segment)
+                                                                : wh_track_begin(&mcs->track, &segment);
     if (status != WH_OK) {
         refuse_segment(L, mcs, status, &segment);
     }
     planned->track = mcs->track;
 }
 
-static void look_ahead(lua_State *L, wh_mcs_t *mcs) {
-    const wh_rehearsal_t *rehearsal = &mcs->rehearsal;
-    char reason[WH_REHEARSAL_REASON_BYTES] = "";
-    if (rehearsal->is_judged && rehearsal->look_ahead) {
-        if (rehearsal->look_ahead(rehearsal->look_ahead_user, &mcs->track, &mcs->state, rehearsal->count == 0,
-                                  reason)) {
-            refuse(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+/* What the other tasks play. */
+static size_t find_others(const wh_mcs_t *mcs, wh_other_t others[WH_OTHERS]) {
+    const wh_record_t *record = mcs->recorder.record;
+    size_t count = 0;
+    for (size_t i = 0; mcs->lanes && i < WH_MCS_LANES && count < WH_OTHERS; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        if (lane->is_busy && (int32_t)i != mcs->lanes->current) {
+            const char *text = lane->running != WH_NONE ? record->commands[lane->running].text : NULL;
+            others[count++] = (wh_other_t){&lane->track, lane->is_drawn, lane->axes, text};
         }
-        wh_sandbox_charge(L, wh_mcs_steps(mcs->track.segment_slices));
     }
+    return count;
+}
+
+/* Of the segment that was just planned; without one, of what the others do when the command is over. */
+static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_track_t *track) {
+    const wh_rehearsal_t *rehearsal = &mcs->rehearsal;
+    const bool is_first = rehearsal->planned.count == 0;
+    char reason[WH_REHEARSAL_REASON_BYTES] = "";
+    wh_other_t others[WH_OTHERS];
+    int64_t slices = 0;
+    if (!rehearsal->is_judged || !rehearsal->look_ahead || (is_first && !track)) {
+        return;
+    }
+    const wh_ahead_start_t start = {&mcs->state, others, is_first ? find_others(mcs, others) : 0};
+    if (rehearsal->look_ahead(rehearsal->look_ahead_user, track, is_first ? &start : NULL, &slices, reason)) {
+        if (!track) { /* no request is to blame */
+            wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+        }
+        refuse(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+    }
+    wh_sandbox_charge(L, wh_mcs_steps(track ? track->segment_slices : slices));
+}
+
+/* native.look_on(): at the end of a rehearsal; what others play goes on to its end beside what was
+ * planned. */
+static int look_on(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
+    look_ahead(L, mcs, NULL);
+    return 0;
 }
 
 /* native.plan(segment): within a rehearsal; the number by which the segment can then be played as it was
@@ -266,12 +474,24 @@ static int plan(lua_State *L) {
     wh_planned_t planned;
     luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
     wh_mcs_plan_segment(L, mcs, &planned);
-    look_ahead(L, mcs);
+    look_ahead(L, mcs, &mcs->track);
     wh_track_skip(&mcs->track);
     wh_rehearsal_note_reach(&mcs->rehearsal, &mcs->track, mcs->recorder.record);
     wh_rehearsal_add(&mcs->rehearsal, &planned);
-    lua_pushinteger(L, (lua_Integer)mcs->rehearsal.count);
+    lua_pushinteger(L, (lua_Integer)mcs->rehearsal.planned.count);
     return 1;
+}
+
+/* native.try_segment(segment): within a rehearsal; raises if the segment could not be planned from where the
+ * rehearsed ones end, and plans nothing. */
+static int try_segment(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_track_t kept = mcs->track;
+    wh_planned_t unused;
+    luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
+    wh_mcs_plan_segment(L, mcs, &unused);
+    mcs->track = kept;
+    return 0;
 }
 
 /* native.rehearse(on, judged): from now on segments are only planned, and looked at for collisions if judged;
@@ -285,19 +505,21 @@ static int rehearse(lua_State *L) {
     return 0;
 }
 
-/* native.reach(station, slot): what is rehearsed from now on goes there; without arguments: the reach is no
- * longer noted. */
+/* native.reach(station, slot, robot): what is rehearsed from now on goes there; without arguments: the
+ * reach is no longer noted. */
 static int set_reach(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t stations = mcs->layout->station_count;
     mcs->rehearsal.reach_slot = (int32_t)luaL_optinteger(L, 2, 0);
     if (mcs->rehearsal.reach_slot != 0) {
         mcs->rehearsal.reach_station = wh_mcs_index(L, 1, stations);
+        mcs->rehearsal.reach_robot = (size_t)wh_mcs_index(L, 3, wh_machine_robots(&mcs->layout->machine));
         wh_record_begin_reach(mcs->recorder.record, stations);
     }
     return 0;
 }
 
 const luaL_Reg wh_mcs_plan_functions[] = {
-    {"axes", read_axes}, {"inverse", find_axes}, {"slot", find_slot}, {"rehearse", rehearse},
-    {"plan", plan},      {"reach", set_reach},   {NULL, NULL}};
+    {"axes", read_axes},          {"inverse", find_axes}, {"slot", find_slot},
+    {"rehearse", rehearse},       {"look_on", look_on},   {"plan", plan},
+    {"try_segment", try_segment}, {"reach", set_reach},   {NULL, NULL}};

@@ -1,13 +1,12 @@
-/* Segments, played slice by slice. */
+/* Segments, played slice by slice, one at a time. */
 #include <math.h>
 #include <string.h>
 
+#include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/clock.h"
 #include "native.h"
-
-/* The budget is charged for slices in portions, so that a long wait can be ended within one. */
-#define SLICES_PER_CHARGE 1024
+#include "playing.h"
 
 /* Of a slice that goes out: its faults, and that the running segment takes one more. */
 static void keep_slice(wh_mcs_t *mcs) {
@@ -23,7 +22,7 @@ static void keep_slice(wh_mcs_t *mcs) {
 /* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
-    if (mcs->partners.await && mcs->track.segment_slice == mcs->track.segment_slices) {
+    if (mcs->partners.await && !mcs->lanes && mcs->track.segment_slice == mcs->track.segment_slices) {
         mcs->partners.await(mcs->partners.user);
     }
     if (mcs->keep_segments) {
@@ -39,33 +38,62 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     return status;
 }
 
-static bool stop_has_come(const wh_mcs_t *mcs) {
+bool wh_mcs_stop_has_come(const wh_mcs_t *mcs) {
     return mcs->stop_requested || mcs->track.slice >= mcs->stop_slice;
 }
 
 void wh_mcs_stop(wh_mcs_t *mcs) {
     mcs->stop_requested = true;
+    mcs->stopped_axes = WH_MCS_ALL;
 }
 
-__attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
-    const char *by = mcs->stop_requested ? "by a request" : "by stop_in";
-    if (!mcs->stop_requested) {
+/* With tasks it is looked at when the slice has come back: who then has the mechanism. */
+bool wh_mcs_stop_mechanism(wh_mcs_t *mcs, const char *name) {
+    uint32_t axes = 0;
+    if (!wh_mcs_find_mechanism(mcs, name, &axes)) {
+        return false;
+    }
+    if (mcs->lanes) {
+        mcs->stopped_axes = axes | (mcs->stop_requested ? mcs->stopped_axes : 0);
+        mcs->stop_requested = true;
+    } else if (mcs->recorder.running != WH_NONE && (mcs->held_axes & axes) != 0) {
+        wh_mcs_stop(mcs);
+    }
+    return true;
+}
+
+const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes) {
+    const bool requested = mcs->stop_requested;
+    *axes = requested ? mcs->stopped_axes : mcs->stop_slice_axes;
+    if (!requested) {
         mcs->stop_slice = INT64_MAX;
     }
     mcs->stop_requested = false;
-    wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, by);
+    return requested ? "by a request" : "by stop_in";
 }
 
-/* A script may catch that its link was stopped, by a signal, but only once: it would else not end. */
-__attribute__((noreturn)) static void raise_refused(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
-    const wh_mcs_partners_t *partners = &mcs->partners;
+__attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
+    uint32_t all = 0;
+    wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, wh_mcs_take_stop(mcs, &all));
+}
+
+void wh_mcs_note_refused(wh_mcs_t *mcs, wh_status_t status) {
     if (status == WH_STATUS_STOPPED && mcs->link_stopped) {
         wh_sandbox_stop(mcs->sandbox);
     }
     mcs->link_stopped = status == WH_STATUS_STOPPED;
+}
+
+void wh_mcs_raise_refused(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
+    const wh_mcs_partners_t *partners = &mcs->partners;
     wh_mcs_raise(L, mcs, status,
                  partners->explain ? partners->explain(partners->user, status)
                                    : "the simulator refused a slice");
+}
+
+__attribute__((noreturn)) static void refuse(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
+    wh_mcs_note_refused(mcs, status);
+    wh_mcs_raise_refused(L, mcs, status);
 }
 
 /* A slice that was refused, or did not go out, has not taken place: the next one has its number, and begins
@@ -74,7 +102,7 @@ static bool has_gone_out(const wh_mcs_t *mcs) {
     return mcs->partners.reached && mcs->partners.reached(mcs->partners.user) >= mcs->track.slice;
 }
 
-static wh_status_t play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
+wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
     const wh_status_t status = exchange(mcs);
     if (status != WH_OK && !has_gone_out(mcs)) {
         memcpy(mcs->track.axes, before, sizeof mcs->track.axes);
@@ -87,19 +115,19 @@ static wh_status_t play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
     return status;
 }
 
-/* Plays up to SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a link at a
- * wall-clock rate a portion may take seconds. */
+/* Plays up to WH_MCS_SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a
+ * link at a wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
     const double begin = wh_clock_seconds();
-    for (int i = 0; i < SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
+    for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
         wh_real_t before[WH_AXES];
         memcpy(before, mcs->track.axes, sizeof before);
-        state = wh_track_next(&mcs->track, mcs->state.sensors);
+        state = wh_track_next(&mcs->track, wh_mcs_sensors(mcs, &mcs->awaited));
         if (state == WH_TRACK_MOVING) {
-            *status = play_slice(mcs, before);
+            *status = wh_mcs_play_slice(mcs, before);
         }
-        if (wh_sandbox_stopping(mcs->sandbox) || stop_has_come(mcs)) {
+        if (wh_sandbox_stopping(mcs->sandbox) || wh_mcs_stop_has_come(mcs)) {
             break;
         }
     }
@@ -107,8 +135,7 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     return state;
 }
 
-/* A slice that was given up may be refused later. Then the next one has its number, too. */
-static wh_status_t resume(wh_mcs_t *mcs) {
+wh_status_t wh_mcs_resume(wh_mcs_t *mcs) {
     const wh_mcs_partners_t *partners = &mcs->partners;
     const wh_status_t status = partners->resume ? partners->resume(partners->user) : WH_OK;
     if (partners->reached && partners->reached(partners->user) < mcs->track.slice) {
@@ -123,9 +150,12 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     if (mcs->stop_requested) {
         raise_stopped(L, mcs);
     }
-    status = resume(mcs);
+    status = wh_mcs_resume(mcs);
+    if (status == WH_STATUS_STOPPED && mcs->stop_requested) {
+        raise_stopped(L, mcs);
+    }
     if (status != WH_OK) {
-        raise_refused(L, mcs, status);
+        refuse(L, mcs, status);
     }
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;
@@ -133,9 +163,9 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
         /* First, for a link that gave up waiting because of a stop returns with some status too. */
         wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
         if (status != WH_OK && !(status == WH_STATUS_STOPPED && mcs->stop_requested)) {
-            raise_refused(L, mcs, status);
+            refuse(L, mcs, status);
         }
-        if (stop_has_come(mcs)) {
+        if (wh_mcs_stop_has_come(mcs)) {
             raise_stopped(L, mcs);
         }
     }
@@ -153,9 +183,21 @@ static void keep_segment(wh_mcs_t *mcs) {
 
 /* A segment of the last rehearsal begins as it was planned there, in the slice that the track has come to. */
 static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
-    *planned = mcs->rehearsal.segments[wh_mcs_index(L, 1, mcs->rehearsal.count)];
+    *planned = mcs->rehearsal.planned.segments[wh_mcs_index(L, 1, mcs->rehearsal.planned.count)];
     planned->track.slice = mcs->track.slice;
     mcs->track = planned->track;
+}
+
+void wh_mcs_begin_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
+    luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
+    if (!mcs->link) {
+        wh_mcs_raise(L, mcs, WH_STATUS_NO_LAYOUT, "cell was refused");
+    }
+    if (lua_isinteger(L, 1)) {
+        begin_planned(L, mcs, planned);
+    } else {
+        wh_mcs_plan_segment(L, mcs, planned);
+    }
 }
 
 /* native.play(segment or the number of a planned one): true if it ran to its end, false if its sensor did not
@@ -163,17 +205,10 @@ static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
 static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
-    luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
-    if (!mcs->link) {
-        wh_mcs_raise(L, mcs, WH_STATUS_NO_LAYOUT, "cell was refused");
-    }
-    if (lua_isinteger(L, 1)) {
-        begin_planned(L, mcs, &planned);
-    } else {
-        wh_mcs_plan_segment(L, mcs, &planned);
-    }
+    wh_mcs_begin_segment(L, mcs, &planned);
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
+    mcs->awaited = planned.awaited;
     mcs->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
     const wh_segment_t *segment = &mcs->track.segment;
     wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
@@ -193,12 +228,21 @@ static int play(lua_State *L) {
     return 2;
 }
 
-/* native.stop_in(seconds): a STOP comes at the first slice at or after so many simulated seconds from now. */
+/* native.stop_in(seconds, mechanism): a STOP of that mechanism, nil: of all, comes at the first slice at or
+ * after so many simulated seconds from now. False if there is no such mechanism. With one there must be
+ * tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    uint32_t axes = WH_MCS_ALL;
+    if (!lua_isnoneornil(L, 2) && !wh_mcs_find_mechanism(mcs, wh_lua_whole_text(L, 2), &axes)) {
+        lua_pushboolean(L, false);
+        return 1;
+    }
+    mcs->stop_slice_axes = axes;
     const double slices = ceil(luaL_checknumber(L, 1) * 1e6 / (double)mcs->track.slice_us);
     mcs->stop_slice = mcs->track.slice + (int64_t)slices;
-    return 0;
+    lua_pushboolean(L, true);
+    return 1;
 }
 
 const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"stop_in", stop_in}, {NULL, NULL}};

@@ -16,12 +16,18 @@ static int read_utime(lua_State *L) {
     return 1;
 }
 
-/* native.held(gripper): the name of the wafer that it holds, or nil. */
-static int find_held(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+/* The wafer that the gripper at stack index 1 holds, or WH_NONE. */
+static int32_t read_held(lua_State *L, const wh_mcs_t *mcs) {
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const int32_t wafer = mcs->state.grippers[gripper].wafer;
     wh_decisions_read(mcs->decisions, WH_DECISION_HELD, gripper, wafer);
+    return wafer;
+}
+
+/* native.held(gripper): the name of the wafer that it holds, or nil. */
+static int find_held(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t wafer = read_held(L, mcs);
     if (wafer == WH_NONE) {
         return 0;
     }
@@ -64,6 +70,26 @@ static int read_sensor(lua_State *L) {
     return 1;
 }
 
+static const char *plunger_word(const wh_grip_state_t *state, const wh_edge_t *edge) {
+    static const char *const words[] = {"open", "closing", "closed", "jammed", "missed", "opening"};
+    return state->phase == WH_GRIP_CLOSING && state->s <= edge->retracted ? "still" : words[state->phase];
+}
+
+/* native.grip(gripper): what the plunger of its edge grip does, a word of lua/mcs/patterns.lua, where it is,
+ * mm, and how far beyond the clearance a wafer jams, mm. */
+static int read_grip(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->layout->machine.gripper_count);
+    const wh_edge_t *edge = &mcs->layout->grips[gripper].edge;
+    const wh_grip_state_t open = {.s = edge->retracted, .wafer = WH_NONE};
+    const wh_grip_state_t *state = mcs->state.physics ? &mcs->state.physics->grips[gripper] : &open;
+    wh_decisions_measured(mcs->decisions, "what a plunger does");
+    lua_pushstring(L, plunger_word(state, edge));
+    lua_pushnumber(L, state->s);
+    lua_pushnumber(L, state->excess);
+    return 3;
+}
+
 /* native.is_open(gripper): true if its valve is told to be open. */
 static int read_valve(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -89,7 +115,7 @@ static int measure(lua_State *L) {
     const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
     wh_decisions_measured(mcs->decisions, "offset");
-    const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
+    const wh_place_t place = wh_cell_measure(&mcs->real->cell, station, slot, &wafer->base_from_wafer);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
     lua_pushnumber(L, place.dz);
@@ -115,9 +141,30 @@ static int locate(lua_State *L) {
     return push_place(L, mcs, &wafer_argument(L, mcs, 1)->base_from_wafer);
 }
 
-/* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict, 0 if the wafer does not lie in that slot,
- * 1 if it does, 2 if it does with that offset; its offset there; then the name of the station and the slot
- * that it lies in, or nothing. Only the verdict may decide anything, the rest is for messages. */
+/* native.face(wafer): "up" or "down", by the direction of its front face in base. */
+static int read_face(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_measured(mcs->decisions, "a wafer's face");
+    lua_pushstring(L, wh_layout_face_of(&wafer_argument(L, mcs, 1)->base_from_wafer));
+    return 1;
+}
+
+/* native.held_face(gripper): "up" or "down" of the wafer that it holds, or nil. Who holds which wafer is all
+ * that a trial may change of it. */
+static int read_held_face(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t wafer = read_held(L, mcs);
+    if (wafer == WH_NONE) {
+        return 0;
+    }
+    lua_pushstring(L, wh_layout_face_of(&mcs->state.wafers[wafer].base_from_wafer));
+    return 1;
+}
+
+/* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict, 0 if the wafer does not lie in that
+ * slot, 1 if it does, 2 if it does with that offset; its offset there and its height; then the name of the
+ * station and the slot that it lies in, or nothing. Only the verdict may decide anything, the rest is for
+ * messages. */
 static int judge_place(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_decisions_claim_t claim;
@@ -127,22 +174,32 @@ static int judge_place(lua_State *L) {
     claim.dx = luaL_checknumber(L, 4);
     claim.dy = luaL_checknumber(L, 5);
     claim.tolerance = luaL_checknumber(L, 6);
+    claim.height = mcs->layout->grasp.tolerance.projz;
     const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
     wh_decisions_claim(mcs->decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
-    const wh_place_t place =
-        wh_station_measure(&mcs->real->cell.stations[claim.station], claim.slot, base_from_wafer);
+    const wh_place_t place = wh_cell_measure(&mcs->real->cell, &mcs->real->cell.stations[claim.station],
+                                             claim.slot, base_from_wafer);
     lua_pushinteger(L, verdict);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
-    return 3 + push_place(L, mcs, base_from_wafer);
+    lua_pushnumber(L, place.dz);
+    return 4 + push_place(L, mcs, base_from_wafer);
 }
 
-/* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
+/* native.wafer_pose(wafer, gripper): { r, R }, as the module wh takes it; with a gripper the frame of the
+ * face that looks at it. */
 static int read_wafer_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_pose_t pose = wafer_argument(L, mcs, 1)->base_from_wafer;
     wh_decisions_measured(mcs->decisions, "a wafer's pose");
-    wh_lua_push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
+    if (!lua_isnoneornil(L, 2) && mcs->layout->has_faces) {
+        const wh_pose_t wafer = pose;
+        const int32_t gripper = wh_mcs_index(L, 2, mcs->state.gripper_count);
+        const wh_pose_t *base_from_gripper = &mcs->state.grippers[gripper].base_from_gripper;
+        wh_face_frame(&wafer, mcs->layout->cell.thickness, wh_face_towards(&wafer, base_from_gripper), &pose);
+    }
+    wh_lua_push_pose(L, &pose);
     return 1;
 }
 
@@ -279,6 +336,9 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"measure", measure},
                                            {"locate", locate},
                                            {"lies", judge_place},
+                                           {"face", read_face},
+                                           {"held_face", read_held_face},
+                                           {"grip", read_grip},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
                                            {"slot_pose", read_slot_pose},

@@ -14,10 +14,11 @@ typedef struct {
     wh_command_t command;
     wh_machine_cache_t cache;
     wh_mcs_seen_t seen;
-    wh_mcs_held_t held;
+    wh_mcs_held_t held[WH_MCS_ROBOTS];
     int64_t stop_slice;
     wh_fault_t faults[WH_FAULTS];
     size_t fault_count;
+    wh_status_t alarms[WH_MCS_ALARMS];
     int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
     uint32_t edge_number;
     uint32_t pass_number; /* of the armings of beams, likewise */
@@ -34,10 +35,11 @@ static void keep(const wh_mcs_t *mcs, saved_t *saved) {
     saved->command = mcs->command;
     saved->cache = mcs->cache;
     saved->seen = mcs->seen;
-    saved->held = mcs->held;
+    memcpy(saved->held, mcs->held, sizeof saved->held);
     saved->stop_slice = mcs->stop_slice;
     memcpy(saved->faults, mcs->faults, sizeof saved->faults);
     saved->fault_count = mcs->fault_count;
+    memcpy(saved->alarms, mcs->alarms, sizeof saved->alarms);
     saved->edge_seq = mcs->edge.seq;
     saved->edge_number = mcs->edge.number;
     saved->pass_number = mcs->pass.number;
@@ -48,10 +50,11 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->command = saved->command;
     mcs->cache = saved->cache;
     mcs->seen = saved->seen;
-    mcs->held = saved->held;
+    memcpy(mcs->held, saved->held, sizeof mcs->held);
     mcs->stop_slice = saved->stop_slice;
     memcpy(mcs->faults, saved->faults, sizeof mcs->faults);
     mcs->fault_count = saved->fault_count;
+    memcpy(mcs->alarms, saved->alarms, sizeof mcs->alarms);
     wh_mcs_free_edge(&mcs->edge);
     mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
     wh_mcs_free_pass(&mcs->pass);
@@ -148,14 +151,23 @@ static int restore(lua_State *L) {
     return 0;
 }
 
-/* native.differs(saved): a slice was played since, a fault is on its way, or a command is held or no longer
- * is. */
+static bool is_held_otherwise(const saved_t *saved, const wh_mcs_t *mcs) {
+    bool differs = false;
+    for (size_t i = 0; i < WH_MCS_ROBOTS; ++i) {
+        differs = differs || strcmp(saved->held[i].command, mcs->held[i].command) != 0;
+    }
+    return differs;
+}
+
+/* native.differs(saved): a slice was played since, a fault is on its way, an error was armed or no longer is,
+ * or a command is held or no longer is. */
 static int differs(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
                            saved->command.fault_count != mcs->command.fault_count ||
-                           strcmp(saved->held.command, mcs->held.command) != 0);
+                           memcmp(saved->alarms, mcs->alarms, sizeof saved->alarms) != 0 ||
+                           is_held_otherwise(saved, mcs));
     return 1;
 }
 

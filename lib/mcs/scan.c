@@ -1,10 +1,9 @@
 /* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
  *   The beams stand upright in the station's frame, at x = -0.6 and y = +-0.6 of a wafer's radius, near
- *     the edge that
- *   the arm comes to. Sweeping along z, each notes the heights of the back faces that it passes. A wafer
- *     belongs to the slots
- * nearest to its two heights.
+ *   the edge that the arm comes to. Sweeping along z, each notes the heights of the faces that it passes: of
+ *   a wafer the back, or where wafers lie face down the face that looks at the slots. A wafer belongs to the
+ *   slots nearest to its two heights.
  *   0 empty    no wafer belongs to the slot
  *   1 single   one does, level to half the pitch
  *   2 double   more than one does
@@ -42,7 +41,12 @@ static bool pass_beam(const wh_pose_t *station_from_wafer, double radius, double
 
 static sight_t look_at(const wh_mcs_t *mcs, const wh_station_t *place, const wh_wafer_t *wafer) {
     const double radius = mcs->layout->wafer_diameter / 2;
-    const wh_pose_t station_from_wafer = wh_pose_relative(&place->base_from_station, &wafer->base_from_wafer);
+    wh_pose_t face = wafer->base_from_wafer;
+    if (mcs->layout->has_faces) {
+        wh_face_frame(&wafer->base_from_wafer, mcs->layout->cell.thickness,
+                      wh_face_towards(&wafer->base_from_wafer, &place->base_from_station), &face);
+    }
+    const wh_pose_t station_from_wafer = wh_pose_relative(&place->base_from_station, &face);
     sight_t sight;
     for (int beam = 0; beam < 2; ++beam) {
         const double y = (beam == 0 ? -BEAM_SHARE : BEAM_SHARE) * radius;

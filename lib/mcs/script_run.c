@@ -90,6 +90,9 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_ru
     if (stopped) {
         wh_mcs_cut_short(&run->mcs, WH_STATUS_STOPPED, result->message);
     }
+    if (!ended) {
+        wh_mcs_stop_tasks(&run->mcs);
+    }
     wh_mcs_finish(&run->mcs);
     if (is_bad_input) {
         return refuse(run, result->message);
@@ -124,10 +127,14 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.error_count = options->error_count;
     run->record.errors = options->errors;
     run->record.error_count = options->error_count;
+    run->record.trial = options->error_count > 0 ? NULL : options->trial;
     run->mcs.without_collisions = options->without_collisions;
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);
+    if (result.status == WH_SANDBOX_OK && run->mcs.lanes) {
+        (void)wh_sandbox_protect(wh_sandbox_state(run->sandbox), wh_mcs_wait_for_tasks, NULL, &result);
+    }
     return conclude(run, options, &result);
 }
 

@@ -11,11 +11,12 @@
 #include "../text/utf8.h"
 
 /* The record forgets what it holds once it has so many commands. */
-#define REMEMBERED_COMMANDS 10000
+#define REMEMBERED_COMMANDS 1000
 
-/* Registry keys: the two functions, and the list that keeps the last completion's texts alive. */
+/* Registry keys: the three functions, and the list that keeps the last completion's texts alive. */
 static char execute_key;
 static char complete_key;
+static char play_key;
 static char candidates_key;
 
 static bool refuse(wh_session_t *session, const char *message) {
@@ -29,6 +30,7 @@ static bool refuse(wh_session_t *session, const char *message) {
  * before the link leaves an earlier run. */
 static int open_cell(lua_State *L) {
     wh_mcs_push_prompt(L);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &play_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &execute_key);
     lua_getglobal(L, "cell");
@@ -50,8 +52,15 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
         return refuse(session, result.message);
     }
     session->mcs.partners = options->partners;
-    return wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result) ||
-           refuse(session, result.message);
+    session->mcs.listener = options->listener;
+    if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result)) {
+        return refuse(session, result.message);
+    }
+    if (wh_sandbox_find_unread(session->sandbox, result.message)) {
+        (void)snprintf(session->message, sizeof session->message, "%.200s: %.800s", layout, result.message);
+        return false;
+    }
+    return true;
 }
 
 /* ---------------------------------------------------------------------------------------------- resetting */
@@ -129,6 +138,10 @@ static int execute_line(lua_State *L) {
     return 0;
 }
 
+bool wh_session_is_full(const wh_session_t *session) {
+    return !session->options.keeps_all && session->record.command_count >= REMEMBERED_COMMANDS;
+}
+
 static wh_status_t status_of(wh_sandbox_reason_t reason) {
     if (reason == WH_SANDBOX_STOPPED) {
         return WH_STATUS_STOPPED;
@@ -155,15 +168,19 @@ static void perform_reset(wh_session_t *session, request_t *request) {
     }
 }
 
+static void forget_old(wh_session_t *session) {
+    if (wh_session_is_full(session)) {
+        wh_record_forget_old(&session->record);
+    }
+}
+
 static void perform(wh_session_t *session, request_t *request) {
     wh_sandbox_result_t result;
     if (wh_session_says(request->line, "RESET")) {
         perform_reset(session, request);
         return;
     }
-    if (session->record.command_count >= REMEMBERED_COMMANDS) {
-        wh_record_forget(&session->record);
-    }
+    forget_old(session);
     const size_t events = session->record.event_count;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), execute_line, request, &result)) {
         request->status = status_of(result.status);
@@ -192,6 +209,40 @@ wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *an
     }
     session->executing = 0;
     return request.status;
+}
+
+/* -------------------------------------------------------------------------------------------------- jobs */
+
+/* Runs protected. */
+static int play_jobs(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &play_key);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &execute_key);
+    lua_call(L, 1, 0);
+    return 0;
+}
+
+wh_status_t wh_session_play(wh_session_t *session, const wh_mcs_jobs_t *jobs, char *answer, size_t size) {
+    wh_sandbox_result_t result;
+    wh_status_t status = WH_OK;
+    wh_sandbox_renew(session->sandbox);
+    session->executing = 1;
+    forget_old(session);
+    const size_t events = session->record.event_count;
+    session->mcs.jobs = *jobs;
+    if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), play_jobs, NULL, &result)) {
+        status = status_of(result.status);
+        write_error(answer, size, status, status == WH_STATUS_STOPPED ? "" : result.message);
+        wh_mcs_cut_short(&session->mcs, status, result.message);
+        wh_mcs_stop_tasks(&session->mcs);
+    }
+    session->mcs.jobs = (wh_mcs_jobs_t){0};
+    count_complaints(session, events);
+    session->executing = 0;
+    return status;
+}
+
+void wh_session_renew(wh_session_t *session) {
+    wh_sandbox_renew(session->sandbox);
 }
 
 void wh_session_stop(wh_session_t *session) {

@@ -37,6 +37,8 @@ typedef struct {
     const char *const *parameters; /* NAME=VALUE, for the layout's `params` */
     size_t parameter_count;
     wh_mcs_partners_t partners; /* see mcs/mcs.h */
+    wh_mcs_listener_t listener; /* the same, of each run of the session */
+    bool keeps_all;             /* the record forgets no command */
     wh_session_report_t *report;
     void *report_user;
 } wh_session_options_t;
@@ -65,6 +67,19 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
  * characters stand in it as \xNN. Returns the error's number. Called from within a command (a link's
  * exchange, a report) it answers WH_STATUS_BUSY. */
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
+
+/* Plays lines side by side, each job's one after another, until there is none left; first of all those
+ * that have come by now. None may be RESET, SAVE, RESTORE or UNDO. Returns WH_OK, or why all jobs that had
+ * not ended
+ * were given up, with `answer` as wh_session_execute writes it. */
+wh_status_t wh_session_play(wh_session_t *session, const wh_mcs_jobs_t *jobs, char *answer, size_t size);
+
+/* A fresh budget, for a job that begins while others are played. Not behind a stop: it would take that
+ * back. */
+void wh_session_renew(wh_session_t *session);
+
+/* The record has so many commands that it forgets them before the next one is begun while none runs. */
+bool wh_session_is_full(const wh_session_t *session);
 
 /* Writes an error as it is answered: "ERROR 54 BUSY: " and the reason, on one line, cut like an answer. A
  * session's own reasons begin with the catalogue's text: wh_record_error_text. */

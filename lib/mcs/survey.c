@@ -13,11 +13,19 @@ static const wh_real_t turn = 2 * WH_PI;
 
 /* ------------------------------------------------------------------------------------------ words for Lua */
 
-/* native.windings(theta): the places farthest below and above theta, within its travel, at which the robot
- * points the same way: a list of none to two, rad. What lies between them is freer than both. */
+/* Theta of the robot, from 1, at stack index 2. */
+static size_t theta_of(lua_State *L, const wh_mcs_t *mcs) {
+    const wh_machine_t *machine = &mcs->layout->machine;
+    size_t first;
+    (void)wh_machine_carrier(machine, (size_t)wh_mcs_index(L, 2, wh_machine_robots(machine)), &first);
+    return first + WH_AXIS_THETA;
+}
+
+/* native.windings(theta, robot): the places farthest below and above theta, within its travel, at which
+ * the robot points the same way: a list of none to two, rad. What lies between them is freer than both. */
 static int list_windings(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_travel_t *travel = &mcs->layout->machine.robot.travel[WH_AXIS_THETA];
+    const wh_travel_t *travel = wh_machine_travel(&mcs->layout->machine, theta_of(L, mcs));
     const wh_real_t theta = luaL_checknumber(L, 1);
     const wh_real_t turns[2] = {floor((theta - travel->min + WH_SLACK_RAD) / turn),
                                 floor((travel->max - theta + WH_SLACK_RAD) / turn)};
@@ -31,11 +39,13 @@ static int list_windings(lua_State *L) {
     return 1;
 }
 
-/* native.stand(theta): what is rehearsed next begins there; without an argument: at home. */
+/* native.stand(theta, robot): what is rehearsed next begins there; without theta: at home. */
 static int stand(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_real_t *home = mcs->layout->machine.robot.home;
-    mcs->track.axes[WH_AXIS_THETA] = luaL_optnumber(L, 1, home[WH_AXIS_THETA]);
+    const size_t theta = theta_of(L, mcs);
+    wh_real_t home[WH_AXES];
+    wh_machine_home(&mcs->layout->machine, home);
+    mcs->track.axes[theta] = luaL_optnumber(L, 1, home[theta]);
     return 0;
 }
 
@@ -143,8 +153,8 @@ static int take_failure(lua_State *L) {
 
 static int64_t count_slices(const wh_rehearsal_t *rehearsal) {
     int64_t slices = 0;
-    for (size_t i = 0; i < rehearsal->count; ++i) {
-        slices += rehearsal->segments[i].track.segment_slices;
+    for (size_t i = 0; i < rehearsal->planned.count; ++i) {
+        slices += rehearsal->planned.segments[i].track.segment_slices;
     }
     return slices;
 }
@@ -339,8 +349,10 @@ static bool play_blades(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *
     bool good = true;
     job->from = job->station;
     for (int32_t g = 0; good && !*spent && g < count; ++g) {
-        const bool is_other = g != layout->stations[job->station].effector;
-        if (is_other && layout->grippers[g].station == WH_NONE && is_to_be_played(job)) {
+        const wh_layout_station_t *station = &layout->stations[job->station];
+        const bool serves = !station->by || station->by[layout->machine.mounts[g].robot].serves;
+        if (serves && g != station->effector && layout->grippers[g].station == WH_NONE &&
+            is_to_be_played(job)) {
             job->blade = g;
             *spent = is_spent(job);
             good = *spent || play(job, sandbox, result);

@@ -26,8 +26,9 @@ typedef struct {
 /* Adds to `check` a finding of kind WH_FINDING_REACH for every run of neighbouring slots at which GET or PUT
  * is refused: from home, and where theta can be a turn or more away from that; and one for each station with
  * `check_map` at which MAP is. For each blade that is not the station's effector it adds a warning of that
- * kind, with the first slot at which that blade is refused. Where a command of such a blade fails as it is
- * played, it adds a warning of kind WH_FINDING_PLAY. Of that kind WH_FINDING_PLAY it adds the first
+ * kind, with the first slot at which that blade is refused; and one for a prealigner whose GET has no room
+ * to go aside by all that ALIGN may find. Where a command of such a blade fails as it is played, it adds a
+ * warning of kind WH_FINDING_PLAY. Of that kind WH_FINDING_PLAY it adds the first
  * command of a station that fails or of which the cell complains, and a warning for what it did not play:
  * for commands of too many slices, and after WH_TRYOUT_ALL_SLICES. `layout` was read in this sandbox, in
  * which nothing may run afterwards. False, and the reason in `result`, if the cell cannot be set up: a run

@@ -1,5 +1,5 @@
-/* Teaching by a beam: what a blade that carried a wafer through a station's beam tells of where the station
- * is, and the beam. lua/mcs/teaching.lua moves the arm. */
+/* Teaching: what a blade that carried a wafer through a station's beam tells of where the station is, and the
+ * beam; and what a probe tells that touched the station's block. lua/mcs/teaching.lua moves the arm. */
 #include "../align/teaching.h"
 
 #include <math.h>
@@ -61,28 +61,136 @@ static int add_teaching(lua_State *L) {
     return 1;
 }
 
+/* --------------------------------------------------------------------------------------------- by touch */
+
+static const wh_layout_block_t *block_of(lua_State *L, const wh_mcs_t *mcs, int32_t *station) {
+    *station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const wh_layout_block_t *block = &mcs->layout->stations[*station].block;
+    luaL_argcheck(L, block->is_there, 1, "no block to touch");
+    return block;
+}
+
+static void set_triple(lua_State *L, const char *name, const double values[3]) {
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; ++i) {
+        lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, name);
+}
+
+/* native.block(station): what a probe touches there: { at, size = in the station's frame, mm, station = its
+ * pose in base, gripper = with the probe, ball = its centre in that gripper's frame, radius = its own }. */
+static int push_block(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    int32_t station = 0;
+    const wh_layout_block_t *block = block_of(L, mcs, &station);
+    const wh_layout_probe_t *probe = &mcs->layout->probe;
+    lua_createtable(L, 0, 6);
+    set_triple(L, "at", block->at);
+    set_triple(L, "size", block->size);
+    set_triple(L, "ball", probe->at);
+    wh_lua_set_number(L, "radius", probe->radius);
+    wh_lua_set_index(L, "gripper", probe->gripper);
+    wh_lua_push_pose(L, &mcs->layout->places[station].base_from_station);
+    lua_setfield(L, -2, "station");
+    return 1;
+}
+
+/* native.touched(): { closed = if the switch that was armed is closed now, latched = if it has closed since,
+ * missed = latches that no state brought }. */
+static int push_touched(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_mcs_pass_t *pass = &mcs->pass;
+    const uint32_t bit = UINT32_C(1) << pass->order.first;
+    wh_decisions_measured(mcs->decisions, "what a probe feels");
+    lua_createtable(L, 0, 3);
+    wh_lua_set_boolean(L, "closed", (mcs->state.physics->latches.broken & bit) != 0);
+    wh_lua_set_boolean(L, "latched", pass->latch_count > 0 && pass->latches[0].edge == WH_CROSSING_IN);
+    wh_lua_set_integer(L, "missed", pass->missed);
+    return 1;
+}
+
+/* native.add_touch(station, face): the switch closed where the pass's first latch says, at this face of the
+ * block, from 1. Returns false if motion control cannot tell where the gripper was then. */
+static int add_touch(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    int32_t station = 0;
+    const wh_layout_block_t *block = block_of(L, mcs, &station);
+    const wh_layout_probe_t *probe = &mcs->layout->probe;
+    const wh_block_face_t face = wh_layout_block_face(block, (size_t)wh_mcs_index(L, 2, WH_BLOCK_FACES));
+    const wh_latch_t *latch = &mcs->pass.latches[0];
+    const double slice_s = (double)mcs->layout->slice_us / 1e6;
+    const double since = (double)(latch->slice - 1) + latch->part;
+    const wh_mcs_crossing_t at = {.time = ((double)mcs->pass.armed_seq + since) * slice_s};
+    wh_mcs_teaching_t *teaching = &mcs->teaching;
+    wh_teach_measurement_t lesson = {.kind = WH_TEACH_TOUCH,
+                                     .sd = probe->noise > LEAST_SD ? probe->noise : LEAST_SD,
+                                     .x = probe->at[0],
+                                     .y = probe->at[1],
+                                     .z = probe->at[2],
+                                     .radius = probe->radius,
+                                     .distance = face.sign * face.middle[face.axis]};
+    lesson.normal[face.axis] = face.sign;
+    const bool is_known = mcs->pass.latch_count > 0 && teaching->count < WH_MCS_LESSONS &&
+                          find_place(mcs, &at, &lesson.base_from_gripper);
+    if (is_known) {
+        teaching->lessons[teaching->count] = lesson;
+        ++teaching->count;
+    }
+    lua_pushboolean(L, is_known);
+    return 1;
+}
+
+/* native.arm_touch(station, face): from the end of the next slice on the probe's switch latches at this face
+ * of the station's block, and the way of its gripper is remembered. */
+static int arm_touch(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    int32_t station = 0;
+    (void)block_of(L, mcs, &station);
+    const size_t face = (size_t)wh_mcs_index(L, 2, WH_BLOCK_FACES);
+    wh_mcs_arm(mcs, wh_layout_face_at(mcs->layout, (size_t)station, face), station,
+               mcs->layout->probe.gripper);
+    return 0;
+}
+
+/* -------------------------------------------------------------------------------------------- the whole */
+
+/* What is believed of the station, and of the beam if there was one. */
+static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first) {
+    const wh_layout_beam_t *beam = &layout->beams[first];
+    const wh_pose_t *station = &layout->places[beam->station].base_from_station;
+    wh_teach_guess_t guess = wh_teach_guess_at(station, beam->x, beam->y);
+    if (layout->doors[first].kind == WH_DOOR_LIGHT) {
+        guess.beam = wh_beam_at(station, beam->x, beam->y, beam->low, beam->high);
+    }
+    guess.sd_beam = SD_BEAM;
+    guess.sd_place = SD_PLACE;
+    return guess;
+}
+
 /* native.solve_teaching(): the last pass's station and its first beam by all that was added: { error = the
- * status, x, y = by how much the station is off in base, mm, sd_x, sd_y, beam_x, beam_y = the beam likewise,
- * largest = what remains of the worst crossing, in deviations }; of an error only that. */
+ * status, x, y, z = by how much the station is off in base, mm, yaw = rad, sd_x, sd_y, sd_z, sd_yaw, beam_x,
+ * beam_y = the beam likewise, largest = what remains of the worst measurement, in deviations }; of an error
+ * only that. */
 static int solve_teaching(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_teaching_t *teaching = &mcs->teaching;
-    const wh_layout_beam_t *beam = &mcs->layout->beams[mcs->pass.order.first];
-    const wh_pose_t *station = &mcs->layout->places[beam->station].base_from_station;
-    wh_teach_guess_t guess = wh_teach_guess_at(station, beam->x, beam->y);
+    const wh_teach_guess_t guess = guess_of(mcs->layout, mcs->pass.order.first);
     wh_taught_t taught;
-    guess.beam = wh_beam_at(station, beam->x, beam->y, beam->low, beam->high);
-    guess.sd_beam = SD_BEAM;
-    guess.sd_place = SD_PLACE;
     wh_decisions_measured(mcs->decisions, "teaching");
     const wh_status_t status = wh_teach_solve(&guess, teaching->lessons, teaching->count, &taught, NULL);
-    lua_createtable(L, 0, 8);
+    lua_createtable(L, 0, 12);
     wh_lua_set_integer(L, "error", status);
     if (status == WH_OK) {
         wh_lua_set_number(L, "x", taught.shift[0]);
         wh_lua_set_number(L, "y", taught.shift[1]);
+        wh_lua_set_number(L, "z", taught.shift[2]);
+        wh_lua_set_number(L, "yaw", taught.yaw);
         wh_lua_set_number(L, "sd_x", taught.sd_shift[0]);
         wh_lua_set_number(L, "sd_y", taught.sd_shift[1]);
+        wh_lua_set_number(L, "sd_z", taught.sd_shift[2]);
+        wh_lua_set_number(L, "sd_yaw", taught.sd_yaw);
         wh_lua_set_number(L, "beam_x", taught.beam_x);
         wh_lua_set_number(L, "beam_y", taught.beam_y);
         wh_lua_set_number(L, "largest", taught.largest);
@@ -90,7 +198,8 @@ static int solve_teaching(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_teaching_functions[] = {{"begin_teaching", begin_teaching},
-                                              {"add_teaching", add_teaching},
-                                              {"solve_teaching", solve_teaching},
-                                              {NULL, NULL}};
+const luaL_Reg wh_mcs_teaching_functions[] = {
+    {"begin_teaching", begin_teaching}, {"add_teaching", add_teaching},
+    {"solve_teaching", solve_teaching}, {"block", push_block},
+    {"arm_touch", arm_touch},           {"touched", push_touched},
+    {"add_touch", add_touch},           {NULL, NULL}};

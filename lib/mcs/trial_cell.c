@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "../layout/beam_errors.h"
+#include "../layout/grips.h"
 #include "../math/trig.h"
 
 /* What wh_vacuum_validate allows, s. */
@@ -19,7 +21,15 @@ static void place_station(wh_pose_t *base_from_station, const wh_displacement_t 
     base_from_station->r = wh_vec3_add(&base_from_station->r, &drawn->moved);
 }
 
-/* A chuck goes with its station, and so does its edge sensor, whose noise is the trial's own. */
+/* Noise is the trial's own. With errors by name it is the plain run's: they change what they name alone. */
+static uint64_t noise_of(const wh_trial_cell_t *trial_cell, uint64_t seed) {
+    if (trial_cell->layout.errors->given) {
+        return seed;
+    }
+    return wh_hash_word(wh_hash_word(seed, trial_cell->trial.seed), trial_cell->trial.trial);
+}
+
+/* A chuck goes with its station, and so does its edge sensor. */
 static void place_chucks(wh_trial_cell_t *trial_cell, int32_t station, const wh_displacement_t *drawn) {
     wh_machine_t *machine = &trial_cell->layout.machine;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
@@ -47,18 +57,21 @@ static void place_scanners(wh_trial_cell_t *trial_cell) {
         wh_scanner_t *scanner = &layout->scanners[i];
         const int32_t station = layout->grippers[scanner->gripper].station;
         scanner->base_from_station = layout->places[station].base_from_station;
-        scanner->seed = wh_hash_word(scanner->seed, trial_cell->trial.seed);
-        scanner->seed = wh_hash_word(scanner->seed, trial_cell->trial.trial);
+        scanner->seed = noise_of(trial_cell, scanner->seed);
     }
 }
 
-/* Beams go with their station, too. */
+/* Beams go with their station, too; faces are not off in it. */
 static void place_beams(wh_trial_cell_t *trial_cell) {
     wh_layout_t *layout = &trial_cell->layout;
     for (size_t b = 0; b < layout->beam_count; ++b) {
+        double drawn[WH_BEAM_DRAWS] = {0};
+        if (layout->doors[b].kind == WH_DOOR_LIGHT) {
+            wh_errors_draw_beam(layout->errors, &trial_cell->trial, b, drawn);
+        }
+        wh_beam_draw_apply(drawn, layout, b);
         wh_layout_place_beam(layout, b);
-        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.seed);
-        layout->doors[b].seed = wh_hash_word(layout->doors[b].seed, trial_cell->trial.trial);
+        layout->doors[b].seed = noise_of(trial_cell, layout->doors[b].seed);
     }
 }
 
@@ -89,15 +102,21 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
     }
 }
 
-/* Only edge sensors see them. */
+/* Only edge sensors and beams see them, and edge grips meet them. */
 static void place_rims(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_room_t *room) {
-    for (size_t w = 0; layout->scanner_count > 0 && w < layout->wafer_count; ++w) {
+    const bool has_edge = wh_layout_has_edge(layout);
+    const bool has_rims = wh_layout_has_rims(layout);
+    for (size_t w = 0; has_rims && w < layout->wafer_count; ++w) {
         double drawn[WH_RIM_DRAWS];
         room->rims[w] = *layout->rims[w];
         wh_errors_draw_rim(layout->errors, &trial_cell->trial, w, &room->rims[w], drawn);
         room->rim_of[w] = wh_rim_draw_apply(drawn, &room->rims[w]) ? &room->rims[w] : layout->rims[w];
     }
-    trial_cell->layout.rims = layout->scanner_count > 0 ? room->rim_of : layout->rims;
+    trial_cell->layout.rims = has_rims ? room->rim_of : layout->rims;
+    for (size_t w = 0; has_edge && w < layout->wafer_count; ++w) {
+        room->edge_wafers[w] = wh_layout_edge_wafer(room->rim_of[w]);
+    }
+    trial_cell->layout.edge_wafers = has_edge ? room->edge_wafers : NULL;
 }
 
 static int64_t lag_of(const wh_trial_cell_t *trial_cell, wh_real_t seconds) {
@@ -118,12 +137,47 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
     place_beams(trial_cell);
     place_wafers(trial_cell, layout, room->places, room->start);
     place_rims(trial_cell, layout, room);
+    wh_layout_take_supports(&trial_cell->layout, room->supports);
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);
     *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         trial_cell->lag[g] = lag_of(trial_cell, wh_errors_draw_valve(layout->errors, trial, g));
     }
+}
+
+/* The angle by which the slot's way in must turn about base's z, so that an arm without a wrist still comes
+ * there: the slot has moved, and is as far beside the arm's middle as before. */
+static wh_real_t turn_along_arm(const wh_chain_t *chain, double rail, const wh_pose_t *before,
+                                const wh_vec3_t *now) {
+    const wh_vec3_t along = wh_mat3_column(&chain->base_from_robot.R, 0);
+    const wh_vec3_t way = wh_vec3_scale(chain->has_rail ? (wh_real_t)rail : 0, &along);
+    const wh_vec3_t foot = wh_vec3_add(&chain->base_from_robot.r, &way);
+    const wh_vec3_t from = wh_vec3_subtract(&before->r, &foot);
+    const wh_vec3_t to = wh_vec3_subtract(now, &foot);
+    const wh_real_t c = before->R.m[0][0];
+    const wh_real_t s = before->R.m[1][0];
+    const wh_real_t in = c * from.x + s * from.y;
+    const wh_real_t beside = (c * from.y - s * from.x) / wh_real_sqrt(c * c + s * s);
+    const wh_real_t reach = wh_real_sqrt(to.x * to.x + to.y * to.y - beside * beside);
+    const wh_real_t lead = wh_atan2(beside, in < 0 ? -reach : reach);
+    return wh_atan2(to.y, to.x) - lead - wh_atan2(s, c);
+}
+
+void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
+                         wh_pose_t *base_from_slot) {
+    const wh_layout_t *layout = &trial_cell->layout;
+    const wh_vec3_t drawn = wh_errors_draw_taught(layout->errors, &trial_cell->trial, station, robot);
+    if (!(wh_vec3_norm(&drawn) > 0)) {
+        return;
+    }
+    const wh_chain_t *chain = &layout->robots[robot].carrier.chain;
+    const wh_vec3_t taught = wh_vec3_subtract(&base_from_slot->r, &drawn);
+    if (chain->kind == WH_CHAIN_TRZ) {
+        const wh_mat3_t turn = wh_mat3_about_z(turn_along_arm(chain, rail, base_from_slot, &taught));
+        base_from_slot->R = wh_mat3_multiply(&turn, &base_from_slot->R);
+    }
+    base_from_slot->r = taught;
 }
 
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command) {

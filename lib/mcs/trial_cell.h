@@ -1,8 +1,12 @@
 /* A trial's cell: what a layout describes, with the errors that the trial has drawn.
  *
  * Motion control goes by the layout, the simulator by this cell: stations, with the wafers in them, stand
- * beside where they were taught, wafers lie beside their places and have rims of their own, valves and vacuum
- * act late; each trial has noise of its own in its edge sensors.
+ * beside where they were taught, wafers lie beside their places and have rims of their own, beams stand
+ * beside where they are taken to be and latch late, valves and vacuum act late. Of several robots each was
+ * taught a station by itself: that stands where the layout has it, only turned, and motion control goes
+ * where the robot was taught it, wh_trial_cell_teach. Each trial has noise of its own in its edge sensors
+ * and beams, but for errors that are given by name: these change what they name alone, and leave noise as
+ * a run without errors has it.
  */
 #ifndef WH_MCS_TRIAL_CELL_H
 #define WH_MCS_TRIAL_CELL_H
@@ -20,10 +24,12 @@ typedef struct {
     wh_wafer_t *start;
     wh_rim_t *rims;
     const wh_rim_t **rim_of; /* by wafer: one of `rims`, or the layout's */
+    wh_edge_wafer_t *edge_wafers;
+    wh_pose_t *supports; /* wh_layout_count_supports of them */
 } wh_trial_room_t;
 
-/* `layout` shares all but places, start, rims, machine, physics and cell with the layout that it was made
- * of. */
+/* `layout` shares all but places, start, rims, edge_wafers, supports, machine, physics and cell with the
+ * layout that it was made of. */
 typedef struct {
     wh_trial_t trial;
     wh_layout_t layout;
@@ -37,6 +43,11 @@ typedef struct {
  * the same bits. Cost: linear in stations and wafers. */
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         const wh_trial_room_t *room);
+
+/* Moves a slot of the station, as motion control takes it, to where one of several robots was taught it. The
+ * blade of an arm without a wrist still points along the arm, whose rail stands at `rail`. */
+void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
+                         wh_pose_t *base_from_slot);
 
 /* Replaces what the valves are told in slice `command->seq` by what they do, late. To be called for each
  * slice in turn, from 1. */

@@ -4,8 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/doors.h"
 #include "../sim/event_text.h"
 #include "../text/array.h"
+#include "carrying.h"
 
 void wh_tryout_open(wh_tryout_t *tryout, wh_mcs_t *mcs, const wh_layout_t *layout) {
     memset(tryout, 0, sizeof *tryout);
@@ -18,13 +20,17 @@ void wh_tryout_open(wh_tryout_t *tryout, wh_mcs_t *mcs, const wh_layout_t *layou
 static void forget(wh_tryout_t *tryout) {
     free(tryout->full.wafers);
     free(tryout->full.start);
+    free(tryout->edge_wafers);
     free(tryout->storage.wafers);
     free(tryout->storage.buckets);
+    free(tryout->grips.seen);
     free(tryout->world_memory);
     memset(&tryout->storage, 0, sizeof tryout->storage);
     tryout->full.wafers = NULL;
     tryout->full.start = NULL;
+    tryout->edge_wafers = NULL;
     tryout->world_memory = NULL;
+    tryout->grips.seen = NULL;
 }
 
 /* ----------------------------------------------------------------------------------------- full of wafers */
@@ -41,25 +47,37 @@ size_t wh_tryout_slots(const wh_tryout_t *tryout) {
     return count;
 }
 
-static void add_station(wh_layout_t *full, size_t station) {
+/* Of a layout without edge grips there are none. */
+static void set_edge(wh_tryout_t *tryout, size_t w, const wh_rim_t *rim) {
+    if (tryout->edge_wafers) {
+        tryout->edge_wafers[w] = wh_layout_edge_wafer(rim);
+    }
+}
+
+static void add_station(wh_tryout_t *tryout, size_t station) {
+    wh_layout_t *full = &tryout->full;
     for (int32_t slot = 1; slot <= (int32_t)slots_of(full, station); ++slot) {
         const size_t w = full->wafer_count++;
         full->wafers[w].station = (int32_t)station;
         full->wafers[w].slot = slot;
         snprintf(full->wafers[w].name, sizeof full->wafers[w].name, "a wafer of %.35s slot %d",
                  full->stations[station].name, (int)slot);
-        full->start[w].base_from_wafer = wh_station_slot(&full->places[station], slot);
+        full->start[w].base_from_wafer = wh_layout_lying(full, (int32_t)station, slot);
         full->start[w].holder = WH_NONE;
+        set_edge(tryout, w, full->nominal_rim);
     }
 }
 
 /* The layout's own wafers lie where it puts them. `firsts`: the index of each station's first wafer. */
-static void move_known(wh_layout_t *full, const wh_layout_t *layout, const size_t firsts[]) {
+static void move_known(wh_tryout_t *tryout, const size_t firsts[]) {
+    const wh_layout_t *layout = tryout->layout;
+    wh_layout_t *full = &tryout->full;
     for (size_t known = 0; known < layout->wafer_count; ++known) {
         const wh_layout_wafer_t *wafer = &layout->wafers[known];
         const size_t w = firsts[wafer->station] + (size_t)wafer->slot - 1;
         if (w < full->wafer_count && full->wafers[w].station == wafer->station) {
             full->start[w] = layout->start[known];
+            set_edge(tryout, w, layout->rims[known]);
             memcpy(full->wafers[w].name, wafer->name, sizeof wafer->name);
         }
     }
@@ -77,14 +95,18 @@ static void fill(wh_tryout_t *tryout, size_t station) {
     full->wafer_count = 0;
     full->wafers = wh_array_new(alone ? own : all, sizeof *full->wafers);
     full->start = wh_array_new(alone ? own : all, sizeof *full->start);
+    if (wh_layout_has_edge(layout)) {
+        tryout->edge_wafers = wh_array_new(alone ? own : all, sizeof *tryout->edge_wafers);
+    }
+    full->edge_wafers = tryout->edge_wafers;
     full->physics.fault_count = 0;
     for (size_t s = 0; s < layout->station_count; ++s) {
         firsts[s] = full->wafer_count;
         if (!alone || s == station) {
-            add_station(full, s);
+            add_station(tryout, s);
         }
     }
-    move_known(full, layout, firsts);
+    move_known(tryout, firsts);
     free(firsts);
     full->world.wafer_count = full->wafer_count;
     tryout->station = (int32_t)station;
@@ -99,7 +121,8 @@ static void take_memory(wh_tryout_t *tryout) {
     storage->gripper_count = full->machine.gripper_count;
     storage->wafers = wh_array_new(full->wafer_count, sizeof *storage->wafers);
     storage->grippers = tryout->grippers;
-    storage->bucket_count = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
+    tryout->grips.seen = wh_array_new(wh_layout_seen(full), sizeof *tryout->grips.seen);
+    storage->bucket_count = wh_layout_buckets(full);
     storage->buckets = wh_array_new(storage->bucket_count, sizeof *storage->buckets);
     if (full->part_names) {
         tryout->world_memory = wh_array_new(1, wh_collision_bytes(full));
@@ -131,10 +154,18 @@ static wh_status_t set_up(wh_tryout_t *tryout) {
         status = wh_simulator_set_physics(&tryout->simulator, &full->physics);
     }
     if (status == WH_OK) {
+        status = wh_layout_give_doors(full, &tryout->simulator);
+    }
+    if (status == WH_OK) {
+        status = wh_layout_give_grips(full, &tryout->simulator, &tryout->grips);
+    }
+    if (status == WH_OK) {
         status = wh_track_init(&tryout->mcs->track, &full->machine, full->slice_us);
     }
     if (status == WH_OK) {
         wh_track_take_ways(&tryout->mcs->track);
+        wh_track_take_vias(&tryout->mcs->track);
+        wh_carrying_start(&tryout->mcs->track, full);
     }
     return status;
 }
@@ -160,11 +191,21 @@ wh_status_t wh_tryout_begin(wh_tryout_t *tryout, size_t station, const wh_real_t
     return status;
 }
 
+/* A command that is tried comes through doors that are open. */
+static void open_doors(wh_tryout_t *tryout) {
+    const wh_machine_t *machine = &tryout->full.machine;
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        tryout->simulator.physics.doors.at[d] = machine->doors[d].travel;
+        tryout->mcs->track.axes[wh_machine_door_axis(machine, d)] = machine->doors[d].travel;
+    }
+}
+
 void wh_tryout_move(wh_tryout_t *tryout, const wh_real_t axes[WH_AXES]) {
     wh_mcs_t *mcs = tryout->mcs;
     if (axes) {
         memcpy(mcs->track.axes, axes, sizeof mcs->track.axes);
     }
+    open_doors(tryout);
     if (tryout->world_memory) {
         wh_collision_attach(&tryout->collision, &tryout->full, &tryout->simulator, tryout->world_memory);
     }
@@ -272,6 +313,8 @@ void wh_tryout_end(wh_tryout_t *tryout) {
     use_layout(mcs, tryout->layout);
     (void)wh_track_init(&mcs->track, &tryout->layout->machine, tryout->layout->slice_us);
     wh_track_take_ways(&mcs->track);
+    wh_track_take_vias(&mcs->track);
+    wh_carrying_start(&mcs->track, tryout->layout);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
 }
 

@@ -30,15 +30,17 @@ typedef struct {
 } wh_tryout_lift_t;
 
 typedef struct {
-    wh_mcs_t *mcs;             /* plays; its layout is `full` meanwhile */
-    const wh_layout_t *layout; /* as it was read */
-    wh_layout_t full;          /* the same, full of wafers */
-    int32_t station;           /* whose wafers those are; WH_NONE: not filled yet */
-    wh_tryout_lift_t *lifts;   /* by station */
-    int64_t slices;            /* played so far */
+    wh_mcs_t *mcs;                /* plays; its layout is `full` meanwhile */
+    const wh_layout_t *layout;    /* as it was read */
+    wh_layout_t full;             /* the same, full of wafers */
+    wh_edge_wafer_t *edge_wafers; /* those of `full` */
+    int32_t station;              /* whose wafers those are; WH_NONE: not filled yet */
+    wh_tryout_lift_t *lifts;      /* by station */
+    int64_t slices;               /* played so far */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_grasp_storage_t storage;
+    wh_grips_room_t grips;
     wh_gripper_t grippers[WH_GRIPPERS];
     void *world_memory;
 } wh_tryout_t;

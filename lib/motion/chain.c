@@ -131,13 +131,9 @@ static void turn(wh_pose_t *pose, const wh_mat3_t *R) {
 
 /* Turns the blade by `flip` about its x at the flip's height. */
 static void flip_blade(const wh_chain_t *chain, wh_real_t flip, wh_pose_t *pose) {
-    wh_real_t s;
-    wh_real_t c;
-    wh_sin_cos(flip, &s, &c);
-    const wh_mat3_t about_x = {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
     const wh_vec3_t up = wh_vec3(0, 0, chain->flip_height);
     const wh_vec3_t before = wh_mat3_transform(&pose->R, &up);
-    pose->R = wh_mat3_multiply(&pose->R, &about_x);
+    wh_chain_turn_over(&pose->R, flip);
     const wh_vec3_t after = wh_mat3_transform(&pose->R, &up);
     const wh_vec3_t shift = wh_vec3_subtract(&before, &after);
     pose->r = wh_vec3_add(&pose->r, &shift);

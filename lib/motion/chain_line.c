@@ -3,16 +3,10 @@
 #include <string.h>
 
 #include "elbow_line_internal.h"
+#include "line_internal.h"
 #include "plane_internal.h"
 
 static const size_t plane_axes[WH_ROBOT_AXES] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_Z, WH_CHAIN_YAW};
-
-static wh_status_t check_caps(const wh_line_caps_t *caps) {
-    if (!wh_real_is_finite(caps->speed) || !wh_real_is_finite(caps->acceleration)) {
-        return WH_STATUS_NOT_FINITE;
-    }
-    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
-}
 
 static wh_status_t check_arguments(const wh_chain_line_t *line, const wh_chain_t *chain,
                                    const wh_real_t from_q[], const wh_vec3_t *travel,
@@ -23,7 +17,7 @@ static wh_status_t check_arguments(const wh_chain_line_t *line, const wh_chain_t
     if (!wh_real_is_finite(wh_vec3_dot(travel, travel))) {
         return WH_STATUS_NOT_FINITE;
     }
-    const wh_status_t status = check_caps(caps);
+    const wh_status_t status = wh_line_check_caps(caps);
     return status == WH_OK ? wh_chain_check_travel(chain, from_q) : status;
 }
 

@@ -3,18 +3,12 @@
 #include <string.h>
 
 #include "jet_internal.h"
+#include "line_internal.h"
 #include "plane_internal.h"
 #include "turns_internal.h"
 
 /* Closer to straight, a joint has no speed that follows a line. */
 #define LEAST_SINE WH_REAL(0.01)
-
-/* A factor in time this close to 1 is rounding, not a limit. */
-#if defined(WH_FLOAT)
-#define UNSLOWED 1.00001F
-#else
-#define UNSLOWED 1.0000000001
-#endif
 
 #define STRETCHES 64 /* of the way, for the joints' first derivatives and travel */
 #define INSTANTS 16  /* of a phase of the profile, at first */
@@ -286,16 +280,11 @@ static wh_status_t pace(wh_chain_line_t *line, const wh_chain_t *chain, wh_real_
                         const wh_limits_t *limits) {
     wh_line_t *path = &line->path;
     path->slowed = 1;
-    wh_status_t status = wh_profile_plan(&path->path, length, limits);
+    const wh_status_t status = wh_profile_plan(&path->path, length, limits);
     if (status != WH_OK || !(length > 0)) {
         return status;
     }
-    const wh_real_t factor = slowing_of_line(line, chain);
-    if (!(factor <= UNSLOWED)) {
-        path->slowed = factor;
-        status = wh_profile_stretch(&path->path, factor * wh_profile_duration(&path->path));
-    }
-    return status == WH_OK ? WH_OK : WH_STATUS_BAD_LIMITS;
+    return wh_line_slow_down(path, slowing_of_line(line, chain));
 }
 
 wh_status_t wh_elbow_line_plan(wh_chain_line_t *line, const wh_chain_t *chain, const wh_vec3_t *step,

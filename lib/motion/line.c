@@ -3,13 +3,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
-
-/* A factor in time this close to 1 is rounding, not a limit. */
-#if defined(WH_FLOAT)
-#define UNSLOWED 1.00001F
-#else
-#define UNSLOWED 1.0000000001
-#endif
+#include "line_internal.h"
 
 /* The horizontal line, seen from base's axis: its distance, and the least and the greatest distance on it
  * from the closest point. */
@@ -143,13 +137,6 @@ static wh_limits_t path_limits(const wh_robot_t *robot, wh_real_t share, wh_real
     return limits;
 }
 
-static wh_status_t check_caps(const wh_line_caps_t *caps) {
-    if (!wh_real_is_finite(caps->speed) || !wh_real_is_finite(caps->acceleration)) {
-        return WH_STATUS_NOT_FINITE;
-    }
-    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
-}
-
 static wh_status_t check_arguments(const wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[],
                                    const wh_vec3_t *step, const wh_line_caps_t *caps) {
     if (line == NULL || robot == NULL || from_q == NULL || step == NULL || caps == NULL) {
@@ -158,7 +145,7 @@ static wh_status_t check_arguments(const wh_line_t *line, const wh_robot_t *robo
     if (!wh_real_is_finite(wh_vec3_dot(step, step))) {
         return WH_STATUS_NOT_FINITE;
     }
-    const wh_status_t status = check_caps(caps);
+    const wh_status_t status = wh_line_check_caps(caps);
     return status == WH_OK ? wh_robot_check_travel(robot, from_q) : status;
 }
 
@@ -177,16 +164,6 @@ static wh_status_t check_travel(const wh_line_t *line, const wh_robot_t *robot, 
         return WH_STATUS_OUT_OF_REACH;
     }
     return wh_robot_check_travel(robot, line->to);
-}
-
-static wh_status_t slow_down(wh_line_t *line, wh_real_t factor) {
-    if (!(factor > UNSLOWED)) {
-        line->slowed = 1;
-        return WH_OK;
-    }
-    line->slowed = factor;
-    const wh_status_t status = wh_profile_stretch(&line->path, factor * wh_profile_duration(&line->path));
-    return status == WH_OK ? WH_OK : WH_STATUS_BAD_LIMITS;
 }
 
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],
@@ -221,7 +198,7 @@ wh_status_t wh_line_plan_capped(wh_line_t *line, const wh_robot_t *robot,
     const wh_limits_t limits = path_limits(robot, share, planned.direction.z, caps);
     status = wh_profile_plan(&planned.path, length, &limits);
     if (status == WH_OK) {
-        status = slow_down(&planned, slowing_of_line(&planned, &passage, share, robot));
+        status = wh_line_slow_down(&planned, slowing_of_line(&planned, &passage, share, robot));
     }
     if (status == WH_OK) {
         *line = planned;

@@ -33,8 +33,8 @@ static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to
     move->to[axis] = to;
 }
 
-wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
-                         const wh_limits_t limits[]) {
+wh_status_t wh_move_plan_within(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
+                                const wh_limits_t limits[], wh_real_t most) {
     if (move == NULL || from == NULL || to == NULL || limits == NULL) {
         return WH_STATUS_NULL_ARGUMENT;
     }
@@ -47,12 +47,20 @@ wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], 
     if (status != WH_OK) {
         return status;
     }
+    if (duration > most) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
     move->count = count;
     move->duration = duration;
     for (size_t axis = 0; axis < count; ++axis) {
         plan_axis(move, axis, from[axis], to[axis], &times[axis]);
     }
     return WH_OK;
+}
+
+wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
+                         const wh_limits_t limits[]) {
+    return wh_move_plan_within(move, count, from, to, limits, WH_REAL_LARGEST);
 }
 
 void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]) {

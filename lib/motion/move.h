@@ -1,4 +1,4 @@
-/* A point-to-point move: up to WH_AXES axes set out together and arrive together.
+/* A point-to-point move: up to WH_AXES axes (math/config.h) set out together and arrive together.
  *
  * The slowest axis takes its own shortest time (motion/profile.h). Every other axis is slowed uniformly to
  * that time, so no axis exceeds a limit. In the space of the axes the path is straight only if all profiles
@@ -14,9 +14,6 @@
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(move);
-
-/* The most axes of a move, a message and a track. */
-#define WH_AXES 8
 
 /* A planned move. Written by wh_move_plan only; reading its fields is fine. */
 typedef struct {
@@ -37,6 +34,10 @@ typedef struct {
  */
 wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
                          const wh_limits_t limits[]) WH_SYMBOL(wh_move_plan);
+
+/* wh_move_plan, which refuses a move of more than `most` seconds, too: WH_STATUS_BAD_SEGMENT. */
+wh_status_t wh_move_plan_within(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
+                                const wh_limits_t limits[], wh_real_t most) WH_SYMBOL(wh_move_plan_within);
 
 /* s, never negative. */
 static inline wh_real_t wh_move_duration(const wh_move_t *move) {

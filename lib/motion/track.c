@@ -1,5 +1,7 @@
 #include "track.h"
 
+#include <string.h>
+
 #include "../grasp/grasp.h"
 
 #define MAX_SLICE_US 1000000
@@ -27,9 +29,7 @@ wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_
     *track = fresh;
     track->machine = machine;
     track->slice_us = slice_us;
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        track->axes[axis] = machine->robot.home[axis];
-    }
+    wh_machine_home(machine, track->axes);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         track->valves[g] = WH_VALVE_CLOSED;
     }
@@ -46,6 +46,8 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     segment.seconds = 0;
     segment.gripper = WH_NONE;
     segment.reach = 0;
+    segment.points = NULL;
+    segment.point_count = 0;
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
         segment.target[axis] = track->axes[axis];
     }
@@ -81,31 +83,77 @@ static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
         limits[axis] = *wh_machine_limits(machine, axis);
     }
-    wh_move_t move;
-    const wh_status_t status = wh_move_plan(&move, machine->axis_count, track->axes, segment->target, limits);
-    if (status == WH_OK && wh_move_duration(&move) > MAX_SECONDS) {
+    wh_move_t *move = &track->plan.move;
+    const wh_status_t status =
+        wh_move_plan_within(move, machine->axis_count, track->axes, segment->target, limits, MAX_SECONDS);
+    if (status == WH_OK) {
+        track->segment_slices = slices_for(track, wh_move_duration(move));
+    }
+    return status;
+}
+
+/* A line of `seconds` is taken, unless planning refused it. */
+static wh_status_t take_line(wh_track_t *track, wh_status_t status, wh_real_t seconds) {
+    if (status == WH_OK && seconds > MAX_SECONDS) {
         return WH_STATUS_BAD_SEGMENT;
     }
     if (status == WH_OK) {
-        track->plan.move = move;
-        track->segment_slices = slices_for(track, wh_move_duration(&move));
+        track->segment_slices = slices_for(track, seconds);
+    }
+    return status == WH_STATUS_OUT_OF_RANGE ? WH_STATUS_BAD_SEGMENT : status;
+}
+
+/* Which robot goes in a LINE or a WAY; SIZE_MAX: none. */
+static size_t robot_of(const wh_machine_t *machine, const wh_segment_t *segment) {
+    const wh_carrier_t *carrier = machine->carrier;
+    if (!carrier || !(carrier->next || carrier->second) || segment->gripper == WH_NONE) {
+        return 0;
+    }
+    const bool is_one = segment->gripper >= 0 && (size_t)segment->gripper < machine->gripper_count &&
+                        machine->mounts[segment->gripper].axis == WH_NONE;
+    return is_one ? machine->mounts[segment->gripper].robot : SIZE_MAX;
+}
+
+/* Which arm goes in a LINE; null: none. */
+static const wh_carrier_t *arm_of(const wh_machine_t *machine, const wh_segment_t *segment, size_t *first) {
+    const size_t robot = robot_of(machine, segment);
+    if (robot == SIZE_MAX) {
+        return NULL;
+    }
+    const wh_carrier_t *carrier = wh_machine_carrier(machine, robot, first);
+    const bool is_second = segment->gripper != WH_NONE && carrier->second;
+    return is_second ? wh_machine_arm(machine, (size_t)segment->gripper, first) : carrier;
+}
+
+static wh_status_t plan_carriers_line(wh_track_t *track, const wh_segment_t *segment,
+                                      const wh_line_caps_t *caps) {
+    size_t first;
+    const wh_carrier_t *carrier = arm_of(track->machine, segment, &first);
+    if (!carrier) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
+    wh_chain_line_t line;
+    wh_status_t status = carrier->plan_line(carrier, &line, &track->axes[first], &segment->travel, caps);
+    status = take_line(track, status, status == WH_OK ? wh_chain_line_duration(&line) : 0);
+    if (status == WH_OK) {
+        track->plan.chain_line = line;
     }
     return status;
 }
 
 static wh_status_t plan_line(wh_track_t *track, const wh_segment_t *segment) {
     const wh_line_caps_t caps = {segment->speed, segment->acceleration};
-    wh_line_t line;
-    const wh_status_t status =
-        wh_line_plan_capped(&line, &track->machine->robot, track->axes, &segment->travel, &caps);
-    if (status == WH_OK && wh_line_duration(&line) > MAX_SECONDS) {
-        return WH_STATUS_BAD_SEGMENT;
+    if (track->machine->carrier) {
+        return plan_carriers_line(track, segment, &caps);
     }
+    wh_line_t line;
+    wh_status_t status =
+        wh_line_plan_capped(&line, &track->machine->robot, track->axes, &segment->travel, &caps);
+    status = take_line(track, status, status == WH_OK ? wh_line_duration(&line) : 0);
     if (status == WH_OK) {
         track->plan.line = line;
-        track->segment_slices = slices_for(track, wh_line_duration(&line));
     }
-    return status == WH_STATUS_OUT_OF_RANGE ? WH_STATUS_BAD_SEGMENT : status;
+    return status;
 }
 
 static bool valve_is_sound(int32_t valve) {
@@ -136,32 +184,86 @@ static wh_status_t plan_wait(wh_track_t *track, const wh_segment_t *segment) {
     return WH_OK;
 }
 
-/* Chucks turn in segments of their own. */
-static bool chucks_stand(const wh_track_t *track, const wh_segment_t *segment) {
-    bool stand = true;
-    for (size_t axis = WH_ROBOT_AXES; axis < track->machine->axis_count; ++axis) {
-        stand = stand && !(wh_real_abs(segment->target[axis] - track->axes[axis]) > 0);
+/* A way, by via points or not, is of theta, R, Z and yaw of a polar arm; rails, tilts and chucks go in
+ * segments of their own. The robot's axes begin at `first`. */
+static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, size_t *first) {
+    const size_t robot = robot_of(track->machine, segment);
+    if (robot == SIZE_MAX) {
+        return false;
     }
-    return stand;
+    const wh_carrier_t *carrier = wh_machine_carrier(track->machine, robot, first);
+    bool fits = !(carrier && carrier->chain.kind == WH_CHAIN_SCARA);
+    for (size_t axis = 0; axis < track->machine->axis_count; ++axis) {
+        const bool is_its = axis >= *first && axis < *first + WH_ROBOT_AXES;
+        fits = fits && (is_its || !(wh_real_abs(segment->target[axis] - track->axes[axis]) > 0));
+    }
+    return fits;
+}
+
+/* The first four axes of the robot that begins at `first`, as ways take them. */
+static wh_robot_t way_robot(const wh_machine_t *machine, size_t first) {
+    wh_robot_t robot = machine->robot;
+    for (size_t axis = 0; first > 0 && axis < WH_ROBOT_AXES; ++axis) {
+        robot.travel[axis] = *wh_machine_travel(machine, first + axis);
+        robot.limits[axis] = *wh_machine_limits(machine, first + axis);
+    }
+    return robot;
 }
 
 static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
     const wh_status_t travel = wh_machine_check_travel(track->machine, segment->target);
+    size_t first = 0;
     if (travel != WH_OK) {
         return travel;
     }
-    if (track->ways == NULL || !chucks_stand(track, segment)) {
+    if (!track->ways || !goes_ways(track, segment, &first)) {
         return WH_STATUS_BAD_SEGMENT;
     }
+    const wh_robot_t robot = way_robot(track->machine, first);
     wh_way_t way;
     const wh_status_t status =
-        track->ways->plan(&way, &track->machine->robot, track->axes, segment->target, segment->reach);
+        track->ways->plan(&way, &robot, &track->axes[first], &segment->target[first], segment->reach);
     if (status == WH_OK && wh_way_duration(&way) > MAX_SECONDS) {
         return WH_STATUS_BAD_SEGMENT;
     }
     if (status == WH_OK) {
         track->plan.way = way;
         track->segment_slices = slices_for(track, wh_way_duration(&way));
+    }
+    return status;
+}
+
+/* Each point is one where the axes may be; `first` is the robot's first axis. */
+static wh_status_t check_points(const wh_track_t *track, const wh_segment_t *segment, size_t first) {
+    wh_real_t axes[WH_AXES];
+    wh_status_t status = wh_machine_check_travel(track->machine, segment->target);
+    memcpy(axes, track->axes, sizeof axes);
+    for (size_t i = 0; status == WH_OK && i < segment->point_count; ++i) {
+        memcpy(&axes[first], segment->points[i].q, sizeof segment->points[i].q);
+        status = wh_machine_check_travel(track->machine, axes);
+    }
+    return status;
+}
+
+static wh_status_t plan_via(wh_track_t *track, const wh_segment_t *segment) {
+    size_t first = 0;
+    if (!track->vias || !segment->points || !goes_ways(track, segment, &first)) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
+    wh_status_t status = check_points(track, segment, first);
+    if (status != WH_OK) {
+        return status;
+    }
+    const wh_robot_t robot = way_robot(track->machine, first);
+    wh_via_t via;
+    status = track->vias->plan(&via, &robot, &track->axes[first], segment->points, segment->point_count,
+                               &segment->target[first]);
+    if (status == WH_STATUS_OUT_OF_RANGE || (status == WH_OK && wh_via_duration(&via) > MAX_SECONDS)) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
+    if (status == WH_OK) {
+        track->plan.via = via;
+        track->segment_slices = slices_for(track, wh_via_duration(&via));
     }
     return status;
 }
@@ -179,6 +281,8 @@ static wh_status_t plan(wh_track_t *track, const wh_segment_t *segment) {
         return plan_wait(track, segment);
     case WH_SEGMENT_WAY:
         return plan_way(track, segment);
+    case WH_SEGMENT_VIA:
+        return plan_via(track, segment);
     }
     return WH_STATUS_BAD_SEGMENT;
 }
@@ -190,6 +294,7 @@ wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) {
     const wh_status_t status = plan(track, segment);
     if (status == WH_OK) {
         track->segment = *segment;
+        track->segment.points = NULL;
         track->segment_slice = 0;
     }
     return status;
@@ -202,16 +307,47 @@ static void switch_valves(wh_track_t *track) {
     }
 }
 
+static WH_OUT_OF_LINE void move_along_carriers_line(wh_track_t *track) {
+    size_t first = 0;
+    const wh_carrier_t *carrier = arm_of(track->machine, &track->segment, &first);
+    const wh_chain_line_t *line = &track->plan.chain_line;
+    const wh_real_t t = segment_time(track, wh_chain_line_duration(line));
+    carrier->line_at(carrier, line, t, &track->axes[first]);
+}
+
+static void move_along_line(wh_track_t *track) {
+    if (track->machine->carrier) {
+        move_along_carriers_line(track);
+    } else {
+        wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
+    }
+}
+
+static WH_OUT_OF_LINE void move_along_way(wh_track_t *track) {
+    size_t first;
+    (void)wh_machine_carrier(track->machine, robot_of(track->machine, &track->segment), &first);
+    track->ways->at(&track->plan.way, segment_time(track, wh_way_duration(&track->plan.way)),
+                    &track->axes[first]);
+}
+
+static WH_OUT_OF_LINE void move_along_via(wh_track_t *track) {
+    size_t first;
+    (void)wh_machine_carrier(track->machine, robot_of(track->machine, &track->segment), &first);
+    track->vias->at(&track->plan.via, segment_time(track, wh_via_duration(&track->plan.via)),
+                    &track->axes[first]);
+}
+
 /* Sets axes or valves for the slice. A segment that only waits changes nothing. */
 static void apply(wh_track_t *track) {
     const wh_segment_kind_t kind = track->segment.kind;
     if (kind == WH_SEGMENT_AXES) {
         wh_move_at(&track->plan.move, segment_time(track, wh_move_duration(&track->plan.move)), track->axes);
     } else if (kind == WH_SEGMENT_LINE) {
-        wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
+        move_along_line(track);
     } else if (kind == WH_SEGMENT_WAY) {
-        track->ways->at(&track->plan.way, segment_time(track, wh_way_duration(&track->plan.way)),
-                        track->axes);
+        move_along_way(track);
+    } else if (kind == WH_SEGMENT_VIA) {
+        move_along_via(track);
     } else if (kind == WH_SEGMENT_VALVES) {
         switch_valves(track);
     }

@@ -16,6 +16,7 @@
 
 #include "line.h"
 #include "machine.h"
+#include "via.h"
 #include "way.h"
 
 WH_HEADER_BEGIN
@@ -23,11 +24,12 @@ WH_REFUSE_PACKING(track);
 
 typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
-    WH_SEGMENT_LINE,   /* the end-effector goes by `travel` along a straight line at constant heading */
+    WH_SEGMENT_LINE,   /* an end-effector goes by `travel` along a straight line at constant heading */
     WH_SEGMENT_VALVES, /* valves change; lasts one slice */
     WH_SEGMENT_DWELL,  /* everything stands still for `seconds`, rounded up to whole slices */
     WH_SEGMENT_SENSOR, /* stand still until the sensor of `gripper` is on, at most `seconds` */
-    WH_SEGMENT_WAY     /* the robot's axes go to target[], R coming in to `reach` while theta and yaw turn */
+    WH_SEGMENT_WAY,    /* a robot's axes go to target[], R coming in to `reach` while theta and yaw turn */
+    WH_SEGMENT_VIA     /* a robot's axes go to target[] by way of `points` */
 } wh_segment_kind_t;
 
 typedef struct {
@@ -38,8 +40,13 @@ typedef struct {
     wh_real_t acceleration;      /* LINE: at most this, mm/s^2; 0: the axes' own limits */
     wh_real_t seconds;           /* DWELL, SENSOR: 0 to 1e6 */
     int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED; WH_NONE: unchanged */
-    int32_t gripper;             /* SENSOR */
-    wh_real_t reach;             /* WAY: mm, see motion/way.h */
+    /* SENSOR; with several robots or arms, LINE and WAY: any gripper on the one that goes, WH_NONE: the
+     * first */
+    int32_t gripper;
+    wh_real_t reach; /* WAY: mm, see motion/way.h */
+    /* VIA: the caller's, read by wh_track_begin alone; see motion/via.h */
+    const wh_via_point_t *points;
+    size_t point_count;
 } wh_segment_t;
 
 typedef enum WH_FOUR_BYTES {
@@ -55,6 +62,13 @@ typedef struct {
     void (*at)(const wh_way_t *way, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]);
 } wh_ways_t;
 
+/* What a track needs for via points; see wh_track_take_vias. */
+typedef struct {
+    wh_status_t (*plan)(wh_via_t *via, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
+                        const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES]);
+    void (*at)(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]);
+} wh_vias_t;
+
 /* Callers read axes, valves and slice; the rest is the track's own. */
 typedef struct {
     const wh_machine_t *machine; /* the caller's, which must outlive the track */
@@ -68,12 +82,15 @@ typedef struct {
     union {
         wh_move_t move;
         wh_line_t line;
+        wh_chain_line_t chain_line; /* LINE of a robot that a carrier describes */
         wh_way_t way;
+        wh_via_t via;
     } plan;
     const wh_ways_t *ways; /* NULL: segments of kind WAY are refused */
+    const wh_vias_t *vias; /* NULL: those of kind VIA are */
 } wh_track_t;
 
-/* Starts at rest at home (wh_robot_t.home, chucks at 0), all valves closed. `slice_us` is 1 to 1e6. Refuses
+/* Starts at rest at home (wh_machine_home), all valves closed. `slice_us` is 1 to 1e6. Refuses
  * null pointers, an invalid machine and a slice out of range; the track is then unchanged. */
 wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us)
     WH_SYMBOL(wh_track_init);
@@ -81,6 +98,9 @@ wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_
 /* From now on the track takes segments of kind WAY. Without it a firmware does not link what they need.
  * `track` must not be null, and initialised. */
 void wh_track_take_ways(wh_track_t *track) WH_SYMBOL(wh_track_take_ways);
+
+/* The same for segments of kind VIA. */
+void wh_track_take_vias(wh_track_t *track) WH_SYMBOL(wh_track_take_vias);
 
 /* A segment that changes nothing, for the caller to fill in: DWELL of 0 s, all valves WH_NONE, target at the
  * track's axes. */
@@ -90,12 +110,17 @@ wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
  * slice to the next. Refused, the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
- *   WH_STATUS_BAD_SEGMENT     a WAY of a track that takes none, or one that turns a chuck; kind, gripper,
- *                             valve, speed, acceleration or seconds out of range; a motion of over 1e6 s
- *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R outside its travel
- *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line; or a WAY's reach
+ *   WH_STATUS_BAD_SEGMENT     a WAY or VIA of a track that takes none, of a SCARA, or one that moves other
+ *                             axes than the robot's first four; a VIA's points, as wh_via_plan says; a
+ *                             robot's gripper that is on a chuck; kind, gripper, valve, speed, acceleration
+ *                             or seconds out of range; a motion of over 1e6 s
+ *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R or the elbow outside its travel, at a VIA's point, too
+ *   WH_STATUS_OUT_OF_REACH    R or the elbow outside its travel, at the target or anywhere on a line or at a
+ *                             VIA's point; or a WAY's reach
+ *   WH_STATUS_NOT_ALONG_ARM   a LINE that leads aside from an arm without a wrist
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
- * Cost: about 1 us for a move, 2 us for a line, 40 us for a way.
+ * Cost: about 1 us for a move, 2 us for a line, 40 us for a way and for a SCARA's line,
+ * 300 us by way of points.
  */
 wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) WH_SYMBOL(wh_track_begin);
 

@@ -123,9 +123,10 @@ int wh_budget_print_json(const wh_budget_t *budget, FILE *out) {
     const bool ok = !budget->incomplete;
     json_t *root = wh_json_set(json_object(), "format %d ok %i script %s layout %s trials %lld", 1, ok,
                                study->run.script, study->layout->path, (json_int_t)budget->trials);
-    (void)wh_json_set(root, "limit_mm %g limit_deg %g collision %i caught_errors %i",
-                      number_of(budget->options.most[0]), number_of(budget->options.most[1]),
-                      study->layout->collision, budget->caught);
+    (void)wh_json_set(root, "interrupted %i limit_mm %g limit_deg %g collision %i caught_errors %i noise %i",
+                      budget->incomplete, number_of(budget->options.most[0]),
+                      number_of(budget->options.most[1]), study->layout->collision, budget->caught,
+                      wh_study_has_noise(study));
     (void)wh_json_set(root, "capped %lld", (json_int_t)wh_budget_capped(budget));
     (void)wh_json_add(root, "errors all tightest next",
                       wh_json_list(error, budget, WH_SPREADS * study->layout->station_count),

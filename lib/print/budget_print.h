@@ -2,8 +2,9 @@
  *
  * As JSON one object, format 1, its lists with one element a line:
  *   format, ok (false: it was ended before all was found; what is not known is missing), script, layout,
- *          trials (all in all), limit_mm, limit_deg,
+ *          trials (all in all), interrupted (the same as not ok), limit_mm, limit_deg,
  *          collision (whether it was looked for), caught_errors (in a trial that passed, by the script),
+ *          noise (of sensors: one sample of it, the same in all trials),
  *          capped (how many errors passed up to the limit, which is less than the tightest error's width),
  *   errors:  station, error (x, y, z, roll, pitch, yaw), unit (mm or deg), width (passes everywhere that was
  *            tried from -width to +width), at_least (nothing failed up to the limit, in neither direction),

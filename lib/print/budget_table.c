@@ -305,6 +305,10 @@ static void print_warnings(const table_t *table) {
     if (!budget->study->layout->collision) {
         fputs("\n! collisions were not looked for: the layout has no collision = true\n", table->frame.out);
     }
+    if (wh_study_has_noise(budget->study)) {
+        fputs("\n! sensors have noise: one sample of it was used, the same in all trials\n",
+              table->frame.out);
+    }
     if (budget->caught) {
         fputs("\n! in trials that passed, the script caught errors: what it then does counts as passing\n",
               table->frame.out);

@@ -40,7 +40,8 @@ static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_ev
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(printer, event->other),
                      wh_style_glyph(printer->style, WH_GLYPH_ARROW), gripper);
     } else {
-        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
+        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s%s", wafer, gripper,
+                     event->face == WH_FACE_FRONT ? ", by its front" : "");
     }
     wh_print_measured(printer, grid, MEASURED, event);
 }

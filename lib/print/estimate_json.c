@@ -27,7 +27,9 @@ static int print(const char *path, bool ok, const char *key, json_t *list, char 
     wh_json_put(root, key, list);
     (void)wh_json_set(root, "lua %s", lua);
     free(lua);
-    return wh_json_print(root, out);
+    const int status = wh_json_print(root, out);
+    json_decref(root);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------- frames */
@@ -206,5 +208,7 @@ int wh_geometry_print_json(const wh_touch_table_t *table, FILE *out) {
     (void)fclose(text);
     (void)wh_json_set(root, "lua %s", lua);
     free(lua);
-    return wh_json_print(root, out);
+    const int status = wh_json_print(root, out);
+    json_decref(root);
+    return status;
 }

@@ -191,16 +191,83 @@ static void draw_span(gantt_t *gantt, int64_t begin, int64_t end, const char *te
     write_over(gantt, first + (has_bar ? 1 : 0), last, text);
 }
 
-static void print_commands(gantt_t *gantt) {
+/* Of the robot's commands that are left, WH_NONE: of no robot's, the first, and what comes after its end, and
+ * so on. True if any is left then. */
+static bool draw_commands(gantt_t *gantt, int32_t robot, bool is_drawn[]) {
     const wh_record_t *record = gantt->printer->record;
+    double free_from = 0;
+    bool is_left = false;
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
-        if (command->end_s > command->begin_s) {
+        if (is_drawn[i] || !(command->end_s > command->begin_s) ||
+            wh_record_robot(record, command) != robot) {
+            continue;
+        }
+        is_drawn[i] = command->begin_s >= free_from;
+        is_left = is_left || !is_drawn[i];
+        if (is_drawn[i]) {
+            free_from = command->end_s;
             draw_span(gantt, wh_print_slice_at(gantt->printer, command->begin_s),
                       wh_print_slice_at(gantt->printer, command->end_s), command->text ? command->text : "");
         }
     }
+    return is_left;
+}
+
+/* Several at once have a row each, and so has each of several robots. */
+static void print_commands(gantt_t *gantt) {
+    const wh_layout_t *layout = gantt->printer->record->layout;
+    bool *is_drawn = wh_array_new(gantt->printer->record->command_count, sizeof *is_drawn);
+    for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
+        char label[LABEL_SIZE];
+        snprintf(label, sizeof label, "%s command", layout->robots[r].name);
+        (void)draw_commands(gantt, (int32_t)r, is_drawn);
+        print_row(gantt, label);
+    }
+    bool is_left = draw_commands(gantt, WH_NONE, is_drawn);
     print_row(gantt, "command");
+    while (is_left) {
+        is_left = draw_commands(gantt, WH_NONE, is_drawn);
+        print_row(gantt, "beside");
+    }
+    free(is_drawn);
+}
+
+/* From a bar on waiting's marks, and over them who waits for what if there is room. */
+static void draw_wait(gantt_t *gantt, const wh_wait_record_t *wait) {
+    char who[32] = "script";
+    const wh_busy_span_t span = {WH_BUSY_ROBOT, WH_NONE, 1 + (int32_t)WH_SHARE_WAITING, wait->begin,
+                                 wait->end};
+    if (wait->task > 0) {
+        snprintf(who, sizeof who, "task %d", (int)wait->task);
+    }
+    char *text = wh_array_new(strlen(who) + strlen(wait->what) + 3, 1);
+    snprintf(text, strlen(who) + strlen(wait->what) + 3, "%s: %s", who, wait->what);
+    if (wait->begin < gantt->end && wait->end > gantt->begin) {
+        draw_marks(gantt, &span);
+    }
+    draw_span(gantt, wait->begin, wait->end, text);
+    free(text);
+}
+
+/* Several at once have a row each. */
+static void print_waits(gantt_t *gantt) {
+    const wh_record_t *record = gantt->printer->record;
+    bool *is_drawn = wh_array_new(record->wait_count, sizeof *is_drawn);
+    for (size_t left = record->wait_count; left > 0;) {
+        int64_t free_from = 0;
+        for (size_t i = 0; i < record->wait_count; ++i) {
+            const wh_wait_record_t *wait = &record->waits[i];
+            if (!is_drawn[i] && wait->begin >= free_from) {
+                is_drawn[i] = true;
+                free_from = wait->end;
+                draw_wait(gantt, wait);
+                --left;
+            }
+        }
+        print_row(gantt, "waits");
+    }
+    free(is_drawn);
 }
 
 static void print_cycles(gantt_t *gantt) {
@@ -222,10 +289,13 @@ static void print_cycles(gantt_t *gantt) {
 /* ---------------------------------------------------------------------------------------------- resources */
 
 static void label_of(const wh_printer_t *printer, const wh_busy_span_t *interval, char label[LABEL_SIZE]) {
-    static const char *const does[] = {"", " turns", " holds", " valve"};
+    static const char *const does[] = {"", " turns", " holds", " valve", " door"};
     const bool robot = interval->who == WH_BUSY_ROBOT;
-    snprintf(label, LABEL_SIZE, "%s%s", robot ? "robot" : wh_print_gripper(printer, interval->gripper),
-             does[interval->who]);
+    const wh_layout_t *layout = printer->record->layout;
+    const char *name = robot ? (layout->robot_count > 1 ? layout->robots[interval->gripper].name : "robot")
+                       : interval->who == WH_BUSY_DOOR ? layout->door_list[interval->gripper].name
+                                                       : wh_print_gripper(printer, interval->gripper);
+    snprintf(label, LABEL_SIZE, "%s%s", name, does[interval->who]);
 }
 
 static void draw(gantt_t *gantt, const wh_busy_span_t *interval) {
@@ -253,13 +323,25 @@ static void print_resource(gantt_t *gantt, size_t resource) {
     }
 }
 
+/* The columns of a name with a word behind it, or `least`. */
+static size_t wide_label(const char *name, const char *word, size_t least) {
+    char *printable = wh_style_printable(name);
+    const size_t wide = wh_style_columns(printable) + strlen(word);
+    free(printable);
+    return wide > least ? wide : least;
+}
+
 static size_t widest_label(const wh_printer_t *printer) {
+    const wh_layout_t *layout = printer->record->layout;
     size_t widest = strlen("command");
-    for (size_t g = 0; g < printer->record->layout->machine.gripper_count; ++g) {
-        char *printable = wh_style_printable(printer->record->layout->grippers[g].name);
-        const size_t wide = wh_style_columns(printable) + strlen(" holds");
-        widest = wide > widest ? wide : widest;
-        free(printable);
+    for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
+        widest = wide_label(layout->robots[r].name, " command", widest);
+    }
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        widest = wide_label(layout->grippers[g].name, " holds", widest);
+    }
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        widest = wide_label(layout->door_list[d].name, " door", widest);
     }
     return widest;
 }
@@ -287,6 +369,7 @@ void wh_print_gantt(const wh_printer_t *printer, const wh_print_window_t *window
     print_scale(&gantt);
     print_cycles(&gantt);
     print_commands(&gantt);
+    print_waits(&gantt);
     for (size_t resource = 0; resource < WH_RESOURCES; ++resource) {
         print_resource(&gantt, resource);
     }

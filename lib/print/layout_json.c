@@ -1,5 +1,7 @@
 #include <math.h>
 
+#include "../layout/axes.h"
+#include "../layout/grips.h"
 #include "../math/trig.h"
 #include "../text/json.h"
 #include "layout_print.h"
@@ -14,14 +16,65 @@ static void put_pose(json_t *object, const wh_pose_t *pose) {
 
 static json_t *axis(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    const wh_robot_t *robot = &layout->machine.robot;
-    const wh_real_t unit = i == WH_AXIS_THETA || i == WH_AXIS_YAW ? wh_deg_from_rad(1) : 1;
-    const wh_limits_t *limits = &robot->limits[i];
-    return wh_json_set(json_object(), "name %s min %g max %g home %g speed %g acceleration %g jerk %g",
-                       names[i], robot->travel[i].min * unit, robot->travel[i].max * unit,
-                       robot->home[i] * unit, limits->speed * unit, limits->acceleration * unit,
-                       limits->jerk * unit);
+    const wh_machine_t *machine = &layout->machine;
+    const wh_real_t unit = wh_axis_turns(machine, i) ? wh_deg_from_rad(1) : 1;
+    const wh_limits_t *limits = wh_machine_limits(machine, i);
+    const wh_travel_t *travel = wh_machine_travel(machine, i);
+    wh_real_t home[WH_AXES];
+    if (!wh_axis_exists(machine, i)) {
+        return NULL;
+    }
+    wh_machine_home(machine, home);
+    size_t own = 0;
+    const int32_t robot = wh_machine_robot_of(machine, i, &own);
+    json_t *object = json_object();
+    if (layout->robot_count > 1) {
+        (void)wh_json_set(object, "robot %s", layout->robots[robot].name);
+    }
+    return wh_json_set(object, "name %s min %g max %g home %g speed %g acceleration %g jerk %g",
+                       wh_axis_name(machine, i), travel->min * unit, travel->max * unit, home[i] * unit,
+                       limits->speed * unit, limits->acceleration * unit, limits->jerk * unit);
+}
+
+/* Of a chuck on a stage, and of pins. */
+static void put_slides(json_t *object, const wh_mount_t *mount) {
+    if (wh_mount_axes(mount) > 0 && mount->kind == WH_MOUNT_STAGE) {
+        wh_json_put(object, "stage", wh_json_set(json_object(), "travel %g", mount->travel.max));
+    } else if (wh_mount_axes(mount) > 0 && mount->kind == WH_MOUNT_PINS) {
+        wh_json_put(object, "pins",
+                    wh_json_set(json_object(), "up %g down %g", mount->travel.max, -mount->travel.min));
+    }
+}
+
+/* Of one that has another grip than vacuum. */
+static void put_grip(json_t *object, const wh_grip_t *grip) {
+    const wh_edge_t *edge = &grip->edge;
+    if (grip->kind == WH_GRIP_VACUUM) {
+        return;
+    }
+    (void)wh_json_set(object, "grip %s", wh_layout_grip_name(grip->kind));
+    if (grip->kind == WH_GRIP_EDGE) {
+        wh_json_put(
+            object, "edge",
+            wh_json_set(json_object(),
+                        "rest %g plunger %g alpha %g clearance %g retracted %g gripped_from %g gripped_to %g "
+                        "stroke %g speed %g",
+                        edge->rest, edge->plunger, (double)wh_deg_from_rad((wh_real_t)edge->alpha),
+                        edge->clearance, edge->retracted, edge->gripped_from, edge->gripped_to,
+                        edge->end - edge->retracted, edge->speed));
+    }
+}
+
+static json_t *door(const void *subject, size_t i) {
+    const wh_layout_t *layout = subject;
+    const wh_door_t *from = &layout->machine.doors[i];
+    const wh_vec3_t open = wh_vec3_scale(from->travel, &from->way);
+    json_t *object =
+        wh_json_set(json_object(), "name %s home %s speed %g acceleration %g jerk %g timeout %g",
+                    layout->door_list[i].name, from->is_open ? "open" : "shut", from->limits.speed,
+                    from->limits.acceleration, from->limits.jerk, layout->door_list[i].timeout);
+    wh_json_put(object, "open", json_pack("[f, f, f]", open.x, open.y, open.z));
+    return object;
 }
 
 static json_t *gripper(const void *subject, size_t i) {
@@ -29,10 +82,19 @@ static json_t *gripper(const void *subject, size_t i) {
     const wh_layout_gripper_t *from = &layout->grippers[i];
     json_t *object =
         wh_json_set(json_object(), "name %s on %s valve %s", from->name,
-                    from->station == WH_NONE ? "robot" : layout->stations[from->station].name, from->valve);
+                    from->station == WH_NONE ? layout->robots[layout->machine.mounts[i].robot].name
+                                             : layout->stations[from->station].name,
+                    from->valve);
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, layout->machine.mounts[i].robot, NULL);
+    if (from->station == WH_NONE && carrier && carrier->second) {
+        (void)wh_json_set(object, carrier->chain.kind == WH_CHAIN_SCARA ? "wrist %d" : "arm %d",
+                          layout->machine.mounts[i].arm + 1);
+    }
     if (layout->machine.mounts[i].is_shifted) {
         put_pose(object, &layout->machine.mounts[i].effector_from_gripper);
     }
+    put_slides(object, &layout->machine.mounts[i]);
+    put_grip(object, &layout->grips[i]);
     return object;
 }
 
@@ -67,15 +129,33 @@ static json_t *beams_at(const wh_layout_t *layout, size_t s) {
     return list;
 }
 
+/* Those of several robots that come there: which of them does unless a command says otherwise. */
+static json_t *servers(const wh_layout_t *layout, const wh_layout_station_t *station) {
+    json_t *list = json_array();
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        if (station->by[r].serves) {
+            (void)json_array_append_new(list,
+                                        wh_json_set(json_object(), "robot %s unless_told %i",
+                                                    layout->robots[r].name, station->robot == (int32_t)r));
+        }
+    }
+    return list;
+}
+
+static const char *kind_of(const wh_layout_station_t *station) {
+    return station->prealigner ? "prealigner"
+           : station->foup     ? "foup"
+           : station->flipper  ? "flipper"
+                               : "slots";
+}
+
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *from = &layout->stations[i];
     const wh_entry_t *entry = &check->entries[i];
-    const char *kind = from->foup ? "foup" : "slots";
     const wh_station_t *place = &layout->places[i];
-    json_t *object =
-        wh_json_set(json_object(), "name %s kind %s", from->name, from->prealigner ? "prealigner" : kind);
+    json_t *object = wh_json_set(json_object(), "name %s kind %s", from->name, kind_of(from));
     put_pose(object, &place->base_from_station);
     (void)wh_json_set(object,
                       "slots %d pitch %g stroke %g offset %g retract %g pickup_speed %g taught %i "
@@ -93,6 +173,9 @@ static json_t *station(const void *subject, size_t i) {
     (void)json_object_set_new(object, "sensor", scanner ? sensor(&scanner->sensor) : json_null());
     (void)json_object_set_new(object, "beams", beams_at(layout, i));
     (void)json_object_set_new(object, "centre", json_boolean(from->centre));
+    if (from->by) {
+        wh_json_put(object, "by", servers(layout, from));
+    }
     return object;
 }
 
@@ -157,18 +240,34 @@ static json_t *pads(const wh_pads_t *from) {
                           : json_null();
 }
 
+/* Null for what the fault is not of. */
+static void put_target(json_t *object, const char *key, bool is_its, const char *name) {
+    wh_json_put(object, key, is_its ? wh_json_text(name) : json_null());
+}
+
 static json_t *fault(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
     const wh_fault_t *from = &layout->physics.faults[i];
     const double slice_s = (double)layout->slice_us / 1e6;
     const bool endless = from->until == WH_FAULT_FOREVER;
-    const bool targeted = from->target != WH_NONE;
     const bool of_wafer = wh_fault_is_of_wafer(from->kind);
-    return wh_json_set(
-        json_object(), "kind %s gripper %s wafer %s from_s %g until_s %g value %g", wh_fault_name(from->kind),
-        targeted && !of_wafer ? layout->grippers[from->target].name : NULL,
-        targeted && of_wafer ? layout->wafers[from->target].name : NULL, (double)(from->from - 1) * slice_s,
-        endless ? HUGE_VAL : (double)(from->until - 1) * slice_s, from->value);
+    const bool of_door = wh_fault_is_of_door(from->kind);
+    const bool of_beam = wh_fault_is_of_beam(from->kind);
+    const bool of_gripper = from->target != WH_NONE && !of_wafer && !of_door && !of_beam;
+    json_t *object = wh_json_set(json_object(), "kind %s", wh_fault_name(from->kind));
+    put_target(object, "gripper", of_gripper, of_gripper ? layout->grippers[from->target].name : "");
+    put_target(object, "wafer", of_wafer, of_wafer ? layout->wafers[from->target].name : "");
+    if (of_door) {
+        put_target(object, "door", true, layout->door_list[from->target].name);
+    }
+    if (of_beam) {
+        const int32_t station = layout->beams[from->target].station;
+        const int32_t first = wh_layout_beams_at(layout, (size_t)station).first;
+        put_target(object, "station", true, layout->stations[station].name);
+        (void)wh_json_set(object, "beam %d", from->target - first + 1);
+    }
+    return wh_json_set(object, "from_s %g until_s %g value %g", (double)(from->from - 1) * slice_s,
+                       endless ? HUGE_VAL : (double)(from->until - 1) * slice_s, from->value);
 }
 
 static json_t *finding(const wh_feasibility_t *check, size_t i) {
@@ -230,12 +329,16 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
     json_t *root =
         wh_json_set(json_object(), "format %d ok %i layout %s", FORMAT, check->wrong == 0, layout->path);
     put_checks(layout, root);
-    (void)wh_json_add(
-        root, "axes grippers stations wafers vacuum pads faults", wh_json_list(axis, layout, WH_ROBOT_AXES),
-        wh_json_list(gripper, layout, layout->machine.gripper_count),
-        wh_json_list(station, check, layout->station_count), wh_json_list(wafer, layout, layout->wafer_count),
-        vacuum(&layout->physics.vacuum), pads(&layout->physics.pads),
-        wh_json_list(fault, layout, layout->physics.fault_count), NULL);
+    (void)wh_json_add(root, "axes grippers stations wafers vacuum pads faults",
+                      wh_json_list(axis, layout, wh_machine_robot_axes(&layout->machine)),
+                      wh_json_list(gripper, layout, layout->machine.gripper_count),
+                      wh_json_list(station, check, layout->station_count),
+                      wh_json_list(wafer, layout, layout->wafer_count), vacuum(&layout->physics.vacuum),
+                      pads(&layout->physics.pads), wh_json_list(fault, layout, layout->physics.fault_count),
+                      NULL);
+    if (layout->machine.door_count > 0) {
+        wh_json_put(root, "doors", wh_json_list(door, layout, layout->machine.door_count));
+    }
     (void)wh_json_add(root, "corrections shapes parts clearance findings warnings",
                       corrections(&layout->corrections), shapes(&layout->shapes),
                       wh_json_list(part, check, layout->world.part_count), clearances(layout),

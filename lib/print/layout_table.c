@@ -1,5 +1,10 @@
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "../layout/arms.h"
+#include "../layout/axes.h"
+#include "../layout/grips.h"
 #include "../math/trig.h"
 #include "layout_print.h"
 #include "print_internal.h"
@@ -16,23 +21,61 @@ typedef struct {
 /* -------------------------------------------------------------------------------------------- the machine */
 
 static void print_axes(const listing_t *listing) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
-    const wh_robot_t *robot = &listing->layout->machine.robot;
+    const wh_machine_t *machine = &listing->layout->machine;
+    wh_real_t home[WH_AXES];
+    wh_machine_home(machine, home);
     wh_grid_t *grid =
         wh_grid_new(listing->frame.style, 1,
                     "axis;from{0,6};to{0,6};home{0,6};speed{0,6};acceleration{0,6};jerk{0,6};in");
-    for (size_t i = 0; i < WH_ROBOT_AXES; ++i) {
-        const bool turns = i == WH_AXIS_THETA || i == WH_AXIS_YAW;
+    for (size_t i = 0; i < wh_machine_robot_axes(machine); ++i) {
+        const bool turns = wh_axis_turns(machine, i);
         const double unit = turns ? wh_deg_from_rad(1) : 1;
-        const wh_limits_t *limits = &robot->limits[i];
-        const double values[] = {unit * robot->travel[i].min, unit * robot->travel[i].max,
-                                 unit * robot->home[i],       unit * limits->speed,
-                                 unit * limits->acceleration, unit * limits->jerk};
-        wh_grid_named_row(grid, names[i]);
+        const wh_limits_t *limits = wh_machine_limits(machine, i);
+        const wh_travel_t *travel = wh_machine_travel(machine, i);
+        const double values[] = {unit * travel->min,   unit * travel->max,          unit * home[i],
+                                 unit * limits->speed, unit * limits->acceleration, unit * limits->jerk};
+        char name[WH_NAME_SIZE];
+        if (!wh_axis_exists(machine, i)) {
+            continue;
+        }
+        wh_layout_name_axis(listing->layout, i, name, sizeof name);
+        wh_grid_named_row(grid, name);
         wh_grid_numbers(grid, 1, values, 6);
         wh_grid_text(grid, 7, WH_INK_DIM, turns ? "deg, s" : "mm, s");
     }
     wh_print_titled(&listing->frame, "Robot", grid);
+}
+
+/* Of a gripper on a prealigner, if it is not a chuck that turns only. */
+static const char *what_it_is(const wh_mount_t *mount) {
+    static const char *const words[] = {"", ", on a stage", ", pins", ", clamp"};
+    return wh_mount_axes(mount) > 0 ? words[mount->kind] : "";
+}
+
+/* The robot, or which of its two arms or wrists. */
+static void name_arm(const wh_layout_t *layout, size_t gripper, char *name, size_t size) {
+    const wh_mount_t *mount = &layout->machine.mounts[gripper];
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, mount->robot, NULL);
+    const int length = snprintf(name, size, "%s", layout->robots[mount->robot].name);
+    if (carrier && carrier->second && (size_t)length < size) {
+        (void)snprintf(name + length, size - (size_t)length, ", %s %d",
+                       carrier->chain.kind == WH_CHAIN_SCARA ? "wrist" : "arm", mount->arm + 1);
+    }
+}
+
+/* Only where there are others than vacuum. */
+static void print_grips(const listing_t *listing) {
+    const wh_layout_t *layout = listing->layout;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        const wh_edge_t *edge = &layout->grips[g].edge;
+        if (layout->grips[g].kind == WH_GRIP_EDGE) {
+            fprintf(listing->frame.out,
+                    "%s: edge grip, rests at ±%.6g degrees, clearance %.6g mm, gripped from %.6g to %.6g mm, "
+                    "%.6g mm/s\n",
+                    layout->grippers[g].name, (double)wh_deg_from_rad((wh_real_t)edge->alpha),
+                    edge->clearance, edge->gripped_from, edge->gripped_to, edge->speed);
+        }
+    }
 }
 
 static void print_grippers(const listing_t *listing) {
@@ -41,8 +84,13 @@ static void print_grippers(const listing_t *listing) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         const wh_layout_gripper_t *gripper = &layout->grippers[g];
         wh_grid_named_row(grid, gripper->name);
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s",
-                     gripper->station == WH_NONE ? "robot" : layout->stations[gripper->station].name);
+        char on[WH_NAME_SIZE + 16];
+        if (gripper->station == WH_NONE) {
+            name_arm(layout, g, on, sizeof on);
+        } else {
+            (void)snprintf(on, sizeof on, "%s", layout->stations[gripper->station].name);
+        }
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s", on, what_it_is(&layout->machine.mounts[g]));
         wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", gripper->valve);
         if (layout->machine.mounts[g].is_shifted) {
             const wh_pose_t *shift = &layout->machine.mounts[g].effector_from_gripper;
@@ -52,6 +100,42 @@ static void print_grippers(const listing_t *listing) {
         }
     }
     wh_print_titled(&listing->frame, "Grippers", grid);
+    print_grips(listing);
+}
+
+/* The stations that it is the door of, for any robot. */
+static void list_stations(const wh_layout_t *layout, wh_grid_t *grid, int32_t door) {
+    char names[WH_NAME_SIZE * 4] = "";
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        bool is_its = false;
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            is_its = is_its || wh_layout_door_of(layout, s, r) == door;
+        }
+        const size_t length = strlen(names);
+        if (is_its) {
+            (void)snprintf(names + length, sizeof names - length, "%s%s", length > 0 ? ", " : "",
+                           layout->stations[s].name);
+        }
+    }
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", names);
+}
+
+static void print_doors(const listing_t *listing) {
+    const wh_layout_t *layout = listing->layout;
+    wh_grid_t *grid =
+        wh_grid_new(listing->frame.style, 1, "door;of;at home;opens by x{0,6};y{0,6};z{0,6};seconds{0,6}");
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        const wh_door_t *door = &layout->machine.doors[d];
+        wh_profile_t profile;
+        (void)wh_profile_plan(&profile, door->travel, &door->limits);
+        wh_grid_named_row(grid, layout->door_list[d].name);
+        list_stations(layout, grid, (int32_t)d);
+        wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", door->is_open ? "open" : "shut");
+        const double values[] = {door->travel * door->way.x, door->travel * door->way.y,
+                                 door->travel * door->way.z, wh_profile_duration(&profile)};
+        wh_grid_numbers(grid, 3, values, 4);
+    }
+    wh_print_titled(&listing->frame, "Doors, mm", grid);
 }
 
 /* ----------------------------------------------------------------------------------------------- stations */
@@ -71,7 +155,7 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_vec3_t *r = &place->base_from_station.r;
     const wh_mat3_t *R = &place->base_from_station.R;
     const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
-    const char *kind = station->foup ? "foup" : "slots";
+    const char *kind = station->foup ? "foup" : station->flipper ? "flipper" : "slots";
     wh_grid_named_row(grid, station->name);
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s", station->prealigner ? "prealigner" : kind,
                  seen_by(listing->layout, s), station->taught ? "" : ", not taught");
@@ -100,6 +184,29 @@ static void print_stations(const listing_t *listing) {
         add_station(listing, grid, s);
     }
     wh_print_titled(&listing->frame, "Stations", grid);
+}
+
+/* Of several robots which come to a station, and which of them does unless a command says otherwise. */
+static void print_servers(const listing_t *listing) {
+    const wh_layout_t *layout = listing->layout;
+    if (layout->robot_count < 2) {
+        return;
+    }
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 2, "station;robot;heading deg{0,6};unless told");
+    for (size_t i = 0; i < layout->station_count * layout->robot_count; ++i) {
+        const wh_layout_station_t *station = &layout->stations[i / layout->robot_count];
+        const size_t r = i % layout->robot_count;
+        const wh_layout_approach_t *by = &station->by[r];
+        if (by->serves) {
+            const wh_mat3_t *R =
+                by->is_turned ? &by->R : &layout->places[i / layout->robot_count].base_from_station.R;
+            wh_grid_named_row(grid, station->name);
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", layout->robots[r].name);
+            wh_grid_number(grid, 2, WH_INK_PLAIN, wh_deg_from_rad(wh_atan2(R->m[1][0], R->m[0][0])));
+            wh_grid_text(grid, 3, WH_INK_PLAIN, "%s", station->robot == (int32_t)r ? "yes" : "no");
+        }
+    }
+    wh_print_titled(&listing->frame, "Served by", grid);
 }
 
 static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
@@ -154,8 +261,28 @@ static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault)
     if (fault->target == WH_NONE) {
         return "all";
     }
+    if (wh_fault_is_of_door(fault->kind)) {
+        return layout->door_list[fault->target].name;
+    }
+    if (wh_fault_is_of_beam(fault->kind)) {
+        return layout->stations[layout->beams[fault->target].station].name;
+    }
     return wh_fault_is_of_wafer(fault->kind) ? layout->wafers[fault->target].name
                                              : layout->grippers[fault->target].name;
+}
+
+/* Of the value. */
+static const char *unit_of(wh_fault_kind_t kind) {
+    switch ((int)kind) {
+    case WH_FAULT_LEAK:
+    case WH_FAULT_EDGE_SENSOR_STUCK:
+        return "";
+    case WH_FAULT_PLUNGER_SLOW:
+    case WH_FAULT_DOOR_SLOW:
+        return " mm/s";
+    default:
+        return " s";
+    }
 }
 
 static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_t *fault) {
@@ -168,8 +295,8 @@ static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_
     } else {
         wh_grid_text(grid, 3, WH_INK_PLAIN, "%.10g", (double)(fault->until - 1) * slice_s);
     }
-    if (fault->kind == WH_FAULT_LEAK || fault->kind == WH_FAULT_SLOW_VACUUM) {
-        wh_grid_text(grid, 4, WH_INK_PLAIN, "%g%s", fault->value, fault->kind == WH_FAULT_LEAK ? "" : " s");
+    if (wh_fault_most(fault->kind) > 0) {
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%g%s", fault->value, unit_of(fault->kind));
     }
 }
 
@@ -184,6 +311,27 @@ static void print_faults(const listing_t *listing) {
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
+/* Of each robot. */
+static void print_arms(const wh_layout_t *layout, wh_grid_t *grid) {
+    for (size_t robot = 0; robot < wh_machine_robots(&layout->machine); ++robot) {
+        const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+        const wh_arm_t *arm = wh_layout_arm_lengths(layout, robot);
+        char name[WH_NAME_SIZE + 8];
+        (void)snprintf(name, sizeof name, "%s%sarm",
+                       layout->robot_count > 1 ? layout->robots[robot].name : "",
+                       layout->robot_count > 1 ? " " : "");
+        wh_grid_named_row(grid, name);
+        if (carrier && carrier->chain.kind == WH_CHAIN_SCARA) {
+            const wh_real_t *links = carrier->chain.links;
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "links of %g and %g, the wrist at the end-effector's origin",
+                         links[0], links[1]);
+        } else {
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "two links of %g, wrist %g behind the end-effector, elbow %s",
+                         arm->link, arm->reach, arm->right_handed ? "right" : "left");
+        }
+    }
+}
+
 static void print_shapes(const listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "shape;size");
@@ -194,9 +342,7 @@ static void print_shapes(const listing_t *listing) {
     wh_grid_named_row(grid, "ledges");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%g thick, %g long, from %g to %g beside the middle",
                  s->ledge.thickness, s->ledge.length, s->ledge.inner, s->ledge.outer);
-    wh_grid_named_row(grid, "arm");
-    wh_grid_text(grid, 1, WH_INK_PLAIN, "two links of %g, wrist %g behind the end-effector, elbow %s",
-                 s->arm.link, s->arm.reach, s->arm.right_handed ? "right" : "left");
+    print_arms(listing->layout, grid);
     wh_grid_named_row(grid, "FOUP");
     wh_grid_text(grid, 1, WH_INK_PLAIN,
                  "walls of %g, %g from the wafer; floor %g below, roof %g above the slots", s->shell.wall,
@@ -226,12 +372,39 @@ static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *con
     }
 }
 
-static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part) {
-    static const char *const bodies[WH_ARM_BODIES] = {"column", "lift", "upper arm", "forearm", "hand"};
+static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part, char *name, size_t size) {
     if (part->kind == WH_PART_FIXED) {
         return "base";
     }
-    return part->kind == WH_PART_ARM ? bodies[part->owner] : layout->grippers[part->owner].name;
+    if (part->kind == WH_PART_ARM) {
+        wh_layout_name_body(layout, (size_t)part->owner, "column", name, size);
+        return name;
+    }
+    if (part->kind == WH_PART_DOOR) {
+        return layout->door_list[part->owner].name;
+    }
+    return layout->grippers[part->owner].name;
+}
+
+/* What a robot's URDF says of its arm. */
+static void print_urdf(const listing_t *listing) {
+    const wh_part_list_t *list = listing->layout->urdf;
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "link;moves with;shape;x{0,6};y{0,6};z{0,6}");
+    for (size_t i = 0; list && i < list->count; ++i) {
+        const wh_part_t *part = &list->parts[i];
+        const wh_vec3_t *at = &part->convex.body_from_shape.r;
+        char name[2 * WH_NAME_SIZE];
+        wh_grid_named_row(grid, list->names[i]);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part, name, sizeof name));
+        if (part->convex.kind == WH_CONVEX_MESH) {
+            wh_grid_text(grid, 2, WH_INK_PLAIN, "convex hull of a mesh, %zu corners",
+                         part->convex.point_count);
+        } else {
+            describe_size(grid, 2, &part->convex);
+        }
+        wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
+    }
+    wh_print_titled(&listing->frame, "Links of the URDF, mm", grid);
 }
 
 static void print_obstacles(const listing_t *listing) {
@@ -240,9 +413,10 @@ static void print_obstacles(const listing_t *listing) {
     for (size_t i = 0; i < world->part_count; ++i) {
         const wh_part_t *part = &world->parts[i];
         const bool hung = i + listing->layout->hung_count >= world->part_count;
+        char name[2 * WH_NAME_SIZE];
         if (hung || (part->kind == WH_PART_FIXED && part->owner == WH_NONE)) {
             wh_grid_named_row(grid, listing->layout->part_names[i]);
-            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part));
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part, name, sizeof name));
             describe_size(grid, 2, &part->convex);
             const wh_vec3_t *at = &part->convex.body_from_shape.r;
             wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
@@ -323,11 +497,14 @@ int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_sty
     print_heading(&listing);
     print_axes(&listing);
     print_grippers(&listing);
+    print_doors(&listing);
     print_stations(&listing);
+    print_servers(&listing);
     print_room(&listing);
     print_holding(&listing);
     print_faults(&listing);
     print_shapes(&listing);
+    print_urdf(&listing);
     print_obstacles(&listing);
     print_limits(&listing);
     print_findings(&listing);

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../layout/axes.h"
+#include "../layout/grips.h"
 #include "../math/trig.h"
 #include "../record/steady.h"
 #include "../sim/faults.h"
@@ -29,6 +31,9 @@ static json_t *command(const void *subject, size_t i) {
     const wh_command_record_t *from = &record->commands[i];
     json_t *object = wh_json_set(json_object(), "line %d text %s error %d begin_s %g end_s %g", from->line,
                                  from->text, (int)from->error, from->begin_s, from->end_s);
+    if (record->has_tasks) {
+        (void)wh_json_set(object, "task %d", (int)from->task);
+    }
     wh_json_put(object, "split", split_of(record, from->shares));
     return from->message ? wh_json_set(object, "message %s", from->message) : object;
 }
@@ -38,7 +43,8 @@ static json_t *command(const void *subject, size_t i) {
 /* Where the notch of wafer `w` points, about the station's z from its x; about base's for a wafer in no slot.
  * Infinite if there is none. A wafer's own rim tells, where edge sensors see it. */
 static double notch_deg(const wh_layout_t *layout, const wh_wafer_record_t *wafer, size_t w) {
-    const wh_rim_t *rim = layout->scanner_count > 0 && layout->rims ? layout->rims[w] : NULL;
+    const wh_rim_t *rim =
+        (layout->scanner_count > 0 || layout->edge_wafers) && layout->rims ? layout->rims[w] : NULL;
     const double depth = rim ? rim->notch.depth : layout->notch_depth;
     wh_real_t sine = 0;
     wh_real_t cosine = 1;
@@ -60,12 +66,15 @@ static json_t *wafer(const void *subject, size_t i) {
     const wh_wafer_record_t *from = &record->wafers[i];
     const wh_place_t *place = &from->place;
     const bool lies = place->station != WH_NONE;
-    json_t *object = wh_json_set(
-        json_object(), "name %s holder %s station %s slot %lld dx %g dy %g dz %g tilt_deg %g notch_deg %g",
-        wh_record_wafer_name(record, (int32_t)i), wh_record_gripper_name(record, from->holder),
-        wh_record_station_name(record, place->station), lies ? place->slot : WH_JSON_NONE,
-        lies ? place->dx : HUGE_VAL, lies ? place->dy : HUGE_VAL, lies ? place->dz : HUGE_VAL,
-        lies ? wh_deg_from_rad(place->tilt) : HUGE_VAL, notch_deg(record->layout, from, i));
+    json_t *object =
+        wh_json_set(json_object(),
+                    "name %s holder %s station %s slot %lld dx %g dy %g dz %g tilt_deg %g notch_deg %g "
+                    "face %s",
+                    wh_record_wafer_name(record, (int32_t)i), wh_record_gripper_name(record, from->holder),
+                    wh_record_station_name(record, place->station), lies ? place->slot : WH_JSON_NONE,
+                    lies ? place->dx : HUGE_VAL, lies ? place->dy : HUGE_VAL, lies ? place->dz : HUGE_VAL,
+                    lies ? wh_deg_from_rad(place->tilt) : HUGE_VAL, notch_deg(record->layout, from, i),
+                    wh_layout_face_of(&from->base_from_wafer));
     return wh_json_add(object, "position rotation", wh_json_vector(from->base_from_wafer.r),
                        wh_json_matrix(&from->base_from_wafer.R), NULL);
 }
@@ -90,8 +99,9 @@ static void put_measured(const wh_record_t *record, json_t *object, const wh_eve
                                   measured->margin_projxy, measured->margin_planar);
     (void)wh_json_add(object, "dr_proj_xy margins failed", wh_json_vector(measured->dr_proj_xy), margins,
                       failed_conditions(measured->failed), NULL);
-    (void)wh_json_set(object, "dr_proj_z %g dr_proj_xy_norm %g n1_proj_n2 %g measured_utime %lld",
-                      measured->dr_proj_z, measured->dr_proj_xy_norm, measured->n1_proj_n2,
+    (void)wh_json_set(object, "face %s dr_proj_z %g dr_proj_xy_norm %g n1_proj_n2 %g measured_utime %lld",
+                      event->face == WH_FACE_FRONT ? "front" : "back", measured->dr_proj_z,
+                      measured->dr_proj_xy_norm, measured->n1_proj_n2,
                       record->layout ? (json_int_t)event->measured_slice * record->layout->slice_us
                                      : WH_JSON_NONE);
 }
@@ -152,6 +162,9 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
         if (event->value > 0) {
             (void)wh_json_set(object, "value %g", wh_deg_from_rad(event->value));
         }
+        if (event->limit > 0) {
+            (void)wh_json_set(object, "limit %g", event->limit);
+        }
         break;
     case WH_EVENT_BAD_INPUT:
         (void)wh_json_set(object, "status %d message %s", (int)event->status,
@@ -170,9 +183,10 @@ json_t *wh_event_to_json(const wh_record_t *record, size_t i) {
                     wh_event_name(from->event.kind), wh_record_wafer_name(record, from->event.wafer),
                     wh_record_gripper_name(record, from->event.gripper));
     /* An event that measured nothing has the same keys. */
-    (void)wh_json_add(object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
+    (void)wh_json_add(object,
+                      "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime face",
                       json_null(), json_null(), json_null(), json_null(), json_null(), json_null(),
-                      json_null(), NULL);
+                      json_null(), json_null(), NULL);
     if (!is_unmeasured(from->event.kind)) {
         put_measured(record, object, &from->event);
     }
@@ -294,11 +308,19 @@ static const char *interval_what(const wh_record_t *record, const wh_busy_span_t
 }
 
 static json_t *interval(const wh_record_t *record, const wh_busy_span_t *from) {
-    static const char *const resources[] = {"robot", "chuck", "gripper", "valve"};
+    static const char *const resources[] = {"robot", "chuck", "gripper", "valve", "door"};
+    const wh_layout_t *layout = record->layout;
+    const char *name = NULL;
+    if (from->who == WH_BUSY_DOOR) {
+        name = layout->door_list[from->gripper].name;
+    } else if (from->who != WH_BUSY_ROBOT) {
+        name = wh_record_gripper_name(record, from->gripper);
+    } else if (layout->robot_count > 1) {
+        name = layout->robots[from->gripper].name;
+    }
     return wh_json_set(json_object(), "resource %s gripper %s from_s %g to_s %g what %s",
-                       resources[from->who], wh_record_gripper_name(record, from->gripper),
-                       wh_throughput_seconds(record, from->begin), wh_throughput_seconds(record, from->end),
-                       interval_what(record, from));
+                       resources[from->who], name, wh_throughput_seconds(record, from->begin),
+                       wh_throughput_seconds(record, from->end), interval_what(record, from));
 }
 
 /* By resource, then by time. */
@@ -315,20 +337,33 @@ static json_t *gantt(const wh_record_t *record) {
     return list;
 }
 
+/* -------------------------------------------------------------------------------------------------- waits */
+
+static json_t *wait_of(const void *subject, size_t i) {
+    const wh_record_t *record = subject;
+    const wh_wait_record_t *from = &record->waits[i];
+    return wh_json_set(json_object(), "task %d command %s for %s from_s %g to_s %g", (int)from->task,
+                       from->command == WH_NONE ? NULL : record->commands[from->command].text, from->what,
+                       wh_throughput_seconds(record, from->begin), wh_throughput_seconds(record, from->end));
+}
+
 /* -------------------------------------------------------------------------------------------------- reach */
 
 /* By station and axis; null where the axis was not looked at. */
 static json_t *reach(const void *subject, size_t i) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     const wh_record_t *record = subject;
-    const size_t axis = i % WH_ROBOT_AXES;
-    const wh_travel_margin_t *from = &record->reach[i / WH_ROBOT_AXES].axes[axis];
-    const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
-    if (from->slot == 0) {
+    const wh_machine_t *machine = &record->layout->machine;
+    const size_t count = wh_machine_robot_axes(machine);
+    const size_t axis = i % count;
+    const wh_travel_margin_t *from = &record->reach[i / count].axes[axis];
+    const bool turns = wh_axis_turns(machine, axis);
+    char label[WH_NAME_SIZE + 16];
+    if (from->slot == 0 || !wh_axis_exists(machine, axis)) {
         return NULL;
     }
     return wh_json_set(json_object(), "station %s slot %d axis %s margin %g at %g end %s unit %s",
-                       wh_record_station_name(record, (int32_t)(i / WH_ROBOT_AXES)), from->slot, names[axis],
+                       wh_record_station_name(record, (int32_t)(i / count)), from->slot,
+                       wh_layout_axis_label(record->layout, axis, label, sizeof label),
                        turns ? wh_deg_from_rad(from->margin) : from->margin,
                        turns ? wh_deg_from_rad(from->at) : from->at, from->is_max ? "max" : "min",
                        turns ? "deg" : "mm");
@@ -374,6 +409,11 @@ static void put_head(const wh_record_t *record, json_t *root) {
     if (record->error_count > 0) {
         wh_json_put(root, "errors", wh_json_list(given_error, record, record->error_count));
     }
+    if (record->trial) {
+        wh_json_put(root, "trial",
+                    wh_json_set(json_object(), "trial %lld seed %lld", (json_int_t)record->trial->trial,
+                                (json_int_t)record->trial->seed));
+    }
     if (record->log) {
         wh_json_put(root, "log", log_of(record->log));
     }
@@ -381,6 +421,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
                       record->script, record->layout ? record->layout->path : NULL,
                       (json_int_t)record->slices, (json_int_t)record->missed, record->simulated_s,
                       record->wall_s, (unsigned long long)record->hash);
+    if (record->crowded > 0) {
+        (void)wh_json_set(root, "crowded_slices %lld", (json_int_t)record->crowded);
+    }
     wh_json_put(root, "throughput", wh_throughput_to_json(record));
     wh_json_put(root, "steady_cycle", steady_cycle(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));
@@ -389,6 +432,7 @@ static void put_head(const wh_record_t *record, json_t *root) {
 static void put_lists(const wh_record_t *record, json_t *root) {
     const size_t wafers = record->layout ? record->layout->wafer_count : 0;
     const size_t stations = record->layout && record->reach ? record->layout->station_count : 0;
+    const size_t robot_axes = record->layout ? wh_machine_robot_axes(&record->layout->machine) : 0;
     wh_json_put(root, "commands", wh_json_list(command, record, record->command_count));
     wh_json_put(root, "wafers", wh_json_list(wafer, record, wafers));
     wh_json_put(root, "events", wh_json_list(event, record, record->event_count));
@@ -401,7 +445,10 @@ static void put_lists(const wh_record_t *record, json_t *root) {
     wh_json_put(root, "expectations", wh_json_list(expectation, record, record->expectation_count));
     wh_json_put(root, "cycles", cycles(record));
     wh_json_put(root, "gantt", gantt(record));
-    wh_json_put(root, "reach", wh_json_list(reach, record, stations * WH_ROBOT_AXES));
+    if (record->has_tasks) {
+        wh_json_put(root, "waits", wh_json_list(wait_of, record, record->wait_count));
+    }
+    wh_json_put(root, "reach", wh_json_list(reach, record, stations * robot_axes));
 }
 
 json_t *wh_record_to_json(const wh_record_t *record) {

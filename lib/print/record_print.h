@@ -50,10 +50,11 @@
  *                 and the run's smallest
  *   expectations: line, text, ok
  *   cycles:       line, name (or null), begin_s, end_s, wafers: those that the script marked
- *   gantt:        resource ("robot", or "gripper", "valve" or "chuck" of a gripper), gripper (name or
- *                 null), from_s, to_s, what: the robot's and a chuck's time as "loaded" or "empty"
- *                 (motion), "vacuum", "handover", "waiting"; the wafer that a gripper holds; "open" for a
- *                 valve; in the order of resource and time
+ *   gantt:        resource ("robot", or "gripper", "valve" or "chuck" of a gripper, or "door"), gripper
+ *                 (its name, or that of the door, or of several robots the robot's; null: the only robot),
+ *                 from_s, to_s, what: the robot's and a chuck's time as "loaded" or "empty" (motion),
+ *                 "vacuum", "handover", "waiting"; the wafer that a gripper holds; "open" for a valve; in
+ *                 the order of resource and time
  *   reach:        station, slot, axis ("theta", "r", "z", "yaw"), margin, at, end ("min" or "max"), unit
  *                 ("mm" or "deg"): how near each axis comes to an end of its travel in GET and PUT at the
  *                 first and last slot of each station, coming from home: the smaller end, where the axis

@@ -1,7 +1,9 @@
 #include "record_print.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 
+#include "../layout/grips.h"
 #include "../math/trig.h"
 #include "../sim/event_text.h"
 #include "../text/array.h"
@@ -42,6 +44,10 @@ static void print_heading(const wh_printer_t *printer) {
     }
     if (record->error_count > 0) {
         fputc('\n', printer->out);
+    }
+    if (record->trial) {
+        fprintf(printer->out, "! off by what trial %" PRIu64 " of seed %" PRIu64 " draws\n",
+                record->trial->trial, record->trial->seed);
     }
 }
 
@@ -118,7 +124,7 @@ static void print_complaints(const wh_printer_t *printer) {
 /* ------------------------------------------------------------------------------------------------- wafers */
 
 /* Where the wafers are at the end, and which of them a gripper carries tilted. */
-enum { NAME, HELD_BY, LIES_IN, DX };
+enum { NAME, HELD_BY, LIES_IN, DX, FACE = DX + 4 };
 
 /* Above this many wafers only those are listed that something happened to. */
 #define LISTED_ALL 30
@@ -165,6 +171,9 @@ static void add_wafer(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
         wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(printer, wafer->holder));
     }
     fill_place(printer, grid, wafer);
+    if (printer->record->layout->has_faces) {
+        wh_grid_text(grid, FACE, WH_INK_PLAIN, "%s", wh_layout_face_of(&wafer->base_from_wafer));
+    }
 }
 
 /* Returns how many wafers were left out. */
@@ -182,6 +191,13 @@ static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const his
     return left_out;
 }
 
+/* The robot of a gripper. */
+static bool robot_tilts(const wh_layout_t *layout, int32_t gripper) {
+    const size_t robot = layout->machine.mounts[gripper].robot;
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+    return carrier && carrier->chain.has_tilt;
+}
+
 static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
     const bool seated = printer->record->layout->grasp.seat;
     const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
@@ -191,8 +207,23 @@ static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t
     if (seated) {
         fputs(" when it was taken, and was drawn flat onto the pads.\n", printer->out);
     } else {
-        fprintf(printer->out, ", its rim %.2f mm from the pads' plane: the robot cannot tilt.\n",
-                wh_print_rim_gap(printer, pick));
+        fprintf(printer->out, ", its rim %.2f mm from the pads' plane%s.\n", wh_print_rim_gap(printer, pick),
+                robot_tilts(printer->record->layout, pick->gripper) ? "" : ": the robot cannot tilt");
+    }
+}
+
+/* Of a wafer that the robot took in its own plane, where it began out of level. */
+static void say_no_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
+    const wh_layout_t *layout = printer->record->layout;
+    const bool tilts = robot_tilts(layout, pick->gripper);
+    const double began_deg =
+        tilts ? tilt_deg_of(wh_real_abs(layout->start[wafer].base_from_wafer.R.m[2][2])) : 0;
+    if (tilts && began_deg >= TILT_SHOWN_DEG) {
+        const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
+        wh_print_say(printer, "%s, tilted by %.3f%s when the run began, keeps %.3f%s against %s",
+                     wh_print_wafer(printer, (int32_t)wafer), began_deg, degree, tilt_deg, degree,
+                     wh_print_gripper(printer, pick->gripper));
+        fputs(": the robot tilts.\n", printer->out);
     }
 }
 
@@ -205,13 +236,17 @@ static void say_tilts(const wh_printer_t *printer, const history_t *history) {
         const double tilt_deg = tilt_deg_of(pick->measured.n1_proj_n2);
         if (tilt_deg >= TILT_SHOWN_DEG) {
             say_tilt(printer, i, pick, tilt_deg);
+        } else {
+            say_no_tilt(printer, i, pick, tilt_deg);
         }
     }
 }
 
 static void print_ends(const wh_printer_t *printer, const history_t *history) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1,
-                                  "wafer;held by;lies in;dX mm{4,9};dY mm{4,9};dz mm{4,9};tilt deg{3,6}");
+    static const char *const heads[] = {
+        "wafer;held by;lies in;dX mm{4,9};dY mm{4,9};dz mm{4,9};tilt deg{3,6}",
+        "wafer;held by;lies in;dX mm{4,9};dY mm{4,9};dz mm{4,9};tilt deg{3,6};face"};
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, heads[printer->record->layout->has_faces ? 1 : 0]);
     const size_t left_out = add_wafers(printer, grid, history);
     wh_print_title(printer, "Wafers");
     wh_grid_print(grid, printer->out);
@@ -291,6 +326,9 @@ static void print_times(const wh_printer_t *printer) {
     wh_print_counted(printer->out, record->slices, "slice", "slices");
     if (record->missed > 0) {
         fprintf(printer->out, ", of which the simulator missed %lld", (long long)record->missed);
+    }
+    if (record->crowded > 0) {
+        fprintf(printer->out, ", of which %lld had more events than are told", (long long)record->crowded);
     }
     fprintf(printer->out, "; %.3f s of wall time", record->wall_s);
     if (record->wall_s > 0 && record->simulated_s > record->wall_s) {

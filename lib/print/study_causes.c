@@ -66,11 +66,12 @@ wh_cause_told_t *wh_causes_told(const wh_study_result_t *result) {
 
 void wh_cause_name(const wh_cause_t *cause, const wh_layout_t *layout, char name[WH_CAUSE_NAME]) {
     const char *of = wh_cause_of(cause, layout);
+    const char *robot = wh_cause_robot(cause, layout);
     char what[20];
     wh_text_words(what, sizeof what, wh_cause_what(cause));
     const char *unit = wh_cause_unit(cause);
-    (void)snprintf(name, WH_CAUSE_NAME, "%s%s%s%s%s", of ? of : "", of ? " " : "", what, *unit ? " " : "",
-                   unit);
+    (void)snprintf(name, WH_CAUSE_NAME, "%s%s%s%s%s%s%s", robot ? robot : "", robot ? " at " : "",
+                   of ? of : "", of ? " " : "", what, *unit ? " " : "", unit);
 }
 
 /* --------------------------------------------------------------------------------------------------- JSON */
@@ -105,11 +106,15 @@ static json_t *drawn(const void *subject, size_t i) {
     const subject_t *of = subject;
     const wh_cause_told_t *told = &of->told[i];
     const wh_cause_t *cause = told->cause;
-    static const char *const kinds[] = {"wafer", "station", "gripper", "vacuum", "rim"};
+    static const char *const kinds[] = {"wafer", "station", "gripper", "vacuum", "rim", "beam"};
     const subject_t one = {of->result, told};
     json_t *object = wh_json_set(json_object(), "kind %s of %s what %s unit %s width %g", kinds[cause->kind],
                                  wh_cause_of(cause, of->result->study->layout), wh_cause_what(cause),
                                  wh_cause_unit(cause), cause->width);
+    const char *robot = wh_cause_robot(cause, of->result->study->layout);
+    if (robot) {
+        wh_json_put(object, "robot", json_string(robot));
+    }
     json_t *failing = wh_json_add(json_object(), "by_size by_value", correlation(&told->by_size),
                                   correlation(&told->by_value), NULL);
     return wh_json_add(object, "failing ends", failing,

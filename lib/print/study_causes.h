@@ -21,7 +21,7 @@ typedef struct {
 wh_cause_told_t *wh_causes_told(const wh_study_result_t *result);
 
 /* "Wafer 1 dx mm", "vacuum s". */
-#define WH_CAUSE_NAME 120
+#define WH_CAUSE_NAME 190
 void wh_cause_name(const wh_cause_t *cause, const wh_layout_t *layout, char name[WH_CAUSE_NAME]);
 
 /* The list `drawn` of print/study_print.h. */

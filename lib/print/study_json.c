@@ -45,8 +45,9 @@ static json_t *event(const void *subject, size_t kind) {
     if (counted->trials == 0) {
         return NULL;
     }
-    json_t *object = wh_json_set(json_object(), "kind %s trials %lld", wh_event_name((wh_event_kind_t)kind),
-                                 (json_int_t)counted->trials);
+    json_t *object =
+        wh_json_set(json_object(), "kind %s complaint %i trials %lld", wh_event_name((wh_event_kind_t)kind),
+                    wh_record_is_complaint((wh_event_kind_t)kind), (json_int_t)counted->trials);
     put_rate(object, counted->trials, result->tally->trials);
     return wh_json_set(object, "total %lld", (json_int_t)counted->total);
 }
@@ -149,19 +150,33 @@ static json_t *drawn_rim(const void *subject, size_t w) {
     return rim;
 }
 
+static json_t *drawn_beam(const void *subject, size_t b) {
+    const draw_t *draw = subject;
+    double drawn[WH_BEAM_DRAWS];
+    wh_errors_draw_beam(draw->layout->errors, &draw->trial, b, drawn);
+    if (drawn[WH_BEAM_DX] == 0 && drawn[WH_BEAM_DY] == 0 && drawn[WH_BEAM_LATE] == 0) {
+        return NULL;
+    }
+    return wh_json_set(json_object(), "name %s dx %g dy %g late_s %g", draw->layout->beams[b].name,
+                       drawn[WH_BEAM_DX], drawn[WH_BEAM_DY], drawn[WH_BEAM_LATE]);
+}
+
 static json_t *worst_trial(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_trial_t *worst = &result->tally->worst[i];
     const wh_layout_t *layout = result->study->layout;
     const draw_t draw = {layout, {result->study->seed, worst->trial}};
-    json_t *drawn = wh_json_add(json_object(), "wafers stations rims valves vacuum_s",
+    char why[WH_TRIAL_LINE_WHY];
+    wh_trial_line_why(worst, why, sizeof why);
+    json_t *drawn = wh_json_add(json_object(), "wafers stations rims beams valves vacuum_s",
                                 wh_json_list(drawn_wafer, &draw, layout->wafer_count),
                                 wh_json_list(drawn_station, &draw, layout->station_count),
                                 wh_json_list(drawn_rim, &draw, layout->wafer_count),
+                                wh_json_list(drawn_beam, &draw, layout->beam_count),
                                 wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
                                 wh_json_real(wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
-    return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g", (json_int_t)worst->trial,
-                                   worst->met, worst->off),
+    return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g why %s", (json_int_t)worst->trial,
+                                   worst->met, worst->off, why[0] ? why : NULL),
                        "drawn", drawn, NULL);
 }
 
@@ -187,6 +202,7 @@ static void put_head(const wh_study_result_t *result, json_t *root) {
     (void)wh_json_set(root, "require %g ended %lld whole %lld whole_why %s",
                       result->require > 0 ? result->require : HUGE_VAL, (json_int_t)tally->ended,
                       (json_int_t)tally->whole, study->whole);
+    wh_json_put(root, "noise_alone", json_boolean(wh_study_is_of_noise(study)));
     wh_json_put(root, "run_without_errors", run_without_errors(result));
 }
 

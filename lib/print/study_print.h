@@ -6,27 +6,30 @@
  *                 complaint of the cell; low and high are Wilson's interval at 95 % here and below
  *   require       (or null), ended (trials whose script ended by an uncaught error),
  *   whole         (trials that ran the script whole), whole_why (why all did, or null),
+ *   noise_alone   (true if no error is drawn: trials differ in the noise of sensors alone),
  *   run_without_errors: { ok, hash, slices, simulated_s, throughput (as of a run) }
  * and the lists
  *   expectations: line, text, seen (trials that came to it), met, rate, low, high, first_missed (the lowest
  *                 trial, or null)
- *   errors:       line, text (of the command, as the first trial has it), error, name, trials (in which it
+ *   errors:       line, text (of the command: each has its own), error, name, trials (in which it
  *                 happened), rate, low, high, first
- *   events:       kind, trials (with one or more), rate, low, high, total
+ *   events:       kind, complaint (of the cell), trials (with one or more), rate, low, high, total
  *   wafers:       name, station, slot, holder (where the run without errors leaves it; null: nowhere),
  *                 elsewhere (trials that leave it anywhere else; the figures are of the others), count, and
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
  *   drawn:        the errors that are drawn, the one that goes with failing most strongly first: kind
- *                 (wafer, station, gripper, vacuum, rim), of (a name; null: of all), what, unit, width,
+ *                 (wafer, station, gripper, vacuum, rim, beam), of (a name; null: of all), what, unit, width,
  *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }.
  *                 Each is { r, low, high }, a correlation with its interval (study/relations.h), or null: not
  *                 determined
- *   worst:        trial, ok, off (of the wafer farthest off; null: one is elsewhere), drawn: { wafers,
- *                 stations, rims, valves, vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz,
- *                 tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
+ *   worst:        trial, ok, off (of the wafer farthest off; null: one is
+ *                 elsewhere), why (it failed, in words; null: it is ok), drawn: { wafers,
+ *                 stations, rims, beams, valves, vacuum_s } what the trial drew: of each wafer { name, dx,
+ *                 dy, dz, tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
  *                 degrees), of each rim { name, diameter, ... } (layout/rim_errors.h: mm, degrees), of each
- *                 valve { gripper, slices }, which act so late; only of what is drawn.
+ *                 beam { name, dx, dy, late_s }, of each valve { gripper, slices }, which act so late; only
+ *                 of what is drawn.
  *                 Failed trials come first, then the farther off.
  * Equal studies give equal bytes, whatever threads, ranks and interruptions; reading a number back gives
  * the same double.

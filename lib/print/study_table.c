@@ -52,7 +52,7 @@ static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
 
 static void print_expectations(const table_t *table) {
     wh_grid_t *grid =
-        wh_grid_new(table->frame.style, 2, "line{0};expected;met{0};%{2,4};95 %;first missed{0}");
+        wh_grid_new(table->frame.style, 2, "line{0};expected;seen{0};met{0};%{2,4};95 %;first missed{0}");
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
@@ -60,9 +60,10 @@ static void print_expectations(const table_t *table) {
         wh_grid_row(grid);
         wh_grid_number(grid, 0, WH_INK_PLAIN, row->line);
         wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", expected);
-        wh_grid_number(grid, 2, row->bad > 0 ? WH_INK_BAD : WH_INK_GOOD, (double)(row->seen - row->bad));
-        put_rate(grid, 3, WH_INK_PLAIN, row->seen - row->bad, row->seen);
-        put_trial(grid, 5, row->first);
+        wh_grid_number(grid, 2, WH_INK_PLAIN, (double)row->seen);
+        wh_grid_number(grid, 3, row->bad > 0 ? WH_INK_BAD : WH_INK_GOOD, (double)(row->seen - row->bad));
+        put_rate(grid, 4, WH_INK_PLAIN, row->seen - row->bad, row->seen);
+        put_trial(grid, 6, row->first);
     }
     wh_print_titled(&table->frame, "Expectations", grid);
 }
@@ -214,11 +215,12 @@ static void print_causes(const table_t *table) {
 /* -------------------------------------------------------------------------------------------------- worst */
 
 static void print_worst(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 1, "trial{0};result;off mm{4}");
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1, "trial{0};result;off mm{4};why");
     const size_t count =
         table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {
         const wh_tally_trial_t *trial = &table->tally->worst[i];
+        char why[WH_TRIAL_LINE_WHY];
         wh_grid_row(grid);
         wh_grid_number(grid, 0, WH_INK_PLAIN, (double)trial->trial);
         wh_grid_text(grid, 1, trial->met ? WH_INK_GOOD : WH_INK_BAD, "%s", trial->met ? "ok" : "failed");
@@ -227,6 +229,8 @@ static void print_worst(const table_t *table) {
         } else {
             wh_grid_text(grid, 2, WH_INK_PLAIN, "elsewhere");
         }
+        wh_trial_line_why(trial, why, sizeof why);
+        wh_grid_text(grid, 3, WH_INK_PLAIN, "%s", why);
     }
     wh_print_titled(&table->frame, "Worst trials", grid);
 }
@@ -235,10 +239,10 @@ static void print_worst(const table_t *table) {
 
 static void print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char trials[WH_PRINT_NUMBER_SIZE];
     wh_print_say(&table->frame, "%s on %s", study->run.script, study->layout->path);
-    fprintf(table->frame.out, "\n%s trials of seed %llu\n",
-            wh_print_count(trials, (int64_t)table->tally->trials), (unsigned long long)study->seed);
+    fputc('\n', table->frame.out);
+    wh_print_counted(table->frame.out, (int64_t)table->tally->trials, "trial", "trials");
+    fprintf(table->frame.out, " of seed %llu\n", (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
         wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
                        "without any errors the script fails already");
@@ -248,15 +252,36 @@ static void print_head(const table_t *table) {
 
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
+    if (wh_study_is_of_noise(study)) {
+        wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
+                       "no error is drawn: the trials differ in the noise of sensors alone");
+        fputc('\n', table->frame.out);
+    }
     if (study->whole) {
         fprintf(table->frame.out,
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
     } else {
-        char whole[WH_PRINT_NUMBER_SIZE];
-        fprintf(table->frame.out,
-                "%s trials ran the script whole, the others are the run without errors, replayed\n",
-                wh_print_count(whole, (int64_t)table->tally->whole));
+        wh_print_counted(table->frame.out, (int64_t)table->tally->whole, "trial", "trials");
+        fputs(" ran the script whole, the others are the run without errors, replayed\n", table->frame.out);
+    }
+}
+
+/* What the rate does not say. */
+static void print_warnings(const table_t *table) {
+    const wh_trial_lines_t *lines = &table->tally->lines;
+    size_t caught = 0;
+    for (size_t i = 0; i < lines->count; ++i) {
+        caught += lines->lines[i].met && lines->lines[i].errors > 0 ? 1 : 0;
+    }
+    if (!table->study->study->layout->collision) {
+        fputs("! collisions were not looked for: the layout has no collision = true\n", table->frame.out);
+    }
+    if (caught > 0) {
+        fprintf(table->frame.out, "! in %zu trial%s that count%s as ok the script caught errors%s\n", caught,
+                caught == 1 ? "" : "s", caught == 1 ? "s" : "",
+                lines->count < table->tally->trials ? " (of the first ones, which are known one by one)"
+                                                    : "");
     }
 }
 
@@ -264,6 +289,7 @@ static void print_summary(const table_t *table) {
     const wh_study_result_t *result = table->study;
     const wh_confidence_t success = wh_wilson_interval(table->tally->met, table->tally->trials);
     FILE *out = table->frame.out;
+    const bool is_one = table->tally->trials == 1;
     char met[WH_PRINT_NUMBER_SIZE];
     char trials[WH_PRINT_NUMBER_SIZE];
     fputc('\n', out);
@@ -272,9 +298,9 @@ static void print_summary(const table_t *table) {
     (void)wh_print_figure(&table->frame);
     fputc('\n', out);
     wh_style_print(table->frame.style, out,
-                   table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD, "%s of %s trials ok",
-                   wh_print_count(met, (int64_t)table->tally->met),
-                   wh_print_count(trials, (int64_t)table->tally->trials));
+                   table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD,
+                   "%s of %s trial%s ok", wh_print_count(met, (int64_t)table->tally->met),
+                   wh_print_count(trials, (int64_t)table->tally->trials), is_one ? "" : "s");
     fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate,
             100 * success.low, 100 * success.high);
     if (result->require > 0) {
@@ -283,6 +309,7 @@ static void print_summary(const table_t *table) {
                        kept ? "the required " : "not the required ");
         fprintf(out, "%.10g %%\n", 100 * result->require);
     }
+    print_warnings(table);
     if (table->tally->worst_count > 0 && result->worst > 0) {
         fprintf(out, "--trial %llu --seed %llu plays the worst one\n",
                 (unsigned long long)table->tally->worst[0].trial, (unsigned long long)result->study->seed);

@@ -7,7 +7,7 @@
 #include "../text/grid.h"
 #include "../text/json.h"
 
-static const char *const verdicts[] = {"ok", "failed", "bad"};
+static const char *const verdicts[] = {"ok", "failed", "undone", "bad"};
 
 size_t wh_sweep_count(const wh_script_sweep_t *sweep, wh_sweep_verdict_t verdict) {
     size_t count = 0;
@@ -115,6 +115,49 @@ static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
     fprintf(out, ", %.3f s simulated\n", sweep->points[best].simulated_s);
 }
 
+/* A range whose steps do not lead to its end. */
+static void print_end(const wh_sweep_axis_t *axis, FILE *out) {
+    const double last = axis->start + axis->step * (double)(axis->count - 1);
+    if (fabs(last - axis->end) > 1e-9 * fabs(axis->step)) {
+        char texts[2][WH_SWEEP_VALUE];
+        wh_sweep_text(last, texts[0]);
+        wh_sweep_text(axis->end, texts[1]);
+        wh_style_put(out, "! ");
+        wh_style_put(out, axis->name);
+        fprintf(out, " goes up to %s, for its steps do not lead to %s\n", texts[0], texts[1]);
+    }
+}
+
+static size_t count_unchecked(const wh_script_sweep_t *sweep) {
+    size_t unchecked = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const wh_sweep_point_t *point = &sweep->points[i];
+        const bool played = point->verdict == WH_SWEEP_OK || point->verdict == WH_SWEEP_FAILED;
+        unchecked += played && !point->checked ? 1 : 0;
+    }
+    return unchecked;
+}
+
+/* What the rows do not say. */
+static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
+    const size_t unchecked = count_unchecked(sweep);
+    size_t caught = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        caught += sweep->points[i].caught ? 1 : 0;
+    }
+    if (unchecked > 0) {
+        fprintf(out, "! collisions were not looked for in %zu run%s: the layout has no collision = true\n",
+                unchecked, unchecked == 1 ? "" : "s");
+    }
+    if (caught > 0) {
+        fprintf(out, "! in %zu run%s that count as ok the script caught errors\n", caught,
+                caught == 1 ? "" : "s");
+    }
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        print_end(&sweep->axes[axis], out);
+    }
+}
+
 int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_style_t *style) {
     const size_t ok = wh_sweep_count(sweep, WH_SWEEP_OK);
     bool shown[FIGURES + 1];
@@ -123,7 +166,9 @@ int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_sty
     }
     wh_grid_t *grid = new_grid(sweep, style, shown);
     for (size_t i = 0; i < sweep->point_count; ++i) {
-        add_row(sweep, grid, i, shown);
+        if (sweep->points[i].verdict != WH_SWEEP_UNDONE) {
+            add_row(sweep, grid, i, shown);
+        }
     }
     wh_style_put(out, sweep->run.script);
     fputs("\n\n", out);
@@ -133,6 +178,7 @@ int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_sty
                    sweep->point_count);
     fputc('\n', out);
     print_best(sweep, out);
+    print_warnings(sweep, out);
     return ferror(out) ? -1 : 0;
 }
 
@@ -147,6 +193,9 @@ static json_t *axis(const void *subject, size_t i) {
 static json_t *run(const void *subject, size_t i) {
     const wh_script_sweep_t *sweep = subject;
     const wh_sweep_point_t *point = &sweep->points[i];
+    if (point->verdict == WH_SWEEP_UNDONE) {
+        return NULL;
+    }
     json_t *values = json_array();
     for (size_t k = 0; k < sweep->axis_count; ++k) {
         wh_json_append(values, wh_json_real(wh_sweep_value(sweep, i, k)));
@@ -154,16 +203,17 @@ static json_t *run(const void *subject, size_t i) {
     json_t *object = wh_json_add(json_object(), "values", values, NULL);
     (void)wh_json_set(object,
                       "verdict %s reason %s simulated_s %g wafers_per_hour %g dr_proj_z %g dr_proj_xy %g "
-                      "gap %g",
+                      "gap %g checked %i caught_errors %i",
                       verdicts[point->verdict], point->reason, point->simulated_s, point->wafers_per_hour,
-                      point->projz, point->projxy, point->gap);
+                      point->projz, point->projxy, point->gap, point->checked, point->caught);
     return wh_json_add(object, "hash",
                        point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);
 }
 
 int wh_sweep_print_json(const wh_script_sweep_t *sweep, FILE *out) {
-    json_t *root = wh_json_set(json_object(), "format %d ok %i script %s", 1,
-                               wh_sweep_count(sweep, WH_SWEEP_OK) == sweep->point_count, sweep->run.script);
+    json_t *root = wh_json_set(json_object(), "format %d ok %i interrupted %i script %s", 1,
+                               wh_sweep_count(sweep, WH_SWEEP_OK) == sweep->point_count,
+                               wh_sweep_count(sweep, WH_SWEEP_UNDONE) > 0, sweep->run.script);
     wh_json_put(root, "axes", wh_json_list(axis, sweep, sweep->axis_count));
     wh_json_put(root, "runs", wh_json_list(run, sweep, sweep->point_count));
     const int status = wh_json_print(root, out);

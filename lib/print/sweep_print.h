@@ -1,11 +1,12 @@
 /* A sweep's result, for people and for programs.
  *
  * As JSON one object, its lists with one element a line:
- *   format (1), ok (each run is), script,
+ *   format (1), ok (each run is), interrupted (runs are missing), script,
  *   axes:   name, start, step, count
  *   runs:   values (one for each axis), verdict ("ok", "failed", "bad"), reason (or null), simulated_s,
  *           wafers_per_hour, dr_proj_z, dr_proj_xy (mm, the largest at picks), gap (mm, the smallest, if
- *           collisions are looked for), hash; null: the run has none
+ *           collisions are looked for), checked (for collisions), caught_errors (ok, though its script caught
+ *           errors), hash; null: the run has none
  */
 #ifndef WH_PRINT_SWEEP_PRINT_H
 #define WH_PRINT_SWEEP_PRINT_H

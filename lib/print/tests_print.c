@@ -53,9 +53,18 @@ static const char *without_path(const wh_test_result_t *result) {
                                                                     : result->reason;
 }
 
+/* The errors of a script that is ok, if there are any. */
+static void put_caught(const wh_test_result_t *result, FILE *out, const char *before, const char *behind) {
+    if (result->verdict == WH_TEST_OK && result->errors > 0) {
+        fprintf(out, "%s%llu %s caught%s", before, (unsigned long long)result->errors,
+                result->errors == 1 ? "error" : "errors", behind);
+    }
+}
+
 static void put_good(const wh_test_result_t *result, FILE *out) {
     fprintf(out, "%llu %s, %.3f s simulated", (unsigned long long)result->expectations,
             result->expectations == 1 ? "expectation" : "expectations", result->simulated_s);
+    put_caught(result, out, ", ", "");
 }
 
 void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *style) {
@@ -128,6 +137,7 @@ void wh_test_print_tap(const wh_test_result_t *result, size_t number, FILE *out)
     fprintf(out, "%sok %zu - ", is_bad ? "not " : "", number);
     put_tap_name(out, result->path);
     fputc('\n', out);
+    put_caught(result, out, "# ", "\n");
     if (is_bad) {
         fprintf(out, "# %s: ", wh_test_word(result->verdict));
         wh_style_put(out, without_path(result));
@@ -211,9 +221,11 @@ static void put_case(FILE *out, const wh_test_result_t *result) {
         }
         fputs("/>\n", out);
     }
-    if (result->output) {
+    const bool has_caught = result->verdict == WH_TEST_OK && result->errors > 0;
+    if (result->output || has_caught) {
         fputs("      <system-out>", out);
-        put_xml(out, result->output);
+        put_caught(result, out, "", "\n");
+        put_xml(out, result->output ? result->output : "");
         fputs("</system-out>\n", out);
     }
     fputs("    </testcase>\n", out);

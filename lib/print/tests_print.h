@@ -4,8 +4,9 @@
  *     failed       tilt.lua: line 7: Wafer 1 held by EE: nobody holds it
  *     passed over  paper.lua: a layout: waferhand layout paper.lua
  *
- * What a script printed follows, indented, if its verdict is a bad one. Text is made fit for where it goes:
- * control characters stand as \xNN, and in XML each byte that is no UTF-8, and each character that XML
+ * What a script printed follows, indented, if its verdict is a bad one. Errors that one that is ok has caught
+ * are counted in its line, in a comment of TAP, and in JUnit's system-out. Text is made fit for where it
+ * goes: control characters stand as \xNN, and in XML each byte that is no UTF-8, and each character that XML
  * cannot hold, is U+FFFD.
  */
 #ifndef WH_PRINT_TESTS_PRINT_H
@@ -17,7 +18,7 @@
 
 typedef enum {
     WH_TEST_OK,         /* as of `run`; and it moved or expected something */
-    WH_TEST_FAILED,     /* as of `run`; or it moves nothing and expects nothing */
+    WH_TEST_FAILED,     /* as of `run`; or nothing moves in it and it expects nothing */
     WH_TEST_BAD,        /* script, layout or parameter cannot be used */
     WH_TEST_ENDLESS,    /* it did not end in its time, and was ended */
     WH_TEST_KILLED,     /* a signal ended it */
@@ -32,6 +33,7 @@ typedef struct {
     char *reason; /* null if it is ok */
     char *output; /* what it printed, standard error too; null: nothing */
     uint64_t expectations;
+    uint64_t errors; /* of commands; of a script that is ok it caught them all */
     double simulated_s, wall_s;
 } wh_test_result_t;
 

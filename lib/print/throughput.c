@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../layout/axes.h"
 #include "../math/trig.h"
 #include "print_internal.h"
 
@@ -72,61 +73,98 @@ static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *
     wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
 }
 
-static bool is_of_kind(const wh_command_record_t *command, const char *kind, size_t length) {
-    return command->text && wh_steady_kind_length(command->text) == length &&
-           memcmp(command->text, kind, length) == 0;
-}
-
 /* The commands that are shown, `count` from `first` on, and how long they took together. */
 typedef struct {
     size_t first, count;
     double seconds;
 } shown_t;
 
+/* A text and how much of it names a kind of command. What goes on after a phase is told with the kind of what
+ * it goes on with. */
+typedef struct {
+    const char *text; /* null: none */
+    size_t length;
+    bool goes_on;
+} kind_t;
+
+/* What a CONTINUE goes on with: the last command before it, of its task, that was to stop in a phase. */
+static const char *find_phased(const wh_record_t *record, size_t command) {
+    for (size_t i = command; i-- > 0;) {
+        const wh_command_record_t *before = &record->commands[i];
+        if (before->task == record->commands[command].task && before->text && strstr(before->text, "stop=")) {
+            return before->text;
+        }
+    }
+    return NULL;
+}
+
+static kind_t kind_of(const wh_record_t *record, size_t command) {
+    kind_t kind = {record->commands[command].text, 0, false};
+    if (kind.text && strcmp(kind.text, "CONTINUE") == 0) {
+        const char *phased = find_phased(record, command);
+        kind.goes_on = phased != NULL;
+        kind.text = phased ? phased : kind.text;
+    }
+    kind.length = kind.text ? wh_steady_kind_length(kind.text) : 0;
+    return kind;
+}
+
+static bool is_same(const kind_t *a, const kind_t *b) {
+    return a->text && b->text && a->goes_on == b->goes_on && a->length == b->length &&
+           memcmp(a->text, b->text, a->length) == 0;
+}
+
+enum { KIND, COUNT, FAILED, MEAN, LEAST, MOST, SHARE };
+
 /* Commands of one kind together, from command `first` on, which is the first of them. */
 static void add_total(const wh_printer_t *printer, wh_grid_t *grid, const shown_t *shown, size_t first) {
-    enum { KIND, COUNT, MEAN, LEAST, MOST, SHARE };
     const wh_record_t *record = printer->record;
-    const char *kind = record->commands[first].text;
-    const size_t length = wh_steady_kind_length(kind);
+    const kind_t kind = kind_of(record, first);
     double sum = 0;
     double least = HUGE_VAL;
     double most = 0;
     size_t count = 0;
+    size_t failed = 0;
     for (size_t i = first; i < shown->first + shown->count; ++i) {
-        if (is_of_kind(&record->commands[i], kind, length)) {
+        const kind_t other = kind_of(record, i);
+        if (is_same(&kind, &other)) {
             const double seconds = record->commands[i].end_s - record->commands[i].begin_s;
             sum += seconds;
             least = seconds < least ? seconds : least;
             most = seconds > most ? seconds : most;
+            failed += record->commands[i].error != WH_OK ? 1 : 0;
             ++count;
         }
     }
     wh_grid_row(grid);
-    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%.*s", (int)length, kind);
+    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%s%.*s", kind.goes_on ? "CONTINUE of " : "", (int)kind.length,
+                 kind.text);
     wh_grid_number(grid, COUNT, WH_INK_PLAIN, (double)count);
+    if (failed > 0) {
+        wh_grid_number(grid, FAILED, WH_INK_BAD, (double)failed);
+    }
     const double values[] = {sum / (double)count, least, most, 100 * sum / shown->seconds};
     wh_grid_numbers(grid, MEAN, values, sizeof values / sizeof *values);
 }
 
 /* True if no command from `first` on and before this one is of its kind. */
 static bool is_first_of_kind(const wh_record_t *record, size_t first, size_t command) {
-    const char *kind = record->commands[command].text;
-    const size_t length = kind ? wh_steady_kind_length(kind) : 0;
-    for (size_t i = first; i < command && kind; ++i) {
-        if (is_of_kind(&record->commands[i], kind, length)) {
+    const kind_t kind = kind_of(record, command);
+    for (size_t i = first; i < command; ++i) {
+        const kind_t other = kind_of(record, i);
+        if (is_same(&kind, &other)) {
             return false;
         }
     }
-    return kind != NULL;
+    return kind.text != NULL;
 }
 
 /* What a long run's rows above do not show at a glance. */
 static void print_totals(const wh_printer_t *printer, const shown_t *shown, const char *of) {
     const wh_record_t *record = printer->record;
     char title[100];
-    wh_grid_t *grid =
-        wh_grid_new(printer->style, 1, "command;count{0};mean s{3};least s{3};most s{3};share %{1}");
+    wh_grid_t *grid = wh_grid_new(printer->style, 1,
+                                  "command;count{0};failed{0};mean s{3};least s{3};most s{3};share %{1}");
     for (size_t i = shown->first; i < shown->first + shown->count; ++i) {
         if (is_first_of_kind(record, shown->first, i)) {
             add_total(printer, grid, shown, i);
@@ -189,15 +227,17 @@ void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window
 
 static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t station) {
     wh_grid_named_row(grid, printer->record->layout->stations[station].name);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+    const wh_machine_t *machine = &printer->record->layout->machine;
+    size_t column = 1;
+    for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
         const wh_travel_margin_t *reach = &printer->record->reach[station].axes[axis];
-        const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
-        const double margin = (turns ? wh_deg_from_rad(reach->margin) : reach->margin);
-        if (reach->slot != 0) {
-            wh_grid_number(grid, 1 + 2 * axis, margin < SLENDER ? WH_INK_WARN : WH_INK_PLAIN, margin);
-            wh_grid_text(grid, 2 + 2 * axis, WH_INK_DIM, "%s, slot %d", reach->is_max ? "max" : "min",
+        const double margin = (wh_axis_turns(machine, axis) ? wh_deg_from_rad(reach->margin) : reach->margin);
+        if (reach->slot != 0 && wh_axis_exists(machine, axis)) {
+            wh_grid_number(grid, column, margin < SLENDER ? WH_INK_WARN : WH_INK_PLAIN, margin);
+            wh_grid_text(grid, column + 1, WH_INK_DIM, "%s, slot %d", reach->is_max ? "max" : "min",
                          (int)reach->slot);
         }
+        column += wh_axis_exists(machine, axis) ? 2 : 0;
     }
 }
 
@@ -206,8 +246,21 @@ void wh_print_margins(const wh_printer_t *printer) {
     if (!record->layout || !record->reach) {
         return;
     }
-    wh_grid_t *grid = wh_grid_new(
-        printer->style, 1, "station;theta deg{1,3};+from;r mm{1,3};+from;z mm{1,3};+from;yaw deg{1,3};+from");
+    const wh_machine_t *machine = &record->layout->machine;
+    char columns[800] = "station";
+    for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
+        if (wh_axis_exists(machine, axis)) {
+            const size_t length = strlen(columns);
+            size_t own = 0;
+            char robot[16] = ""; /* names may have what a column's heading cannot */
+            if (record->layout->robot_count > 1) {
+                (void)snprintf(robot, sizeof robot, "%d ", (int)wh_machine_robot_of(machine, axis, &own) + 1);
+            }
+            (void)snprintf(columns + length, sizeof columns - length, ";%s%s %s{1,3};+from", robot,
+                           wh_axis_name(machine, axis), wh_axis_turns(machine, axis) ? "deg" : "mm");
+        }
+    }
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, columns);
     for (size_t station = 0; station < record->layout->station_count; ++station) {
         add_reach(printer, grid, station);
     }

@@ -7,71 +7,152 @@
 
 /* -------------------------------------------------------------------------------------------------- tasks */
 
-wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_AXES], wh_share_t share) {
-    bool robot = false;
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        robot = robot || moving[axis];
+static bool has_several(const wh_machine_t *machine) {
+    return machine->carrier && machine->carrier->next;
+}
+
+static uint32_t doors_of(const wh_machine_t *machine, const bool moving[WH_AXES]) {
+    uint32_t doors = 0;
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        doors |= moving[wh_machine_door_axis(machine, d)] ? 1U << d : 0;
     }
-    wh_task_t task = {share, robot, robot, 0};
+    return doors;
+}
+
+/* True if an axis of its own moves the gripper. */
+static bool moves_by_itself(const wh_mount_t *mount, const bool moving[WH_AXES]) {
+    bool moves = false;
+    for (size_t i = 0; i < wh_mount_axes(mount); ++i) {
+        moves = moves || moving[(size_t)mount->axis + i];
+    }
+    return moves;
+}
+
+/* Bit r: robot r goes. */
+static uint32_t find_going(const wh_machine_t *machine, const bool moving[WH_AXES]) {
+    uint32_t going = 0;
+    for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
+        size_t own = 0;
+        going |= moving[axis] ? 1U << wh_machine_robot_of(machine, axis, &own) : 0;
+    }
+    return going;
+}
+
+wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_AXES], wh_share_t share) {
+    const uint32_t moved = find_going(machine, moving);
+    const bool robot = moved != 0;
+    wh_task_t task = {share, robot, robot, 0, doors_of(machine, moving), {0}};
+    for (size_t r = 0; has_several(machine) && r < WH_BUSY_ROBOTS; ++r) {
+        task.robots[r] = (moved >> r & 1U) != 0 ? 1 + WH_SHARE_EMPTY : 0;
+    }
     for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const int32_t axis = machine->mounts[g].axis;
-        const bool carried = axis == WH_NONE ? robot : moving[axis];
+        const wh_mount_t *mount = &machine->mounts[g];
+        const bool carried =
+            mount->axis == WH_NONE ? (moved >> mount->robot & 1U) != 0 : moves_by_itself(mount, moving);
         task.moves = task.moves || carried;
         task.carried |= carried ? 1U << g : 0;
     }
+    task.moves = task.moves || task.doors != 0;
     task.robot = robot || !task.moves;
     return task;
 }
 
-static wh_share_t share_standing(const wh_segment_t *segment, bool for_vacuum) {
-    if (segment->kind == WH_SEGMENT_VALVES) {
+/* False also where each valve is told to stay as it is, as when RECOVER closes one that is closed. */
+static bool switches(const wh_track_t *track, const wh_segment_t *segment) {
+    bool any = false;
+    for (size_t g = 0; segment->kind == WH_SEGMENT_VALVES && g < track->machine->gripper_count; ++g) {
+        any = any || (segment->valves[g] != WH_NONE && segment->valves[g] != track->valves[g]);
+    }
+    return any;
+}
+
+static wh_share_t share_standing(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum) {
+    if (switches(track, segment)) {
         return WH_SHARE_HANDOVER;
     }
     return segment->kind == WH_SEGMENT_SENSOR || for_vacuum ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
 }
 
+/* If a LINE moves this axis: of the first robot, or of its gripper's. */
+static bool goes_straight(const wh_machine_t *machine, const wh_segment_t *segment, size_t axis) {
+    size_t own = 0;
+    const int32_t robot = wh_machine_robot_of(machine, axis, &own);
+    const bool is_said = has_several(machine) && segment->gripper != WH_NONE;
+    return robot == (is_said ? machine->mounts[segment->gripper].robot : 0);
+}
+
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum) {
     const bool is_line = segment->kind == WH_SEGMENT_LINE;
-    const bool is_motion = is_line || segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_WAY;
+    const bool is_motion = is_line || segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_WAY ||
+                           segment->kind == WH_SEGMENT_VIA;
     bool moving[WH_AXES] = {false};
     for (size_t axis = 0; is_motion && axis < WH_AXES; ++axis) {
-        moving[axis] =
-            is_line ? axis < WH_ROBOT_AXES : wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
+        moving[axis] = is_line ? goes_straight(track->machine, segment, axis)
+                               : wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
     }
-    wh_task_t task = wh_activity_motion(track->machine, moving, share_standing(segment, for_vacuum));
+    wh_task_t task = wh_activity_motion(track->machine, moving, share_standing(track, segment, for_vacuum));
     /* A motion of no length is one, but keeps nobody busy. */
     task.robot = task.robot && (task.moves || !is_motion);
     task.moves = is_motion;
     return task;
 }
 
+void wh_activity_narrow(wh_task_t *task, const wh_machine_t *machine, uint32_t axes) {
+    if (!task->robot || task->moves) {
+        return;
+    }
+    size_t own = 0;
+    for (size_t axis = 0; has_several(machine) && axis < wh_machine_robot_axes(machine); ++axis) {
+        if ((axes >> axis & 1U) != 0) {
+            task->robots[wh_machine_robot_of(machine, axis, &own)] = (uint8_t)(1 + task->share);
+        }
+    }
+    task->robot = (axes & wh_machine_robot_bits(machine)) != 0;
+}
+
 /* ----------------------------------------------------------------------------------------------- counting */
 
-/* True for a wafer that is held and for a valve: of both a slice tells how they are at its end. The robot and
+/* Of the resources. */
+enum { FIRST_GRIPPER = WH_BUSY_ROBOTS, FIRST_DOOR = FIRST_GRIPPER + 3 * WH_GRIPPERS };
+
+/* True for a wafer that is held and for a valve: of both a slice tells how they are at its end. A robot and
  * a chuck are busy during the slice. */
 static bool is_state(size_t resource) {
-    return resource > 0 && (resource - 1) % 3 != 0;
+    return resource >= FIRST_GRIPPER && resource < FIRST_DOOR && (resource - FIRST_GRIPPER) % 3 != 0;
+}
+
+/* A resource as an interval is of it. */
+static wh_busy_span_t span_of(size_t resource) {
+    if (resource >= FIRST_DOOR) {
+        return (wh_busy_span_t){.who = WH_BUSY_DOOR, .gripper = (int32_t)(resource - FIRST_DOOR)};
+    }
+    if (resource < FIRST_GRIPPER) {
+        return (wh_busy_span_t){.who = WH_BUSY_ROBOT, .gripper = (int32_t)resource};
+    }
+    return (wh_busy_span_t){.who = (wh_busy_t)(WH_BUSY_CHUCK + (resource - FIRST_GRIPPER) % 3),
+                            .gripper = (int32_t)((resource - FIRST_GRIPPER) / 3)};
 }
 
 static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
-    const size_t beside_robot = resource > 0 ? resource - 1 : 0;
+    wh_busy_span_t span = span_of(resource);
     if (end == activity->open[resource].begin) {
         return;
     }
     activity->intervals = wh_array_grow(activity->intervals, activity->interval_count,
                                         &activity->interval_capacity, sizeof *activity->intervals);
-    activity->intervals[activity->interval_count++] =
-        (wh_busy_span_t){.who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3),
-                         .gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3),
-                         .what = activity->open[resource].what,
-                         .begin = activity->open[resource].begin,
-                         .end = end};
+    span.what = activity->open[resource].what;
+    span.begin = activity->open[resource].begin;
+    span.end = end;
+    activity->intervals[activity->interval_count++] = span;
 }
 
 size_t wh_activity_resource(const wh_busy_span_t *interval) {
+    if (interval->who == WH_BUSY_DOOR) {
+        return FIRST_DOOR + (size_t)interval->gripper;
+    }
     return interval->who == WH_BUSY_ROBOT
-               ? 0
-               : (size_t)(3 * interval->gripper + (int32_t)interval->who - (int32_t)WH_BUSY_CHUCK + 1);
+               ? (size_t)interval->gripper
+               : FIRST_GRIPPER + 3 * (size_t)interval->gripper + (size_t)(interval->who - WH_BUSY_CHUCK);
 }
 
 static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t slice) {
@@ -89,7 +170,7 @@ static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t
 /* `turns`: it is a chuck that turns. */
 static void note_gripper(wh_activity_t *activity, size_t g, bool turns, const wh_command_t *command,
                          int32_t held) {
-    const size_t first = 1 + 3 * g;
+    const size_t first = FIRST_GRIPPER + 3 * g;
     const wh_share_t share = held != WH_NONE ? WH_SHARE_LOADED : WH_SHARE_EMPTY;
     note(activity, first, turns ? 1 + (int32_t)share : 0, command->seq);
     note(activity, first + 1, held + 1, command->seq);
@@ -101,12 +182,42 @@ static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const 
                     const wh_state_t *state) {
     const wh_task_t *last = &activity->last.task;
     bool same = activity->last.is_known && task->share == last->share && task->moves == last->moves &&
-                task->robot == last->robot && task->carried == last->carried;
+                task->robot == last->robot && task->carried == last->carried && task->doors == last->doors &&
+                memcmp(task->robots, last->robots, sizeof task->robots) == 0;
     for (size_t g = 0; same && g < state->gripper_count; ++g) {
         same = state->grippers[g].wafer == activity->last.held[g] &&
                command->grippers[g].valve == activity->last.valves[g];
     }
     return same;
+}
+
+/* True if a gripper on the robot holds a wafer. */
+static bool is_loaded(const wh_machine_t *machine, size_t robot, const wh_state_t *state) {
+    bool is_any = false;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        is_any = is_any || (machine->mounts[g].axis == WH_NONE && machine->mounts[g].robot == robot &&
+                            state->grippers[g].wafer != WH_NONE);
+    }
+    return is_any;
+}
+
+/* Each of several robots by itself. */
+static void note_robots(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
+                        const wh_state_t *state, int64_t slice) {
+    static const uint8_t nobody[WH_BUSY_ROBOTS] = {0};
+    const bool stands = task->robot && memcmp(task->robots, nobody, sizeof nobody) == 0;
+    uint32_t went = 0;
+    for (size_t r = 0; r < WH_BUSY_ROBOTS; ++r) {
+        int32_t what = task->robots[r];
+        if (what == 1 + (int32_t)WH_SHARE_EMPTY) {
+            went |= 1U << r;
+            what = is_loaded(machine, r, state) ? 1 + (int32_t)WH_SHARE_LOADED : what;
+        } else if (stands && (activity->last.went >> r & 1U) != 0) {
+            what = 1 + (int32_t)task->share;
+        }
+        note(activity, r, what, slice);
+    }
+    activity->last.went = went != 0 ? went : activity->last.went;
 }
 
 static void note_all(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
@@ -122,7 +233,15 @@ static void note_all(wh_activity_t *activity, const wh_machine_t *machine, const
         activity->last.held[g] = held;
         activity->last.valves[g] = command->grippers[g].valve;
     }
-    note(activity, 0, task->robot ? 1 + (int32_t)share : 0, command->seq);
+    for (size_t d = 0; d < machine->door_count; ++d) {
+        note(activity, FIRST_DOOR + d, (task->doors >> d & 1U) != 0 ? 1 + (int32_t)WH_SHARE_EMPTY : 0,
+             command->seq);
+    }
+    if (has_several(machine)) {
+        note_robots(activity, machine, task, state, command->seq);
+    } else {
+        note(activity, 0, task->robot ? 1 + (int32_t)share : 0, command->seq);
+    }
     activity->last.task = *task;
     activity->last.share = share;
     activity->last.is_known = true;
@@ -135,6 +254,16 @@ wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machin
     }
     ++activity->shares[activity->last.share];
     return activity->last.share;
+}
+
+wh_share_t wh_activity_share(const wh_task_t *task, const wh_state_t *state) {
+    wh_share_t share = task->moves ? WH_SHARE_EMPTY : task->share;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        if (state->grippers[g].wafer != WH_NONE && (task->carried >> g & 1U) != 0) {
+            share = WH_SHARE_LOADED;
+        }
+    }
+    return share;
 }
 
 void wh_activity_end(wh_activity_t *activity, int64_t slice) {

@@ -25,15 +25,26 @@ static wh_real_t largest_share(const wh_pose_t *wafer, const wh_pose_t *gripper,
     return wh_real_max(z, wh_real_max(xy, planar));
 }
 
-int32_t wh_counterpart(const wh_state_t *state, size_t g, const wh_tolerance_t *tolerance,
-                       const int32_t *candidates, size_t count) {
+static const wh_pose_t *see(const wh_cell_t *cell, const wh_pose_t *wafer, const wh_pose_t *gripper,
+                            wh_pose_t *room) {
+    if (!(cell->thickness > 0)) {
+        return wafer;
+    }
+    wh_face_frame(wafer, cell->thickness, wh_face_towards(wafer, gripper), room);
+    return room;
+}
+
+int32_t wh_counterpart(const wh_state_t *state, size_t g, const wh_cell_t *cell, const int32_t *candidates,
+                       size_t count) {
     const wh_gripper_t *gripper = &state->grippers[g];
     int32_t found = gripper->wafer;
     wh_real_t least = (wh_real_t)DBL_MAX;
     for (size_t i = 0; i < count && gripper->wafer == WH_NONE; ++i) {
         const int32_t wafer = candidates ? candidates[i] : (int32_t)i;
-        const wh_real_t largest = largest_share(&state->wafers[wafer].base_from_wafer,
-                                                &gripper->base_from_gripper, tolerance, least);
+        wh_pose_t room;
+        const wh_real_t largest = largest_share(
+            see(cell, &state->wafers[wafer].base_from_wafer, &gripper->base_from_gripper, &room),
+            &gripper->base_from_gripper, &cell->tolerance, least);
         if (found == WH_NONE || largest < least) {
             found = wafer;
             least = largest;

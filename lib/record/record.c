@@ -31,8 +31,11 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
     record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
                                      sizeof *record->commands);
     wh_command_record_t *command = &record->commands[record->command_count++];
-    *command =
-        (wh_command_record_t){.line = line, .text = wh_text_copy(text), .begin_s = begin_s, .end_s = begin_s};
+    *command = (wh_command_record_t){.line = line,
+                                     .text = wh_text_copy(text),
+                                     .begin_s = begin_s,
+                                     .end_s = begin_s,
+                                     .first_event = record->event_count};
     return command;
 }
 
@@ -59,6 +62,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     record->cycles =
         wh_array_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
     record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
+}
+
+void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin) {
+    record->waits =
+        wh_array_grow(record->waits, record->wait_count, &record->wait_capacity, sizeof *record->waits);
+    record->waits[record->wait_count++] =
+        (wh_wait_record_t){task, command, wh_text_copy(what), begin, begin, true};
 }
 
 bool wh_record_is_complaint(wh_event_kind_t kind) {
@@ -90,22 +100,42 @@ static bool find_unmet(const wh_record_t *record, char *reason, size_t size) {
     return false;
 }
 
+static void add_contact(const wh_record_t *record, const wh_event_t *event, char *text, size_t size) {
+    const char *one = wh_layout_part_name(record->layout, event->parts[0]);
+    const char *other = wh_layout_part_name(record->layout, event->parts[1]);
+    (void)snprintf(text, size, ", %.200s and %.200s at %.3f s", one ? one : "a part",
+                   other ? other : "others",
+                   (double)((int64_t)event->slice * record->layout->slice_us) / 1e6);
+}
+
 /* The first complaint of the cell. False if there is none. */
 static bool find_complaint(const wh_record_t *record, char *reason, size_t size) {
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
         const char *name = wh_record_wafer_name(record, event->wafer);
         if (wh_record_is_complaint(event->kind)) {
-            (void)snprintf(reason, size, "the cell complained: %s%s%s", wh_event_name(event->kind),
-                           name ? ": " : "", name ? name : "");
+            const int length = snprintf(reason, size, "the cell complained: %s%s%s",
+                                        wh_event_name(event->kind), name ? ": " : "", name ? name : "");
+            if (wh_record_is_contact(event->kind) && (size_t)length < size) {
+                add_contact(record, event, reason + length, size - (size_t)length);
+            }
             return true;
         }
     }
     return false;
 }
 
+static bool find_crowd(const wh_record_t *record, char *reason, size_t size) {
+    if (record->crowded > 0) {
+        (void)snprintf(reason, size, "%lld slice%s had more than %zu events, and the rest is not told",
+                       (long long)record->crowded, record->crowded == 1 ? "" : "s", WH_SLICE_EVENTS);
+    }
+    return record->crowded > 0;
+}
+
 void wh_record_reason(const wh_record_t *record, char *reason, size_t size) {
-    if (record->failure || (!find_unmet(record, reason, size) && !find_complaint(record, reason, size))) {
+    if (record->failure || (!find_unmet(record, reason, size) && !find_complaint(record, reason, size) &&
+                            !find_crowd(record, reason, size))) {
         (void)snprintf(reason, size, "%.1000s", record->failure ? record->failure : "failed");
     }
 }
@@ -127,9 +157,29 @@ void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->cycle_count; ++i) {
         free(record->cycles[i].name);
     }
+    for (size_t i = 0; i < record->wait_count; ++i) {
+        free(record->waits[i].what);
+    }
     record->command_count = record->event_count = record->expectation_count = 0;
-    record->put_count = record->cycle_count = 0;
+    record->put_count = record->cycle_count = record->wait_count = 0;
     record->activity.interval_count = 0;
+}
+
+void wh_record_forget_old(wh_record_t *record) {
+    wh_command_record_t failed = {.error = WH_OK};
+    for (size_t i = 0; i < record->command_count; ++i) {
+        if (record->commands[i].error != WH_OK) {
+            free(failed.text);
+            free(failed.message);
+            failed = record->commands[i];
+            record->commands[i].text = record->commands[i].message = NULL;
+        }
+    }
+    wh_record_forget(record);
+    if (failed.error != WH_OK) {
+        failed.first_event = 0;
+        record->commands[record->command_count++] = failed;
+    }
 }
 
 void wh_record_free(wh_record_t *record) {
@@ -139,6 +189,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->expectations);
     free(record->puts);
     free(record->cycles);
+    free(record->waits);
     free(record->reach);
     free(record->wafers);
     wh_activity_free(&record->activity);
@@ -157,6 +208,30 @@ const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper) {
     const wh_layout_t *layout = record->layout;
     return layout && wh_is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name
                                                                          : NULL;
+}
+
+/* True if a text ends with this robot's name, which may be quoted. */
+static bool ends_with(const char *text, const char *name) {
+    const size_t length = strlen(name);
+    const bool quoted = text[0] == '"';
+    text += quoted ? 1 : 0;
+    return strncmp(text, name, length) == 0 && strcmp(text + length, quoted ? "\"" : "") == 0;
+}
+
+int32_t wh_record_robot(const wh_record_t *record, const wh_command_record_t *command) {
+    static const char word[] = " robot=";
+    const wh_layout_t *layout = record->layout;
+    const char *said = NULL;
+    for (const char *next = command->text; next && (next = strstr(next, word)) != NULL;) {
+        next += strlen(word);
+        said = next;
+    }
+    for (size_t r = 0; said && layout && layout->robot_count > 1 && r < layout->robot_count; ++r) {
+        if (ends_with(said, layout->robots[r].name)) {
+            return (int32_t)r;
+        }
+    }
+    return WH_NONE;
 }
 
 const char *wh_record_station_name(const wh_record_t *record, int32_t station) {

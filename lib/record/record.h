@@ -7,11 +7,13 @@
 
 typedef struct {
     int line;                  /* in the script; 0 when unknown */
+    int32_t task;              /* of the script, its number; 0: the script itself, or a prompt */
     char *text;                /* as an operator would type it: GET A 1 */
     wh_status_t error;         /* WH_OK: it succeeded */
     char *message;             /* what the error said, or null */
     double begin_s, end_s;     /* simulated */
     int64_t shares[WH_SHARES]; /* slices of it by what they go into */
+    size_t first_event;        /* the number of events before it */
 } wh_command_record_t;
 
 typedef struct {
@@ -32,6 +34,15 @@ typedef struct {
     int64_t slice; /* at the end of the command */
 } wh_put_record_t;
 
+/* A task of a script waited, or the script itself. */
+typedef struct {
+    int32_t task;       /* its number; 0: the script itself */
+    int32_t command;    /* index of its command that waited; WH_NONE: it awaited a signal or joined others */
+    char *what;         /* for what: a station P, which task 2 has */
+    int64_t begin, end; /* slices before; `end` is later, unless it is open */
+    bool is_open;       /* it waits still */
+} wh_wait_record_t;
+
 /* A cycle that the script marked. */
 typedef struct {
     int line;
@@ -48,7 +59,7 @@ typedef struct {
 } wh_travel_margin_t;
 
 typedef struct {
-    wh_travel_margin_t axes[WH_ROBOT_AXES];
+    wh_travel_margin_t axes[WH_AXES]; /* the robots' */
 } wh_station_reach_t;
 
 /* Where a wafer is at the end. */
@@ -77,10 +88,12 @@ typedef struct {
     bool is_partial; /* read from a log that has not the whole run as it was */
     const char *const *errors; /* that the cell was given, NAME.FIELD=VALUE; borrowed */
     size_t error_count;
+    const wh_trial_t *trial;    /* of a study, whose errors the cell was given; null: none; borrowed */
     const wh_record_log_t *log; /* null: not read from a log; borrowed */
     char *failure;              /* the uncaught error's message with file and line, or null */
     int64_t slices;
-    int64_t missed; /* of them, those that a free-running run lost on the way to the simulator */
+    int64_t crowded; /* slices that had more events than are told, which fails the run */
+    int64_t missed;  /* of them, those that a free-running run lost on the way to the simulator */
     double simulated_s, wall_s;
     uint64_t hash;
     wh_command_record_t *commands;
@@ -93,6 +106,9 @@ typedef struct {
     size_t put_count, put_capacity;
     wh_cycle_record_t *cycles; /* in order */
     size_t cycle_count, cycle_capacity;
+    wh_wait_record_t *waits; /* in the order in which they began */
+    size_t wait_count, wait_capacity;
+    bool has_tasks; /* several commands may have run at once */
     wh_activity_t activity;
     wh_station_reach_t *reach; /* layout->station_count of them, from home; null: nothing was rehearsed */
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
@@ -109,9 +125,16 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
 
-/* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay.
- * For sessions without an end. */
+/* An open wait, from the end of slice `begin` on. */
+void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin);
+
+/* Drops commands, events, expectations, puts, cycles, waits and intervals; script, layout, reach and the
+ * sums stay. */
 void wh_record_forget(wh_record_t *record);
+
+/* The same, but the last command that failed stays: for sessions without an end, which tell it in STATUS.
+ * None may run. */
+void wh_record_forget_old(wh_record_t *record);
 
 /* True if the cell complains by this event: a wafer was let go where it should not have been, or lies beyond
  * the layout's `placing`, something was hit or may have been, a gap is below its limit, a wafer slipped, or
@@ -139,5 +162,9 @@ void wh_record_free(wh_record_t *record);
 const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer);
 const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper);
 const char *wh_record_station_name(const wh_record_t *record, int32_t station);
+
+/* Of several robots the one that carries the command out, as its text says; WH_NONE: none of them, or there
+ * is one robot. Cost: linear in robots. */
+int32_t wh_record_robot(const wh_record_t *record, const wh_command_record_t *command);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "../text/array.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 void wh_recorder_open(wh_recorder_t *recorder, wh_record_t *record, const char *script) {
@@ -17,18 +18,27 @@ double wh_recorder_now(const wh_recorder_t *recorder) {
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
-/* The events of the running command begin here. */
-static size_t first_event(const wh_recorder_t *recorder) {
-    size_t first = recorder->record->event_count;
-    while (first > 0 && recorder->record->events[first - 1].command == recorder->running) {
-        --first;
+static bool cell_complained(const wh_record_t *record) {
+    bool complained = false;
+    for (size_t i = 0; i < record->event_count; ++i) {
+        complained = complained || wh_record_is_complaint(record->events[i].event.kind);
     }
-    return first;
+    return complained;
 }
 
-static bool cell_complained(const wh_record_t *record, size_t from) {
+/* The running command's events from `i` on: the next one's index, or the number of all. */
+static size_t next_event(const wh_recorder_t *recorder, size_t i) {
+    const wh_record_t *record = recorder->record;
+    while (i < record->event_count && record->events[i].command != recorder->running) {
+        ++i;
+    }
+    return i;
+}
+
+static bool complained_of_command(const wh_recorder_t *recorder, size_t from) {
+    const wh_record_t *record = recorder->record;
     bool complained = false;
-    for (size_t i = from; i < record->event_count; ++i) {
+    for (size_t i = next_event(recorder, from); i < record->event_count; i = next_event(recorder, i + 1)) {
         complained = complained || wh_record_is_complaint(record->events[i].event.kind);
     }
     return complained;
@@ -54,12 +64,12 @@ static void add_put(wh_recorder_t *recorder, int32_t w, const wh_wafer_t *wafer)
 
 static void count_puts(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
     wh_record_t *record = recorder->record;
-    const size_t from = first_event(recorder);
+    const size_t from = record->commands[recorder->running].first_event;
     const size_t known = record->put_count;
-    if (cell_complained(record, from)) {
+    if (complained_of_command(recorder, from)) {
         return;
     }
-    for (size_t i = from; i < record->event_count; ++i) {
+    for (size_t i = next_event(recorder, from); i < record->event_count; i = next_event(recorder, i + 1)) {
         const wh_event_t *event = &record->events[i].event;
         const bool let_go = event->kind == WH_EVENT_RELEASED || event->kind == WH_EVENT_HANDED_OVER;
         if (let_go && !is_known(record, known, event->wafer)) {
@@ -73,7 +83,9 @@ static void count_puts(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
 const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, const char *text,
                                              double begin_s) {
     recorder->running = (int32_t)recorder->record->command_count;
-    return wh_record_add_command(recorder->record, line, text, begin_s);
+    wh_command_record_t *command = wh_record_add_command(recorder->record, line, text, begin_s);
+    command->task = recorder->number;
+    return command;
 }
 
 const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s, wh_status_t error,
@@ -93,26 +105,119 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     return command;
 }
 
+/* The command that began first, of those that run; WH_NONE: none does. */
+static int32_t first_command(const wh_recorder_t *recorder) {
+    int32_t first = WH_NONE;
+    for (size_t i = 0; i < recorder->part_count; ++i) {
+        const int32_t command = recorder->parts[i].command;
+        first = command != WH_NONE && (first == WH_NONE || command < first) ? command : first;
+    }
+    return first;
+}
+
+/* The command that has the gripper; else one that runs. */
+static int32_t command_of(const wh_recorder_t *recorder, const wh_event_t *event) {
+    for (size_t i = 0; event->gripper != WH_NONE && i < recorder->part_count; ++i) {
+        if ((recorder->parts[i].grippers >> event->gripper & 1U) != 0) {
+            return recorder->parts[i].command;
+        }
+    }
+    return recorder->part_count > 0 ? first_command(recorder) : recorder->running;
+}
+
 void wh_recorder_events(wh_recorder_t *recorder, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
-        wh_record_add_event(recorder->record, state->utime, recorder->running, &state->events[i]);
+        wh_record_add_event(recorder->record, state->utime, command_of(recorder, &state->events[i]),
+                            &state->events[i]);
     }
+    recorder->record->crowded += state->has_lost_events ? 1 : 0;
+}
+
+/* Adds what another task asks of the machine; the share stays. */
+static void join(wh_task_t *all, const wh_task_t *task) {
+    all->moves = all->moves || task->moves;
+    all->robot = all->robot || task->robot;
+    all->carried |= task->carried;
+    all->doors |= task->doors;
+    for (size_t r = 0; r < WH_BUSY_ROBOTS; ++r) {
+        all->robots[r] = all->robots[r] != 0 ? all->robots[r] : task->robots[r];
+    }
+}
+
+/* Several commands at once have a slice each, and what it goes into by their own segments. What the robot
+ * stands still for is its command's share; if it does nothing, the first command's. */
+static void count_parts(wh_recorder_t *recorder, const wh_state_t *state) {
+    const int32_t first = first_command(recorder);
+    wh_task_t all = {.share = WH_SHARE_WAITING};
+    for (size_t i = 0; i < recorder->part_count; ++i) {
+        const wh_recorder_part_t *part = &recorder->parts[i];
+        const bool tells = part->task.robot || (!all.robot && part->command == first && first != WH_NONE);
+        all.share = tells ? part->task.share : all.share;
+        join(&all, &part->task);
+        if (part->command != WH_NONE) {
+            ++recorder->record->commands[part->command].shares[wh_activity_share(&part->task, state)];
+        }
+    }
+    recorder->task = all;
 }
 
 void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, const wh_state_t *state) {
     wh_record_t *record = recorder->record;
     recorder->slice = command->seq;
+    if (recorder->part_count > 0) {
+        count_parts(recorder, state);
+    }
     const wh_share_t share =
         wh_activity_count(&record->activity, &recorder->layout->machine, &recorder->task, command, state);
-    if (recorder->running != WH_NONE) {
+    if (recorder->running != WH_NONE && recorder->part_count == 0) {
         ++record->commands[recorder->running].shares[share];
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- waits */
+
+/* The open wait of the task that goes on, or the number of all. */
+static size_t find_wait(const wh_recorder_t *recorder) {
+    const wh_record_t *record = recorder->record;
+    size_t i = record->wait_count;
+    while (i > 0 && !(record->waits[i - 1].is_open && record->waits[i - 1].task == recorder->number)) {
+        --i;
+    }
+    return i > 0 ? i - 1 : record->wait_count;
+}
+
+static void end_wait(wh_recorder_t *recorder, size_t i) {
+    wh_record_t *record = recorder->record;
+    wh_wait_record_t *wait = &record->waits[i];
+    wait->is_open = false;
+    wait->end = recorder->slice;
+    if (wait->end == wait->begin) {
+        free(wait->what);
+        --record->wait_count;
+        memmove(wait, wait + 1, (record->wait_count - i) * sizeof *wait);
+    }
+}
+
+void wh_recorder_go_on(wh_recorder_t *recorder) {
+    const size_t i = find_wait(recorder);
+    if (i < recorder->record->wait_count) {
+        end_wait(recorder, i);
+    }
+}
+
+void wh_recorder_wait(wh_recorder_t *recorder, const char *what) {
+    wh_record_t *record = recorder->record;
+    const size_t i = find_wait(recorder);
+    if (i == record->wait_count || strcmp(record->waits[i].what, what) != 0) {
+        wh_recorder_go_on(recorder);
+        wh_record_add_wait(record, recorder->number, recorder->running, what, recorder->slice);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ the end */
 
 static bool is_as_wanted(const wh_record_t *record) {
-    bool ok = record->failure == NULL && !cell_complained(record, 0);
+    bool ok = record->failure == NULL && !cell_complained(record) && record->crowded == 0;
     for (size_t i = 0; i < record->expectation_count; ++i) {
         ok = ok && record->expectations[i].ok;
     }
@@ -134,6 +239,11 @@ static void keep_wafers(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
 
 void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     wh_record_t *record = recorder->record;
+    for (size_t i = record->wait_count; i > 0; --i) {
+        if (record->waits[i - 1].is_open) {
+            end_wait(recorder, i - 1);
+        }
+    }
     record->ok = is_as_wanted(record);
     record->layout = recorder->layout;
     if (!recorder->layout) {

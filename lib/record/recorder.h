@@ -10,6 +10,16 @@
 
 #include "record.h"
 
+/* One of several commands that run at once. */
+typedef struct {
+    int32_t command;   /* index in the record, or WH_NONE */
+    wh_task_t task;    /* of its segment; `robot` only if the command has the robot */
+    uint32_t grippers; /* bit g: what happens at gripper g is its */
+} wh_recorder_part_t;
+
+/* Of the script and its tasks. */
+#define WH_RECORDER_PARTS 65
+
 /* Set `layout` and `cell` once they are known, and `task` when a segment begins; the rest is only to be
  * read. */
 typedef struct {
@@ -17,8 +27,13 @@ typedef struct {
     const wh_layout_t *layout; /* null: none yet */
     const wh_cell_t *cell;     /* where stations really stand, which a trial's errors may have moved */
     int32_t running;           /* index of the running command in the record, or WH_NONE */
+    int32_t number;            /* of the task that goes on, whose command that is; 0: the script itself */
     int64_t slice;             /* the last one that was sent; 0 before the first */
     wh_task_t task;            /* of the running segment */
+    /* Where several commands run at once, all of them, for each slice anew; none: `running` and `task` say
+     * it. */
+    wh_recorder_part_t parts[WH_RECORDER_PARTS];
+    size_t part_count;
 } wh_recorder_t;
 
 /* Begins a record of `script`, of which a copy is kept. `record` must be all zero and outlive the
@@ -36,6 +51,13 @@ const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, 
  * Null if none was running. */
 const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s, wh_status_t error,
                                            const char *message, const wh_wafer_t wafers[]);
+
+/* The task that goes on waits from now on for `what`, with the running command if there is one. Nothing if it
+ * waits for that already. */
+void wh_recorder_wait(wh_recorder_t *recorder, const char *what);
+
+/* The task that goes on waits no more. What took no slice is not kept. */
+void wh_recorder_go_on(wh_recorder_t *recorder);
 
 /* The events of a slice or of its refusal. */
 void wh_recorder_events(wh_recorder_t *recorder, const wh_state_t *state);

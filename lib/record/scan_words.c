@@ -61,7 +61,7 @@ static void put_mark(char *line, const wh_align_result_t *result) {
     const double sd = fmax(wh_deg_from_rad(result->sd_turn), LEAST_DEG);
     if (result->mark == WH_ALIGN_MARK_NONE) {
         (void)snprintf(line, WH_SCAN_LINE_BYTES, "notch or flat: %s",
-                       result->verdict == WH_OK ? "the nominal wafer has none" : "not told");
+                       result->verdict == WH_OK ? "not looked for" : "not told");
     } else if (result->mark == WH_ALIGN_MARK_NOTCH) {
         (void)snprintf(line, WH_SCAN_LINE_BYTES,
                        "notch%s: towards %.4f\u00b0, standard deviation %.4f\u00b0, %.3f mm deep", sure,

@@ -70,6 +70,34 @@ void wh_edge_scans_close(wh_edge_scans_t *scans) {
     memset(scans, 0, sizeof *scans);
 }
 
+/* ------------------------------------------------------------------------------------ what was commanded */
+
+wh_edge_wish_t wh_edge_wish_of(const char *command) {
+    wh_edge_wish_t wish = {false, 0};
+    const char *glass = command ? strstr(command, " glass=") : NULL;
+    wish.without_mark = command && strstr(command, " mark=none");
+    wish.glass = glass ? strtod(glass + strlen(" glass="), NULL) : 0;
+    return wish;
+}
+
+wh_edge_wish_t wh_edge_wish_at(const wh_record_t *record, double begin_s) {
+    const char *command = NULL;
+    for (size_t c = 0; c < record->command_count && record->commands[c].begin_s <= begin_s; ++c) {
+        command = record->commands[c].text;
+    }
+    return wh_edge_wish_of(command);
+}
+
+wh_rim_t wh_edge_wish_rim(const wh_rim_t *nominal, wh_edge_wish_t wish) {
+    wh_rim_t rim = *nominal;
+    rim.transmission = wish.glass;
+    if (wish.without_mark) {
+        rim.notch.depth = 0;
+        memset(rim.flats, 0, sizeof rim.flats);
+    }
+    return rim;
+}
+
 /* ------------------------------------------------------------------------------------------- estimating */
 
 /* Sample `i` of the scan as a point. What never came hides the rim there, as something on the line would. */
@@ -79,7 +107,7 @@ static wh_rim_point_t point_of(const wh_edge_scan_t *scan, const wh_sensor_t *se
     return wh_sensor_point(sensor, NULL, &glance, is_here ? scan->samples[i] : wh_sensor_pixels(sensor));
 }
 
-static void read_samples(const wh_edge_scan_t *scan, const wh_sensor_t *sensor, wh_edge_sample_t samples[]) {
+static void read_samples(const wh_edge_scan_t *scan, const wh_sensor_t *sensor, wh_edge_point_t samples[]) {
     for (int32_t i = 0; i < scan->taken; ++i) {
         const wh_rim_point_t point = point_of(scan, sensor, i);
         const double turns = point.angle / (2 * WH_PI);
@@ -89,7 +117,7 @@ static void read_samples(const wh_edge_scan_t *scan, const wh_sensor_t *sensor, 
 }
 
 static void keep_residuals(const wh_edge_scan_t *scan, const wh_rim_scan_t *turn, const wh_rim_ray_t rays[],
-                           wh_edge_sample_t samples[]) {
+                           wh_edge_point_t samples[]) {
     for (size_t i = 0; i < turn->count && i < (size_t)scan->taken; ++i) {
         if (turn->points[i].sight == WH_SIGHT_RIM) {
             samples[i].residual = rays[i].residual;
@@ -99,8 +127,8 @@ static void keep_residuals(const wh_edge_scan_t *scan, const wh_rim_scan_t *turn
 }
 
 /* Of a whole turn, however much of it was seen: so a notch that was not looked at is not called missing. */
-static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout, const wh_sensor_t *sensor,
-                            wh_edge_sample_t samples[], wh_align_result_t *result) {
+static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_rim_t *rim, const wh_sensor_t *sensor,
+                            wh_edge_point_t samples[], wh_align_result_t *result) {
     const wh_align_limits_t limits = wh_align_limits_default();
     const size_t count = (size_t)sensor->samples;
     wh_rim_point_t *points = wh_array_new(count, sizeof *points);
@@ -110,7 +138,7 @@ static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_layout_t *layou
     for (size_t i = 0; i < count; ++i) {
         points[i] = point_of(scan, sensor, (int32_t)i);
     }
-    const wh_status_t status = wh_align_estimate(&turn, sensor, layout->nominal_rim, &limits, rays, result);
+    const wh_status_t status = wh_align_estimate(&turn, sensor, rim, &limits, rays, result);
     if (status == WH_OK && result->circle.radius > 0) {
         keep_residuals(scan, &turn, rays, samples);
     }
@@ -119,13 +147,17 @@ static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_layout_t *layou
     return status;
 }
 
-wh_status_t wh_edge_scan_estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout,
-                                  wh_edge_sample_t samples[], wh_align_result_t *result) {
+wh_status_t wh_edge_scan_estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout, wh_edge_wish_t wish,
+                                  wh_edge_point_t samples[], wh_align_result_t *result) {
     const wh_scanner_t *scanner = wh_layout_scanner(layout, scan->gripper);
     const double none = (double)NAN;
     memset(result, 0, sizeof *result);
     for (int32_t i = 0; i < scan->taken; ++i) {
-        samples[i] = (wh_edge_sample_t){none, none, none, false};
+        samples[i] = (wh_edge_point_t){none, none, none, false};
     }
-    return scanner ? estimate(scan, layout, &scanner->sensor, samples, result) : WH_STATUS_OUT_OF_RANGE;
+    if (!scanner) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    const wh_rim_t rim = wh_edge_wish_rim(layout->nominal_rim, wish);
+    return estimate(scan, &rim, &scanner->sensor, samples, result);
 }

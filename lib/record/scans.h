@@ -10,6 +10,7 @@
 #include "../align/align.h"
 #include "../layout/layout.h"
 #include "../sim/scanning.h"
+#include "record.h"
 
 /* The most samples that a run keeps, of all its scans together: scans that begin later are only counted. */
 #define WH_SCANS_SAMPLES 500000
@@ -46,15 +47,30 @@ typedef struct {
     double radius;   /* from the axis to the rim, mm; NaN where it is not seen or the sample is missing */
     double residual; /* how far the rim is outside of the fitted circle, mm; NaN without one */
     bool counts;     /* for the circle: false in notches, flats, chips */
-} wh_edge_sample_t;
+} wh_edge_point_t;
+
+/* What the command that a scan was of has said of the wafer. Zeroed: nothing. */
+typedef struct {
+    bool without_mark; /* the mark is not looked for */
+    double glass;      /* part of the light that comes through */
+} wh_edge_wish_t;
+
+/* By a command's text, such as "ALIGN P mark=none glass=0.3"; null: nothing. */
+wh_edge_wish_t wh_edge_wish_of(const char *command);
+
+/* By the record's last command that began at or before this time, s. */
+wh_edge_wish_t wh_edge_wish_at(const wh_record_t *record, double begin_s);
+
+/* The nominal rim as the command has the wafer. */
+wh_rim_t wh_edge_wish_rim(const wh_rim_t *nominal, wh_edge_wish_t wish);
 
 /* What `wh_align_estimate` says of a scan: by the sensor as the layout draws it, without its errors, and by
- * the nominal wafer. Of a scan of more than one turn the first turn counts; of one with missing samples, or
- * of less than a turn, the rest of the turn is hidden. Fills `samples`, scan->taken of
+ * the nominal wafer as the command has it. Of a scan of more than one turn the first turn counts; of one with
+ * missing samples, or of less than a turn, the rest of the turn is hidden. Fills `samples`, scan->taken of
  * them. Returns what wh_align_estimate does, or WH_STATUS_OUT_OF_RANGE if the layout has no such sensor; then
  * `result` is all zero. Its circle's radius is 0 where there is no fit. */
-wh_status_t wh_edge_scan_estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout,
-                                  wh_edge_sample_t samples[], wh_align_result_t *result);
+wh_status_t wh_edge_scan_estimate(const wh_edge_scan_t *scan, const wh_layout_t *layout, wh_edge_wish_t wish,
+                                  wh_edge_point_t samples[], wh_align_result_t *result);
 
 /* In which direction the axis sees the notch, or the middle of the flat, that told the turn: chuck's frame, 0
  * to 2 pi; NaN without one. */

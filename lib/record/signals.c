@@ -5,16 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../layout/collision.h"
+#include "../layout/axes.h"
+#include "../layout/grips.h"
 #include "../text/array.h"
 #include "counterpart.h"
 #include "record.h"
 
 /* Up to so many wafers are compared in each slice. More are compared only in slices with events. */
 #define WATCHED_WAFERS 64
-
-/* wh_signals_walk looks at no more than so many places from one point to the next. */
-#define PLACES 32
 
 /* With more wafers than this, those near a gripper are on a list, made anew when it has gone so far, mm. */
 #define FEW_WAFERS 64
@@ -25,23 +23,7 @@
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
-const char *const wh_signals_link_names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
-
 /* ------------------------------------------------------------------------------------------------ opening */
-
-bool wh_signals_turns(size_t axis) {
-    return axis != WH_AXIS_R && axis != WH_AXIS_Z;
-}
-
-void wh_signals_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
-    (void)snprintf(name, size, "%s", axis < WH_ROBOT_AXES ? names[axis] : "chuck");
-    for (size_t g = 0; axis >= WH_ROBOT_AXES && g < layout->machine.gripper_count; ++g) {
-        if (layout->machine.mounts[g].axis == (int32_t)axis) {
-            (void)snprintf(name, size, "%s chuck", layout->grippers[g].name);
-        }
-    }
-}
 
 double wh_signals_seconds(const wh_signals_t *signals, int64_t slice) {
     return (double)(slice * signals->layout->slice_us) / 1e6;
@@ -58,7 +40,11 @@ double wh_signals_lever(const wh_layout_t *layout) {
         const wh_mount_t *mount = &layout->machine.mounts[g];
         shift = fmax(mount->is_shifted ? wh_vec3_norm(&mount->effector_from_gripper.r) : 0, shift);
     }
-    return layout->machine.robot.travel[WH_AXIS_R].max + 2 * shift;
+    double reach = 0;
+    for (size_t robot = 0; robot < wh_machine_robots(&layout->machine); ++robot) {
+        reach = fmax(wh_axis_reach(&layout->machine, robot).max, reach);
+    }
+    return reach + 2 * shift;
 }
 
 static void open_tracks(wh_signals_t *signals) {
@@ -75,7 +61,7 @@ static void open_tracks(wh_signals_t *signals) {
                      WH_SIGNALS_SHARE * WH_SIGNALS_OWN_RAD, WH_SIGNALS_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_curve(&signals->axes[axis], wh_signals_turns(axis) ? rad : WH_SIGNALS_MM);
+        open_curve(&signals->axes[axis], wh_layout_axis_turns(signals->layout, axis) ? rad : WH_SIGNALS_MM);
     }
 }
 
@@ -95,9 +81,11 @@ static void start_at_home(wh_signals_t *signals) {
     wh_physics_state_t condition;
     wh_pose_t poses[WH_GRIPPERS];
     double axes[WH_AXES] = {0};
-    memcpy(axes, machine->robot.home, sizeof machine->robot.home);
+    wh_machine_home(machine, axes);
     wh_machine_grippers(machine, axes, poses);
     wh_physics_state_start(&condition, &layout->physics);
+    const wh_door_set_t doors = wh_door_set(machine);
+    wh_doors_start(&doors, &condition.doors);
     memset(grippers, 0, sizeof grippers);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         grippers[g].base_from_gripper = poses[g];
@@ -137,7 +125,15 @@ static bool is_at(const wh_pose_t *a, const wh_pose_t *b, double mm, double rota
     return same;
 }
 
-/* Adds the poses of grippers that are not where the axes put them; from then on all of them. */
+static bool is_carried(const wh_signals_t *signals, size_t gripper) {
+    const wh_machine_t *machine = &signals->layout->machine;
+    const wh_mount_t *mount = &machine->mounts[gripper];
+    return mount->axis == WH_NONE ? machine->carrier != NULL : mount->kind != WH_MOUNT_CHUCK;
+}
+
+/* Adds the poses of grippers that are not where the axes put them; from then on all of them. Of a robot with
+ * a carrier, of pins, flippers and chucks on a stage always: a page computes the usual robot and chucks
+ * alone. */
 static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
     if (axes) {
@@ -145,15 +141,21 @@ static void add_grippers(wh_signals_t *signals, const double axes[], const wh_st
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
-        if (signals->own[g].of > 0 || !axes || !is_at(pose, &expected[g], SAME_MM, SAME_ROTATION)) {
+        if (signals->own[g].of > 0 || !axes || is_carried(signals, g) ||
+            !is_at(pose, &expected[g], SAME_MM, SAME_ROTATION)) {
             wh_thin_add_pose(&signals->own[g], state->seq, pose);
         }
     }
 }
 
 static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_count, const wh_state_t *state) {
+    const wh_machine_t *machine = &signals->layout->machine;
+    const size_t first_door = wh_machine_door_axis(machine, 0);
+    const size_t doors = state->physics ? (size_t)state->physics->doors.count : 0;
     for (size_t axis = 0; axis < axis_count; ++axis) {
-        wh_path_add(&signals->axes[axis], state->seq, axes[axis]);
+        const bool is_door = axis >= first_door && axis - first_door < doors;
+        wh_path_add(&signals->axes[axis], state->seq,
+                    is_door ? state->physics->doors.at[axis - first_door] : axes[axis]);
     }
     signals->axis_count = axis_count > signals->axis_count ? axis_count : signals->axis_count;
 }
@@ -237,14 +239,14 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
 /* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may
  * come near without being on the list. */
 static int32_t find_nearest(wh_neighbours_t *vicinity, const wh_state_t *state, size_t g,
-                            const wh_tolerance_t *tolerance) {
+                            const wh_cell_t *cell) {
     const size_t listed = vicinity->count;
     for (size_t other = 0; other < state->gripper_count; ++other) {
         if (state->grippers[other].wafer != WH_NONE) {
             add_neighbour(vicinity, state->grippers[other].wafer);
         }
     }
-    const int32_t found = wh_counterpart(state, g, tolerance, vicinity->wafers, vicinity->count);
+    const int32_t found = wh_counterpart(state, g, cell, vicinity->wafers, vicinity->count);
     vicinity->count = listed;
     return found;
 }
@@ -263,9 +265,9 @@ static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g,
     if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
         look_around(signals, vicinity, state, &pose->r);
     }
-    const int32_t nearest = find_nearest(vicinity, state, g, &signals->layout->grasp.tolerance);
-    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
-                                                   &signals->layout->grasp.tolerance, &p) != WH_OK) {
+    const int32_t nearest = find_nearest(vicinity, state, g, &signals->layout->cell);
+    if (nearest == WH_NONE ||
+        wh_layout_measure(signals->layout, &state->wafers[nearest].base_from_wafer, pose, &p) != WH_OK) {
         return WH_NONE;
     }
     take_values(&p, values);
@@ -423,79 +425,4 @@ void wh_signals_close(wh_signals_t *signals) {
     free(signals->marks);
     wh_edge_scans_close(&signals->scans);
     memset(signals, 0, sizeof *signals);
-}
-
-/* -------------------------------------------------------------------------------------------------- poses */
-
-static void read_grippers(const wh_signals_t *signals, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
-    const wh_machine_t *machine = &signals->layout->machine;
-    double axes[WH_AXES] = {0};
-    for (size_t axis = 0; axis < WH_AXES && signals->axes[axis].list.count > 0; ++axis) {
-        axes[axis] = wh_path_read(&signals->axes[axis], slice, NULL);
-    }
-    wh_machine_grippers(machine, axes, poses);
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const wh_thin_t *own = &signals->own[g];
-        if (own->list.count > 0 && slice >= own->list.points[0].slice) {
-            wh_thin_read_pose(own, slice, &poses[g]);
-        }
-    }
-}
-
-void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
-                        wh_pose_t *base_from_gripper) {
-    wh_pose_t poses[WH_GRIPPERS];
-    read_grippers(signals, slice, poses);
-    *base_from_gripper = poses[gripper];
-}
-
-bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
-                      wh_pose_t base_from_links[WH_SIGNALS_LINKS]) {
-    wh_pose_t poses[WH_GRIPPERS];
-    wh_pose_t base_from_effector;
-    wh_pose_t bodies[WH_ARM_BODIES];
-    read_grippers(signals, slice, poses);
-    if (!wh_collision_effector(&signals->layout->machine, poses, &base_from_effector)) {
-        return false;
-    }
-    wh_arm_place(&signals->layout->shapes.arm, &base_from_effector, bodies);
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        base_from_links[i] = bodies[WH_ARM_LIFT + i];
-    }
-    return true;
-}
-
-/* --------------------------------------------------------------------------------------------------- walk */
-
-/* How many points of each signal the walk has passed. */
-typedef struct {
-    size_t axes[WH_AXES], own[WH_GRIPPERS];
-} passed_t;
-
-/* The first slice after `slice` at which a signal has a point, or the last slice of all. */
-static int64_t next_point(const wh_signals_t *signals, passed_t *passed, int64_t slice) {
-    int64_t next = signals->last;
-    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        next = wh_points_next(&signals->axes[axis].list, &passed->axes[axis], slice, next);
-    }
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        next = wh_points_next(&signals->own[g].list, &passed->own[g], slice, next);
-    }
-    return next;
-}
-
-void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user) {
-    passed_t passed = {{0}, {0}};
-    int64_t slice = signals->first;
-    visit(user, slice);
-    while (slice < signals->last) {
-        const int64_t next = next_point(signals, &passed, slice);
-        const int64_t width = next - slice;
-        const int64_t places = width < PLACES ? width : PLACES;
-        for (int64_t i = 1; i < places; ++i) {
-            visit(user, slice + (int64_t)((double)width * (double)i / (double)places));
-        }
-        visit(user, next);
-        slice = next;
-    }
 }

@@ -1,11 +1,11 @@
 /* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
  *
- * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h).
- * Valves, sensors and places of wafers change in steps and are kept as they are. Poses of grippers and of the
- * arm's links follow from the axes. A gripper that is elsewhere has poses of its own from then on
- * (record/thin.h): its machine is not the layout's, or a log does not tell the axes. Everything is exact at
- * events and wherever wh_signals_mark is called. Slices count as in the run: a value of slice n is true at
- * its end; slice 0 is before the first.
+ * Axes (a door's is where the wall truly is), vacuum, and each gripper against the wafer that it holds or
+ * would take are curves (record/path.h). Valves, sensors and places of wafers change in steps and are kept as
+ * they are. Poses of grippers and of the arm's links follow from the axes. A gripper that is elsewhere has
+ * poses of its own from then on (record/thin.h): its machine is not the layout's, or a log does not tell the
+ * axes. Everything is exact at events and wherever wh_signals_mark is called. Slices count as in the run: a
+ * value of slice n is true at its end; slice 0 is before the first.
  *
  * Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
@@ -47,9 +47,8 @@ typedef enum {
     WH_MEASURES
 } wh_measure_t;
 
-/* The links of the arm that move, WH_ARM_LIFT to WH_ARM_HAND, and their names. */
-#define WH_SIGNALS_LINKS 4
-extern const char *const wh_signals_link_names[WH_SIGNALS_LINKS];
+/* The most links: of each arm WH_ARM_LIFT to WH_ARM_HAND, then WH_ARM_BASE. */
+#define WH_SIGNALS_LINKS (WH_LAYOUT_ARMS * WH_ARM_BODIES)
 
 /* A value that holds from a slice on. */
 typedef struct {
@@ -105,12 +104,6 @@ typedef struct {
     wh_neighbours_t vicinity[WH_GRIPPERS];
 } wh_signals_t;
 
-/* True for an axis in rad, false for one in mm. */
-bool wh_signals_turns(size_t axis);
-
-/* An axis' name: of a chuck's axis it is its gripper's. */
-void wh_signals_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
-
 /* When a slice ends, s. */
 double wh_signals_seconds(const wh_signals_t *signals, int64_t slice);
 
@@ -138,7 +131,14 @@ void wh_signals_close(wh_signals_t *signals);
 void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
                         wh_pose_t *base_from_gripper);
 
-/* Where the arm's links are shown at a slice; false if no gripper is on the robot. */
+/* Where a door's wall is shown at a slice, base_from_door. As wh_signals_gripper. */
+void wh_signals_door(const wh_signals_t *signals, size_t door, int64_t slice, wh_pose_t *base_from_door);
+
+/* The links that move, by the numbers of their bodies (layout/arms.h); returns how many there are. Of two
+ * arms of a robot what both share counts once, and the column of the usual robot does not. */
+size_t wh_signals_link_bodies(const wh_layout_t *layout, int32_t bodies[WH_SIGNALS_LINKS]);
+
+/* Where these are shown at a slice; false if no gripper is on a robot. */
 bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
                       wh_pose_t base_from_links[WH_SIGNALS_LINKS]);
 

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "../layout/arms.h"
+#include "../layout/axes.h"
 #include "../math/config.h"
 #include "../record/quaternion.h"
 #include "../text/array.h"
@@ -97,13 +99,14 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
 static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
     const wh_layout_t *layout = document->signals->layout;
     const wh_machine_t *machine = &layout->machine;
-    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : (wh_travel_t){0, 0};
+    const bool is_robots = axis < wh_machine_robot_axes(machine);
+    const wh_travel_t travel = is_robots ? *wh_machine_travel(machine, axis) : (wh_travel_t){0, 0};
     const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
     char name[WH_NAME_SIZE + 8];
-    wh_signals_name_axis(layout, axis, name, sizeof name);
+    wh_layout_name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
     put_text(text, "name", name);
-    wh_json_text_string(text, "unit", wh_signals_turns(axis) ? "rad" : "mm");
+    wh_json_text_string(text, "unit", wh_layout_axis_turns(layout, axis) ? "rad" : "mm");
     put_exact(text, "low", travel.max > travel.min ? travel.min : HUGE_VAL);
     put_exact(text, "high", travel.max > travel.min ? travel.max : HUGE_VAL);
     put_exact(text, "speed", speed > 0 ? speed : HUGE_VAL);
@@ -118,6 +121,10 @@ static void put_gripper_name(wh_json_text_t *text, const wh_document_t *document
     put_text(text, NULL, document->signals->layout->grippers[i].name);
 }
 
+static void put_door_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    put_text(text, NULL, document->signals->layout->door_list[i].name);
+}
+
 static void put_station_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
     put_text(text, NULL, document->signals->layout->stations[i].name);
 }
@@ -128,6 +135,9 @@ static void put_names(wh_json_text_t *text, const wh_document_t *document) {
     put_each(text, document, "wafers", layout->wafer_count, put_wafer_name);
     put_each(text, document, "grippers", layout->machine.gripper_count, put_gripper_name);
     put_each(text, document, "stations", layout->station_count, put_station_name);
+    if (layout->machine.door_count > 0) {
+        put_each(text, document, "doors", layout->machine.door_count, put_door_name);
+    }
     put_each(text, document, "axes", document->signals->axis_count, put_axis);
     wh_json_text_end(text, '}');
 }
@@ -151,26 +161,106 @@ static void put_mount(wh_json_text_t *text, const wh_document_t *document, size_
     const wh_pose_t *on_robot = mount->is_shifted ? &mount->effector_from_gripper : &identity;
     wh_json_text_begin(text, NULL, '{');
     put_index(text, "axis", mount->axis);
+    if (mount->arm > 0) {
+        put_index(text, "arm", mount->arm);
+    }
+    if (mount->axis == WH_NONE && mount->robot > 0) {
+        put_index(text, "robot", mount->robot);
+    }
     put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
     wh_json_text_end(text, '}');
 }
 
-static void put_link(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    (void)document;
-    wh_json_text_string(text, NULL, wh_signals_link_names[i]);
+static void put_door(wh_json_text_t *text, const wh_document_t *document, size_t d) {
+    const wh_machine_t *machine = &document->signals->layout->machine;
+    wh_json_text_begin(text, NULL, '{');
+    put_index(text, "axis", (int32_t)wh_machine_door_axis(machine, d));
+    put_point(text, "way", &machine->doors[d].way);
+    wh_json_text_end(text, '}');
 }
 
-static void put_machine(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_layout_t *layout = document->signals->layout;
-    const wh_arm_t *arm = &layout->shapes.arm;
-    wh_json_text_begin(text, "machine", '{');
-    put_each(text, document, "grippers", layout->machine.gripper_count, put_mount);
-    put_each(text, document, "links", WH_SIGNALS_LINKS, put_link);
+/* The names of the links, and with several arms the number of each one's body. */
+static void put_links(wh_json_text_t *text, const wh_layout_t *layout) {
+    int32_t bodies[WH_SIGNALS_LINKS];
+    const size_t count = wh_signals_link_bodies(layout, bodies);
+    wh_json_text_begin(text, "links", '[');
+    for (size_t i = 0; i < count; ++i) {
+        char name[2 * WH_NAME_SIZE];
+        wh_layout_name_body(layout, (size_t)bodies[i], "column", name, sizeof name);
+        wh_json_text_string(text, NULL, name);
+    }
+    wh_json_text_end(text, ']');
+    if (wh_layout_arms(layout) > 1) {
+        wh_json_text_begin(text, "bodies", '[');
+        for (size_t i = 0; i < count; ++i) {
+            wh_json_text_integer(text, NULL, bodies[i]);
+        }
+        wh_json_text_end(text, ']');
+    }
+}
+
+/* Where a robot of another kind stands, what its own axes are, and the links of a SCARA. */
+static void put_chain(wh_json_text_t *text, const wh_machine_t *machine, const wh_carrier_t *carrier,
+                      size_t first) {
+    const wh_chain_t *chain = &carrier->chain;
+    const wh_pose_t identity = wh_pose_identity();
+    wh_json_text_begin(text, "chain", '{');
+    put_pose(text, chain->is_placed ? &chain->base_from_robot : &identity);
+    wh_json_text_begin(text, "axes", '[');
+    for (size_t own = 0; own < carrier->axis_count; ++own) {
+        wh_json_text_string(text, NULL, wh_axis_name(machine, first + own));
+    }
+    wh_json_text_end(text, ']');
+    put_exact(text, "flip_height", chain->flip_height);
+    wh_json_text_begin(text, "links", '[');
+    for (size_t i = 0; chain->kind == WH_CHAIN_SCARA && i < 2; ++i) {
+        put_exact(text, NULL, chain->links[i]);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
+}
+
+static void put_lengths(wh_json_text_t *text, const wh_arm_t *arm) {
     wh_json_text_begin(text, "arm", '{');
     put_exact(text, "reach", arm->reach);
     put_exact(text, "link", arm->link);
     wh_json_text_value(text, "right_handed", json_boolean(arm->right_handed));
     wh_json_text_end(text, '}');
+}
+
+/* Of several arms each one: whose it is, its robot's first axis, and what else a machine has of one. */
+static void put_arms(wh_json_text_t *text, const wh_layout_t *layout) {
+    wh_json_text_begin(text, "arms", '[');
+    for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
+        const size_t robot = (size_t)layout->arms[arm].robot;
+        size_t first;
+        (void)wh_layout_arm(layout, arm, &first);
+        wh_json_text_begin(text, NULL, '{');
+        wh_json_text_integer(text, "robot", (long long)robot);
+        wh_json_text_integer(text, "number", layout->arms[arm].own == WH_ARM_BASE ? 0 : 1);
+        wh_json_text_integer(text, "first", (long long)first);
+        put_lengths(text, wh_layout_arm_lengths(layout, robot));
+        put_chain(text, &layout->machine, wh_machine_carrier(&layout->machine, robot, NULL), first);
+        wh_json_text_end(text, '}');
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_machine(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_layout_t *layout = document->signals->layout;
+    wh_json_text_begin(text, "machine", '{');
+    put_each(text, document, "grippers", layout->machine.gripper_count, put_mount);
+    if (layout->machine.door_count > 0) {
+        put_each(text, document, "doors", layout->machine.door_count, put_door);
+    }
+    put_links(text, layout);
+    put_lengths(text, &layout->shapes.arm);
+    if (layout->machine.carrier) {
+        put_chain(text, &layout->machine, layout->machine.carrier, 0);
+    }
+    if (wh_layout_arms(layout) > 1) {
+        put_arms(text, layout);
+    }
     wh_json_text_end(text, '}');
 }
 
@@ -279,7 +369,8 @@ static sums_t sum_up(const wh_signals_t *signals) {
         }
     }
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        count(&sums, &signals->axes[axis], wh_signals_turns(axis) ? &sums.rad : &sums.mm);
+        count(&sums, &signals->axes[axis],
+              wh_layout_axis_turns(signals->layout, axis) ? &sums.rad : &sums.mm);
     }
     return sums;
 }
@@ -367,7 +458,7 @@ static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const c
 
 static void put_axis_track(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
     put_curve(text, document->signals, NULL, &document->signals->axes[axis],
-              wh_signals_turns(axis) ? decimals_rad : decimals_mm);
+              wh_layout_axis_turns(document->signals->layout, axis) ? decimals_rad : decimals_mm);
 }
 
 static void put_own(wh_json_text_t *text, const wh_document_t *document, size_t g) {
@@ -490,7 +581,7 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     put_thinning(&text, signals);
     put_tracks(&text, document);
     put_each(&text, document, "marks", signals->mark_count, put_mark);
-    wh_scans_document_put(&text, signals);
+    wh_scans_document_put(&text, signals, document->record);
     wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);

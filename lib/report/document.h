@@ -6,13 +6,16 @@
  *   source       "run" or "log"; notes: [text], what a log did not tell
  *   run          what `run --json` prints, whole (print/record_print.h); of a log what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
- *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }]
+ *   names        wafers, grippers, stations, doors (only if there are any): [name]; axes: [{ name, unit "mm"
+ *   or "rad", low, high, speed }]
  *                (nulls: not known)
  *   wafer        diameter, thickness, notch (about its z from its x; only if it has one)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
  *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the
- *                robot null and effector_from_gripper; links: names of the arm's; arm { reach, link,
+ *                robot null and effector_from_gripper; doors [{ axis, way }]: base_from_door is its axis
+ *                along
+ *                `way`, in base; links: names of the arm's; arm { reach, link,
  *                right_handed } (collision/arm.h)
  *   thinning     how far what tracks say may be off: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz,
  *                projxy, planar; `of` samples, `kept` of them. At events and at the begin and end of each

@@ -1,6 +1,7 @@
 /* Plots of lanes over time: signals, who holds what, commands and what the time goes into. */
 #include <stdlib.h>
 
+#include "../record/packing.h"
 #include "../record/throughput.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
@@ -255,15 +256,35 @@ static int look_of(const wh_record_t *record, size_t command) {
     return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
 }
 
-static size_t put_commands(lanes_t *lanes, const wh_record_t *record, int look) {
+/* Which lane is whose: first those of commands, of several robots one each, and of waits, as many as overlap,
+ * then the robots', then a lane for each chuck that turns and each door that goes; SIZE_MAX: it does not. */
+typedef struct {
+    wh_packed_t *commands, *waits;
+    size_t own_lanes, command_lanes, wait_lanes, first_robot; /* own_lanes are among command_lanes */
+    size_t of[WH_GRIPPERS], of_door[WH_DOORS];
+    size_t count;
+} rows_t;
+
+static size_t put_commands(lanes_t *lanes, const wh_record_t *record, const rows_t *rows, int look) {
     wh_plot_block(&lanes->plot, look == FAILED ? "commands that failed" : "commands",
                   "from (s), to (s), lane");
     for (size_t i = 0; i < record->command_count; ++i) {
-        const wh_command_record_t *command = &record->commands[i];
+        const wh_packed_t *span = &rows->commands[i];
         if (look_of(record, i) == look) {
-            add_bar(lanes, 0, command->begin_s, command->end_s);
-            add_label(lanes, 0, command->begin_s, command->end_s, command->text, look == FAILED);
+            add_bar(lanes, span->lane, span->begin, span->end);
+            add_label(lanes, span->lane, span->begin, span->end, record->commands[i].text, look == FAILED);
         }
+    }
+    return wh_plot_end_block(&lanes->plot);
+}
+
+static size_t put_waits(lanes_t *lanes, const wh_record_t *record, const rows_t *rows) {
+    wh_plot_block(&lanes->plot, "waits", "from (s), to (s), lane");
+    for (size_t i = 0; i < record->wait_count; ++i) {
+        const wh_packed_t *span = &rows->waits[i];
+        add_bar(lanes, rows->command_lanes + span->lane, span->begin, span->end);
+        add_label(lanes, rows->command_lanes + span->lane, span->begin, span->end, record->waits[i].what,
+                  false);
     }
     return wh_plot_end_block(&lanes->plot);
 }
@@ -275,35 +296,78 @@ static const look_t share_looks[WH_SHARES] = {
     [WH_SHARE_HANDOVER] = {"hand-over", "#2b6b2b", "crossed", false},
     [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
-/* Each chuck's lane. They come after the lanes of commands and of the robot; SIZE_MAX: the chuck does not
- * turn. */
-typedef struct {
-    size_t of[WH_GRIPPERS];
-    size_t count;
-} chuck_lanes_t;
-
-static chuck_lanes_t find_chucks(const wh_activity_t *activity, size_t grippers) {
-    chuck_lanes_t lanes = {.count = 0};
-    for (size_t g = 0; g < grippers; ++g) {
-        lanes.of[g] = SIZE_MAX;
-        for (size_t i = 0; i < activity->interval_count && lanes.of[g] == SIZE_MAX; ++i) {
-            const wh_busy_span_t *interval = &activity->intervals[i];
-            if (interval->who == WH_BUSY_CHUCK && interval->gripper == (int32_t)g) {
-                lanes.of[g] = 2 + lanes.count++;
-            }
+/* Those of no robot are packed; each robot has the lane of its number. */
+static void pack_commands(rows_t *rows, const wh_record_t *record) {
+    wh_packed_t *packed = wh_array_new(record->command_count, sizeof *packed);
+    size_t count = 0;
+    rows->commands = wh_array_new(record->command_count, sizeof *rows->commands);
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        const int32_t robot = wh_record_robot(record, command);
+        rows->commands[i] =
+            (wh_packed_t){command->begin_s, command->end_s, robot == WH_NONE ? 0 : (size_t)robot};
+        if (robot == WH_NONE) {
+            packed[count++] = rows->commands[i];
         }
     }
-    return lanes;
+    const size_t lanes = wh_packing(packed, count);
+    rows->own_lanes = record->layout->robot_count > 1 ? record->layout->robot_count : 0;
+    for (size_t i = record->command_count; i-- > 0;) {
+        if (wh_record_robot(record, &record->commands[i]) == WH_NONE) {
+            rows->commands[i].lane = rows->own_lanes + packed[--count].lane;
+        }
+    }
+    rows->command_lanes = rows->own_lanes + (lanes > 0 ? lanes : 1);
+    free(packed);
 }
 
-static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks, int share) {
+static void pack_waits(rows_t *rows, const wh_record_t *record) {
+    rows->waits = wh_array_new(record->wait_count, sizeof *rows->waits);
+    for (size_t i = 0; i < record->wait_count; ++i) {
+        rows->waits[i].begin = wh_throughput_seconds(record, record->waits[i].begin);
+        rows->waits[i].end = wh_throughput_seconds(record, record->waits[i].end);
+    }
+    rows->wait_lanes = wh_packing(rows->waits, record->wait_count);
+}
+
+static bool is_busy(const wh_activity_t *activity, wh_busy_t who, size_t index) {
+    size_t i = 0;
+    while (i < activity->interval_count &&
+           (activity->intervals[i].who != who || activity->intervals[i].gripper != (int32_t)index)) {
+        ++i;
+    }
+    return i < activity->interval_count;
+}
+
+static size_t row_of(const rows_t *rows, const wh_busy_span_t *interval) {
+    return interval->who == WH_BUSY_ROBOT  ? rows->first_robot + (size_t)interval->gripper
+           : interval->who == WH_BUSY_DOOR ? rows->of_door[interval->gripper]
+                                           : rows->of[interval->gripper];
+}
+
+static rows_t find_rows(const wh_record_t *record, size_t grippers) {
+    rows_t rows = {.count = 0};
+    pack_commands(&rows, record);
+    pack_waits(&rows, record);
+    rows.first_robot = rows.command_lanes + rows.wait_lanes;
+    rows.count = rows.first_robot + (rows.own_lanes > 0 ? rows.own_lanes : 1);
+    for (size_t g = 0; g < grippers; ++g) {
+        rows.of[g] = is_busy(&record->activity, WH_BUSY_CHUCK, g) ? rows.count++ : SIZE_MAX;
+    }
+    for (size_t d = 0; d < WH_DOORS; ++d) {
+        rows.of_door[d] = is_busy(&record->activity, WH_BUSY_DOOR, d) ? rows.count++ : SIZE_MAX;
+    }
+    return rows;
+}
+
+static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const rows_t *rows, int share) {
     wh_plot_block(&lanes->plot, share_looks[share].text, "from (s), to (s), lane");
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
         const wh_busy_span_t *interval = &record->activity.intervals[i];
-        const bool moves = interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK;
+        const bool moves =
+            interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK || interval->who == WH_BUSY_DOOR;
         if (moves && interval->what == 1 + share) {
-            const size_t lane = interval->who == WH_BUSY_ROBOT ? 1 : chucks->of[interval->gripper];
-            add_bar(lanes, lane, wh_throughput_seconds(record, interval->begin),
+            add_bar(lanes, row_of(rows, interval), wh_throughput_seconds(record, interval->begin),
                     wh_throughput_seconds(record, interval->end));
         }
     }
@@ -311,37 +375,70 @@ static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const chuck_
 }
 
 /* Blocks first, then what draws them: labels must not come within a plot command. */
-static void draw_commands(lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks) {
+static void draw_commands(lanes_t *lanes, const wh_record_t *record, const rows_t *rows) {
+    static const look_t waits = {NULL, "#ffffff", "solid", false};
     size_t blocks[COMMANDS + WH_SHARES];
     for (int look = 0; look < COMMANDS; ++look) {
-        blocks[look] = put_commands(lanes, record, look);
+        blocks[look] = put_commands(lanes, record, rows, look);
     }
     for (int share = 0; share < WH_SHARES; ++share) {
-        blocks[COMMANDS + share] = put_shares(lanes, record, chucks, share);
+        blocks[COMMANDS + share] = put_shares(lanes, record, rows, share);
     }
+    const size_t waited = record->wait_count > 0 ? put_waits(lanes, record, rows) : SIZE_MAX;
     for (int i = 0; i < COMMANDS + WH_SHARES; ++i) {
         draw_bars(lanes, blocks[i], i < COMMANDS ? &command_looks[i] : &share_looks[i - COMMANDS]);
+    }
+    draw_bars(lanes, waited, &waits);
+}
+
+/* So many lanes: the first has this name. */
+static void name_alike(lanes_t *lanes, const char *name, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        name_lane(lanes, i == 0 ? name : "beside them", "");
+    }
+}
+
+/* Of several robots each. */
+static void name_robots(lanes_t *lanes, const wh_layout_t *layout, const char *what) {
+    for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
+        name_lane(lanes, layout->robots[r].name, what);
+    }
+}
+
+static void name_rows(lanes_t *lanes, const wh_layout_t *layout, const rows_t *rows) {
+    name_robots(lanes, layout, "commands");
+    name_alike(lanes, "commands", rows->command_lanes - rows->own_lanes);
+    name_alike(lanes, "waits", rows->wait_lanes);
+    name_robots(lanes, layout, "");
+    name_alike(lanes, "robot", rows->own_lanes > 0 ? 0 : 1);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        if (rows->of[g] != SIZE_MAX) {
+            name_lane(lanes, layout->grippers[g].name, "chuck");
+        }
+    }
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        if (rows->of_door[d] != SIZE_MAX) {
+            name_lane(lanes, layout->door_list[d].name, "door");
+        }
     }
 }
 
 void wh_plots_commands(wh_plots_t *plots) {
     const wh_record_t *record = plots->document->record;
     const wh_layout_t *layout = plots->document->signals->layout;
-    const chuck_lanes_t chucks = find_chucks(&record->activity, layout->machine.gripper_count);
     const bool has_any = record->command_count > 0 || record->activity.interval_count > 0;
-    lanes_t lanes;
-    if (!has_any || !open_lanes(&lanes, plots, "commands", 2 + chucks.count)) {
+    if (!has_any) {
         return;
     }
-    lanes.above = 20;
-    name_lane(&lanes, "commands", "");
-    name_lane(&lanes, "robot", "");
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        if (chucks.of[g] != SIZE_MAX) {
-            name_lane(&lanes, layout->grippers[g].name, "chuck");
-        }
+    const rows_t rows = find_rows(record, layout->machine.gripper_count);
+    lanes_t lanes;
+    if (open_lanes(&lanes, plots, "commands", rows.count)) {
+        lanes.above = 20;
+        name_rows(&lanes, layout, &rows);
+        begin_lanes(&lanes, "Commands, and what the robot's and the chucks' time goes into");
+        draw_commands(&lanes, record, &rows);
+        end_lanes(&lanes);
     }
-    begin_lanes(&lanes, "Commands, and what the robot's and the chucks' time goes into");
-    draw_commands(&lanes, record, &chucks);
-    end_lanes(&lanes);
+    free(rows.commands);
+    free(rows.waits);
 }

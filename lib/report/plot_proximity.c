@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/axes.h"
 #include "../math/trig.h"
 #include "../text/array.h"
 #include "plots_internal.h"
@@ -113,7 +114,7 @@ static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
-    return signals->axes[axis].list.count > 0 && panel->turns == wh_signals_turns(axis);
+    return signals->axes[axis].list.count > 0 && panel->turns == wh_layout_axis_turns(signals->layout, axis);
 }
 
 /* How many curves a panel shows, and between which values. */
@@ -154,7 +155,7 @@ static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_
             const wh_plot_curves_t curve = {
                 {&signals->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
             char name[WH_NAME_SIZE + 8];
-            wh_signals_name_axis(signals->layout, axis, name, sizeof name);
+            wh_layout_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
             const size_t block = wh_plot_curves(plot, &curve, wh_signals_seconds(signals, 1));
             ++line;
@@ -201,7 +202,8 @@ static bool is_known(const wh_record_t *record, size_t kind) {
 
 static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
     const wh_curves_t *curves = plots->document->record->curves;
-    wh_plot_block(plot, wh_clearance_name((wh_clearance_kind_t)kind), "t (s), smallest gap until then (mm)");
+    wh_plot_block(plot, wh_clearance_name((wh_clearance_kind_t)kind),
+                  "t (s), smallest gap since the point before (mm)");
     for (size_t bin = 0; bin < curves->count; ++bin) {
         const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
         const double gap = curves->gaps[kind][bin];

@@ -15,7 +15,7 @@ enum { SAMPLES, COUNTING, MASKED, CIRCLE, BLOCKS };
 
 typedef struct {
     const wh_edge_scan_t *scan;
-    wh_edge_sample_t *samples;
+    wh_edge_point_t *samples;
     wh_status_t status;
     wh_align_result_t result;
     wh_scan_words_t words;
@@ -41,7 +41,7 @@ static void put_residuals(wh_plot_t *plot, shown_t *shown, bool counts) {
     wh_plot_block(plot, counts ? "residuals of samples that count" : "residuals of masked samples",
                   "theta (degrees), rho less the circle (um)");
     for (int32_t i = 0; i < shown->scan->taken; ++i) {
-        const wh_edge_sample_t *sample = &shown->samples[i];
+        const wh_edge_point_t *sample = &shown->samples[i];
         const double um = 1000 * sample->residual;
         if (!isnan(um) && sample->counts == counts) {
             wh_plot_row(plot, degrees(sample->angle), &um, 1);
@@ -140,7 +140,9 @@ void wh_plots_scans(wh_plots_t *plots) {
     for (size_t i = 0; i < signals->scans.count; ++i) {
         shown_t shown = {.scan = &signals->scans.list[i]};
         shown.samples = wh_array_new((size_t)shown.scan->taken + 1, sizeof *shown.samples);
-        shown.status = wh_edge_scan_estimate(shown.scan, signals->layout, shown.samples, &shown.result);
+        const double begin_s = wh_signals_seconds(signals, shown.scan->first_slice);
+        const wh_edge_wish_t wish = wh_edge_wish_at(plots->document->record, begin_s);
+        shown.status = wh_edge_scan_estimate(shown.scan, signals->layout, wish, shown.samples, &shown.result);
         wh_edge_scan_words(shown.scan, shown.status, &shown.result, &shown.words);
         make_scan(plots, &shown);
         free(shown.samples);

@@ -7,26 +7,26 @@
 
 enum { DECIMALS_RAD = 6, DECIMALS_MM = 4, DECIMALS_RESIDUAL = 6 };
 
-typedef double number_t(const wh_edge_sample_t *sample);
+typedef double number_t(const wh_edge_point_t *sample);
 
-static double angle_of(const wh_edge_sample_t *sample) {
+static double angle_of(const wh_edge_point_t *sample) {
     return sample->angle;
 }
 
-static double radius_of(const wh_edge_sample_t *sample) {
+static double radius_of(const wh_edge_point_t *sample) {
     return sample->radius;
 }
 
-static double residual_of(const wh_edge_sample_t *sample) {
+static double residual_of(const wh_edge_point_t *sample) {
     return sample->residual;
 }
 
-static double counts_of(const wh_edge_sample_t *sample) {
+static double counts_of(const wh_edge_point_t *sample) {
     return sample->counts ? 1 : 0;
 }
 
 static void put_column(wh_json_text_t *text, const char *key, const wh_edge_scan_t *scan,
-                       const wh_edge_sample_t samples[], number_t *number, int decimals) {
+                       const wh_edge_point_t samples[], number_t *number, int decimals) {
     wh_json_text_begin(text, key, '[');
     for (int32_t i = 0; i < scan->taken; ++i) {
         wh_json_text_number(text, NULL, number(&samples[i]), decimals, false);
@@ -90,10 +90,12 @@ static void put_station(wh_json_text_t *text, const wh_layout_t *layout, int32_t
     }
 }
 
-static void put_scan(wh_json_text_t *text, const wh_signals_t *signals, const wh_edge_scan_t *scan) {
-    wh_edge_sample_t *samples = wh_array_new((size_t)scan->taken + 1, sizeof *samples);
+static void put_scan(wh_json_text_t *text, const wh_signals_t *signals, const wh_record_t *record,
+                     const wh_edge_scan_t *scan) {
+    wh_edge_point_t *samples = wh_array_new((size_t)scan->taken + 1, sizeof *samples);
     wh_align_result_t result;
-    const wh_status_t status = wh_edge_scan_estimate(scan, signals->layout, samples, &result);
+    const wh_edge_wish_t wish = wh_edge_wish_at(record, wh_signals_seconds(signals, scan->first_slice));
+    const wh_status_t status = wh_edge_scan_estimate(scan, signals->layout, wish, samples, &result);
     wh_json_text_begin(text, NULL, '{');
     wh_json_text_integer(text, "number", scan->number);
     wh_json_text_number(text, "begin_s", wh_signals_seconds(signals, scan->first_slice), 6, false);
@@ -112,10 +114,10 @@ static void put_scan(wh_json_text_t *text, const wh_signals_t *signals, const wh
     free(samples);
 }
 
-void wh_scans_document_put(wh_json_text_t *text, const wh_signals_t *signals) {
+void wh_scans_document_put(wh_json_text_t *text, const wh_signals_t *signals, const wh_record_t *record) {
     wh_json_text_begin(text, "scans", '[');
     for (size_t i = 0; i < signals->scans.count; ++i) {
-        put_scan(text, signals, &signals->scans.list[i]);
+        put_scan(text, signals, record, &signals->scans.list[i]);
     }
     wh_json_text_end(text, ']');
     wh_json_text_integer(text, "scans_left_out", (long long)signals->scans.left_out);

@@ -5,6 +5,6 @@
 #include "../record/signals.h"
 #include "../text/json.h"
 
-void wh_scans_document_put(wh_json_text_t *text, const wh_signals_t *signals);
+void wh_scans_document_put(wh_json_text_t *text, const wh_signals_t *signals, const wh_record_t *record);
 
 #endif

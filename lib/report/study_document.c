@@ -4,6 +4,7 @@
 
 #include "../math/config.h"
 #include "../math/trig.h"
+#include "../study/lines.h"
 #include "../text/json.h"
 
 /* A histogram has so many bars. */
@@ -80,6 +81,12 @@ static double rounded(double value) {
     return floor(value * 1e6 + 0.5) / 1e6;
 }
 
+static json_t *why(const void *subject, size_t i) {
+    char text[WH_TRIAL_LINE_WHY];
+    wh_trial_line_why(line_of(subject, i), text, sizeof text);
+    return wh_json_text(text);
+}
+
 static json_t *off(const void *subject, size_t i) {
     return wh_json_real(rounded(line_of(subject, i)->off));
 }
@@ -99,9 +106,10 @@ int wh_study_document_write(const wh_study_document_t *document, FILE *out) {
     const wh_study_t *study = document->study;
     const size_t kept = document->tally->lines.count;
     const size_t count = kept < MOST_POINTS ? kept : MOST_POINTS;
-    json_t *points = wh_json_add(json_object(), "trial ok off ends", wh_json_list(trial, document, count),
-                                 wh_json_list(ok, document, count), wh_json_list(off, document, count),
-                                 wh_json_list(ends, document, count), NULL);
+    json_t *points =
+        wh_json_add(json_object(), "trial ok why off ends", wh_json_list(trial, document, count),
+                    wh_json_list(ok, document, count), wh_json_list(why, document, count),
+                    wh_json_list(off, document, count), wh_json_list(ends, document, count), NULL);
     (void)wh_json_set(points, "of %lld", (json_int_t)document->tally->trials);
     json_t *root = wh_json_set(json_object(), "format %d title %s version %s command %s", 1,
                                study->run.script, WH_VERSION, document->command);

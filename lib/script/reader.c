@@ -406,7 +406,7 @@ int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const
         return fallback;
     }
     const char *value = wh_lua_word(reader->L, -1);
-    char expected[256] = "";
+    char expected[512] = "";
     for (int i = 0; choices[i]; ++i) {
         if (strcmp(value, choices[i]) == 0) {
             lua_pop(reader->L, 1);

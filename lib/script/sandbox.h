@@ -155,8 +155,8 @@ bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment, wh_
  * through params with pairs. */
 bool wh_sandbox_find_unread(wh_sandbox_t *sandbox, char message[WH_SANDBOX_MESSAGE_BYTES]);
 
-/* True if any parameter was asked for by its name, given or not. */
-bool wh_sandbox_reads_parameters(wh_sandbox_t *sandbox);
+/* True if nobody has read the parameter that was set by this "NAME=VALUE". */
+bool wh_sandbox_is_unread(wh_sandbox_t *sandbox, const char *assignment);
 
 /* wh_sandbox_new, then wh_sandbox_set_parameter for each of the assignments. Null, and the reason in
  * `result`, if out of memory or if a parameter is refused. */

@@ -165,17 +165,24 @@ bool wh_sandbox_find_unread(wh_sandbox_t *sandbox, char message[WH_SANDBOX_MESSA
     return wh_sandbox_protect(sandbox->main, find_unread, message, NULL) && message[0] != '\0';
 }
 
-/* Runs protected; the argument is a bool. */
-static int find_asked(lua_State *L) {
-    push_kept(L, ASKED);
-    lua_pushnil(L);
-    *(bool *)lua_touserdata(L, 1) = lua_next(L, -2) != 0;
+typedef struct {
+    const char *assignment;
+    bool is_unread;
+} question_t;
+
+/* Runs protected; the argument is a question. */
+static int look_for(lua_State *L) {
+    question_t *question = lua_touserdata(L, 1);
+    push_kept(L, VALUES);
+    (void)lua_pushlstring(L, question->assignment, strcspn(question->assignment, "="));
+    question->is_unread = lua_rawget(L, -2) != LUA_TNIL;
     return 0;
 }
 
-bool wh_sandbox_reads_parameters(wh_sandbox_t *sandbox) {
-    bool asked = false;
-    return wh_sandbox_protect(sandbox->main, find_asked, &asked, NULL) && asked;
+bool wh_sandbox_is_unread(wh_sandbox_t *sandbox, const char *assignment) {
+    question_t question = {assignment, true};
+    (void)wh_sandbox_protect(sandbox->main, look_for, &question, NULL);
+    return question.is_unread;
 }
 
 void wh_library_open_params(lua_State *L) {

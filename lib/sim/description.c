@@ -34,6 +34,7 @@ static uint64_t hash_cell(uint64_t hash, const wh_cell_t *cell) {
     hash = wh_hash_real(hash, cell->off_centre);
     hash = wh_hash_real(hash, cell->askew);
     hash = wh_hash_int(hash, cell->settle ? 1 : 0);
+    hash = cell->drop > 0 ? wh_hash_real(hash, cell->drop) : hash;
     for (size_t s = 0; s < cell->count; ++s) {
         hash = wh_hash_pose(hash, &cell->stations[s].base_from_station);
         hash = wh_hash_int(hash, cell->stations[s].slots);
@@ -50,8 +51,13 @@ uint64_t wh_simulator_describe(const wh_simulator_t *simulator) {
     hash = hash_cell(hash, &simulator->cell);
     hash = wh_hash_word(hash, (uint64_t)storage->wafer_count);
     hash = wh_hash_word(hash, (uint64_t)storage->gripper_count);
-    hash = simulator->scans ? simulator->scans->hash(&simulator->scanning, storage->wafer_count, hash) : hash;
-    return simulator->beams ? simulator->beams->hash(&simulator->latching, storage->gripper_count,
-                                                     storage->wafer_count, hash)
-                            : hash;
+    hash = simulator->given.gripping ? simulator->given.gripping->hash(&simulator->given.grips, hash) : hash;
+    hash = simulator->given.moving ? simulator->given.moving->hash(&simulator->given.doors, hash) : hash;
+    hash = simulator->given.scans
+               ? simulator->given.scans->hash(&simulator->given.scanning, storage->wafer_count, hash)
+               : hash;
+    return simulator->given.beams
+               ? simulator->given.beams->hash(&simulator->given.latching, storage->gripper_count,
+                                              storage->wafer_count, hash)
+               : hash;
 }

@@ -241,6 +241,11 @@ static void say_of_cell(said_t *said) {
     const wh_event_t *event = said->event;
     switch ((int)event->kind) {
     case WH_EVENT_RELEASED_UNSUPPORTED:
+        if (event->limit > 0) {
+            put_text(said, "in the air, ");
+            put_against(said, event->height, " above its slot", event->limit, " mm");
+            break;
+        }
         put_text(said, "in no slot, ");
         if (event->value > 0) {
             put_text(said, "tilted by ");
@@ -249,7 +254,7 @@ static void say_of_cell(said_t *said) {
             put_text(said, ", ");
         }
         put_fixed(said, event->height, 3);
-        put_text(said, " mm above what is below");
+        put_text(said, " mm above the nearest slot below or the floor");
         break;
     case WH_EVENT_SLOT_OCCUPIED:
         put_name(said, WH_NAME_WAFER, event->other);

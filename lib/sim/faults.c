@@ -6,14 +6,40 @@
 
 const char *wh_fault_name(wh_fault_kind_t kind) {
     static const char *const names[WH_FAULT_KINDS] = {
-        "no_vacuum",     "slow_vacuum",   "sensor_on",    "sensor_off",    "leak",
-        "valve_stuck",   "axis_stopped",  "command_lost", "wafer_missing", "wafer_doubled",
-        "wafer_crossed", "wafer_shifted", "wafer_tilted"};
+        "no_vacuum",     "slow_vacuum",   "sensor_on",         "sensor_off",      "leak",
+        "valve_stuck",   "axis_stopped",  "command_lost",      "wafer_missing",   "wafer_doubled",
+        "wafer_crossed", "wafer_shifted", "wafer_tilted",      "plunger_stuck",   "plunger_slow",
+        "door_stuck",    "door_slow",     "beam_dark",         "beam_lit",        "beam_late",
+        "probe_closed",  "probe_open",    "edge_sensor_stuck", "edge_sensor_late"};
     return (unsigned)kind < WH_FAULT_KINDS ? names[kind] : "unknown";
 }
 
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind) {
-    return kind >= WH_FAULT_WAFER_MISSING;
+    return kind >= WH_FAULT_WAFER_MISSING && kind <= WH_FAULT_WAFER_TILTED;
+}
+
+bool wh_fault_is_of_door(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_DOOR_STUCK || kind == WH_FAULT_DOOR_SLOW;
+}
+
+bool wh_fault_is_of_beam(wh_fault_kind_t kind) {
+    return kind >= WH_FAULT_BEAM_DARK && kind <= WH_FAULT_BEAM_LATE;
+}
+
+wh_real_t wh_fault_most(wh_fault_kind_t kind) {
+    static const struct {
+        wh_fault_kind_t kind;
+        wh_real_t most;
+    } limits[] = {
+        {WH_FAULT_SLOW_VACUUM, WH_REAL(3600)},      {WH_FAULT_LEAK, WH_REAL(1)},
+        {WH_FAULT_EDGE_SENSOR_STUCK, WH_REAL(1)},   {WH_FAULT_PLUNGER_SLOW, (wh_real_t)WH_PLUNGER_FAST},
+        {WH_FAULT_DOOR_SLOW, WH_REAL(1e4)},         {WH_FAULT_BEAM_LATE, WH_REAL(0.01)},
+        {WH_FAULT_EDGE_SENSOR_LATE, WH_REAL(0.001)}};
+    wh_real_t most = 0;
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; ++i) {
+        most = limits[i].kind == kind ? limits[i].most : most;
+    }
+    return most;
 }
 
 /* Below everything in a cell, mm. */
@@ -25,7 +51,7 @@ wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, 
     fault.kind = kind;
     fault.target = kind == WH_FAULT_COMMAND_LOST ? WH_NONE : target;
     fault.other = WH_NONE;
-    fault.value = kind == WH_FAULT_SLOW_VACUUM || kind == WH_FAULT_LEAK ? value : 0;
+    fault.value = wh_fault_most(kind) > 0 ? value : 0;
     fault.offset = wh_pose_identity();
     fault.offset.r.z = kind == WH_FAULT_WAFER_MISSING ? FAR_BELOW : 0;
     fault.from = from;
@@ -37,7 +63,11 @@ static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafe
     if (fault->kind == WH_FAULT_COMMAND_LOST) {
         return fault->target == WH_NONE && fault->other == WH_NONE;
     }
-    if (!wh_is_index(fault->target, wh_fault_is_of_wafer(fault->kind) ? wafer_count : gripper_count)) {
+    const size_t count = wh_fault_is_of_wafer(fault->kind)  ? wafer_count
+                         : wh_fault_is_of_door(fault->kind) ? WH_DOORS
+                         : wh_fault_is_of_beam(fault->kind) ? WH_BEAMS
+                                                            : gripper_count;
+    if (!wh_is_index(fault->target, count)) {
         return false;
     }
     return fault->kind == WH_FAULT_WAFER_DOUBLED
@@ -46,10 +76,7 @@ static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafe
 }
 
 static bool value_fits(const wh_fault_t *fault) {
-    const wh_real_t most = fault->kind == WH_FAULT_SLOW_VACUUM ? WH_REAL(3600)
-                           : fault->kind == WH_FAULT_LEAK      ? WH_REAL(1)
-                                                               : WH_REAL(0);
-    return fault->value >= 0 && fault->value <= most;
+    return fault->value >= 0 && fault->value <= wh_fault_most(fault->kind);
 }
 
 /* Byte by byte: a pose has no gaps, and equal bits are what the hash sees. */
@@ -84,8 +111,8 @@ wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, siz
     if (!fault) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if ((unsigned)fault->kind >= WH_FAULT_KINDS || !names_fit(fault, gripper_count, wafer_count) ||
-        !value_fits(fault) || fault->from < 1 || fault->until < 0) {
+    if ((unsigned)fault->kind >= WH_FAULT_KINDS || !value_fits(fault) || fault->from < 1 ||
+        fault->until < 0 || !names_fit(fault, gripper_count, wafer_count)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     const wh_status_t status = wh_pose_validate(&fault->offset);
@@ -285,7 +312,8 @@ wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
     wh_vacuum_fault_t sum = wh_vacuum_sound();
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
-        if (faults->slots[i].phase != WH_FAULT_ACTING || fault->target != (int32_t)gripper) {
+        if (faults->slots[i].phase != WH_FAULT_ACTING || fault->target < 0 ||
+            (size_t)fault->target != gripper) {
             continue;
         }
         if (fault->kind == WH_FAULT_NO_VACUUM) {
@@ -297,6 +325,34 @@ wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
         }
     }
     return sum;
+}
+
+const wh_fault_t *wh_faults_find(const wh_faults_t *faults, wh_fault_kind_t kind, int32_t target) {
+    const wh_fault_t *found = NULL;
+    for (size_t i = 0; i < faults->count; ++i) {
+        const wh_fault_t *fault = &faults->slots[i].fault;
+        if (faults->slots[i].phase == WH_FAULT_ACTING && fault->kind == kind && fault->target == target &&
+            (!found || fault->value > found->value)) {
+            found = fault;
+        }
+    }
+    return found;
+}
+
+double wh_faults_plunger(const wh_faults_t *faults, size_t gripper) {
+    wh_real_t speed = WH_PLUNGER_FAST;
+    for (size_t i = 0; i < faults->count; ++i) {
+        const wh_fault_t *fault = &faults->slots[i].fault;
+        if (faults->slots[i].phase != WH_FAULT_ACTING || fault->target != (int32_t)gripper) {
+            continue;
+        }
+        if (fault->kind == WH_FAULT_PLUNGER_STUCK) {
+            speed = 0;
+        } else if (fault->kind == WH_FAULT_PLUNGER_SLOW && fault->value < speed) {
+            speed = fault->value;
+        }
+    }
+    return (double)speed;
 }
 
 static void overrule(const wh_fault_t *fault, const wh_grasp_t *table, size_t g, int32_t valve,

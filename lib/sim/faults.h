@@ -10,9 +10,18 @@
  *   LEAK            the level goes no higher than `value`, 0 to 1
  *   VALVE_STUCK     the gripper's valve stays as it was when the fault began
  *   AXIS_STOPPED    the axes that carry the gripper stand: it stays where it was
- *   COMMAND_LOST    all grippers and valves stay as they were
+ *   COMMAND_LOST    all grippers, valves and doors stay as they were
+ *   PLUNGER_STUCK   the edge grip's plunger stays where it is; closed on a wafer it does not let go
+ *   PLUNGER_SLOW    the plunger goes no faster than `value` mm/s
  *   WAFER_*         the wafer goes to base_from_wafer * offset: missing (out of the cell), shifted, tilted,
  *                   crossed; doubled: to base_from_other * offset, onto the wafer `other`
+ *   DOOR_STUCK      the door stays where it is
+ *   DOOR_SLOW       the door goes at most `value` mm/s
+ *   BEAM_DARK/_LIT  the beam says broken or free, whatever passes
+ *   BEAM_LATE       its latches come `value` s later
+ *   PROBE_CLOSED/_OPEN  the switch of the gripper's probe says closed or open, whatever it touches
+ *   EDGE_SENSOR_STUCK   each sample of the chuck's edge sensor has the same part `value` of its pixels
+ *   EDGE_SENSOR_LATE    the samples are taken `value` s later
  *
  * If a gripper holds the wafer when its fault should begin, or the one that it is doubled onto, the fault
  * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
@@ -23,14 +32,17 @@
  * that other fault ends. A command must be valid even if a fault overrules it. In the first slice of a run
  * there is no earlier state: a stuck valve is closed, and axes move.
  *
+ * A beam or a switch gives a latch for each change of what it says, so also when a fault changes that, as it
+ * begins or ends.
+ *
  * No heap; a wh_faults_t is a plain struct.
  *
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_fault_validate                56    176      16     88
- *     stack of wh_faults_validate               80    200      48    112
- *     stack of wh_faults_check                 104    224      64    136
+ *     stack of wh_fault_validate                64    184      24     96
+ *     stack of wh_faults_validate               88    216      56    128
+ *     stack of wh_faults_check                 112    232      72    144
  *     stack of wh_faults_take                   48     40      48     40
  *     stack of wh_faults_advance               176    264     132    168
  *     stack of wh_faults_overrule               80     64      72     56
@@ -53,6 +65,10 @@ WH_REFUSE_PACKING(faults);
 #define WH_FAULTS 16
 /* How far a fault may move a wafer along each axis, mm. */
 #define WH_FAULT_REACH WH_REAL(1e6)
+/* No plunger goes faster, mm/s (grasp/edge.h). */
+#define WH_PLUNGER_FAST 10000
+/* The most beams of a cell (latching.h). */
+#define WH_BEAMS 16
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
@@ -65,20 +81,33 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_VALVE_STUCK,
     WH_FAULT_AXIS_STOPPED,
     WH_FAULT_COMMAND_LOST,
-    WH_FAULT_WAFER_MISSING, /* from here on faults of wafers */
+    WH_FAULT_WAFER_MISSING, /* from here to WAFER_TILTED faults of wafers */
     WH_FAULT_WAFER_DOUBLED,
     WH_FAULT_WAFER_CROSSED,
     WH_FAULT_WAFER_SHIFTED,
-    WH_FAULT_WAFER_TILTED
+    WH_FAULT_WAFER_TILTED,
+    WH_FAULT_PLUNGER_STUCK,
+    WH_FAULT_PLUNGER_SLOW,
+    WH_FAULT_DOOR_STUCK,
+    WH_FAULT_DOOR_SLOW,
+    WH_FAULT_BEAM_DARK,
+    WH_FAULT_BEAM_LIT,
+    WH_FAULT_BEAM_LATE,
+    WH_FAULT_PROBE_CLOSED,
+    WH_FAULT_PROBE_OPEN,
+    WH_FAULT_EDGE_SENSOR_STUCK,
+    WH_FAULT_EDGE_SENSOR_LATE
 } wh_fault_kind_t;
 
-#define WH_FAULT_KINDS 13
+#define WH_FAULT_KINDS 24
 
 typedef struct {
     wh_fault_kind_t kind;
-    int32_t target;      /* gripper or wafer; WH_NONE for COMMAND_LOST */
-    int32_t other;       /* DOUBLED: the wafer underneath; else WH_NONE */
-    wh_real_t value;     /* SLOW_VACUUM: s, 0 to 3600; LEAK: 0 to 1; else 0 */
+    int32_t target; /* gripper, wafer, door or beam; WH_NONE for COMMAND_LOST */
+    int32_t other;  /* DOUBLED: the wafer underneath; else WH_NONE */
+    /* SLOW_VACUUM: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and DOOR_SLOW: mm/s, 0 to
+     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; else 0 */
+    wh_real_t value;
     wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; else the identity */
     int64_t from, until; /* slices, seq: 1 <= from, 0 <= until; WH_FAULT_FOREVER: until it is cleared */
 } wh_fault_t;
@@ -114,29 +143,39 @@ typedef struct {
     uint32_t armed, cleared;
 } wh_fault_changes_t;
 
-/* The kind's name as layouts and scripts spell it: no_vacuum to wafer_tilted, or "unknown". Never null. */
+/* The kind's name as layouts and scripts spell it: no_vacuum to edge_sensor_late, or "unknown". Never
+ * null. */
 const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
 /* True if the kind is about a wafer. */
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_wafer);
 
+/* True if the kind is about a door. */
+bool wh_fault_is_of_door(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_door);
+
+/* True if the kind is about a beam. */
+bool wh_fault_is_of_beam(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_beam);
+
+/* The largest `value` that a fault of this kind may have; 0: the kind has none. */
+wh_real_t wh_fault_most(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_most);
+
 /* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
- * is a gripper or a wafer, of COMMAND_LOST nothing (WH_NONE is put in its place). `value` counts for
- * SLOW_VACUUM and LEAK alone; for other kinds 0 is put in its place. `other` is WH_NONE, the offset the
- * identity; that of WAFER_MISSING leads 100 m down, out of every cell. The caller sets what else the kind
- * needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED. Nothing is
- * checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
+ * is a gripper, a wafer, a door or a beam, of COMMAND_LOST nothing (WH_NONE is put in its place). `value`
+ * counts for kinds with a wh_fault_most; for others 0 is put in its place. `other` is WH_NONE,
+ * the offset the identity; that of WAFER_MISSING leads 100 m down, out of every cell. The caller sets what
+ * else the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED.
+ * Nothing is checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
  *
  *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
  *     physics.fault_count = 1; */
 wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
     WH_SYMBOL(wh_fault_make);
 
-/* WH_OK, or why a cell with these counts cannot have the fault: WH_STATUS_NULL_ARGUMENT;
- * WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for an offset that wh_pose_validate refuses;
- * WH_STATUS_OUT_OF_RANGE for kind, target, other, from or until, for a `value` out of its range or NaN,
- * and for an offset beyond WH_FAULT_REACH, or other than the identity if the kind is not about a wafer. A
- * fault that never acts (until <= from) is valid. Cost: wh_pose_validate. */
+/* WH_OK, or why a cell with these counts, and with WH_DOORS doors and WH_BEAMS beams, cannot have the fault:
+ * WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for an offset that
+ * wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind, target, other, from or until, for a `value` out
+ * of its range or NaN, and for an offset beyond WH_FAULT_REACH, or other than the identity if the kind is not
+ * about a wafer. A fault that never acts (until <= from) is valid. Cost: wh_pose_validate. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_fault_validate);
 
@@ -176,6 +215,14 @@ wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
  * before; both arrays have an entry for each gripper of the table. */
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
                         wh_gripper_input_t inputs[]) WH_SYMBOL(wh_faults_overrule);
+
+/* The acting fault of this kind and target, of several the one with the largest value; null: there is none.
+ * Nothing is checked. Cost: a look at each slot up to `count`. */
+const wh_fault_t *wh_faults_find(const wh_faults_t *faults, wh_fault_kind_t kind, int32_t target)
+    WH_SYMBOL(wh_faults_find);
+
+/* How fast the acting faults let an edge grip's plunger go, mm/s; 1e4 without one. Nothing is checked. */
+double wh_faults_plunger(const wh_faults_t *faults, size_t gripper) WH_SYMBOL(wh_faults_plunger);
 
 /* What the sensors say, given what sensors without faults would say: bit g for gripper g, up to
  * WH_GRIPPERS. */

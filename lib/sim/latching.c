@@ -3,10 +3,12 @@
 #include <string.h>
 
 #include "../math/hash.h"
+#include "setting_internal.h"
 #include "simulator.h"
 
-/* What is drawn for a latch, by name. */
+/* What is drawn for a latch and for a touch, by name. */
 #define DRAW_JITTER UINT32_C(0x4C410001)
+#define DRAW_TOUCH UINT32_C(0x4C410002)
 
 /* ----------------------------------------------------------------------------------------------- validity */
 
@@ -17,21 +19,33 @@ static wh_status_t check_delay(double delay, double most) {
     return delay >= 0 && delay <= most ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-static wh_status_t check_beam(const wh_door_beam_t *door) {
+static wh_status_t check_light(const wh_door_beam_t *door) {
     wh_status_t status = wh_beam_validate(&door->beam);
     status = status == WH_OK ? check_delay(door->delay_on, 0.01) : status;
     status = status == WH_OK ? check_delay(door->delay_off, 0.01) : status;
+    return status == WH_OK ? check_delay(door->jitter, 0.001) : status;
+}
+
+static wh_status_t check_touch(const wh_door_beam_t *door, size_t gripper_count) {
+    if (door->kind != WH_DOOR_TOUCH || !wh_is_index(door->gripper, gripper_count)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    const wh_status_t status = wh_touch_validate(&door->touch);
+    return status == WH_OK ? check_delay(door->noise, 0.1) : status;
+}
+
+static wh_status_t check_beam(const wh_door_beam_t *door, size_t gripper_count) {
     if (door->stuck != WH_BEAM_WORKS && door->stuck != WH_BEAM_DARK && door->stuck != WH_BEAM_LIT) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    return status == WH_OK ? check_delay(door->jitter, 0.001) : status;
+    return door->kind == WH_DOOR_LIGHT ? check_light(door) : check_touch(door, gripper_count);
 }
 
 /* What the arrays hold; they are there, and as long as these counts say. */
 static wh_status_t check_entries(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count) {
     wh_status_t status = WH_OK;
     for (size_t b = 0; status == WH_OK && b < latching->beam_count; ++b) {
-        status = check_beam(&latching->beams[b]);
+        status = check_beam(&latching->beams[b], gripper_count);
     }
     for (size_t g = 0; status == WH_OK && latching->blades && g < gripper_count; ++g) {
         status = wh_blade_outline_validate(&latching->blades[g]);
@@ -113,19 +127,35 @@ static void queue(wh_latches_t *latches, const wh_latch_t *latch) {
     ++latches->waiting_count;
 }
 
-static double delay_of(const wh_latching_t *latching, const wh_latches_t *latches, size_t b, bool broken) {
+/* All that may change a beam or a switch in a slice. */
+typedef struct {
+    const wh_pose_t *before; /* by gripper */
+    const wh_grasp_t *table;
+    const wh_faults_t *faults;
+    double slice_s;
+    wh_shade_t shades[WH_SHADES];
+    size_t count;
+} passing_t;
+
+static double delay_of(const wh_latching_t *latching, const wh_latches_t *latches, const passing_t *sight,
+                       size_t b, bool broken) {
     const wh_door_beam_t *door = &latching->beams[b];
+    const wh_fault_t *late = wh_faults_find(sight->faults, WH_FAULT_BEAM_LATE, (int32_t)b);
+    if (door->kind == WH_DOOR_TOUCH) {
+        return 0;
+    }
     double delay = broken ? door->delay_on : door->delay_off;
     if (door->jitter > 0) {
         const wh_trial_t trial = {door->seed, latches->number};
         delay += door->jitter * wh_deviate_normal(&trial, DRAW_JITTER, latches->crossings);
     }
-    return delay > 0 ? delay : 0;
+    delay = delay > 0 ? delay : 0;
+    return late ? delay + (double)late->value : delay;
 }
 
-static void cross(const wh_latching_t *latching, wh_latches_t *latches, size_t b, double part, bool broken,
-                  double slice_s) {
-    const double due = part + delay_of(latching, latches, b, broken) / slice_s;
+static void cross(const wh_latching_t *latching, wh_latches_t *latches, const passing_t *sight, size_t b,
+                  double part, bool broken) {
+    const double due = part + delay_of(latching, latches, sight, b, broken) / sight->slice_s;
     /* The end of a slice belongs to it. */
     int64_t later = (int64_t)due;
     later -= later > 0 && due <= (double)later ? 1 : 0;
@@ -135,21 +165,82 @@ static void cross(const wh_latching_t *latching, wh_latches_t *latches, size_t b
     queue(latches, &latch);
 }
 
+/* What it always says if it is broken down, by itself or by a fault. */
+static wh_beam_stuck_t stuck_of(const wh_latching_t *latching, const wh_faults_t *faults, size_t b) {
+    const wh_door_beam_t *door = &latching->beams[b];
+    const bool touch = door->kind == WH_DOOR_TOUCH;
+    const int32_t target = touch ? door->gripper : (int32_t)b;
+    if (door->stuck != WH_BEAM_WORKS) {
+        return door->stuck;
+    }
+    if (wh_faults_find(faults, touch ? WH_FAULT_PROBE_CLOSED : WH_FAULT_BEAM_DARK, target)) {
+        return WH_BEAM_DARK;
+    }
+    if (wh_faults_find(faults, touch ? WH_FAULT_PROBE_OPEN : WH_FAULT_BEAM_LIT, target)) {
+        return WH_BEAM_LIT;
+    }
+    return WH_BEAM_WORKS;
+}
+
+/* By how much before its ball meets a face a switch closes: the same for all of an arming. */
+static double early_by(const wh_door_beam_t *door, const wh_latches_t *latches, size_t b) {
+    const wh_trial_t trial = {door->seed, latches->number};
+    return door->noise > 0 ? door->noise * wh_deviate_normal(&trial, DRAW_TOUCH, (uint32_t)b) : 0;
+}
+
+/* As wh_beam_next, of either kind. */
+static bool next_change(const wh_latching_t *latching, const wh_latches_t *latches, const passing_t *sight,
+                        size_t b, double *part, bool *broken) {
+    const wh_door_beam_t *door = &latching->beams[b];
+    if (door->kind == WH_DOOR_LIGHT) {
+        return wh_beam_next(&door->beam, sight->shades, sight->count, part, broken);
+    }
+    const wh_gripper_t *gripper = &sight->table->storage.grippers[door->gripper];
+    return wh_touch_next(&door->touch, &sight->before[door->gripper], &gripper->base_from_gripper,
+                         early_by(door, latches, b), part, broken);
+}
+
 /* The most changes of a beam that are looked for in a slice. */
 #define MOST_CHANGES (2 * WH_LATCHES)
 
-static void look_at_beam(const wh_latching_t *latching, wh_latches_t *latches, size_t b,
-                         const wh_shade_t shades[], size_t count, double slice_s) {
+static void set_broken(wh_latches_t *latches, size_t b, bool broken) {
     const uint32_t bit = UINT32_C(1) << b;
-    bool broken = (latches->broken & bit) != 0;
+    latches->broken = broken ? latches->broken | bit : latches->broken & ~bit;
+}
+
+static void look_at_beam(const wh_latching_t *latching, wh_latches_t *latches, size_t b,
+                         const passing_t *sight) {
+    bool broken = (latches->broken >> b & 1U) != 0;
     double part = 0;
     int changes = 0;
-    while (changes < MOST_CHANGES && wh_beam_next(&latching->beams[b].beam, shades, count, &part, &broken)) {
-        cross(latching, latches, b, part, broken, slice_s);
+    while (changes < MOST_CHANGES && next_change(latching, latches, sight, b, &part, &broken)) {
+        cross(latching, latches, sight, b, part, broken);
         ++changes;
     }
     latches->lost += changes == MOST_CHANGES ? 1 : 0;
-    latches->broken = broken ? latches->broken | bit : latches->broken & ~bit;
+    set_broken(latches, b, broken);
+}
+
+/* The fault that breaks it down may have begun in this slice. */
+static void keep_stuck(const wh_latching_t *latching, wh_latches_t *latches, size_t b, const passing_t *sight,
+                       bool broken) {
+    if ((latches->broken >> b & 1U) != (broken ? 1U : 0U)) {
+        cross(latching, latches, sight, b, 0, broken);
+    }
+    set_broken(latches, b, broken);
+}
+
+/* All that are armed. */
+static void look_at_beams(const wh_latching_t *latching, wh_latches_t *latches, const passing_t *sight) {
+    for (int32_t i = 0; i < latches->count; ++i) {
+        const size_t b = (size_t)latches->first + (size_t)i;
+        const wh_beam_stuck_t stuck = stuck_of(latching, sight->faults, b);
+        if (stuck == WH_BEAM_WORKS) {
+            look_at_beam(latching, latches, b, sight);
+        } else {
+            keep_stuck(latching, latches, b, sight, stuck == WH_BEAM_DARK);
+        }
+    }
 }
 
 /* Moves what is due from the waiting ones to those of the slice. */
@@ -167,36 +258,29 @@ static void give_out(wh_latches_t *latches) {
 }
 
 /* How the beams are while they are armed. */
-static void note_broken(const wh_latching_t *latching, const wh_shade_t shades[], size_t count,
-                        wh_latches_t *latches) {
+static void note_broken(const wh_latching_t *latching, const passing_t *sight, wh_latches_t *latches) {
     for (int32_t i = 0; i < latches->count; ++i) {
         const size_t b = (size_t)latches->first + (size_t)i;
+        const wh_beam_stuck_t stuck = stuck_of(latching, sight->faults, b);
         double part = 1;
         bool broken = false;
-        (void)wh_beam_next(&latching->beams[b].beam, shades, count, &part, &broken);
-        if (latching->beams[b].stuck != WH_BEAM_WORKS) {
-            broken = latching->beams[b].stuck == WH_BEAM_DARK;
-        }
-        latches->broken |= broken ? UINT32_C(1) << b : 0;
+        (void)next_change(latching, latches, sight, b, &part, &broken);
+        set_broken(latches, b, stuck == WH_BEAM_WORKS ? broken : stuck == WH_BEAM_DARK);
     }
 }
 
 void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], const wh_grasp_t *table,
-                      wh_real_t slice_s, const wh_latch_order_t *order, wh_latches_t *latches) {
+                      const wh_faults_t *faults, wh_real_t slice_s, const wh_latch_order_t *order,
+                      wh_latches_t *latches) {
     latches->latch_count = 0;
     if (!latches->armed && order->kind != WH_LATCH_ARM) {
         return;
     }
-    wh_shade_t shades[WH_SHADES];
-    const size_t count = gather_shades(latching, before, table, shades);
+    passing_t sight = {.before = before, .table = table, .faults = faults, .slice_s = (double)slice_s};
+    sight.count = gather_shades(latching, before, table, sight.shades);
     if (latches->armed) {
         ++latches->slice;
-        for (int32_t i = 0; i < latches->count; ++i) {
-            const size_t b = (size_t)latches->first + (size_t)i;
-            if (latching->beams[b].stuck == WH_BEAM_WORKS) {
-                look_at_beam(latching, latches, b, shades, count, (double)slice_s);
-            }
-        }
+        look_at_beams(latching, latches, &sight);
         give_out(latches);
     }
     if (order->kind == WH_LATCH_DISARM) {
@@ -213,19 +297,19 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
         latches->lost = 0;
         latches->broken = 0;
         latches->waiting_count = 0;
-        note_broken(latching, shades, count, latches);
+        note_broken(latching, &sight, latches);
     }
 }
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-static uint64_t hash_doubles(uint64_t hash, const double values[], size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = wh_hash_word(hash, bits);
-    }
-    return hash;
+static uint64_t hash_touch(const wh_door_beam_t *door, uint64_t hash) {
+    const wh_touch_face_t *touch = &door->touch;
+    const double values[] = {touch->along, touch->aside, touch->radius, door->noise};
+    hash = wh_hash_int(wh_hash_int(hash, (int32_t)door->kind), door->gripper);
+    hash = wh_hash_doubles(wh_hash_doubles(hash, touch->middle, 3), touch->normal, 3);
+    hash = wh_hash_doubles(wh_hash_doubles(hash, touch->edge, 3), touch->ball, 3);
+    return wh_hash_doubles(hash, values, sizeof values / sizeof values[0]);
 }
 
 uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count,
@@ -236,14 +320,15 @@ uint64_t wh_latching_hash(const wh_latching_t *latching, size_t gripper_count, s
         const double values[] = {beam->x,        beam->y,         beam->z,     beam->ex,
                                  beam->ey,       beam->ez,        beam->low,   beam->high,
                                  door->delay_on, door->delay_off, door->jitter};
-        hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
+        hash = wh_hash_doubles(hash, values, sizeof values / sizeof values[0]);
         hash = wh_hash_int(wh_hash_word(hash, door->seed), (int32_t)door->stuck);
+        hash = door->kind == WH_DOOR_TOUCH ? hash_touch(door, hash) : hash;
     }
     for (size_t g = 0; latching->blades && g < gripper_count; ++g) {
         const wh_blade_outline_t *blade = &latching->blades[g];
         hash = wh_hash_int(hash, blade->count);
-        hash = hash_doubles(hash, blade->x, (size_t)blade->count);
-        hash = hash_doubles(hash, blade->y, (size_t)blade->count);
+        hash = wh_hash_doubles(hash, blade->x, (size_t)blade->count);
+        hash = wh_hash_doubles(hash, blade->y, (size_t)blade->count);
     }
     for (size_t w = 0; w < wafer_count; ++w) {
         hash = wh_rim_hash(latching->rims[w], hash);
@@ -264,28 +349,24 @@ static wh_status_t step_around(void *of, const void *by,
     }
     const wh_status_t status = rest(simulator, command);
     if (status == WH_OK) {
-        wh_latching_step(&simulator->latching, before, table, simulator->slice_s, &command->latch,
-                         &simulator->physics.latches);
+        wh_latching_step(&simulator->given.latching, before, table, &simulator->physics.faults,
+                         simulator->slice_s, &command->latch, &simulator->physics.latches);
     }
     return status;
 }
 
 wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latching_t *latching) {
     static const wh_latching_calls_t calls = {wh_latching_check, step_around, wh_latching_hash};
-    if (!simulator || !latching) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
-        return WH_STATUS_NOT_INITIALISED;
-    }
-    if (simulator->table.slice > 0) {
-        return WH_STATUS_OUT_OF_RANGE;
+    wh_status_t status = wh_simulator_check_setting(simulator, latching);
+    if (status != WH_OK) {
+        return status;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    const wh_status_t status = wh_latching_validate(latching, storage->gripper_count, storage->wafer_count);
+    status = wh_latching_validate(latching, storage->gripper_count, storage->wafer_count);
     if (status == WH_OK) {
-        simulator->latching = *latching;
-        simulator->beams = latching->beam_count > 0 ? &calls : NULL;
+        simulator->given.latching = *latching;
+        simulator->given.beams = latching->beam_count > 0 ? &calls : NULL;
+        simulator->given.hash = wh_physics_state_hash_given;
     }
     return status;
 }

@@ -4,18 +4,20 @@
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_physics_default             2376   2376    1384   1408
- *     stack of wh_physics_validate              88    200      48    112
- *     stack of wh_physics_state_start          240    232     184    184
- *     stack of wh_physics_state_validate       128    240      80    144
+ *     stack of wh_physics_validate              96    208      56    120
+ *     stack of wh_physics_state_start          248    240     192    184
+ *     stack of wh_physics_state_validate       128    256      88    160
  *     stack of wh_physics_state_sensors         16     20       8     24
- *     stack of wh_physics_state_hash           128    172     140    168
+ *     stack of wh_physics_state_hash           152    168     144    168
  *     size of wh_physics_t                    2272           1336
- *     size of wh_physics_state_t              7112           4456
+ *     size of wh_physics_state_t              8016           5264
  */
 #ifndef WH_SIM_PHYSICS_H
 #define WH_SIM_PHYSICS_H
 
+#include "../grasp/grips.h"
 #include "../grasp/hold.h"
+#include "doors.h"
 #include "faults.h"
 #include "latching.h"
 #include "scanning.h"
@@ -41,8 +43,10 @@ typedef struct {
     wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
     int32_t told[WH_GRIPPERS];     /* valves of the last command, before faults; no step depends on them */
     wh_faults_t faults;
-    wh_scan_t scan;       /* of an edge sensor */
-    wh_latches_t latches; /* of the beams at doors */
+    wh_scan_t scan;                     /* of an edge sensor */
+    wh_latches_t latches;               /* of the beams at doors */
+    wh_grip_state_t grips[WH_GRIPPERS]; /* plungers; OPEN of grippers that have none */
+    wh_doors_t doors;                   /* the doors themselves */
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
@@ -83,14 +87,26 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - once a scan has begun: 4, number, armed, gripper, count, first, taken, the turn's bits, sample_count
  *     and so many samples;
  *   - once beams have been armed: 5, number, armed, first, count, crossings, lost, broken, waiting_count,
- *     latch_count, slice, and of so many latches twice the beam plus the edge, slice and the part's bits.
- * So a run with ideal vacuum, without pads, faults, scans and beams, has the table's hash. Nothing is
- * checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with
- * vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, and 11 for beams with
- * three for each latch.
+ *     latch_count, slice, and of so many latches twice the beam plus the edge, slice and the part's bits;
+ *   - for each gripper whose plunger is not OPEN: 6, its index, phase, wafer, and the bits of s and excess;
+ *     and while it closes on a wafer x, y and the eight numbers of `lying`, in the order of their structs;
+ *   - for each door that is not shut: 7, its index, where its axis is.
+ * Of a gripper with another grip than vacuum, level, command and on are 0, the valve and the sensor. So a run
+ * with ideal vacuum, without pads, faults, scans, beams, edge grips and doors, has the table's hash. Nothing
+ * is checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with
+ * vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, 11 for beams with
+ * three for each latch, up to 16 for each plunger, and 3 for each door.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);
+
+/* The table's hash and the words 1 to 3: all that a simulator has to which nothing else was given. */
+uint64_t wh_physics_state_hash_plain(const wh_physics_state_t *state, const wh_grasp_t *table)
+    WH_SYMBOL(wh_physics_state_hash_plain);
+
+/* Continues wh_physics_state_hash_plain with the words from 4 on: then it is wh_physics_state_hash. */
+uint64_t wh_physics_state_hash_given(const wh_physics_state_t *state, size_t gripper_count, uint64_t hash)
+    WH_SYMBOL(wh_physics_state_hash_given);
 
 WH_HEADER_END
 

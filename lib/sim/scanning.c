@@ -4,6 +4,7 @@
 
 #include "../math/hash.h"
 #include "../math/trig.h"
+#include "setting_internal.h"
 #include "simulator.h"
 
 #define TURN (2 * 3.14159265358979323846)
@@ -140,10 +141,11 @@ typedef struct {
     wh_placement_t placement;
     double turn; /* of the chuck, where the wafer lies like that */
     bool is_held;
-} sight_t;
+    const wh_fault_t *stuck, *late; /* null: the sensor has no such fault */
+} scanned_t;
 
 /* A wafer that the chuck does not hold stays where it is while the chuck turns under it. */
-static wh_placement_t placement_at(const sight_t *sight, double turn) {
+static wh_placement_t placement_at(const scanned_t *sight, double turn) {
     wh_placement_t placement = sight->placement;
     if (!sight->is_held) {
         wh_real_t s;
@@ -156,23 +158,34 @@ static wh_placement_t placement_at(const sight_t *sight, double turn) {
     return placement;
 }
 
-/* Takes this many samples, which are due. */
-static void read_samples(const wh_scanner_t *scanner, const sight_t *sight, double speed, size_t count,
-                         wh_scan_t *scan) {
+/* The next sample, which is due. */
+static int32_t read_sample(const wh_scanner_t *scanner, const scanned_t *sight, double speed,
+                           const wh_scan_t *scan) {
+    const wh_sensor_t *sensor = &scanner->sensor;
+    const int64_t k = scan->first + (scan->count > 0 ? scan->taken : -scan->taken);
+    const double angle = wh_sensor_angle(sensor, k);
     const double own = sight->is_held ? speed : 0;
+    const double late = sight->late ? own * (double)sight->late->value : 0;
+    if (sight->stuck) {
+        return (int32_t)((double)sight->stuck->value * wh_sensor_pixels(sensor));
+    }
+    const wh_placement_t placement = placement_at(sight, angle);
+    const wh_glance_t glance = {angle + late, own, {scanner->seed, scan->number}, (uint32_t)scan->taken};
+    return sight->rim ? wh_sensor_read(sensor, sight->rim, &placement, &glance) : 0;
+}
+
+/* Takes this many samples, which are due. */
+static void read_samples(const wh_scanner_t *scanner, const scanned_t *sight, double speed, size_t count,
+                         wh_scan_t *scan) {
     for (size_t i = 0; i < count; ++i) {
-        const int64_t k = scan->first + (scan->count > 0 ? scan->taken : -scan->taken);
-        const double angle = wh_sensor_angle(&scanner->sensor, k);
-        const wh_placement_t placement = placement_at(sight, angle);
-        const wh_glance_t glance = {angle, own, {scanner->seed, scan->number}, (uint32_t)scan->taken};
-        scan->samples[i] = sight->rim ? wh_sensor_read(&scanner->sensor, sight->rim, &placement, &glance) : 0;
+        scan->samples[i] = read_sample(scanner, sight, speed, scan);
         ++scan->taken;
     }
     scan->sample_count = (int32_t)count;
 }
 
 static void look(const wh_scanning_t *scanning, const wh_scanner_t *scanner, const wh_grasp_t *table,
-                 double speed, size_t count, wh_scan_t *scan) {
+                 const wh_faults_t *faults, double speed, size_t count, wh_scan_t *scan) {
     wh_pose_t lies;
     wh_rim_t rim;
     const wh_rim_t *seen = find_rim(scanning, table, scan->gripper, &lies);
@@ -181,11 +194,13 @@ static void look(const wh_scanning_t *scanning, const wh_scanner_t *scanner, con
         mirror(&rim);
         seen = &rim;
     }
-    const sight_t sight = {
+    const scanned_t sight = {
         seen,
         {(double)lies.r.x, (double)lies.r.y, (double)wh_atan2(lies.R.m[1][0], lies.R.m[0][0])},
         scan->turn,
-        table->storage.grippers[scan->gripper].wafer != WH_NONE};
+        table->storage.grippers[scan->gripper].wafer != WH_NONE,
+        wh_faults_find(faults, WH_FAULT_EDGE_SENSOR_STUCK, scan->gripper),
+        wh_faults_find(faults, WH_FAULT_EDGE_SENSOR_LATE, scan->gripper)};
     read_samples(scanner, &sight, speed, count, scan);
 }
 
@@ -211,8 +226,8 @@ static size_t count_due(const wh_sensor_t *sensor, const wh_scan_t *scan, double
 }
 
 /* The samples of this slice, of a scan that is armed. */
-static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,
-                         wh_scan_t *scan) {
+static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table, const wh_faults_t *faults,
+                         wh_real_t slice_s, wh_scan_t *scan) {
     const wh_scanner_t *scanner = find_scanner(scanning, scan->gripper);
     if (!scanner) {
         end_scan(scan);
@@ -228,7 +243,7 @@ static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table,
     }
     scan->turn = turn;
     if (due > 0) {
-        look(scanning, scanner, table, speed, due, scan);
+        look(scanning, scanner, table, faults, speed, due, scan);
     }
     if (scan->taken == (scan->count > 0 ? scan->count : -scan->count)) {
         end_scan(scan);
@@ -252,38 +267,29 @@ static void take_order(const wh_scanning_t *scanning, const wh_grasp_t *table, c
     }
 }
 
-void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,
-                      const wh_scan_order_t *order, wh_scan_t *scan) {
+void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, const wh_faults_t *faults,
+                      wh_real_t slice_s, const wh_scan_order_t *order, wh_scan_t *scan) {
     if (scan->sample_count > 0) {
         scan->sample_count = 0;
         memset(scan->samples, 0, sizeof scan->samples);
     }
     if (scan->armed) {
-        take_samples(scanning, table, slice_s, scan);
+        take_samples(scanning, table, faults, slice_s, scan);
     }
     take_order(scanning, table, order, scan);
 }
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-static uint64_t hash_doubles(uint64_t hash, const double values[], size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = wh_hash_word(hash, bits);
-    }
-    return hash;
-}
-
 static uint64_t hash_sensor(uint64_t hash, const wh_sensor_t *sensor) {
     const double values[] = {sensor->direction,  sensor->middle,     sensor->length,
                              sensor->pixel,      sensor->samples,    sensor->encoder,
                              sensor->noise,      sensor->tilt,       sensor->error.offset,
                              sensor->error.zero, sensor->error.gain, sensor->error.latency};
-    hash = hash_doubles(hash, values, sizeof values / sizeof values[0]);
+    hash = wh_hash_doubles(hash, values, sizeof values / sizeof values[0]);
     for (int32_t i = 0; i < sensor->hidden_count; ++i) {
         const double arc[] = {sensor->hidden[i].from, sensor->hidden[i].width};
-        hash = hash_doubles(hash, arc, 2);
+        hash = wh_hash_doubles(hash, arc, 2);
     }
     return wh_hash_int(hash, sensor->hidden_count);
 }
@@ -304,22 +310,25 @@ uint64_t wh_scanning_hash(const wh_scanning_t *scanning, size_t wafer_count, uin
 
 /* ----------------------------------------------------------------------------------------- in a simulator */
 
+static void step(void *of, const void *by) {
+    wh_simulator_t *simulator = of;
+    const wh_command_t *command = by;
+    wh_scanning_step(&simulator->given.scanning, &simulator->table, &simulator->physics.faults,
+                     simulator->slice_s, &command->scan, &simulator->physics.scan);
+}
+
 wh_status_t wh_simulator_set_scanning(wh_simulator_t *simulator, const wh_scanning_t *scanning) {
-    static const wh_scanning_calls_t calls = {wh_scanning_check, wh_scanning_step, wh_scanning_hash};
-    if (!simulator || !scanning) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
-        return WH_STATUS_NOT_INITIALISED;
-    }
-    if (simulator->table.slice > 0) {
-        return WH_STATUS_OUT_OF_RANGE;
+    static const wh_scanning_calls_t calls = {wh_scanning_check, step, wh_scanning_hash};
+    wh_status_t status = wh_simulator_check_setting(simulator, scanning);
+    if (status != WH_OK) {
+        return status;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    const wh_status_t status = wh_scanning_validate(scanning, storage->gripper_count, storage->wafer_count);
+    status = wh_scanning_validate(scanning, storage->gripper_count, storage->wafer_count);
     if (status == WH_OK) {
-        simulator->scanning = *scanning;
-        simulator->scans = scanning->scanner_count > 0 ? &calls : NULL;
+        simulator->given.scanning = *scanning;
+        simulator->given.scans = scanning->scanner_count > 0 ? &calls : NULL;
+        simulator->given.hash = wh_physics_state_hash_given;
     }
     return status;
 }

@@ -16,8 +16,8 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_scanning_validate            280    272     256    392
  *     stack of wh_scanning_check                 8     32       8     32
- *     stack of wh_scanning_step               1256   1224    1288   1440
- *     stack of wh_scanning_hash                272    280     280    280
+ *     stack of wh_scanning_step               1264   1248    1296   1456
+ *     stack of wh_scanning_hash                272    288     280    280
  *     size of wh_scan_t                        304            304
  *     size of wh_scanner_t                     336            288
  */
@@ -26,6 +26,7 @@
 
 #include "../align/sensing.h"
 #include "../grasp/grasp.h"
+#include "faults.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(scanning);
@@ -100,10 +101,12 @@ wh_status_t wh_scanning_check(const wh_scanning_t *scanning, const wh_scan_order
  * Without one each sample is 0, whatever hides the line. A wafer that lies face down is seen mirrored; how it
  * is tilted does not count. A scan ends early, with fewer samples taken than were ordered, in a slice that
  * has more than WH_SCAN_SLICE of them, turns the chuck faster than WH_SCAN_SPEED, or takes it beyond 9000
- * rad. No argument may be null. Cost: of a scan that is armed an arc tangent, linear in wafers if the chuck's
- * gripper holds none, and wh_sensor_read for each sample. */
-void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,
-                      const wh_scan_order_t *order, wh_scan_t *scan) WH_SYMBOL(wh_scanning_step);
+ * rad. The faults of edge sensors count that act in this slice. No argument may be null. Cost: of a scan that
+ * is armed an arc tangent, linear in wafers if the chuck's gripper holds none, and wh_sensor_read for each
+ * sample. */
+void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, const wh_faults_t *faults,
+                      wh_real_t slice_s, const wh_scan_order_t *order, wh_scan_t *scan)
+    WH_SYMBOL(wh_scanning_step);
 
 /* Continues a hash (math/hash.h) with all that the scans of a run depend on. Nothing is checked. Cost: 50
  * words for each scanner and wafer. */
@@ -113,8 +116,8 @@ uint64_t wh_scanning_hash(const wh_scanning_t *scanning, size_t wafer_count, uin
 /* How a simulator reaches the functions above, so that one without sensors does not link them. */
 typedef struct {
     wh_status_t (*check)(const wh_scanning_t *scanning, const wh_scan_order_t *order);
-    void (*step)(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,
-                 const wh_scan_order_t *order, wh_scan_t *scan);
+    /* wh_scanning_step of a wh_simulator_t by a wh_command_t */
+    void (*step)(void *simulator, const void *command);
     uint64_t (*hash)(const wh_scanning_t *scanning, size_t wafer_count, uint64_t hash);
 } wh_scanning_calls_t;
 

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "setting_internal.h"
+
 static wh_status_t exchange_by_call(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     return wh_simulator_step((wh_simulator_t *)(void *)link, command, state);
 }
@@ -20,6 +22,10 @@ static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     simulator->vacuum = physics->vacuum;
     simulator->pads = physics->pads;
     wh_physics_state_start(&simulator->physics, physics);
+    if (simulator->given.gripping) {
+        (void)simulator->given.gripping->complete(simulator, simulator->table.storage.grippers,
+                                                  simulator->physics.grips);
+    }
 }
 
 static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
@@ -33,10 +39,7 @@ static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
     wh_physics_state_start(&simulator->physics, NULL);
     simulator->event_count = 0;
     simulator->observer = (wh_observer_t){NULL, NULL, NULL};
-    simulator->scanning = (wh_scanning_t){NULL, 0, NULL};
-    simulator->scans = NULL;
-    simulator->latching = (wh_latching_t){NULL, 0, NULL, NULL};
-    simulator->beams = NULL;
+    memset(&simulator->given, 0, sizeof simulator->given);
     simulator->mark = WH_SIMULATOR_MARK;
 }
 
@@ -59,17 +62,12 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
 }
 
 wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics) {
-    if (!simulator || !physics) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
-        return WH_STATUS_NOT_INITIALISED;
+    wh_status_t status = wh_simulator_check_setting(simulator, physics);
+    if (status != WH_OK) {
+        return status;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    if (simulator->table.slice > 0) {
-        return WH_STATUS_OUT_OF_RANGE;
-    }
-    const wh_status_t status = wh_physics_validate(physics, storage->gripper_count, storage->wafer_count);
+    status = wh_physics_validate(physics, storage->gripper_count, storage->wafer_count);
     if (status == WH_OK) {
         take_physics(simulator, physics);
     }
@@ -82,7 +80,7 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
 static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, int32_t wafer,
                              int32_t gripper) {
     static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
-    if (simulator->event_count == WH_SLICE_EVENTS) {
+    if (simulator->event_count > WH_SLICE_EVENTS) {
         return NULL;
     }
     wh_event_t *event = &simulator->events[simulator->event_count];
@@ -96,8 +94,8 @@ static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, in
     return event;
 }
 
-static void add_measured(wh_simulator_t *simulator, wh_event_kind_t kind, size_t g, wh_real_t value,
-                         wh_real_t limit) {
+static WH_OUT_OF_LINE void add_measured(wh_simulator_t *simulator, wh_event_kind_t kind, size_t g,
+                                        wh_real_t value, wh_real_t limit) {
     wh_event_t *event = add_event(simulator, kind, simulator->table.storage.grippers[g].wafer, (int32_t)g);
     if (event) {
         event->value = value;
@@ -112,8 +110,10 @@ static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_ki
         }
         const wh_fault_t *fault = &simulator->physics.faults.slots[i].fault;
         const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
+        const bool of_gripper =
+            !of_wafer && !wh_fault_is_of_door(fault->kind) && !wh_fault_is_of_beam(fault->kind);
         wh_event_t *event = add_event(simulator, kind, of_wafer ? fault->target : WH_NONE,
-                                      of_wafer ? WH_NONE : fault->target);
+                                      of_gripper ? fault->target : WH_NONE);
         if (event) {
             event->parts[0] = (int32_t)i;
             event->parts[1] = (int32_t)fault->kind;
@@ -158,6 +158,10 @@ static bool holds(const wh_simulator_t *simulator, size_t g) {
     return simulator->table.storage.grippers[g].wafer != WH_NONE;
 }
 
+static bool has_vacuum(const wh_simulator_t *simulator, size_t g) {
+    return (simulator->given.no_vacuum >> g & 1U) == 0;
+}
+
 /* True if a support has the held wafer before this slice is over: the blade leaves the wafer there. */
 static WH_OUT_OF_LINE bool is_set_down(const wh_simulator_t *simulator, size_t g) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
@@ -179,6 +183,10 @@ static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
         int32_t *valve = &simulator->inputs[g].valve;
         const bool is_let_go = *valve == WH_VALVE_CLOSED;
         vacuum[g] = simulator->physics.vacuum[g];
+        if (!has_vacuum(simulator, g)) {
+            vacuum[g].command = *valve;
+            continue;
+        }
         *valve = wh_vacuum_before(&simulator->vacuum, &fault, *valve, holds(simulator, g), simulator->slice_s,
                                   &vacuum[g]);
         if (is_let_go && *valve == WH_VALVE_OPEN && is_set_down(simulator, g)) {
@@ -194,7 +202,8 @@ static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command
         wh_vacuum_t *now = &simulator->physics.vacuum[g];
         *now = vacuum[g];
         simulator->physics.told[g] = command->grippers[g].valve;
-        if (wh_vacuum_after(&simulator->vacuum, &fault, holds(simulator, g), simulator->slice_s, now)) {
+        if (has_vacuum(simulator, g) &&
+            wh_vacuum_after(&simulator->vacuum, &fault, holds(simulator, g), simulator->slice_s, now)) {
             add_measured(simulator, WH_EVENT_VACUUM_LOST, g, now->level, simulator->vacuum.off);
         }
     }
@@ -212,24 +221,38 @@ static void take_vacuum(wh_simulator_t *simulator, const wh_command_t *command) 
     }
 }
 
-static void watch_holding(wh_simulator_t *simulator) {
+static bool carries(wh_simulator_t *simulator, size_t g, wh_hold_t *hold) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    for (size_t g = 0; simulator->pads.mass > 0 && g < storage->gripper_count; ++g) {
-        const wh_gripper_t *gripper = &storage->grippers[g];
-        const wh_vec3_t *centre =
-            gripper->wafer == WH_NONE ? NULL : &storage->wafers[gripper->wafer].base_from_wafer.r;
+    const wh_gripper_t *gripper = &storage->grippers[g];
+    const wh_vec3_t *centre =
+        gripper->wafer == WH_NONE ? NULL : &storage->wafers[gripper->wafer].base_from_wafer.r;
+    return wh_carry_update(&simulator->physics.carry[g], &simulator->pads, simulator->physics.vacuum[g].level,
+                           &gripper->base_from_gripper.R, centre, simulator->slice_s, hold);
+}
+
+static WH_OUT_OF_LINE void watch_grippers(wh_simulator_t *simulator) {
+    const wh_gripping_calls_t *gripping = simulator->given.gripping;
+    if (gripping) {
+        gripping->sense(simulator);
+    }
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         wh_hold_t hold;
-        if (wh_carry_update(&simulator->physics.carry[g], &simulator->pads,
-                            simulator->physics.vacuum[g].level, &gripper->base_from_gripper.R, centre,
-                            simulator->slice_s, &hold)) {
+        if (gripping ? gripping->carries(simulator, g, &hold) : carries(simulator, g, &hold)) {
             add_measured(simulator, WH_EVENT_SLIPPED, g, hold.asked, hold.carried);
         }
     }
 }
 
+/* After a step: what sensors of other grips say, and who slips. */
+static void watch_holding(wh_simulator_t *simulator) {
+    if (simulator->given.gripping || simulator->pads.mass > 0) {
+        watch_grippers(simulator);
+    }
+}
+
 /* Shows the observer the wafers that faults have moved, then the step. */
-static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed,
-                 wh_event_list_t *list) {
+static void show(wh_simulator_t *simulator, const wh_command_t *command, const wh_gripper_input_t inputs[],
+                 uint32_t changed, wh_event_list_t *list) {
     const wh_observer_t *observer = &simulator->observer;
     const wh_faults_t *faults = &simulator->physics.faults;
     for (size_t i = 0; observer->placed && i < faults->count; ++i) {
@@ -239,26 +262,29 @@ static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], u
         }
     }
     if (observer->look) {
-        observer->look(observer->user, inputs, &simulator->table, list);
+        observer->look(observer->user, command, inputs, &simulator->table, list);
     }
 }
 
-static wh_status_t step_cell(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed) {
-    wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS, 0};
-    const wh_status_t status = wh_grasp_step(&simulator->table, inputs, &list);
+static wh_status_t step_cell(wh_simulator_t *simulator, const wh_command_t *command,
+                             const wh_gripper_input_t inputs[], uint32_t changed) {
+    wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS + 1, 0};
+    const wh_status_t status = simulator->given.gripping
+                                   ? simulator->given.gripping->step(simulator, inputs, &list)
+                                   : wh_grasp_step(&simulator->table, inputs, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
         wh_cell_settle(&simulator->cell, &simulator->table, &list);
     }
     if (status == WH_OK) {
-        show(simulator, inputs, changed, &list);
+        show(simulator, command, inputs, changed, &list);
     }
     simulator->event_count = list.count;
     return status;
 }
 
 static wh_status_t step_direct(wh_simulator_t *simulator, const wh_command_t *command) {
-    const wh_status_t status = step_cell(simulator, command->grippers, 0);
+    const wh_status_t status = step_cell(simulator, command, command->grippers, 0);
     if (status == WH_OK) {
         take_vacuum(simulator, command);
         watch_holding(simulator);
@@ -271,7 +297,8 @@ static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_
     memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
     const wh_fault_changes_t changes = apply_faults(simulator, command);
     switch_valves(simulator, vacuum);
-    const wh_status_t status = step_cell(simulator, simulator->inputs, changes.armed | changes.cleared);
+    const wh_status_t status =
+        step_cell(simulator, command, simulator->inputs, changes.armed | changes.cleared);
     if (status == WH_OK) {
         update_vacuum(simulator, command, vacuum);
         watch_holding(simulator);
@@ -287,11 +314,13 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
         return WH_STATUS_OUT_OF_RANGE;
     }
     if (command->scan.kind != WH_SCAN_KEEP &&
-        (!simulator->scans || simulator->scans->check(&simulator->scanning, &command->scan) != WH_OK)) {
+        (!simulator->given.scans ||
+         simulator->given.scans->check(&simulator->given.scanning, &command->scan) != WH_OK)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     if (command->latch.kind != WH_LATCH_KEEP &&
-        (!simulator->beams || simulator->beams->check(&simulator->latching, &command->latch) != WH_OK)) {
+        (!simulator->given.beams ||
+         simulator->given.beams->check(&simulator->given.latching, &command->latch) != WH_OK)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     if (command->fault_count == 0) {
@@ -309,9 +338,11 @@ static wh_status_t step_rest(void *of, const void *by) {
     const wh_command_t *command = by;
     const wh_status_t status = is_direct(simulator, command) ? step_direct(simulator, command)
                                                              : step_with_faults(simulator, command);
-    if (status == WH_OK && simulator->scans) {
-        simulator->scans->step(&simulator->scanning, &simulator->table, simulator->slice_s, &command->scan,
-                               &simulator->physics.scan);
+    if (status == WH_OK && simulator->given.scans) {
+        simulator->given.scans->step(simulator, command);
+    }
+    if (status == WH_OK && simulator->given.moving) {
+        simulator->given.moving->step(simulator, command);
     }
     return status;
 }
@@ -323,8 +354,8 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
         simulator->event_count = 0;
         return status;
     }
-    return simulator->beams ? simulator->beams->around(simulator, command, step_rest)
-                            : step_rest(simulator, command);
+    return simulator->given.beams ? simulator->given.beams->around(simulator, command, step_rest)
+                                  : step_rest(simulator, command);
 }
 
 static void view_nothing(wh_state_t *state) {
@@ -334,6 +365,7 @@ static void view_nothing(wh_state_t *state) {
     state->gripper_count = 0;
     state->events = NULL;
     state->event_count = 0;
+    state->has_lost_events = false;
     state->sensors = 0;
     state->physics = NULL;
 }
@@ -349,7 +381,8 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
     state->grippers = table->storage.grippers;
     state->gripper_count = table->storage.gripper_count;
     state->events = simulator->events;
-    state->event_count = simulator->event_count;
+    state->has_lost_events = simulator->event_count > WH_SLICE_EVENTS;
+    state->event_count = state->has_lost_events ? WH_SLICE_EVENTS : simulator->event_count;
     state->sensors = wh_physics_state_sensors(&simulator->physics, table->storage.gripper_count);
     state->physics = &simulator->physics;
 }
@@ -367,7 +400,11 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
 }
 
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) {
-    return simulator->mark == WH_SIMULATOR_MARK
-               ? wh_physics_state_hash(&simulator->physics, &simulator->table)
-               : 0;
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return 0;
+    }
+    const uint64_t hash = wh_physics_state_hash_plain(&simulator->physics, &simulator->table);
+    return simulator->given.hash
+               ? simulator->given.hash(&simulator->physics, simulator->table.storage.gripper_count, hash)
+               : hash;
 }

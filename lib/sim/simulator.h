@@ -4,32 +4,50 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; "sampled" is a step without swept checking; what an observer takes comes on top):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_simulator_init               380    304     260    232
- *     stack of wh_simulator_set_physics        264    256     208    208
- *     stack of wh_simulator_step               952   1096     668    724
- *     stack of wh_simulator_step:sampled       952    936     640    656
+ *     stack of wh_simulator_init               380    312     260    232
+ *     stack of wh_simulator_set_physics        280    272     224    216
+ *     stack of wh_simulator_step              1208   1200     776    800
+ *     stack of wh_simulator_step:sampled      1208   1200     776    800
  *     stack of wh_simulator_view                32     36      24     40
- *     stack of wh_simulator_hash               128    172     140    168
- *     size of wh_simulator_t                 21096          13336
+ *     stack of wh_simulator_hash               136    156     140    152
+ *     size of wh_simulator_t                 22312          14376
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
 
 #include "../cell/station.h"
+#include "gripping.h"
 #include "slice.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(simulator);
 
-/* Looks at each accepted step after table and cell, and may append events. `inputs` are the step's own, after
- * faults and vacuum. It must not change anything that a step depends on. Null functions are not called. */
+/* Looks at each accepted step after table and cell, and may append events. `command` is the step's, and
+ * `inputs` what faults and vacuum made of it. It must not change anything that a step depends on. Null
+ * functions are not called. */
 typedef struct {
-    void (*look)(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                 wh_event_list_t *list);
+    void (*look)(void *user, const wh_command_t *command, const wh_gripper_input_t inputs[],
+                 const wh_grasp_t *table, wh_event_list_t *list);
     /* A fault moved a wafer that nobody holds. Not called for wafers that settle. */
     void (*placed)(void *user, const wh_grasp_t *table, int32_t wafer);
     void *user;
 } wh_observer_t;
+
+/* What a simulator has beside vacuum: all zero until one of the calls below gives it. A firmware that calls
+ * none of them links none of it. */
+typedef struct {
+    wh_scanning_t scanning;           /* the edge sensors */
+    const wh_scanning_calls_t *scans; /* null: there are none */
+    wh_latching_t latching;           /* the beams at doors */
+    const wh_latching_calls_t *beams; /* null: there are none */
+    wh_door_set_t doors;
+    const wh_doors_calls_t *moving;      /* null: there are no doors */
+    wh_grips_t grips;                    /* other grips than vacuum, and front faces */
+    const wh_gripping_calls_t *gripping; /* null: there are none, wh_grasp_step is the table's step */
+    uint32_t no_vacuum;                  /* bit g: gripper g has another grip */
+    /* wh_physics_state_hash_given once there is any of these; null before */
+    uint64_t (*hash)(const wh_physics_state_t *state, size_t gripper_count, uint64_t hash);
+} wh_simulator_given_t;
 
 typedef struct {
     wh_link_t link; /* first: &simulator->link is the interface by a call */
@@ -40,14 +58,11 @@ typedef struct {
     wh_pads_t pads;
     wh_physics_state_t physics;
     wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, if faults and vacuum change them */
-    wh_event_t events[WH_SLICE_EVENTS];
+    wh_event_t events[WH_SLICE_EVENTS + 1]; /* one more tells that they did not fit */
     size_t event_count;
-    wh_observer_t observer;           /* set by the caller after wh_simulator_init */
-    wh_scanning_t scanning;           /* the edge sensors */
-    const wh_scanning_calls_t *scans; /* null: there are none */
-    wh_latching_t latching;           /* the beams at doors */
-    const wh_latching_calls_t *beams; /* null: there are none */
-    uint32_t mark;                    /* WH_SIMULATOR_MARK once wh_simulator_init has set it up */
+    wh_observer_t observer; /* set by the caller after wh_simulator_init */
+    wh_simulator_given_t given;
+    uint32_t mark; /* WH_SIMULATOR_MARK once wh_simulator_init has set it up */
 } wh_simulator_t;
 
 /* A simulator without this mark is refused (WH_STATUS_NOT_INITIALISED), as a table is: see WH_GRASP_MARK for
@@ -84,20 +99,44 @@ wh_status_t wh_simulator_set_scanning(wh_simulator_t *simulator, const wh_scanni
 wh_status_t wh_simulator_set_latching(wh_simulator_t *simulator, const wh_latching_t *latching)
     WH_SYMBOL(wh_simulator_set_latching);
 
-/* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
- * the releases, vacuum, holding, edge sensors and beams follow, and `state` is filled in. Returns
- * state->status.
+/* Gives the simulator doors (doors.h), each at home, in place of those that it had: at first none. The array
+ * must outlive the simulator and its copies. Refuses more than WH_DOORS, no array (WH_STATUS_OUT_OF_RANGE),
+ * and what wh_simulator_set_scanning refuses beside; the simulator is then unchanged. To be called after
+ * wh_simulator_set_physics. Cost: linear in doors. */
+wh_status_t wh_simulator_set_doors(wh_simulator_t *simulator, const wh_door_set_t *set)
+    WH_SYMBOL(wh_simulator_set_doors);
+
+/* Gives the simulator grips other than vacuum, and wafers face down (grasp/grips.h): from then on
+ * wh_grips_step is its table's step. `thickness` of the parts must be the cell's; their `states` and `speeds`
+ * do not count, for states stand in the simulator's physics, and faults slow plungers down. The other arrays
+ * must outlive the simulator and its copies, and only one of them may step at a time. Refuses what
+ * wh_grips_init refuses, a thickness other than the cell's (WH_STATUS_OUT_OF_RANGE), and what
+ * wh_simulator_set_scanning refuses beside; the simulator is then unchanged. Cost: wh_grips_init. */
+wh_status_t wh_simulator_set_grips(wh_simulator_t *simulator, const wh_grips_parts_t *parts)
+    WH_SYMBOL(wh_simulator_set_grips);
+
+/* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell
+ * judges the releases, vacuum, holding, edge sensors, doors and beams follow, and `state` is filled in.
+ * Returns state->status.
  *
- * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper lets
- * go of it in the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).
+ * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper
+ * lets go of it in the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).
+ *
+ * A gripper with another grip than vacuum has no lag: its valve acts at once. Its level is 0, and its sensor
+ * is on while the plunger stands in the window gripped, or while passive pads have a wafer. Nothing slips in
+ * an edge grip; passive pads hold by friction alone.
+ *
+ * With grips (wh_simulator_set_grips) and pads, a gripper with vacuum whose e3 points down by n has a valve
+ * that is as good as closed where force < mass * gravity * n: it takes no wafer, and drops the one that it
+ * holds. While a wafer below such a gripper is not above the plane of its slot, holding is not looked at.
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check, wh_scanning_check and wh_latching_check refuse; any order to sensors or beams that are not
- * there. With a null pointer
- * (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a simulator that is not initialised nothing is
- * read or written, and `state` shows no wafer and no gripper. `seq` and `utime` are handed back; faults go by
- * `seq`. Cost: wh_grasp_step, wh_cell_judge, wh_scanning_step and wh_latching_step.
+ * wh_faults_check, wh_scanning_check and wh_latching_check refuse; any order to sensors or beams that are
+ * not there. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a simulator
+ * that is not initialised nothing is read or written, and `state` shows no wafer and no gripper. `seq` and
+ * `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step, wh_cell_judge, wh_scanning_step and
+ * wh_latching_step.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
     WH_SYMBOL(wh_simulator_step);

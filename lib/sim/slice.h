@@ -4,7 +4,7 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_command_from_track           360    352     216    216
+ *     stack of wh_command_from_track           408    536     248    336
  *     size of wh_command_t                    1544            872
  *     size of wh_state_t                        56             56
  */
@@ -18,8 +18,9 @@ WH_HEADER_BEGIN
 WH_REFUSE_PACKING(slice);
 
 /* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
- * the collision check. Events beyond that are not reported. */
-#define WH_SLICE_EVENTS 64
+ * the collision check: 128, and 64 with the counts of a bare target. Events beyond that are not reported, and
+ * the state says so. */
+#define WH_SLICE_EVENTS ((size_t)8 * WH_GRIPPERS)
 
 /* The most faults in one command. */
 #define WH_COMMAND_FAULTS 4
@@ -54,7 +55,8 @@ typedef struct {
     size_t gripper_count;
     const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
-    uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
+    bool has_lost_events; /* the slice had more of them than fit */
+    uint32_t sensors;     /* bit g: gripper g's vacuum sensor is on */
     const wh_physics_state_t *physics;
 } wh_state_t;
 

@@ -248,6 +248,23 @@ static void pass_latch(stream_t *stream, wh_latch_t *latch) {
     latch->edge = edge == 1 ? WH_CROSSING_OUT : WH_CROSSING_IN;
 }
 
+/* 72 bytes, in float 64: what wh_grips_complete cannot fill in. */
+static void pass_grip(stream_t *stream, wh_grip_state_t *state) {
+    int32_t phase = (int32_t)state->phase;
+    pass_int(stream, &phase);
+    pass_int(stream, &state->wafer);
+    pass_double(stream, &state->s);
+    pass_double(stream, &state->excess);
+    pass_double(stream, &state->lying.x);
+    pass_double(stream, &state->lying.y);
+    pass_double(stream, &state->lying.notch_x);
+    pass_double(stream, &state->lying.notch_y);
+    pass_real(stream, &state->x);
+    pass_real(stream, &state->y);
+    stream->is_bad = stream->is_bad || phase < 0 || phase > WH_GRIP_OPENING;
+    state->phase = stream->is_bad ? WH_GRIP_OPEN : (wh_grip_phase_t)phase;
+}
+
 static void pass_unsigned(stream_t *stream, uint32_t *value) {
     uint64_t word = *value;
     pass_bytes(stream, &word, 4);
@@ -269,6 +286,14 @@ static void pass_latches(stream_t *stream, wh_latches_t *latches) {
     for (size_t i = 0; i < WH_LATCHES; ++i) {
         pass_latch(stream, &latches->waiting[i]);
         pass_latch(stream, &latches->latches[i]);
+    }
+}
+
+/* 4 bytes, and WH_DOORS numbers. */
+static void pass_doors(stream_t *stream, wh_doors_t *doors) {
+    pass_int(stream, &doors->count);
+    for (size_t d = 0; d < WH_DOORS; ++d) {
+        pass_real(stream, &doors->at[d]);
     }
 }
 
@@ -371,6 +396,18 @@ static void save_latches(stream_t *stream, const wh_latches_t *from) {
     pass_latches(stream, &latches);
 }
 
+/* A place that does not count any more says nothing. */
+static void save_grip(stream_t *stream, const wh_grip_state_t *from) {
+    wh_grip_state_t state;
+    state = *from;
+    if (state.phase != WH_GRIP_CLOSING || state.wafer == WH_NONE) {
+        memset(&state.lying, 0, sizeof state.lying);
+        state.x = 0;
+        state.y = 0;
+    }
+    pass_grip(stream, &state);
+}
+
 static void save_physics(stream_t *stream, const wh_physics_state_t *physics, size_t gripper_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
@@ -378,11 +415,15 @@ static void save_physics(stream_t *stream, const wh_physics_state_t *physics, si
         share.carry = physics->carry[g];
         share.told = physics->told[g];
         pass_share(stream, &share);
+        save_grip(stream, &physics->grips[g]);
     }
     wh_scan_t scan;
     scan = physics->scan;
     pass_scan(stream, &scan);
     save_latches(stream, &physics->latches);
+    wh_doors_t doors;
+    doors = physics->doors;
+    pass_doors(stream, &doors);
     uint64_t count = physics->faults.count;
     pass_bytes(stream, &count, 4);
     for (size_t i = 0; i < physics->faults.count; ++i) {
@@ -449,9 +490,11 @@ static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t g
         physics->vacuum[g] = share.vacuum;
         physics->carry[g] = share.carry;
         physics->told[g] = share.told;
+        pass_grip(stream, &physics->grips[g]);
     }
     pass_scan(stream, &physics->scan);
     pass_latches(stream, &physics->latches);
+    pass_doors(stream, &physics->doors);
 }
 
 /* False if there are not as many bytes as these slots take. */
@@ -469,9 +512,26 @@ static bool load_faults(stream_t *stream, wh_faults_t *faults, const wh_grasp_st
     return true;
 }
 
+bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_state_t *state) {
+    const wh_simulator_given_t *given = &simulator->given;
+    bool good = (given->scans || state->scan.number == 0) && (given->beams || state->latches.number == 0) &&
+                (size_t)state->doors.count == given->doors.count;
+    for (size_t g = 0; !given->gripping && g < simulator->table.storage.gripper_count; ++g) {
+        good = good && state->grips[g].phase == WH_GRIP_OPEN;
+    }
+    return good;
+}
+
+/* False for grips that the simulator cannot have. */
+static bool complete_grips(const wh_simulator_t *simulator, wh_snapshot_room_t *room) {
+    const wh_gripping_calls_t *gripping = simulator->given.gripping;
+    return !gripping || gripping->complete(simulator, room->grippers, room->physics.grips) == WH_OK;
+}
+
 /* Reads everything into the room; false if it cannot be. */
-static bool load_state(stream_t *stream, const wh_grasp_storage_t *storage, size_t size,
+static bool load_state(stream_t *stream, const wh_simulator_t *simulator, size_t size,
                        wh_snapshot_room_t *room) {
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         pass_wafer(stream, &room->wafers[w]);
     }
@@ -480,7 +540,9 @@ static bool load_state(stream_t *stream, const wh_grasp_storage_t *storage, size
     }
     load_physics(stream, &room->physics, storage->gripper_count);
     return load_faults(stream, &room->physics.faults, storage, size) && !stream->is_bad &&
-           wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK;
+           complete_grips(simulator, room) &&
+           wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK &&
+           wh_simulator_may_have(simulator, &room->physics);
 }
 
 /* All of it, from bytes whose ends are good. */
@@ -493,7 +555,7 @@ static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t
     memset(&counters, 0, sizeof counters);
     pass_bytes(&stream, &slice, 8);
     pass_counters(&stream, &counters);
-    if (!load_state(&stream, &table->storage, size, room) ||
+    if (!load_state(&stream, simulator, size, room) ||
         restore(table, slice, room->wafers, room->grippers) != WH_OK) {
         return WH_STATUS_DAMAGED;
     }

@@ -27,13 +27,13 @@ WH_HEADER_BEGIN
 WH_REFUSE_PACKING(snapshot);
 
 /* Goes up when the bytes change. */
-#define WH_SNAPSHOT_VERSION 3
+#define WH_SNAPSHOT_VERSION 4
 
-/* The most bytes of a snapshot: a constant, for an array. For 25 wafers and 2 grippers 9846 in double, of
- * which 5248 are for faults, and 5838 in float. */
+/* The most bytes of a snapshot: a constant, for an array. For 25 wafers and 2 grippers 10058 in double, of
+ * which 5248 are for faults, and 6002 in float. */
 #define WH_SNAPSHOT_SIZE(wafer_count, gripper_count)                                                         \
-    (1090 + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +                                           \
-     (55 * sizeof(wh_real_t) + 64) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
+    (1094 + WH_DOORS * sizeof(wh_real_t) + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +            \
+     (57 * sizeof(wh_real_t) + 120) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
 
 /* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and
  * fills the buckets. If the arrays are others than before, `observer` is cleared, for its `user` belongs to
@@ -53,6 +53,12 @@ size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_sim
  * wh_simulator_saved_size. Cost: a few nanoseconds a byte; 1 kB of stack. */
 wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity, size_t *size)
     WH_SYMBOL(wh_simulator_save);
+
+/* True if the simulator can have such a state, which wh_physics_state_validate has accepted: without edge
+ * sensors no scan, without beams no latch, as many doors as it has, and without other grips open plungers
+ * alone. No argument may be null. Cost: linear in grippers. */
+bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_state_t *state)
+    WH_SYMBOL(wh_simulator_may_have);
 
 /* Room to work in, the caller's: wh_simulator_load reads the state into it and looks whether it is sound,
  * before the simulator changes. What stands in it does not matter. The arrays have as many entries as the

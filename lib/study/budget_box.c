@@ -260,7 +260,7 @@ static bool is_origin(const boxing_t *boxing, const int32_t point[]) {
 }
 
 /* Shrinks the box until a point that fails is outside, and the point of the box next to it passes: these are
- * its witnesses. Where even no error at all fails, by what is drawn besides, no box is left. */
+ * its witnesses. Where even no error at all fails, as when a file is changed meanwhile, no box is left. */
 static void shrink(boxing_t *boxing, const int32_t failing[]) {
     wh_budget_box_t *box = boxing->box;
     const size_t bytes = boxing->size * sizeof *failing;
@@ -383,7 +383,7 @@ static void take_out(boxing_t *boxing, int32_t point[], size_t count) {
 static bool settle(boxing_t *boxing) {
     wh_budget_box_t *box = boxing->box;
     const int64_t share = box->share;
-    if (!box->outside) {
+    if (!box->outside || is_origin(boxing, box->outside)) {
         return true;
     }
     boxing->level = WH_BUDGET_WITH;

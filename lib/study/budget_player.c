@@ -17,14 +17,16 @@ static void count_events(wh_budget_player_t *player) {
     }
 }
 
-/* Errors of commands by line and number, as a tally has them. */
+/* Errors of commands by line, number and text, as a tally has them. */
 static size_t count_caught(const wh_record_t *record) {
     size_t count = 0;
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         bool is_new = command->error != WH_OK;
         for (size_t k = 0; is_new && k < i; ++k) {
-            is_new = record->commands[k].error != command->error || record->commands[k].line != command->line;
+            is_new = record->commands[k].error != command->error ||
+                     record->commands[k].line != command->line ||
+                     strcmp(record->commands[k].text, command->text) != 0;
         }
         count += is_new ? 1 : 0;
     }
@@ -58,6 +60,7 @@ void wh_budget_player_open(wh_budget_player_t *player, const wh_study_t *study) 
     player->point_size = WH_SPREADS * study->layout->station_count;
     player->given.stations = wh_array_new(study->layout->station_count, sizeof *player->given.stations);
     player->given.wafers = wh_array_new(study->layout->wafer_count, sizeof *player->given.wafers);
+    player->given.rims = wh_array_new(study->layout->wafer_count, sizeof *player->given.rims);
     player->errors.given = &player->given;
     player->layout.errors = &player->errors;
     player->point = wh_array_new(player->point_size, sizeof *player->point);
@@ -78,6 +81,7 @@ void wh_budget_player_close(wh_budget_player_t *player) {
     wh_tally_free(&player->tally);
     free(player->given.stations);
     free(player->given.wafers);
+    free(player->given.rims);
     free(player->point);
     free(player->texts);
     free(player->errors_by_name);

@@ -1,5 +1,6 @@
 #include "causes.h"
 
+#include "../layout/beam_errors.h"
 #include "../text/array.h"
 
 #define COMPONENTS 6
@@ -12,7 +13,7 @@ typedef struct {
 static void add(list_t *list, wh_cause_kind_t kind, size_t index, size_t component, double width) {
     if (width > 0) {
         list->causes = wh_array_grow(list->causes, list->count, &list->capacity, sizeof *list->causes);
-        list->causes[list->count++] = (wh_cause_t){kind, index, component, width};
+        list->causes[list->count++] = (wh_cause_t){kind, index, component, WH_NONE, width};
     }
 }
 
@@ -27,6 +28,22 @@ static void add_spreads(list_t *list, wh_cause_kind_t kind, size_t index, const 
     }
 }
 
+/* With several robots: where each that serves the station was taught it, then how it stands. */
+static void add_taught(list_t *list, const wh_layout_t *layout, size_t station, const wh_spreads_t *spreads) {
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        for (size_t i = 0; i < 3 && layout->stations[station].by[r].serves; ++i) {
+            const size_t before = list->count;
+            add(list, WH_CAUSE_STATION, station, i, spreads->of[i].width);
+            for (size_t added = before; added < list->count; ++added) {
+                list->causes[added].robot = (int32_t)r;
+            }
+        }
+    }
+    for (size_t i = 3; i < COMPONENTS; ++i) {
+        add(list, WH_CAUSE_STATION, station, i, spreads->of[i].width);
+    }
+}
+
 /* Only what the wafer's rim has. */
 static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
     for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
@@ -35,12 +52,23 @@ static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
     }
 }
 
+/* Faces are not off in their block. */
+static void add_beam(list_t *list, const wh_layout_t *layout, size_t beam) {
+    for (size_t i = 0; layout->doors[beam].kind == WH_DOOR_LIGHT && i < WH_BEAM_DRAWS; ++i) {
+        add(list, WH_CAUSE_BEAM, beam, i, layout->errors->beams[beam].of[i].width);
+    }
+}
+
 static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         add_spreads(list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        add_spreads(list, WH_CAUSE_STATION, s, &errors->stations[s]);
+        if (layout->robot_count > 1) {
+            add_taught(list, layout, s, &errors->stations[s]);
+        } else {
+            add_spreads(list, WH_CAUSE_STATION, s, &errors->stations[s]);
+        }
     }
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         add(list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
@@ -48,6 +76,9 @@ static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *
     add(list, WH_CAUSE_VACUUM, 0, 0, errors->vacuum.width);
     for (size_t w = 0; errors->rims && w < layout->wafer_count; ++w) {
         add_rim(list, layout, w);
+    }
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        add_beam(list, layout, b);
     }
 }
 
@@ -58,6 +89,15 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
     }
     *count = list.count;
     return list.causes;
+}
+
+static wh_displacement_t draw_station(const wh_errors_t *errors, const wh_trial_t *trial,
+                                      const wh_cause_t *cause) {
+    if (cause->robot == WH_NONE) {
+        return wh_errors_draw_station(errors, trial, cause->index);
+    }
+    return (wh_displacement_t){wh_errors_draw_taught(errors, trial, cause->index, (size_t)cause->robot),
+                               {0, 0, 0}};
 }
 
 static double component_of(const wh_displacement_t *drawn, size_t component) {
@@ -71,6 +111,24 @@ static double draw_rim(const wh_layout_t *layout, const wh_trial_t *trial, const
     return drawn[cause->component];
 }
 
+static double draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, const wh_cause_t *cause) {
+    double drawn[WH_BEAM_DRAWS];
+    wh_errors_draw_beam(errors, trial, cause->index, drawn);
+    return drawn[cause->component];
+}
+
+static bool is_displacement(wh_cause_kind_t kind) {
+    return kind == WH_CAUSE_WAFER || kind == WH_CAUSE_STATION;
+}
+
+static double draw_other(const wh_layout_t *layout, const wh_trial_t *trial, const wh_cause_t *cause) {
+    const wh_errors_t *errors = layout->errors;
+    return cause->kind == WH_CAUSE_VALVE    ? wh_errors_draw_valve(errors, trial, cause->index)
+           : cause->kind == WH_CAUSE_VACUUM ? wh_errors_draw_vacuum(errors, trial)
+           : cause->kind == WH_CAUSE_RIM    ? draw_rim(layout, trial, cause)
+                                            : draw_beam(errors, trial, cause);
+}
+
 /* A displacement is drawn once, for all of its components that follow each other. */
 void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
                     const wh_trial_t *trial, double drawn[]) {
@@ -78,20 +136,17 @@ void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *
     wh_displacement_t last = {0};
     for (size_t i = 0; i < count; ++i) {
         const wh_cause_t *cause = &causes[i];
-        const bool goes_on =
-            i > 0 && causes[i - 1].kind == cause->kind && causes[i - 1].index == cause->index;
-        if (cause->kind == WH_CAUSE_VALVE) {
-            drawn[i] = wh_errors_draw_valve(errors, trial, cause->index);
-        } else if (cause->kind == WH_CAUSE_VACUUM) {
-            drawn[i] = wh_errors_draw_vacuum(errors, trial);
-        } else if (cause->kind == WH_CAUSE_RIM) {
-            drawn[i] = draw_rim(layout, trial, cause);
-        } else {
-            last = goes_on                         ? last
-                   : cause->kind == WH_CAUSE_WAFER ? wh_errors_draw_wafer(errors, trial, cause->index)
-                                                   : wh_errors_draw_station(errors, trial, cause->index);
-            drawn[i] = component_of(&last, cause->component);
+        const bool goes_on = i > 0 && causes[i - 1].kind == cause->kind &&
+                             causes[i - 1].index == cause->index && causes[i - 1].robot == cause->robot;
+        if (!is_displacement(cause->kind)) {
+            drawn[i] = draw_other(layout, trial, cause);
+            continue;
         }
+        if (!goes_on) {
+            last = cause->kind == WH_CAUSE_WAFER ? wh_errors_draw_wafer(errors, trial, cause->index)
+                                                 : draw_station(errors, trial, cause);
+        }
+        drawn[i] = component_of(&last, cause->component);
     }
 }
 
@@ -101,6 +156,7 @@ const char *wh_cause_what(const wh_cause_t *cause) {
     return cause->kind == WH_CAUSE_WAFER     ? wafer[cause->component]
            : cause->kind == WH_CAUSE_STATION ? station[cause->component]
            : cause->kind == WH_CAUSE_RIM     ? wh_rim_draw_name((wh_rim_draw_t)cause->component)
+           : cause->kind == WH_CAUSE_BEAM    ? wh_beam_draw_name((wh_beam_draw_t)cause->component)
            : cause->kind == WH_CAUSE_VALVE   ? "valve"
                                              : "vacuum";
 }
@@ -111,14 +167,23 @@ static bool is_delay(const wh_cause_t *cause) {
 
 bool wh_cause_has_sign(const wh_cause_t *cause) {
     const bool is_rim = cause->kind == WH_CAUSE_RIM;
-    return !is_delay(cause) && !(is_rim && wh_rim_draw_is_size((wh_rim_draw_t)cause->component));
+    const bool is_beam = cause->kind == WH_CAUSE_BEAM;
+    return !is_delay(cause) && !(is_rim && wh_rim_draw_is_size((wh_rim_draw_t)cause->component)) &&
+           !(is_beam && wh_beam_draw_is_size((wh_beam_draw_t)cause->component));
 }
 
 const char *wh_cause_unit(const wh_cause_t *cause) {
     if (cause->kind == WH_CAUSE_RIM) {
         return wh_rim_draw_unit((wh_rim_draw_t)cause->component);
     }
+    if (cause->kind == WH_CAUSE_BEAM) {
+        return wh_beam_draw_unit((wh_beam_draw_t)cause->component);
+    }
     return is_delay(cause) ? "s" : cause->component < 3 ? "mm" : "deg";
+}
+
+const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
+    return cause->robot == WH_NONE ? NULL : layout->robots[cause->robot].name;
 }
 
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
@@ -126,5 +191,6 @@ const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
     return is_wafer                          ? layout->wafers[cause->index].name
            : cause->kind == WH_CAUSE_STATION ? layout->stations[cause->index].name
            : cause->kind == WH_CAUSE_VALVE   ? layout->grippers[cause->index].name
+           : cause->kind == WH_CAUSE_BEAM    ? layout->beams[cause->index].name
                                              : NULL;
 }

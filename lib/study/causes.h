@@ -9,16 +9,18 @@ typedef enum {
     WH_CAUSE_STATION,
     WH_CAUSE_VALVE,
     WH_CAUSE_VACUUM,
-    WH_CAUSE_RIM
+    WH_CAUSE_RIM,
+    WH_CAUSE_BEAM
 } wh_cause_kind_t;
 
 typedef struct {
     wh_cause_kind_t kind;
-    size_t index; /* of the wafer, station or gripper */
-    /* Of a wafer's or station's displacement: x, y, z, then the turns about them; of a rim a
-     * wh_rim_draw_t. */
+    size_t index; /* of the wafer, station, gripper or beam */
+    /* Of a wafer's or station's displacement: x, y, z, then the turns about them; of a rim a wh_rim_draw_t,
+     * of a beam a wh_beam_draw_t. */
     size_t component;
-    double width; /* mm, degrees, s; of a part without a unit */
+    int32_t robot; /* of several, that was taught the station so; WH_NONE */
+    double width;  /* mm, degrees, s; of a part without a unit */
 } wh_cause_t;
 
 /* Those of a layout, in the order of `kind`, `index` and `component`. To be freed. Memory that runs out ends
@@ -29,15 +31,18 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count);
 void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
                     const wh_trial_t *trial, double drawn[]);
 
-/* What is drawn, as "dx", "tilt_x", "yaw", "valve", "vacuum" or "notch_depth", and its unit: "mm", "deg", "s"
- * or "". Both are constant texts. */
+/* What is drawn, as "dx", "tilt_x", "yaw", "valve", "vacuum", "notch_depth" or "late", and its unit: "mm",
+ * "deg", "s" or "". Both are constant texts. */
 const char *wh_cause_what(const wh_cause_t *cause);
 const char *wh_cause_unit(const wh_cause_t *cause);
 
 /* True if what is drawn may be below 0. */
 bool wh_cause_has_sign(const wh_cause_t *cause);
 
-/* Of whom: the name of the wafer, station or gripper; null for the vacuum, which is all grippers'. */
+/* The robot's name; null: it is of no one robot. */
+const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout);
+
+/* Of whom: the name of the wafer, station, gripper or beam; null for the vacuum, which is all grippers'. */
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout);
 
 #endif

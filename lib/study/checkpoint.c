@@ -11,7 +11,7 @@
 #include "../text/json.h"
 #include "../text/output.h"
 
-#define FORMAT 2
+#define FORMAT 3
 
 /* -------------------------------------------------------------------------------------------- which study */
 
@@ -19,16 +19,55 @@ static json_t *parameter(const void *subject, size_t i) {
     return wh_json_text(((const wh_script_run_options_t *)subject)->parameters[i]);
 }
 
+/* The hash of each file that was read, by its path. */
+static json_t *files_of(const wh_study_t *study) {
+    json_t *files = json_object();
+    for (size_t i = 0; i < study->input_count; ++i) {
+        wh_json_put(files, study->inputs[i].path, wh_json_hash(study->inputs[i].hash));
+    }
+    return files;
+}
+
 /* In the order in which a difference is told. */
 static json_t *identity_of(const wh_study_t *study) {
     const wh_script_run_options_t *run = &study->run;
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION, "script",
-        wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
-        wh_json_hash(study->seed), "parameters", wh_json_list(parameter, run, run->parameter_count),
-        "script_text", wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
-        "budget", (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
-        "run_without_errors", wh_json_hash(study->nominal.record.hash));
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION, "script",
+                     wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
+                     wh_json_hash(study->seed), "parameters",
+                     wh_json_list(parameter, run, run->parameter_count), "files", files_of(study), "budget",
+                     (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
+                     "run_without_errors", wh_json_hash(study->nominal.record.hash));
+}
+
+/* The first file that one of the two has otherwise; null: none. */
+static const char *find_changed(json_t *found, json_t *expected) {
+    json_t *const both[2] = {expected, found};
+    for (int i = 0; i < 2; ++i) {
+        const char *path;
+        json_t *hash;
+        json_object_foreach(both[i], path, hash) {
+            if (!json_equal(hash, json_object_get(both[1 - i], path))) {
+                return path;
+            }
+        }
+    }
+    return NULL;
+}
+
+static void tell_difference(const char *key, json_t *found, json_t *expected, char *message, size_t size) {
+    const char *changed =
+        json_is_object(expected) && json_is_object(found) ? find_changed(found, expected) : NULL;
+    char *one = found ? json_dumps(found, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+    char *two = json_dumps(expected, JSON_ENCODE_ANY | JSON_COMPACT);
+    if (changed) {
+        snprintf(message, size, "of another study: %.900s has changed since (expected the same files)",
+                 changed);
+    } else {
+        snprintf(message, size, "of another study: its %s is %.200s (expected %.200s)", key,
+                 one ? one : "nothing", two);
+    }
+    free(one);
+    free(two);
 }
 
 /* True if it is this study's; else the message tells the first difference. */
@@ -38,14 +77,9 @@ static bool is_same(const json_t *found, const wh_study_t *study, char *message,
     json_t *value;
     bool same = true;
     json_object_foreach(expected, key, value) {
-        const json_t *other = json_object_get(found, key);
-        if (same && (!other || !json_equal(other, value))) {
-            char *one = other ? json_dumps(other, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
-            char *two = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
-            snprintf(message, size, "of another study: its %s is %.200s (expected %.200s)", key,
-                     one ? one : "nothing", two);
-            free(one);
-            free(two);
+        json_t *other = json_object_get(found, key);
+        if (same && !json_equal(other, value)) {
+            tell_difference(key, other, value, message, size);
             same = false;
         }
     }
@@ -157,19 +191,33 @@ static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
 /* Infinite is null. */
 static json_t *put_worst(const void *subject, size_t i) {
     const wh_tally_trial_t *trial = &((const wh_tally_t *)subject)->worst[i];
-    return json_pack("[I, b, o]", (json_int_t)trial->trial, trial->met, wh_json_real(trial->off));
+    return json_pack("[I, b, o, b, I, I, I, I, I]", (json_int_t)trial->trial, trial->met,
+                     wh_json_real(trial->off), trial->ended, (json_int_t)trial->missed,
+                     (json_int_t)trial->errors, (json_int_t)trial->elsewhere, (json_int_t)trial->kinds,
+                     (json_int_t)trial->missed_line);
 }
 
 static bool take_worst(const json_t *list, wh_tally_t *tally) {
     bool sound = json_is_array(list) && json_array_size(list) <= WH_STUDY_WORST;
     for (size_t i = 0; sound && i < json_array_size(list); ++i) {
         json_int_t number;
-        int met;
+        json_int_t counts[5];
+        int met, ended;
         const json_t *off;
-        sound = json_unpack(json_array_get(list, i), "[I, b, o]", &number, &met, &off) == 0 && number >= 0;
+        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I]", &number, &met, &off,
+                            &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4]) == 0 &&
+                number >= 0;
         if (sound) {
-            const wh_tally_trial_t trial = {(uint64_t)number, met != 0,
-                                            json_is_null(off) ? (double)INFINITY : json_number_value(off)};
+            const wh_tally_trial_t trial = {.trial = (uint64_t)number,
+                                            .met = met != 0,
+                                            .ended = ended != 0,
+                                            .missed = (uint32_t)counts[0],
+                                            .errors = (uint32_t)counts[1],
+                                            .elsewhere = (uint32_t)counts[2],
+                                            .kinds = (uint32_t)counts[3],
+                                            .missed_line = (uint32_t)counts[4],
+                                            .off = json_is_null(off) ? (double)INFINITY
+                                                                     : json_number_value(off)};
             wh_tally_note_worst(tally, &trial);
         }
     }

@@ -1,8 +1,9 @@
 /* A study's progress as text: in a file, to go on from, and on its way to another rank.
  *
- * JSON. `study` says which study it is of: version, script, layout, parameters, seed, and a hash of each
- * file's text and of the run without errors. How many trials there are to be is no part of it: a study can be
- * extended. `done` has the first and the last trial of each stretch that is done; the rest is the tally.
+ * JSON. `study` says which study it is of: version, script, layout, parameters, seed, and hashes of the
+ * run without errors and of each file that it read: modules and meshes, too. How many trials there are to be
+ * is no part of it: a study can be extended. `done` has the first and the last trial of each
+ * stretch that is done; the rest is the tally.
  */
 #ifndef WH_STUDY_CHECKPOINT_H
 #define WH_STUDY_CHECKPOINT_H

@@ -1,9 +1,11 @@
 #include "lines.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../grasp/event.h"
 #include "../text/array.h"
 
 enum { MET = 1, WHOLE = 2, ENDED = 4 };
@@ -96,6 +98,8 @@ char *wh_trial_lines_text(const wh_trial_lines_t *lines) {
         put(out, line->errors, ' ');
         put(out, line->complaints, ' ');
         put(out, line->elsewhere, ' ');
+        put(out, line->kinds, ' ');
+        put(out, line->missed_line, ' ');
         put_real(out, line->off);
         for (size_t e = 0; e < width; ++e) {
             put_real(out, lines->ends[i * width + e]);
@@ -126,9 +130,9 @@ static bool take_real(const char **text, double *value) {
 bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count) {
     bool sound = true;
     while (sound && *text != '\0') {
-        uint64_t numbers[6] = {0};
+        uint64_t numbers[8] = {0};
         double off = 0;
-        for (size_t i = 0; sound && i < 6; ++i) {
+        for (size_t i = 0; sound && i < 8; ++i) {
             sound = take(&text, &numbers[i]);
         }
         sound = sound && take_real(&text, &off);
@@ -140,6 +144,8 @@ bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer
                                       (uint32_t)numbers[3],
                                       (uint32_t)numbers[4],
                                       (uint32_t)numbers[5],
+                                      (uint32_t)numbers[6],
+                                      (uint32_t)numbers[7],
                                       off};
         double *ends = wh_trial_lines_add(lines, &line, wafer_count);
         for (size_t e = 0; sound && e < wafer_count * WH_TRIAL_LINE_ENDS; ++e) {
@@ -147,4 +153,55 @@ bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer
         }
     }
     return sound;
+}
+
+/* ---------------------------------------------------------------------------------------------------- why */
+
+/* What a reason is made of. */
+typedef struct {
+    char *text;
+    size_t size, length;
+} reason_t;
+
+__attribute__((format(printf, 2, 3))) static void add_reason(reason_t *reason, const char *format, ...) {
+    va_list arguments;
+    char one[100];
+    va_start(arguments, format);
+    (void)vsnprintf(one, sizeof one, format, arguments);
+    va_end(arguments);
+    if (reason->length < reason->size) {
+        reason->length += (size_t)snprintf(reason->text + reason->length, reason->size - reason->length,
+                                           "%s%s", reason->length > 0 ? ", " : "", one);
+    }
+}
+
+static const char *plural(uint32_t count) {
+    return count == 1 ? "" : "s";
+}
+
+void wh_trial_line_why(const wh_trial_line_t *trial, char *why, size_t size) {
+    reason_t reason = {why, size, 0};
+    why[0] = '\0';
+    if (trial->met) {
+        return;
+    }
+    if (trial->ended) {
+        add_reason(&reason, "ended by an error");
+    } else if (trial->errors > 0) {
+        add_reason(&reason, "%u command%s failed", trial->errors, plural(trial->errors));
+    }
+    if (trial->missed > 0) {
+        add_reason(&reason, "line %u missed", trial->missed_line);
+    }
+    if (trial->missed > 1) {
+        add_reason(&reason, "%u more", trial->missed - 1);
+    }
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        if ((trial->kinds >> kind & 1U) != 0) {
+            add_reason(&reason, "%s", wh_event_name((wh_event_kind_t)kind));
+        }
+    }
+    if (trial->elsewhere > 0) {
+        add_reason(&reason, "%u wafer%s elsewhere", trial->elsewhere, plural(trial->elsewhere));
+    }
 }

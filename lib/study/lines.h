@@ -15,6 +15,8 @@ typedef struct {
     bool met, whole, ended;
     uint32_t missed, errors, complaints; /* expectations, commands, events of the cell */
     uint32_t elsewhere;                  /* wafers */
+    uint32_t kinds;                      /* of the complaints: bit wh_event_kind_t of each */
+    uint32_t missed_line;                /* of the first expectation that was missed; 0: none */
     double off; /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
 } wh_trial_line_t;
 
@@ -43,5 +45,10 @@ char *wh_trial_lines_text(const wh_trial_lines_t *lines);
 
 /* Adds those of such a text. False if it is none, then some may have been added. */
 bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count);
+
+/* Why a trial is not ok, in a few words: "line 9 missed, hit, 1 wafer elsewhere". Empty if it is ok.
+ * Writes at most `size` bytes. */
+#define WH_TRIAL_LINE_WHY 400
+void wh_trial_line_why(const wh_trial_line_t *trial, char *why, size_t size);
 
 #endif

@@ -23,6 +23,12 @@ typedef struct {
     wh_place_t place;
 } wh_study_wafer_t;
 
+/* A file that was looked for: script, layout, a module of theirs, a mesh; hash is 0 if it is not there. */
+typedef struct {
+    char *path;
+    uint64_t hash;
+} wh_study_input_t;
+
 /* What all trials share; nothing of it changes while they run, so any thread may read it. */
 typedef struct {
     wh_script_run_options_t run; /* script, parameters, limits; without decisions and trial */
@@ -36,8 +42,9 @@ typedef struct {
     size_t wafer_count;
     wh_cause_t *causes; /* what is drawn */
     size_t cause_count;
-    uint64_t lines;                    /* a line is kept of each trial below this (study/lines.h) */
-    uint64_t script_hash, layout_hash; /* of the files' text */
+    uint64_t lines;           /* a line is kept of each trial below this (study/lines.h) */
+    wh_study_input_t *inputs; /* the files that the run without errors looked for */
+    size_t input_count, input_capacity;
 } wh_study_t;
 
 /* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed, trials and, if the
@@ -45,5 +52,11 @@ typedef struct {
  * reason on stderr, when script, layout or study are not usable, or when nothing is checked. */
 bool wh_study_open(wh_study_t *study);
 void wh_study_close(wh_study_t *study);
+
+/* True if sensors with noise of their own are asked. Of an open study. */
+bool wh_study_has_noise(const wh_study_t *study);
+
+/* True if no width is above 0, so that trials differ in the noise of sensors alone. Of an open study. */
+bool wh_study_is_of_noise(const wh_study_t *study);
 
 #endif

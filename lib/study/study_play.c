@@ -33,17 +33,29 @@ static bool refuse(const char *path, const char *text) {
     return false;
 }
 
-static bool hash_file(const char *path, uint64_t *hash) {
+/* 0: it cannot be read. */
+static uint64_t hash_file(const char *path) {
     FILE *file = fopen(path, "r");
-    if (!file) {
-        return refuse(path, strerror(errno));
+    uint64_t hash = file ? WH_HASH_START : 0;
+    if (file) {
+        for (int c = fgetc(file); c != EOF; c = fgetc(file)) {
+            hash = wh_hash_word(hash, (uint64_t)c);
+        }
+        fclose(file);
     }
-    *hash = WH_HASH_START;
-    for (int c = fgetc(file); c != EOF; c = fgetc(file)) {
-        *hash = wh_hash_word(*hash, (uint64_t)c);
+    return hash;
+}
+
+static void add_input(void *user, const char *path) {
+    wh_study_t *study = user;
+    for (size_t i = 0; i < study->input_count; ++i) {
+        if (strcmp(study->inputs[i].path, path) == 0) {
+            return;
+        }
     }
-    fclose(file);
-    return true;
+    study->inputs =
+        wh_array_grow(study->inputs, study->input_count, &study->input_capacity, sizeof *study->inputs);
+    study->inputs[study->input_count++] = (wh_study_input_t){wh_text_copy(path), hash_file(path)};
 }
 
 static bool is_known(const wh_study_t *study, int32_t wafer) {
@@ -101,9 +113,31 @@ static bool checks_nothing(const wh_study_t *study) {
            (record->slices == 0 || !study->layout->collision);
 }
 
-/* Without widths all trials are alike, unless edge sensors have noise of their own. */
+static bool has_noise(const wh_layout_t *layout) {
+    bool is_noisy = false;
+    for (size_t i = 0; i < layout->scanner_count; ++i) {
+        is_noisy = is_noisy || layout->scanners[i].sensor.noise > 0;
+    }
+    for (size_t w = 0; layout->scanner_count > 0 && w < layout->wafer_count; ++w) {
+        is_noisy = is_noisy || layout->rims[w]->transmission > 0;
+    }
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        is_noisy = is_noisy || layout->doors[b].jitter > 0 || layout->doors[b].noise > 0;
+    }
+    return is_noisy;
+}
+
+bool wh_study_has_noise(const wh_study_t *study) {
+    return has_noise(study->layout) && study->decisions.unfit;
+}
+
+bool wh_study_is_of_noise(const wh_study_t *study) {
+    return !study->draws_nothing && study->cause_count == 0 && wh_study_has_noise(study);
+}
+
+/* Without widths all trials are alike, unless sensors have noise of their own, and are asked. */
 static bool draws_something(const wh_study_t *study) {
-    return study->draws_nothing || study->cause_count > 0 || study->layout->scanner_count > 0 ||
+    return study->draws_nothing || study->cause_count > 0 || wh_study_is_of_noise(study) ||
            refuse(study->layout->path,
                   "study: nothing is drawn, so that all trials are alike (expected a width "
                   "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
@@ -126,10 +160,18 @@ static bool is_fit(const wh_study_t *study) {
     return true;
 }
 
+/* True if errors could change where several robots go. */
+static bool goes_elsewhere(const wh_study_t *study) {
+    return study->layout->robot_count > 1 && !study->draws_nothing;
+}
+
 bool wh_study_open(wh_study_t *study) {
     wh_script_run_options_t options = study->run;
     options.decisions = &study->decisions;
-    if (wh_script_run(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
+    wh_output_hear_inputs(add_input, study);
+    const wh_script_run_outcome_t outcome = wh_script_run(&study->nominal, &options);
+    wh_output_hear_inputs(NULL, NULL);
+    if (outcome == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", study->nominal.message);
         return false;
     }
@@ -137,17 +179,19 @@ bool wh_study_open(wh_study_t *study) {
     if (!is_fit(study)) {
         return false;
     }
-    study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
+    study->whole = study->layout->collision ? "collisions are looked for"
+                   : goes_elsewhere(study)  ? "where each robot was taught its stations"
+                                            : study->decisions.unfit;
     choose_wafers(study);
     study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
-    if (!draws_something(study) || !choose_lines(study)) {
-        return false;
-    }
-    return hash_file(study->run.script, &study->script_hash) &&
-           hash_file(study->layout->path, &study->layout_hash);
+    return draws_something(study) && choose_lines(study);
 }
 
 void wh_study_close(wh_study_t *study) {
+    for (size_t i = 0; i < study->input_count; ++i) {
+        free(study->inputs[i].path);
+    }
+    free(study->inputs);
     wh_decisions_free(&study->decisions);
     free(study->causes);
     wh_script_run_close(&study->nominal);

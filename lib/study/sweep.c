@@ -7,6 +7,7 @@
 
 #include "../record/throughput.h"
 #include "../text/array.h"
+#include "../text/interrupt.h"
 
 #define REASON_BYTES 1100
 
@@ -57,7 +58,7 @@ static bool add_axis(wh_script_sweep_t *sweep, const char *parameter) {
         return refuse(parameter, "too many values (expected at most 10000 runs)");
     }
     wh_sweep_axis_t *axis = &sweep->axes[sweep->axis_count++];
-    *axis = (wh_sweep_axis_t){wh_text_copy(parameter), numbers[0], numbers[1], (size_t)steps + 1};
+    *axis = (wh_sweep_axis_t){wh_text_copy(parameter), numbers[0], numbers[1], numbers[2], (size_t)steps + 1};
     axis->name[length] = '\0';
     return true;
 }
@@ -139,13 +140,8 @@ static char **parameters_of(const wh_script_sweep_t *sweep, size_t point) {
     return made;
 }
 
-static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
-    const wh_throughput_t throughput = wh_throughput(record);
-    point->simulated_s = record->simulated_s;
-    point->hash = record->hash;
-    if (throughput.figure == WH_FIGURE_GIVEN) {
-        point->wafers_per_hour = throughput.wafers_per_hour;
-    }
+/* How near the picks came to their limits. */
+static void measure_picks(const wh_record_t *record, wh_sweep_point_t *point) {
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
         if (event->kind == WH_EVENT_PICKED) {
@@ -154,6 +150,20 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
             point->projz = isfinite(point->projz) ? fmax(point->projz, projz) : projz;
             point->projxy = isfinite(point->projxy) ? fmax(point->projxy, projxy) : projxy;
         }
+    }
+}
+
+static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
+    const wh_throughput_t throughput = wh_throughput(record);
+    point->simulated_s = record->simulated_s;
+    point->hash = record->hash;
+    if (throughput.figure == WH_FIGURE_GIVEN) {
+        point->wafers_per_hour = throughput.wafers_per_hour;
+    }
+    measure_picks(record, point);
+    point->checked = record->checked;
+    for (size_t i = 0; record->ok && i < record->command_count; ++i) {
+        point->caught = point->caught || record->commands[i].error != WH_OK;
     }
     for (size_t kind = 0; record->checked && kind < WH_CLEARANCES; ++kind) {
         point->gap = record->clearances[kind].parts[0] == WH_NONE
@@ -185,7 +195,7 @@ static void play(const wh_script_sweep_t *sweep, size_t i, wh_script_run_t *run)
     options.parameters = (const char *const *)parameters;
     options.parameter_count = sweep->parameter_count;
     const double none = HUGE_VAL;
-    *point = (wh_sweep_point_t){WH_SWEEP_OK, NULL, none, none, none, none, none, 0};
+    *point = (wh_sweep_point_t){WH_SWEEP_OK, NULL, none, none, none, none, none, false, false, 0};
     const wh_script_run_outcome_t outcome = wh_script_run(run, &options);
     if (outcome != WH_RUN_BAD_INPUT) {
         measure(&run->record, point);
@@ -202,7 +212,7 @@ static void *work(void *argument) {
     crew_t *crew = argument;
     wh_script_run_t *run = wh_array_new(1, sizeof *run);
     size_t i = __atomic_fetch_add(&crew->next, 1, __ATOMIC_RELAXED);
-    while (i < crew->sweep->point_count) {
+    while (i < crew->sweep->point_count && !wh_interrupt_came()) {
         play(crew->sweep, i, run);
         i = __atomic_fetch_add(&crew->next, 1, __ATOMIC_RELAXED);
     }
@@ -213,6 +223,10 @@ static void *work(void *argument) {
 bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads) {
     crew_t crew = {sweep, 0};
     const size_t wanted = threads < sweep->point_count ? threads : sweep->point_count;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        sweep->points[i].verdict = WH_SWEEP_UNDONE;
+    }
+    wh_interrupt_catch();
     pthread_t *started = wh_array_new(wanted, sizeof *started);
     size_t count = 0;
     while (count < wanted && pthread_create(&started[count], NULL, work, &crew) == 0) {

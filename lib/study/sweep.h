@@ -13,13 +13,14 @@
 /* A parameter that takes the values start, start + step, ... up to end. */
 typedef struct {
     char *name;
-    double start, step;
+    double start, step, end; /* the last value is below the end if the step does not lead to it */
     size_t count;
 } wh_sweep_axis_t;
 
 typedef enum {
     WH_SWEEP_OK,
     WH_SWEEP_FAILED, /* as of a run; or it moves nothing and expects nothing */
+    WH_SWEEP_UNDONE, /* interrupted before it */
     WH_SWEEP_BAD     /* script, layout or parameter cannot be used with these values */
 } wh_sweep_verdict_t;
 
@@ -30,6 +31,8 @@ typedef struct {
     double simulated_s, wafers_per_hour;
     double projz, projxy; /* mm, the largest at picks */
     double gap;           /* mm, the smallest of all, if collisions are looked for */
+    bool checked;         /* for collisions */
+    bool caught;          /* it is ok, and its script caught an error */
     uint64_t hash;
 } wh_sweep_point_t;
 
@@ -49,7 +52,8 @@ typedef struct {
 bool wh_sweep_open(wh_script_sweep_t *sweep);
 void wh_sweep_close(wh_script_sweep_t *sweep);
 
-/* Runs them all on so many threads. False, and the reason on stderr, if there is no thread. */
+/* Runs them all on so many threads, until wh_interrupt_came: those that are not begun then stay undone.
+ * False, and the reason on stderr, if there is no thread. */
 bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
 
 /* The value that a run has on an axis. */

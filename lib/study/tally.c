@@ -10,6 +10,7 @@
 void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     memset(tally, 0, sizeof *tally);
     tally->wafer_count = wafer_count;
+    tally->errors.by_text = true;
     tally->wafers = wh_array_new(wafer_count, sizeof *tally->wafers);
 }
 
@@ -32,10 +33,11 @@ void wh_tally_free(wh_tally_t *tally) {
 /* --------------------------------------------------------------------------------------------------- rows */
 
 /* The search begins behind the last row found: most trials come to their rows in the same order. */
-static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place) {
+static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place, const char *text) {
     for (size_t i = 0; i < rows->count; ++i) {
         const size_t index = (rows->next + i) % rows->count;
-        if (rows->rows[index].line == line && rows->rows[index].place == place) {
+        const wh_tally_row_t *row = &rows->rows[index];
+        if (row->line == line && row->place == place && (!rows->by_text || strcmp(row->text, text) == 0)) {
             rows->next = index + 1;
             return &rows->rows[index];
         }
@@ -44,7 +46,7 @@ static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place) {
 }
 
 wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named) {
-    wh_tally_row_t *row = find_row(rows, line, place);
+    wh_tally_row_t *row = find_row(rows, line, place, text);
     if (!row) {
         rows->rows = wh_array_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
         row = &rows->rows[rows->count++];
@@ -120,7 +122,8 @@ static int compare_rows(const void *a, const void *b) {
     const wh_tally_row_t *one = a;
     const wh_tally_row_t *other = b;
     const int lines = (one->line > other->line) - (one->line < other->line);
-    return lines != 0 ? lines : (one->place > other->place) - (one->place < other->place);
+    const int places = (one->place > other->place) - (one->place < other->place);
+    return lines != 0 ? lines : places != 0 ? places : strcmp(one->text, other->text);
 }
 
 static void sort_rows(wh_tally_rows_t *rows) {
@@ -229,19 +232,25 @@ static void add_wafers(wh_tally_t *tally, const wh_study_t *study, const wh_outc
 static void count_troubles(const wh_outcome_t *outcome, wh_trial_line_t *line) {
     const wh_record_t *record = outcome->record;
     for (size_t i = 0; i < record->expectation_count; ++i) {
-        line->missed += record->expectations[i].ok ? 0 : 1;
+        if (!record->expectations[i].ok) {
+            line->missed_line =
+                line->missed == 0 ? (uint32_t)record->expectations[i].line : line->missed_line;
+            ++line->missed;
+        }
     }
     for (size_t i = 0; i < record->command_count; ++i) {
         line->errors += record->commands[i].error != WH_OK ? 1 : 0;
     }
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        line->complaints += wh_record_is_complaint((wh_event_kind_t)kind) ? outcome->events[kind] : 0;
+        if (wh_record_is_complaint((wh_event_kind_t)kind) && outcome->events[kind] > 0) {
+            line->complaints += outcome->events[kind];
+            line->kinds |= UINT32_C(1) << kind;
+        }
     }
 }
 
 static void add_line(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome,
-                     wh_trial_line_t *line) {
-    count_troubles(outcome, line);
+                     const wh_trial_line_t *line) {
     double *ends = wh_trial_lines_add(&tally->lines, line, study->wafer_count);
     for (size_t w = 0; w < study->wafer_count; ++w) {
         const wh_place_t *place = &outcome->wafers[w].place;
@@ -272,11 +281,11 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
     wh_causes_draw(study->causes, study->cause_count, study->layout, &name, tally->relations.drawn);
     wh_relations_add(&tally->relations, !line.met);
     add_wafers(tally, study, outcome, &line);
+    count_troubles(outcome, &line);
     if (outcome->trial < study->lines) {
         add_line(tally, study, outcome, &line);
     }
-    const wh_tally_trial_t trial = {line.trial, line.met, line.off};
-    wh_tally_note_worst(tally, &trial);
+    wh_tally_note_worst(tally, &line);
 }
 
 void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other) {

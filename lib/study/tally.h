@@ -40,15 +40,12 @@ typedef struct {
 typedef struct {
     wh_tally_row_t *rows;
     size_t count, capacity;
-    size_t next; /* where the next search begins */
+    size_t next;  /* where the next search begins */
+    bool by_text; /* rows of other texts are others, too */
 } wh_tally_rows_t;
 
 /* One of the worst trials. */
-typedef struct {
-    uint64_t trial;
-    bool met;
-    double off; /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
-} wh_tally_trial_t;
+typedef wh_trial_line_t wh_tally_trial_t;
 
 /* To be zeroed, then given its wafers. */
 typedef struct {
@@ -85,10 +82,12 @@ void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t
 /* All that another has counted. The result does not depend on order, to the last bit. */
 void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other);
 
-/* Puts expectations and errors in the order of line and place, and lines in that of trials, to be printed. */
+/* Puts expectations and errors in the order of line, place and text, and lines in that of trials, to be
+ * printed. */
 void wh_tally_sort(wh_tally_t *tally);
 
-/* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. */
+/* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. Errors of
+ * other commands in the same line, as a loop makes them, have rows of their own. */
 wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named);
 
 /* Puts a trial among the worst, if it is one of them: failed ones before others, then by `off`, then the

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/doors.h"
 #include "../math/hash.h"
 #include "../text/array.h"
 
@@ -16,7 +17,10 @@ void wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
     worker->room.start = wh_array_new(layout->wafer_count, sizeof *worker->room.start);
     worker->room.rims = wh_array_new(layout->wafer_count, sizeof *worker->room.rims);
     worker->room.rim_of = wh_array_new(layout->wafer_count, sizeof(const wh_rim_t *));
+    worker->room.edge_wafers = wh_array_new(layout->wafer_count, sizeof *worker->room.edge_wafers);
+    worker->room.supports = wh_array_new(wh_layout_count_supports(layout), sizeof *worker->room.supports);
     worker->wafers = wh_array_new(layout->wafer_count, sizeof *worker->wafers);
+    worker->grips.seen = wh_array_new(wh_layout_seen(layout), sizeof *worker->grips.seen);
 }
 
 void wh_worker_close(wh_worker_t *worker) {
@@ -24,7 +28,10 @@ void wh_worker_close(wh_worker_t *worker) {
     free(worker->room.start);
     free(worker->room.rims);
     free(worker->room.rim_of);
+    free(worker->room.edge_wafers);
+    free(worker->room.supports);
     free(worker->wafers);
+    free(worker->grips.seen);
     free(worker->world.parts);
     free(worker->world.names);
     free(worker->world.known);
@@ -114,7 +121,9 @@ static bool set_up(wh_worker_t *worker) {
         worker->wafers, layout->wafer_count, worker->grippers, layout->machine.gripper_count, NULL, 0};
     memcpy(worker->wafers, worker->room.start, layout->wafer_count * sizeof *worker->wafers);
     return wh_simulator_init(&worker->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK &&
-           wh_simulator_set_physics(&worker->simulator, &layout->physics) == WH_OK;
+           wh_simulator_set_physics(&worker->simulator, &layout->physics) == WH_OK &&
+           wh_layout_give_doors(layout, &worker->simulator) == WH_OK &&
+           wh_layout_give_grips(layout, &worker->simulator, &worker->grips) == WH_OK;
 }
 
 static bool met_but_for_complaints(const wh_record_t *record) {
@@ -180,7 +189,8 @@ static void take_record(wh_worker_t *worker, const wh_record_t *record) {
 
 static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
     const wh_trial_t name = {worker->study->seed, trial};
-    worker->options.trial = &name;
+    /* Errors by name are given, not drawn: without any it is the plain run. */
+    worker->options.trial = worker->options.errors ? NULL : &name;
     begin(worker, trial);
     const wh_script_run_outcome_t outcome = wh_script_run(&worker->run, &worker->options);
     const bool usable = outcome != WH_RUN_BAD_INPUT && worker->run.record.wafers;

@@ -22,6 +22,7 @@ typedef struct {
     wh_trial_cell_t trial_cell;
     wh_trial_room_t room;
     wh_wafer_t *wafers;
+    wh_grips_room_t grips;
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_simulator_t simulator;
     wh_outcome_t outcome;

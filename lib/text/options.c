@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +50,19 @@ static void refuse(const wh_option_t *option, const char *text, const char *expe
     argp_error(state, "--%s: %s (expected %s)", option->name, text[0] != '\0' ? text : "nothing", expected);
 }
 
+static void refuse_number(const wh_option_t *option, const char *text, const struct argp_state *state) {
+    char expected[100];
+    const char *kind = option->kind == WH_OPTION_REAL ? "number" : "whole number";
+    if (option->kind == WH_OPTION_COUNT) {
+        (void)snprintf(expected, sizeof expected, "a whole number from %.0f to %" PRIu64, option->least,
+                       UINT64_MAX);
+    } else {
+        (void)snprintf(expected, sizeof expected, "a %s from %.10g to %.10g", kind, option->least,
+                       option->most);
+    }
+    refuse(option, text, option->expected ? option->expected : expected, state);
+}
+
 static void take_number(const wh_option_t *option, void *variable, const char *text,
                         const struct argp_state *state) {
     double real = 0;
@@ -56,7 +70,7 @@ static void take_number(const wh_option_t *option, void *variable, const char *t
     const bool taken =
         option->kind == WH_OPTION_COUNT ? read_count(option, text, &whole) : read_real(option, text, &real);
     if (!taken) {
-        refuse(option, text, option->expected, state);
+        refuse_number(option, text, state);
     }
     if (option->kind == WH_OPTION_REAL) {
         *(double *)variable = real;
@@ -65,7 +79,7 @@ static void take_number(const wh_option_t *option, void *variable, const char *t
     if (option->kind == WH_OPTION_WHOLE) {
         whole = (uint64_t)real;
         if ((double)whole < real) {
-            refuse(option, text, "a whole number", state);
+            refuse_number(option, text, state);
         }
     }
     *(uint64_t *)variable = whole;

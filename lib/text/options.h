@@ -3,7 +3,7 @@
  *     static const wh_option_t options[] = {
  *         {"json", 0, NULL, "Print JSON", WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
  *         {"rate", 0, "FACTOR", "Run free at this factor of real time", WH_OPTION_REAL,
- *          .variable = offsetof(arguments_t, rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+ *          .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
  *         {0}};
  *
  * Variables are found by their offsets within a structure, so that tables are constant and commands can share
@@ -34,9 +34,9 @@ typedef struct {
     const char *argument; /* as --help names it; null for a flag */
     const char *help;
     wh_option_kind_t kind;
-    size_t variable; /* offset */
-    double least, most;
-    const char *expected; /* of a number, in words: what is said of another one */
+    size_t variable;      /* offset */
+    double least, most;   /* of a number */
+    const char *expected; /* said of another number; null: what least and most say */
 } wh_option_t;
 
 /* Texts given by a list's option; they live as long as argv. To be freed by wh_option_list_free. */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../layout/collision.h"
+#include "../layout/arms.h"
 #include "../layout/inks.h"
 #include "../math/trig.h"
 #include "../text/array.h"
@@ -96,12 +96,15 @@ static void add_stations(wh_view_cell_t *cell) {
     }
 }
 
-static void add_robot(wh_view_cell_t *cell) {
-    static const char *const names[WH_ARM_BODIES] = {"base", "lift", "upper arm", "forearm", "hand"};
+static void add_robots(wh_view_cell_t *cell) {
     cell->links = (size_t)cell->bodies.load.num_links;
-    for (int32_t i = 0; i < WH_ARM_BODIES; ++i) {
-        (void)wh_view_bodies_add(&cell->bodies, "robot", names[i]);
-        add_parts(cell, 1U << WH_PART_ARM, i, NULL);
+    for (size_t i = 0; i < wh_layout_arms(cell->layout) * WH_ARM_BODIES; ++i) {
+        char name[2 * WH_NAME_SIZE];
+        wh_layout_name_body(cell->layout, i, "base", name, sizeof name);
+        if (wh_layout_has_body(cell->layout, i)) {
+            (void)wh_view_bodies_add(&cell->bodies, "robot", name);
+            add_parts(cell, 1U << WH_PART_ARM, (int32_t)i, NULL);
+        }
     }
 }
 
@@ -110,6 +113,14 @@ static void add_grippers(wh_view_cell_t *cell) {
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
         (void)wh_view_bodies_add(&cell->bodies, "grippers", cell->layout->grippers[g].name);
         add_parts(cell, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
+    }
+}
+
+static void add_doors(wh_view_cell_t *cell) {
+    cell->doors = (size_t)cell->bodies.load.num_links;
+    for (size_t d = 0; d < cell->layout->machine.door_count; ++d) {
+        (void)wh_view_bodies_add(&cell->bodies, "doors", cell->layout->door_list[d].name);
+        add_parts(cell, 1U << WH_PART_DOOR, (int32_t)d, NULL);
     }
 }
 
@@ -162,17 +173,23 @@ static void add_wafers(wh_view_cell_t *cell) {
 
 /* ----------------------------------------------------------------------------------------------- places */
 
-/* A gripper on the robot tells where the arm is; without one the arm stays at home. */
-static void place_robot(wh_view_cell_t *cell, const wh_pose_t base_from_grippers[]) {
-    const wh_layout_t *layout = cell->layout;
-    wh_pose_t bodies[WH_ARM_BODIES];
-    (void)wh_collision_effector(&layout->machine, base_from_grippers, &cell->base_from_effector);
-    wh_arm_place(&layout->shapes.arm, &cell->base_from_effector, bodies);
-    for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
-        wh_view_bodies_place(&cell->bodies, cell->links + i, &bodies[i]);
+static void place_robots(wh_view_cell_t *cell, const wh_pose_t base_from_grippers[]) {
+    size_t link = cell->links;
+    for (size_t i = 0; i < wh_layout_arms(cell->layout) * WH_ARM_BODIES; ++i) {
+        if (wh_layout_has_body(cell->layout, i)) {
+            wh_view_bodies_place(&cell->bodies, link++, &cell->robots.bodies[i]);
+        }
     }
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+    for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
         wh_view_bodies_place(&cell->bodies, cell->grippers + g, &base_from_grippers[g]);
+    }
+}
+
+static void place_doors(wh_view_cell_t *cell, const wh_doors_t *doors, const wh_real_t axes[]) {
+    wh_pose_t base_from_door[WH_DOORS];
+    wh_layout_place_doors(cell->layout, doors, axes, base_from_door);
+    for (size_t d = 0; d < cell->layout->machine.door_count; ++d) {
+        wh_view_bodies_place(&cell->bodies, cell->doors + d, &base_from_door[d]);
     }
 }
 
@@ -196,7 +213,9 @@ static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[], bool m
 
 void wh_view_cell_move(wh_view_cell_t *cell, const wh_view_look_t *look) {
     cell->bodies.draw.timestamp = look->utime / 1000;
-    place_robot(cell, look->base_from_grippers);
+    wh_links_follow(&cell->robots, cell->layout, look->base_from_grippers, look->axes, WH_LINKS_SAME);
+    place_robots(cell, look->base_from_grippers);
+    place_doors(cell, look->door_places, look->axes);
     place_wafers(cell, look->wafers, true);
 }
 
@@ -204,11 +223,12 @@ void wh_view_cell_rest(wh_view_cell_t *cell) {
     const wh_layout_t *layout = cell->layout;
     wh_real_t axes[WH_AXES] = {0};
     wh_pose_t base_from_grippers[WH_GRIPPERS];
-    memcpy(axes, layout->machine.robot.home, sizeof layout->machine.robot.home);
-    wh_robot_forward(axes, &cell->base_from_effector);
+    wh_machine_home(&layout->machine, axes);
+    wh_links_at(&cell->robots, layout, axes);
     wh_machine_grippers(&layout->machine, axes, base_from_grippers);
     cell->bodies.draw.timestamp = 0;
-    place_robot(cell, base_from_grippers);
+    place_robots(cell, base_from_grippers);
+    place_doors(cell, NULL, axes);
     place_wafers(cell, layout->start, false);
 }
 
@@ -220,8 +240,9 @@ void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_
     (void)wh_view_bodies_add(&cell->bodies, "obstacles", NULL);
     add_parts(cell, 1U << WH_PART_FIXED, WH_NONE, NULL);
     add_stations(cell);
-    add_robot(cell);
+    add_robots(cell);
     add_grippers(cell);
+    add_doors(cell);
     add_covers(cell);
     add_wafers(cell);
     wh_view_bodies_open(&cell->bodies);

@@ -1,7 +1,7 @@
 /* A cell as Drake's viewer takes it: bodies in one message (LOAD), where they are in another (DRAW).
  *
  * Bodies have a folder before their name, which the viewer shows as a tree: "robot::forearm", "stations::A",
- * "grippers::EE", "held::EE", "wafers::Wafer 1", "obstacles".
+ * "grippers::EE", "doors::OUTER", "held::EE", "wafers::Wafer 1", "obstacles".
  *
  * A body's colour is part of LOAD, and a LOAD that differs from the last makes the viewer begin anew. So a
  * wafer that is held gets its gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all
@@ -13,7 +13,8 @@
 #ifndef WH_VIEW_CELL_H
 #define WH_VIEW_CELL_H
 
-#include "../layout/layout.h"
+#include "../layout/doors.h"
+#include "../layout/links.h"
 #include "geometry.h"
 
 /* mm: beyond what the viewer's camera sees. */
@@ -22,23 +23,25 @@
 /* What to leave out of a cell that is too large for a message. */
 typedef enum { WH_VIEW_ALL, WH_VIEW_NO_LEDGES, WH_VIEW_BOXES, WH_VIEW_DETAILS } wh_view_detail_t;
 
-/* `links` is the index of the arm's first link among the bodies, and so on. */
+/* `links` is the index of the arms' first link among the bodies, and so on. */
 typedef struct {
     const wh_layout_t *layout; /* borrowed */
     wh_view_detail_t detail;
     wh_view_bodies_t bodies;
-    size_t links, grippers, covers, wafers;
+    size_t links, grippers, doors, covers, wafers;
     /* Of each part of the collision world, wafers included: its body, or WH_NONE, and its shape there. */
     int32_t (*shown)[2];
     int32_t hit[2];    /* the parts that are red, or WH_NONE */
     float plain[2][4]; /* their own colours */
-    wh_pose_t base_from_effector;
+    wh_links_t robots;
 } wh_view_cell_t;
 
 /* What the eye needs of a state. */
 typedef struct {
     int64_t utime;
     const wh_pose_t *base_from_grippers; /* as many as the layout has */
+    const wh_real_t *axes;               /* the machine's, as commanded; null: not known */
+    const wh_doors_t *door_places;       /* of the state; null: where the axes say */
     const wh_wafer_t *wafers;
 } wh_view_look_t;
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/arms.h"
 #include "../layout/inks.h"
 #include "../math/config.h"
 #include "../record/quaternion.h"
@@ -17,8 +18,8 @@ typedef struct {
     double last[4]; /* the last quaternion */
 } keyframes_t;
 
-/* Of the grippers, then of the links. */
-enum { FIRST_LINK = WH_GRIPPERS, PATHS = FIRST_LINK + WH_SIGNALS_LINKS };
+/* Of the grippers, then of the links, then of the doors. */
+enum { FIRST_LINK = WH_GRIPPERS, FIRST_DOOR = FIRST_LINK + WH_SIGNALS_LINKS, PATHS = FIRST_DOOR + WH_DOORS };
 
 /* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
@@ -32,6 +33,8 @@ typedef struct {
     bool animated;
     /* Poses of grippers and links where they are animated, on straight lines from one to the next. */
     wh_thin_t paths[PATHS];
+    int32_t bodies[WH_SIGNALS_LINKS]; /* of the links */
+    size_t link_count;
 } scene_t;
 
 /* Tolerances to begin with, and the number of points beyond which they grow, for grippers and for links. */
@@ -67,8 +70,13 @@ static void add_places(void *user, int64_t slice) {
         wh_signals_gripper(signals, g, slice, &gripper);
         wh_thin_add_pose(&scene->paths[g], slice, &gripper);
     }
+    for (size_t d = 0; d < signals->layout->machine.door_count; ++d) {
+        wh_pose_t door;
+        wh_signals_door(signals, d, slice, &door);
+        wh_thin_add_pose(&scene->paths[FIRST_DOOR + d], slice, &door);
+    }
     if (wh_signals_links(signals, slice, links)) {
-        for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+        for (size_t i = 0; i < scene->link_count; ++i) {
             wh_thin_add_pose(&scene->paths[FIRST_LINK + i], slice, &links[i]);
         }
     }
@@ -77,7 +85,7 @@ static void add_places(void *user, int64_t slice) {
 /* Cost: about 1 us for each place of wh_signals_walk. */
 static void trace_paths(scene_t *scene) {
     for (size_t i = 0; i < PATHS; ++i) {
-        const bool is_link = i >= FIRST_LINK;
+        const bool is_link = i >= FIRST_LINK && i < FIRST_DOOR;
         wh_thin_open(&scene->paths[i], 3, is_link ? LINK_MM : GRIPPER_MM, is_link ? LINK_RAD : GRIPPER_RAD,
                      is_link ? LINK_POINTS : GRIPPER_POINTS);
     }
@@ -144,6 +152,15 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     return parts;
 }
 
+/* Where a slice is between point `i` of the list and the next: from 0 to 1. */
+static double share_of(const wh_points_t *list, size_t i, int64_t slice) {
+    const int64_t from = list->points[i].slice;
+    const int64_t to = list->points[i + 1].slice;
+    const double share = to > from ? (double)(slice - from) / (double)(to - from) : 1;
+    return share < 0 ? 0 : share > 1 ? 1 : share;
+}
+
+/* From the slice of the stay to `end`, also where the gripper stands long before or after. */
 static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_thin_t *thin,
                      const wh_stay_t *stay, int64_t end) {
     const wh_points_t *list = &thin->list;
@@ -152,12 +169,18 @@ static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_
         if (next <= stay->slice) {
             continue;
         }
+        const double begin = share_of(list, i, stay->slice);
+        const double stop = share_of(list, i, end);
         const int parts = parts_of(stay, thin, i);
-        for (int part = list->points[i].slice < stay->slice ? 1 : 0; part < parts; ++part) {
-            add_held(motion, signals, stay, thin, i, (double)part / parts);
+        add_held(motion, signals, stay, thin, i, begin);
+        for (int part = 1; part < parts; ++part) {
+            const double share = (double)part / parts;
+            if (share > begin && share < stop) {
+                add_held(motion, signals, stay, thin, i, share);
+            }
         }
         if (next >= end || i + 2 == list->count) {
-            add_held(motion, signals, stay, thin, i, 1);
+            add_held(motion, signals, stay, thin, i, stop);
         }
     }
 }
@@ -249,7 +272,9 @@ static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
 static void add_base(scene_t *scene) {
     const wh_pose_t here = wh_pose_identity();
     body_t base = {0};
-    add_parts(scene, &base, 1U << WH_PART_ARM, WH_ARM_BASE, NULL);
+    if (!scene->layout->machine.carrier) { /* else the column is a link */
+        add_parts(scene, &base, 1U << WH_PART_ARM, WH_ARM_BASE, NULL);
+    }
     (void)wh_gltf_add_node(&scene->gltf, "base", finish_body(scene, &base, "base"), &here, "base", 0);
 }
 
@@ -295,11 +320,12 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
 static void add_links(scene_t *scene) {
     wh_pose_t poses[WH_SIGNALS_LINKS];
     const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
-    for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
+    for (size_t i = 0; is_there && i < scene->link_count; ++i) {
+        char name[2 * WH_NAME_SIZE];
         body_t body = {0};
-        add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
-        add_moving(scene, &poses[i], &scene->paths[FIRST_LINK + i], &body, wh_signals_link_names[i], "link",
-                   i);
+        wh_layout_name_body(scene->layout, (size_t)scene->bodies[i], "column", name, sizeof name);
+        add_parts(scene, &body, 1U << WH_PART_ARM, scene->bodies[i], NULL);
+        add_moving(scene, &poses[i], &scene->paths[FIRST_LINK + i], &body, name, "link", i);
     }
 }
 
@@ -311,6 +337,17 @@ static void add_grippers(scene_t *scene) {
         wh_signals_gripper(scene->signals, g, scene->signals->first, &pose);
         add_parts(scene, &body, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
         add_moving(scene, &pose, &scene->paths[g], &body, layout->grippers[g].name, "gripper", g);
+    }
+}
+
+static void add_doors(scene_t *scene) {
+    const wh_layout_t *layout = scene->layout;
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        wh_pose_t pose;
+        body_t body = {0};
+        wh_signals_door(scene->signals, d, scene->signals->first, &pose);
+        add_parts(scene, &body, 1U << WH_PART_DOOR, (int32_t)d, NULL);
+        add_moving(scene, &pose, &scene->paths[FIRST_DOOR + d], &body, layout->door_list[d].name, "door", d);
     }
 }
 
@@ -333,6 +370,7 @@ static void add_wafers(scene_t *scene) {
 
 json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated) {
     scene_t scene = {.signals = signals, .layout = signals->layout, .animated = animated};
+    scene.link_count = wh_signals_link_bodies(scene.layout, scene.bodies);
     wh_gltf_open(&scene.gltf);
     if (animated) {
         trace_paths(&scene);
@@ -345,6 +383,7 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     add_stations(&scene);
     add_links(&scene);
     add_grippers(&scene);
+    add_doors(&scene);
     add_wafers(&scene);
     for (size_t i = 0; i < PATHS; ++i) {
         wh_thin_close(&scene.paths[i]);

@@ -72,7 +72,9 @@ static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     for (size_t g = 0; g < server->state.gripper_count; ++g) {
         base_from_grippers[g] = server->state.grippers[g].base_from_gripper;
     }
-    const wh_view_look_t look = {server->state.utime, base_from_grippers, server->state.wafers};
+    const wh_view_look_t look = {
+        server->state.utime, base_from_grippers, server->has_axes ? server->axes : NULL,
+        server->state.physics ? &server->state.physics->doors : NULL, server->state.wafers};
     wh_view_cell_move(&view->cell, &look);
 }
 

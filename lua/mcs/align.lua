@@ -7,10 +7,13 @@
 -- Kept, for a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm)
+return function(native, patterns, lookup, arm, mechanisms)
   local align = {}
 
   local TURN = 2 * math.pi
+
+  -- A sensor waits for a first sample that is less than half a turn ahead.
+  local MOST_AHEAD = math.rad(170)
 
   -- Two scans of one wafer say the same to six standard deviations of what passes for sure: mm and rad.
   local SAME_CENTRE, SAME_DIRECTION = 0.02, math.rad(0.07)
@@ -22,6 +25,9 @@ return function(native, patterns, lookup, arm)
   -- them, and if a GET makes that good; nothing once something else may have moved the wafer on the chuck, or off
   -- it.
   local found = {}
+
+  -- By station: the errors of its edge sensor that a CALIBRATE has found; without one, those of the layout.
+  local believed = {}
 
   local function wrapped(angle)
     local rest = angle % TURN
@@ -56,11 +62,19 @@ return function(native, patterns, lookup, arm)
     return names
   end
 
+  local function prealigners()
+    local names = {}
+    for _, name in ipairs(stations_with("chuck")) do
+      names[#names + 1] = not native.layout.stations[name].flipper and name or nil
+    end
+    return names
+  end
+
   -- A prealigner: "expected P".
   function align.prealigner(name)
     local station = lookup.station(name)
-    if not station.chuck then
-      local names = stations_with("chuck")
+    if not station.chuck or station.flipper then
+      local names = prealigners()
       local expected = #names > 0 and "expected " .. lookup.listed(names) or "this cell has no prealigner"
       native.fail("NOT_A_PREALIGNER", ("%s (%s)"):format(lookup.quote(name), expected))
     end
@@ -95,15 +109,29 @@ return function(native, patterns, lookup, arm)
     return (station.sensor.samples + 2) * step
   end
 
+  -- The slice that arms the sensor moves nothing, so no segment watches the chuck's vacuum in it.
+  local function arm_slice(station, lost_as)
+    local was_on = asks(station) and native.sensor(station.chuck)
+    play({ dwell = native.layout.slice }, lost_as)
+    if was_on and not native.sensor(station.chuck) then
+      local name = native.layout.grippers[station.chuck].name
+      native.fail(lost_as or "WAFER_LOST_ON_WAY", ("the sensor of %s went off"):format(name))
+    end
+  end
+
   -- `way` is +1, counter-clockwise, or -1.
-  local function scan(station, way, lost_as)
+  -- `run_up`: the first sample comes as much later, rad, and the chuck turns on by as much behind the last one.
+  local function scan(station, way, lost_as, run_up)
+    mechanisms.check_pins(station)
+    mechanisms.send_home(station, lost_as)
     local samples, from = station.sensor.samples, turn_of(station)
     local step = TURN / samples
-    local first = way * (math.floor(way * from / step) + 2) % samples
+    local ahead = math.min(run_up or 0, MOST_AHEAD)
+    local first = way * (math.floor((way * from + ahead) / step) + 2) % samples
     native.arm_edge(station.chuck, first, way * samples)
     local ok, problem = pcall(function()
-      play({ dwell = native.layout.slice }, lost_as)
-      turn_to(station, from + way * way_of(station), lost_as)
+      arm_slice(station, lost_as)
+      turn_to(station, from + way * (way_of(station) + 2 * (run_up or 0)), lost_as)
     end)
     native.disarm_edge()
     if not ok then
@@ -116,9 +144,16 @@ return function(native, patterns, lookup, arm)
     return native.edge()
   end
 
+  -- One scan goes on at a time: the simulator has one.
+  local function needs(station)
+    local list = arm.needs(false, station)
+    list.scan = true
+    return list
+  end
+
   -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
   function align.edge_scan(station)
-    return arm.move(lookup.command("EDGE_SCAN", station), edge_scan, station)
+    return arm.move(needs(station), lookup.command("EDGE_SCAN", station), edge_scan, station)
   end
 
   ---------------------------------------------------------------------------------------- what a scan does not tell
@@ -179,28 +214,34 @@ return function(native, patterns, lookup, arm)
     return ("expected one alone that is %s"):format(mark_text(seen))
   end
 
-  function reasons.NOTCH_NOT_SURE(seen)
+  -- So far apart on the rim samples may be that still tell a notch for sure, mm; and so large a part of them is off
+  -- the circle only where light comes through.
+  local FINE, THROUGH = 0.4, 0.03
+
+  function reasons.NOTCH_NOT_SURE(seen, station, own)
     local text = "expected %s, known to %.6g degrees and unlike any other dent; %s, %d are off the circle"
-    local sd = math.deg(seen.limits.sd_direction)
-    return text:format(mark_text(seen), sd, number_of_samples(seen), seen.masked)
+    local sd, apart = math.deg(seen.limits.sd_direction), TURN * seen.radius / station.sensor.samples
+    local hint = ""
+    if apart > FINE and seen.limits.notch_depth then
+      hint = ("; they are %.2f mm apart on the rim (expected at most %.6g mm: sensor.samples)"):format(apart, FINE)
+    elseif seen.masked > THROUGH * seen.seen then
+      hint = "; if light comes through the wafer, `glass` says how much" .. (own.glass and ": is it truly %.10g?" or "")
+    end
+    return text:format(mark_text(seen), sd, number_of_samples(seen), seen.masked) .. hint:format(own.glass)
   end
 
   -- What the last scan says, or an error that says why it says nothing.
   local function estimate(station, own)
-    local seen = native.estimate_edge(own.mark ~= "none", own.glass or 0)
+    local errors = believed[station.name] or station.sensor.believed
+    local seen = native.estimate_edge(own.mark ~= "none", own.glass or 0, errors)
     if seen.verdict ~= "OK" then
       local reason = reasons[seen.verdict]
-      native.fail(seen.verdict, reason and reason(seen, station) or nil)
+      native.fail(seen.verdict, reason and reason(seen, station, own) or nil)
     end
     return seen
   end
 
   ------------------------------------------------------------------------------------------------- what is asked
-
-  local MISSING = {
-    stage = 'mode: "stage" (expected "robot": a layout cannot say yet that the chuck of %s is on an XY stage)',
-    pins = 'mode: "pins" (expected "robot": a layout cannot say yet that pins beside the chuck of %s lift a wafer)',
-  }
 
   local function read_options(options)
     if options ~= nil and type(options) ~= "table" then
@@ -214,16 +255,31 @@ return function(native, patterns, lookup, arm)
       end
       own[name] = lookup.value(name, value, kind)
     end
-    if own.mark == "none" and own.angle then
+    if own.turns and not math.tointeger(own.turns) then
+      native.fail("BAD_ARGUMENT", ("turns: %.10g (expected a whole number)"):format(own.turns))
+    elseif own.mark == "none" and own.angle then
       local text = 'angle: %.10g (expected none: with mark = "none" nothing is turned)'
       native.fail("BAD_ARGUMENT", text:format(own.angle))
+    elseif own.correct ~= nil and own.mode and own.mode ~= "robot" then
+      local text = 'correct: %s (expected none: with mode = "%s" the GET has nothing to correct)'
+      native.fail("BAD_ARGUMENT", text:format(own.correct, own.mode))
     end
     return own
   end
 
-  local function check_mode(station, mode)
-    if MISSING[mode] then
-      native.fail("BAD_ARGUMENT", MISSING[mode]:format(station.name))
+  -- An edge grip centres by itself: then the GET has nothing to correct but the turn, which the chuck has made.
+  local function centres_itself(station)
+    local gripper = native.layout.grippers[station.effector]
+    return gripper.edge and gripper.name
+  end
+
+  local function check_correct(station, own)
+    local name = centres_itself(station)
+    if name and own.correct == true then
+      local text = "correct: true (expected none: %s has an edge grip, which centres by itself)"
+      native.fail("BAD_ARGUMENT", text:format(name))
+    elseif name and (own.mode or "robot") == "robot" then
+      own.correct = false
     end
   end
 
@@ -238,14 +294,6 @@ return function(native, patterns, lookup, arm)
     end
   end
 
-  local function check_arm(station)
-    local inside = arm.inside
-    if inside and inside.station == station.name then
-      local text = "the arm stands in %s slot %d since %s: RECOVER or HOME comes first"
-      native.fail("STOPPED", text:format(inside.station, inside.slot, arm.since))
-    end
-  end
-
   -- Of a GET that goes to where the wafer will lie.
   local function check_correction(dx, dy)
     local most = native.layout.corrections
@@ -257,6 +305,47 @@ return function(native, patterns, lookup, arm)
   end
 
   ------------------------------------------------------------------------------------------------------- aligning
+
+  -- The wafer in as many turns as are asked for, together: +1 counter-clockwise, -1 clockwise.
+  local function look(station, own, way)
+    native.forget_turns()
+    for turn = 1, own.turns or 1 do
+      if turn > 1 then
+        native.keep_turn(believed[station.name] or station.sensor.believed)
+      end
+      scan(station, way, "WAFER_LOST")
+    end
+    return estimate(station, own)
+  end
+
+  -- Refuses what the mode cannot make good: the wafer's middle is there in the chuck's frame, whose turn that is.
+  local function check_amount(station, own, at, turn)
+    local x, y = rotated(at, turn)
+    if own.mode == "stage" or own.mode == "pins" then
+      mechanisms.check_way(station, x, y)
+    elseif own.correct ~= false then
+      check_correction(x, y)
+    end
+  end
+
+  -- With pins the wafer is brought onto the chuck's axis before it is turned. Returns how a second scan is to find it.
+  local function grip_again(station, own, first)
+    if own.mode ~= "pins" then
+      return first
+    end
+    local x, y = rotated(first, turn_of(station))
+    mechanisms.check_way(station, x, y)
+    mechanisms.grip_again(station, x, y)
+    return { x = 0, y = 0, mark = first.mark, direction = first.direction }
+  end
+
+  -- With a stage the chuck goes aside, so that the wafer's middle is where that of the station is.
+  local function shift_aside(station, own, second)
+    if own.mode == "stage" then
+      local x, y = rotated(second, turn_of(station))
+      mechanisms.shift(station, -x, -y, "WAFER_LOST")
+    end
+  end
 
   -- Both scans are of one wafer that has only turned with its chuck.
   local function compare(first, second, station)
@@ -275,10 +364,17 @@ return function(native, patterns, lookup, arm)
     end
   end
 
+  -- Where the wafer's middle is in the station's frame, which is there in its chuck's.
+  local function place_of(station, at)
+    local x, y = rotated(at, turn_of(station))
+    local aside_x, aside_y = mechanisms.aside(station)
+    return x + aside_x, y + aside_y
+  end
+
   -- The answer but for the time: the wafer before, with the chuck at `before`, and as it lies now.
-  local function describe(first, second, before, now)
+  local function describe(station, first, second, before)
     local dx, dy = rotated(first, before)
-    local after_dx, after_dy = rotated(second, now)
+    local now, after_dx, after_dy = turn_of(station), place_of(station, second)
     local answer = {
       eccentricity = math.sqrt(dx * dx + dy * dy), direction = math.deg(math.atan(dy, dx)), dx = dx, dy = dy,
       turn = math.deg(wrapped(now - before)),
@@ -299,27 +395,24 @@ return function(native, patterns, lookup, arm)
   local function align_wafer(name, options)
     local own = read_options(options)
     local station = with_sensor(align.prealigner(name))
-    check_mode(station, own.mode)
-    check_arm(station)
+    mechanisms.check_mode(station, own.mode)
+    mechanisms.check_arm(station)
+    check_correct(station, own)
     check_wafer(station)
     local begin, before = native.utime(), turn_of(station)
     found[station.name] = nil
-    scan(station, 1, "WAFER_LOST")
-    local first = estimate(station, own)
+    local first = look(station, own, 1)
     local by = first.mark and wrapped(math.rad(own.angle or 0) - first.direction - before) or 0
-    if own.correct ~= false then
-      check_correction(rotated(first, before + by))
-    end
-    turn_to(station, before + by + way_of(station), "WAFER_LOST")
-    scan(station, -1, "WAFER_LOST")
-    local second, now = estimate(station, own), turn_of(station)
-    compare(first, second, station)
-    if own.correct ~= false then
-      check_correction(rotated(second, now))
-    end
+    check_amount(station, own, first, before + by)
+    local expected = grip_again(station, own, first)
+    turn_to(station, before + by + (own.turns or 1) * way_of(station), "WAFER_LOST")
+    local second = look(station, own, -1)
+    compare(expected, second, station)
+    check_amount(station, own, second, turn_of(station))
+    shift_aside(station, own, second)
     found[station.name] = { x = second.x, y = second.y, direction = second.direction, sd = second.sd_direction,
-                            corrects = own.correct ~= false }
-    local answer = describe(first, second, before, now)
+                            corrects = own.correct ~= false and own.mode ~= "pins", by_stage = own.mode == "stage" }
+    local answer = describe(station, first, second, before)
     answer.seconds = (native.utime() - begin) / 1e6
     return answer
   end
@@ -327,8 +420,8 @@ return function(native, patterns, lookup, arm)
   -- align("P", { angle = 90 }): see lua/README.md.
   function align.align(station, options)
     local angle = type(options) == "table" and options.angle or ""
-    local rest = lookup.fields_text(options, { "mode", "mark", "glass", "correct" })
-    return arm.move(lookup.command("ALIGN", station, angle, rest), align_wafer, station, options)
+    local rest = lookup.fields_text(options, { "mode", "mark", "glass", "turns", "correct" })
+    return arm.move(needs(station), lookup.command("ALIGN", station, angle, rest), align_wafer, station, options)
   end
 
   ---------------------------------------------------------------------------------------- what a GET makes good
@@ -350,8 +443,10 @@ return function(native, patterns, lookup, arm)
     if asks(station) and not native.sensor(station.chuck) then
       return nil
     end
-    local dx, dy = rotated(at, turn_of(station))
-    return { dx = rounded(dx), dy = rounded(dy) }
+    local x, y = place_of(station, at)
+    local dx, dy = rounded(x), rounded(y)
+    local is_made_good = at.by_stage and dx == 0 and dy == 0
+    return not is_made_good and { dx = dx, dy = dy } or nil
   end
 
   -- In which direction of its frame a gripper that takes the wafer of this target has its notch, and how sure that
@@ -377,18 +472,38 @@ return function(native, patterns, lookup, arm)
     end
   end
 
+  local function copied(map)
+    local copy = {}
+    for name, value in pairs(map) do
+      copy[name] = value
+    end
+    return copy
+  end
+
   -- A function that makes known again what is known now.
   function align.keep()
-    local kept = {}
-    for name, at in pairs(found) do
-      kept[name] = at
-    end
+    local kept_found, kept_believed = copied(found), copied(believed)
     return function()
-      found = {}
-      for name, at in pairs(kept) do
-        found[name] = at
-      end
+      found, believed = copied(kept_found), copied(kept_believed)
     end
+  end
+
+  ------------------------------------------------------------------------------------------------- for CALIBRATE
+
+  align.scan, align.turn_of, align.turn_to = scan, turn_of, turn_to
+  align.with_sensor, align.check_wafer = with_sensor, check_wafer
+
+  -- Where the wafer's middle is in the slot's frame, as one turn tells: mm.
+  function align.find(station)
+    local dx, dy = rotated(look(station, { mark = "none" }, 1), turn_of(station))
+    check_correction(dx, dy)
+    return rounded(dx), rounded(dy)
+  end
+
+  -- From now on the station's sensor is taken to have these errors. The wafer's middle is there in the chuck's frame.
+  function align.believe(station, errors, x, y)
+    believed[station.name] = errors
+    found[station.name] = { x = x, y = y, corrects = true }
   end
 
   return align

@@ -6,59 +6,220 @@
 local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
 local tostring, type = tostring, type
 
-return function(native, lookup, centring)
+return function(native, lookup, centring, tasks, alarms)
+  local arm = {}
+
+  -- By robot:
   -- inside   the target whose straight line the arm has entered and not left
   -- since    the command that entered it
+  -- front    the name of the station that it stands in, or in front of; nil: elsewhere
   -- stopped  a command that was cut short, and neither RECOVER nor HOME came since; else nil
   -- homed    nil: as the layout says
-  local arm = { inside = nil, since = nil, stopped = nil, homed = nil }
-  local running = nil
-  -- The plan of a command that stands still in a phase, and its text; else nil. The host knows of it, too, and
-  -- may give it up.
-  local held = nil
+  -- held     the plan of a command that stands still in a phase, and its text; else nil. The host knows of it, too,
+  --          and may give it up
+  local states = {}
+
+  local function state_of(robot)
+    states[robot] = states[robot] or {}
+    return states[robot]
+  end
+
+  -- That of the robot that the running command has.
+  function arm.state()
+    return state_of(tasks.current().robot or 1)
+  end
+
+  -- By task: what it runs, and the door that this goes through, if any.
+  local running, running_door = {}, {}
 
   -- As after a STOP: the arm has to be brought out.
-  local function give_up()
-    if held then
-      arm.stopped = arm.stopped or held.text
-      held = nil
-      native.release()
+  local function give_up(robot)
+    local state = state_of(robot)
+    if state.held then
+      state.stopped = state.stopped or state.held.text
+      state.held = nil
+      native.release(robot)
     end
   end
 
-  -- The plan that is held, if one is.
-  local function find_held()
-    if held and not native.is_held() then
-      give_up()
+  -- The plan that the robot holds, if it does.
+  local function find_held(robot)
+    local state = state_of(robot)
+    if state.held and not native.is_held(robot) then
+      give_up(robot)
     end
-    return held
+    return state.held
+  end
+
+  -- The robots that hold one.
+  local function find_holding()
+    local holding = {}
+    for robot in ipairs(native.layout.robots) do
+      holding[#holding + 1] = find_held(robot) and robot or nil
+    end
+    return holding
+  end
+
+  local STATION, DOOR = "station %s", "door %s"
+
+  -- The station's door for the command's robot.
+  local function add_door(needs, station)
+    local door = station.doors and needs.robot and station.doors[needs.robot]
+    if door then
+      needs.door = door
+      needs[#needs + 1] = DOOR:format(native.layout.doors[door].name)
+      needs.chucks[#needs.chucks + 1] = #native.layout.grippers + door
+    end
+  end
+
+  -- OPEN and CLOSE: the door alone. No robot has a part in them.
+  function arm.needs_door(door)
+    local name = native.layout.doors[door].name
+    return { DOOR:format(name), chucks = { #native.layout.grippers + door }, is_lone = true }
+  end
+
+  -- The grippers of a station, which are not on the robot.
+  local function add_chucks(chucks, station)
+    chucks[#chucks + 1] = station.chuck
+    chucks[#chucks + 1] = station.pins
+  end
+
+  -- What a command needs: the robot, and a station with its chuck and pins, if there is one of that name. Of several
+  -- robots `station_name` and `options` say which; `unclear` then raises why they do not. It needs the station's door,
+  -- too, unless it stays `before` it.
+  function arm.needs(robot, station_name, options, before)
+    local station = type(station_name) == "string" and native.layout.stations[station_name]
+    local needs = { chucks = {} }
+    if robot then
+      local is_clear, which = pcall(lookup.robot_for, station_name, options)
+      needs.robot = is_clear and which or 1
+      needs.unclear = not is_clear and function()
+        lookup.robot_for(station_name, options)
+      end or nil
+    end
+    if station then
+      needs[1] = STATION:format(station_name)
+      add_chucks(needs.chucks, station)
+      if not before then
+        add_door(needs, station)
+      end
+    end
+    return needs
+  end
+
+  -- The robot that stands there, or nil; not this one.
+  function tasks.stands_in(resource, but)
+    for robot, state in pairs(states) do
+      if robot ~= but and state.inside and STATION:format(state.inside.station) == resource then
+        return robot
+      end
+    end
+  end
+
+  function tasks.is_inside(resource, robot)
+    local state = robot and states[robot]
+    return state and state.inside ~= nil and STATION:format(state.inside.station) == resource
+  end
+
+  -- What stands in the station.
+  function arm.find_inside(station_name)
+    for _, state in pairs(states) do
+      if state.inside and state.inside.station == station_name then
+        return state
+      end
+    end
+  end
+
+  -- The robot, and where it stands.
+  function arm.needs_stand(options)
+    local needs = arm.needs(true, nil, options)
+    local inside = state_of(needs.robot).inside
+    local station = inside and native.layout.stations[inside.station]
+    if station then
+      needs[1] = STATION:format(inside.station)
+      add_chucks(needs.chucks, station)
+      add_door(needs, station)
+    end
+    return needs
+  end
+
+  local function run_alone(needs, word, action, ...)
+    if needs and needs.unclear then
+      needs.unclear()
+    end
+    tasks.take(needs)
+    running_door[tasks.current()] = needs and needs.door
+    return alarms.meet(word, action, ...)
+  end
+
+  -- With several robots a command's text says which.
+  local function with_robot(text, needs)
+    if not needs or not needs.robot or needs.unclear or not lookup.has_several() then
+      return text
+    end
+    local name = native.layout.robots[needs.robot].name
+    return ("%s robot=%s"):format(text, name:find("^[%w_./-]+$") and name or lookup.quote(name))
+  end
+
+  -- The phase in which the command that this task ran last is held, or nil.
+  function arm.phase()
+    local robot = tasks.current().last_robot
+    return robot and native.is_held(robot)
+  end
+
+  -- The robot of the command that this task ran last.
+  function arm.last_robot()
+    return tasks.current().last_robot
   end
 
   -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
   -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
-  function arm.run(text, action, ...)
+  -- `needs`: what of the cell it must have for itself, see arm.needs; nil: nothing.
+  function arm.run(needs, text, action, ...)
+    local word, task = text:match("^[%u_]+"), tasks.current()
+    text = with_robot(text, needs)
+    alarms.refuse(word)
     native.begin(text)
-    arm.stopped = arm.stopped or running
-    running = text
-    local ok, result = pcall(action, ...)
-    running = nil
-    if ok then
-      native.finish()
-      return result
-    end
+    local state = arm.state()
+    state.stopped = state.stopped or not task.is_lone and running[task] or nil
+    running[task], task.robot, task.last_robot = text, needs and needs.robot, needs and needs.robot
+    task.is_lone = needs and needs.is_lone
+    state = arm.state()
+    local ok, result = pcall(run_alone, needs, word, action, ...)
     local numbered = type(result) == "table" and math.type(result.number) == "integer"
       and type(result.text) == "string"
     local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
-    if number == lookup.errors.STOPPED.number then
-      give_up()
-      arm.stopped = arm.stopped or text
+    alarms.mend(not ok and number)
+    tasks.give_back()
+    running[task], running_door[task] = nil, nil
+    if ok then
+      task.robot = nil
+      native.finish()
+      return result
     end
+    -- The arm stands as it was if the command has waited for it in vain; and of several ports' commands, if it had
+    -- no part in this one.
+    local had_part = not tasks.has_waited() and (needs == nil or needs.robot or not native.has_jobs())
+    if number == lookup.errors.STOPPED.number and had_part then
+      for _, robot in ipairs(task.robot and { task.robot } or find_holding()) do
+        give_up(robot)
+      end
+      state.stopped = state.stopped or not task.is_lone and text or nil
+    end
+    task.robot = nil
     native.finish(number, numbered and result.text or native.outside(tostring(result)))
     error(result, 0)
   end
 
+  -- What has no robot waits for all of them; at one of several ports for none.
+  local function find_in_way()
+    local robot = tasks.current().robot or not native.has_jobs() and find_holding()[1]
+    return robot and find_held(robot)
+  end
+
   local function run_free(action, ...)
-    if find_held() then
+    local held = find_in_way()
+    if held then
       local text = "%s is held, %s: CONTINUE or STOP comes first"
       native.fail("IN_PHASE", text:format(held.text, held.phase))
     end
@@ -66,47 +227,143 @@ return function(native, lookup, centring)
   end
 
   -- Runs one that moves something: refused while another one is held.
-  function arm.move(text, action, ...)
-    return arm.run(text, run_free, action, ...)
+  function arm.move(needs, text, action, ...)
+    return arm.run(needs, text, run_free, action, ...)
   end
 
   -- Before a command that counts on where the arm stands.
   function arm.check_homed()
-    if arm.homed == nil then
-      arm.homed = native.layout.homed
+    local state = arm.state()
+    if state.homed == nil then
+      state.homed = native.layout.homed
     end
-    if not arm.homed then
+    if alarms.take("NOT_HOMED") then
+      state.homed = false
+    end
+    if not state.homed then
       native.fail("NOT_HOMED", "HOME comes first")
+    end
+  end
+
+  -- Before one that needs the arm outside of stations.
+  function arm.check_outside()
+    arm.check_homed()
+    local state = arm.state()
+    if state.inside then
+      local text = "the arm stands in %s slot %d since %s: RECOVER or HOME comes first"
+      native.fail("STOPPED", text:format(state.inside.station, state.inside.slot, state.since))
+    elseif state.stopped then
+      native.fail("STOPPED", state.stopped .. " was: RECOVER or HOME comes first")
+    end
+  end
+
+  -- Before one that goes through the station's door: who asked to open it has done so by now.
+  local function check_door()
+    local door = running_door[tasks.current()]
+    local word = door and native.door(door)
+    if door and word ~= "open" then
+      local name = native.layout.doors[door].name
+      native.fail("DOOR_SHUT", ('%s is %s: open("%s") comes first'):format(name,
+        word == "shut" and "shut" or "neither open nor shut", name))
     end
   end
 
   -- Before one that goes into a station.
   function arm.check_free()
-    arm.check_homed()
-    if arm.inside then
-      local text = "the arm stands in %s slot %d since %s: RECOVER or HOME comes first"
-      native.fail("STOPPED", text:format(arm.inside.station, arm.inside.slot, arm.since))
-    elseif arm.stopped then
-      native.fail("STOPPED", arm.stopped .. " was: RECOVER or HOME comes first")
+    arm.check_outside()
+    check_door()
+    local flip = lookup.axis("flip", tasks.current().robot)
+    local turned = flip and math.deg(native.axes()[flip.index]) or 0
+    if turned ~= 0 and math.abs(turned) ~= 180 then
+      native.fail("NOT_LEVEL", ("the blade is turned over by %.6g degrees: FLIP or HOME comes first"):format(turned))
     end
   end
 
   -- RECOVER and HOME have brought the arm out.
   function arm.set_free()
-    arm.inside, arm.stopped = nil, nil
+    local state = arm.state()
+    state.inside, state.stopped = nil, nil
   end
 
   --------------------------------------------------------------------------------------- planning and playing
 
+  -- Of the robot that carries this gripper.
+  function arm.first_axis(gripper)
+    return native.layout.robots[native.layout.grippers[gripper].robot].first
+  end
+
+  -- Of two arms or wrists the one that does not go to the point goes home.
+  local function fold_other(request)
+    local gripper = native.layout.grippers[request.to.gripper]
+    local robot = native.layout.robots[gripper.robot]
+    if robot.arms then
+      local other = robot.arms[3 - gripper.arm]
+      request.axes[other] = robot.home[other - robot.first + 1]
+    end
+  end
+
+  -- Both arms come in, if the robot turns on its way to the point.
+  local function retracted(request)
+    local robot, axes = native.layout.robots[native.layout.grippers[request.before.gripper].robot], native.axes()
+    local there = native.inverse { to = request.before, target = request.target, where = request.where }
+    for _, axis in ipairs(math.abs(there[robot.first] - axes[robot.first]) > 1e-9 and robot.arms or {}) do
+      axes[axis] = robot.home[axis - robot.first + 1]
+    end
+    return axes
+  end
+
+  local VIA_AXES = { "theta", "r", "z", "yaw" }
+
+  -- A station's point, as native.plan takes it: what it does not say of an axis is as at these axes.
+  local function via_point(via, axes)
+    local point = {}
+    for index, name in ipairs(VIA_AXES) do
+      point[index] = via[name] or axes[index]
+    end
+    point[#VIA_AXES + 1] = via.blend
+    return point
+  end
+
+  -- The points between two stations, or none: back along those of the one, then along those of the other. `front` and
+  -- `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it ends.
+  local function vias_between(front, station, there)
+    local stations, here, points = native.layout.stations, native.axes(), {}
+    if front == station then
+      return nil
+    end
+    local back = front and stations[front].via or {}
+    for index = #back, 1, -1 do
+      points[#points + 1] = via_point(back[index], here)
+    end
+    for _, via in ipairs(station and stations[station].via or {}) do
+      points[#points + 1] = via_point(via, there)
+    end
+    return #points > 0 and points or nil
+  end
+
   -- The segment of a request, its axes found for where the gripper shall be. Detour 1 turns theta the longer
-  -- way round, detour 2 the shorter way and a whole turn.
-  local function segment_of(request)
-    if request.to then
+  -- way round, detour 2 the shorter way and a whole turn. `front` is the station that the arm stands in front of.
+  local function segment_of(request, target, front)
+    if request.before then
+      request.axes = retracted(request)
+    elseif request.to then
       request.axes = native.inverse(request)
+      fold_other(request)
       if request.detour then
-        local theta = request.axes[1]
-        local is_left = theta > native.axes()[1]
-        request.axes[1] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
+        local first = arm.first_axis(request.to.gripper)
+        local theta = request.axes[first]
+        local is_left = theta > native.axes()[first]
+        request.axes[first] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
+      end
+      request.via = request.target and vias_between(front, request.target.station, request.axes) or nil
+    elseif request.homeward then
+      request.via = vias_between(front, nil, request.axes)
+    elseif request.line then
+      request.gripper = request.gripper or request.target and request.target.gripper or target.gripper
+    elseif request.moves then
+      request.axes = native.axes()
+      for axis, at in pairs(request.moves) do
+        request.axes[axis] = at
       end
     end
     return request
@@ -118,14 +375,22 @@ return function(native, lookup, centring)
     return request.assume == nil or request.assume
   end
 
-  -- The pattern's requests, one a call. `detours`: which detour each of its ways to a point takes, if any.
+  -- The pattern's requests, one a call, each with what the pattern has `told` of passive pads before it.
+  -- `detours`: which detour each of its ways to a point takes, if any.
   local function requests_of(pattern, detours)
-    local step, ways = coroutine.wrap(pattern), 0
+    local step, ways, told = coroutine.wrap(pattern), 0, {}
     return function(answer)
       local request = step(answer)
-      if type(request) == "table" and request.to then
-        ways = ways + 1
-        request.way, request.detour = ways, detours[ways]
+      while type(request) == "table" and request.carries do
+        told[request.carries] = request.wafer
+        request = step()
+      end
+      if type(request) == "table" then
+        request.told = told
+        if request.to then
+          ways = ways + 1
+          request.way, request.detour = ways, detours[ways]
+        end
       end
       return request
     end
@@ -144,13 +409,19 @@ return function(native, lookup, centring)
 
   local function plan_through(plan)
     local step, request = forward(plan)
+    local front = arm.state().front
     while type(request) == "table" do
       local is_segment = request.assume == nil and not request.hold
+      if request.centre then
+        centring.check_room(request.centre)
+      end
       plan.way = request.way or plan.way
-      request.planned = is_segment and native.plan(segment_of(request)) or nil
+      request.planned = is_segment and native.plan(segment_of(request, plan.target, front)) or nil
+      front = request.to and request.target and request.target.station or front
       plan[#plan + 1] = request
       request = step(assumed(request))
     end
+    native.look_on()
     plan.became = request
   end
 
@@ -194,6 +465,16 @@ return function(native, lookup, centring)
     return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
   end
 
+  -- What the plunger of an edge grip does. A target keeps the first that is to be told of: not that it is open.
+  local function ask_plunger(request)
+    local does, s, excess = native.grip(request.grip)
+    local target = request.note
+    if target and does ~= "open" and not target.plunger then
+      target.plunger = { does = does, s = s, excess = excess, is_on = native.sensor(request.grip) }
+    end
+    return does
+  end
+
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
   -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
   -- whatever its sensor says; a controller would look.
@@ -204,16 +485,29 @@ return function(native, lookup, centring)
       return native.sensor(request.is_on)
     elseif request.is_loaded then
       return native.held(request.is_loaded) ~= nil
+    elseif request.grip then
+      return ask_plunger(request)
     end
+    local state = target.robot and state_of(target.robot) or arm.state()
     if request.enters then
-      arm.inside, arm.since = request.enters, running
+      state.inside, state.since = request.enters, running[tasks.current()]
       centring.begin(request.enters)
     end
-    local ended, lost = native.play(request.planned or segment_of(request))
-    if request.leaves then
-      arm.inside = nil
+    alarms.begin_motion(running[tasks.current()])
+    local front = state.front
+    if request.to or request.homeward then
+      state.front = nil   -- one that is stopped ends somewhere between
     end
-    if lost and target.watched then
+    local ended, lost = tasks.play(request.planned or segment_of(request, target, front))
+    if request.leaves then
+      state.inside = nil
+    end
+    if request.to or request.leaves then
+      state.front = request.target and request.target.station
+    elseif not request.target and (request.axes or request.line) then
+      state.front = nil
+    end
+    if lost and lost ~= request.lets_go and target.watched then
       local name, at = native.layout.grippers[lost].name, request.target
       local way = request.to and "on the way to" or request.where
       local where = at and (" %s %s slot %d"):format(way, at.station, at.slot) or ""
@@ -234,9 +528,9 @@ return function(native, lookup, centring)
   -- The command ends here, but its plan does not.
   local function hold(plan, phase)
     plan.answers[#plan.answers + 1] = true
-    plan.phase, plan.text, plan.on = phase, plan.text or running, sensors_on()
-    held = plan
-    native.hold(plan.text, phase)
+    plan.phase, plan.text, plan.on = phase, plan.text or running[tasks.current()], sensors_on()
+    arm.state().held = plan
+    native.hold(tasks.current().robot, plan.text, phase)
   end
 
   -- Performs a request and keeps its answer; nil if it is held there instead.
@@ -255,6 +549,17 @@ return function(native, lookup, centring)
     local again = plan_ahead(plan, true)
     again.text, again.conclude = plan.text, plan.conclude
     return again
+  end
+
+  -- Behind beams that have told where the wafer is. What cannot be gone aside by that brings the wafer out again.
+  local function plan_aside(plan)
+    local ok, again = pcall(plan_again, plan)
+    if not ok and type(again) == "table" and plan.answers[#plan.answers] then
+      plan.target.refused = again
+      plan.answers[#plan.answers] = false
+      return plan_again(plan)
+    end
+    return ok and again or error(again, 0)
   end
 
   local function finish(plan, became)
@@ -287,7 +592,7 @@ return function(native, lookup, centring)
       if answer == nil then
         return nil
       elseif request.centre then
-        return arm.drive(plan_again(plan), conclude)
+        return arm.drive(plan_aside(plan), conclude)
       elseif answer ~= assumed(request) then
         return go_on(plan)
       end
@@ -312,27 +617,40 @@ return function(native, lookup, centring)
   end
 
   local function go_on_held()
-    local begun = find_held()
+    local robot = tasks.current().robot
+    local begun = robot and find_held(robot)
     if not begun then
       native.fail("NOT_IN_PHASE", "none is held")
     end
     check_kept(begun)
     local plan = plan_ahead(begun, true)
-    plan.text, held = begun.text, nil
-    native.release()
+    plan.text, arm.state().held = begun.text, nil
+    native.release(robot)
     arm.drive(plan, begun.conclude)
+    return plan.target.centred
   end
 
-  -- What is held goes on, to where it is held next or to its end. Refused before anything moves, it is held as
-  -- before.
+  -- What is held goes on, to where it is held next or to its end; of a PUT that centres it returns what beams
+  -- said. Refused before anything moves, it is held as before.
+  -- Of several robots it is the one that the word is bound to, or the only one that holds a command.
   function arm.continue()
-    arm.run("CONTINUE", go_on_held)
+    local holding = find_holding()
+    local bound = lookup.bound()
+    local robot = bound or #holding == 1 and holding[1] or not lookup.has_several() and 1 or nil
+    local options = robot and { robot = native.layout.robots[robot].name }
+    local needs = robot and find_held(robot) and arm.needs_stand(options)
+      or arm.needs(robot ~= nil or #holding > 0, nil, options)
+    return arm.run(needs, "CONTINUE", go_on_held)
   end
 
-  -- What is held is given up.
+  -- What is held is given up: by the robot that the word is bound to, or by all.
   function arm.stop()
-    if find_held() then
-      arm.run("STOP", give_up)
+    for _, robot in ipairs(find_holding()) do
+      if not lookup.bound() or lookup.bound() == robot then
+        arm.run(arm.needs(true, nil, { robot = native.layout.robots[robot].name }), "STOP", function()
+          give_up(robot)
+        end)
+      end
     end
   end
 
@@ -361,15 +679,36 @@ return function(native, lookup, centring)
     return plan and copied
   end
 
+  local function copy_states(all)
+    local copied = {}
+    for robot, state in pairs(all) do
+      local plan = state.held
+      copied[robot] = {}
+      for name, part in pairs(state) do
+        copied[robot][name] = name ~= "held" and copy(part) or nil
+      end
+      copied[robot].held = copy_plan(plan)
+    end
+    return copied
+  end
+
   -- A function that makes the arm again what it is now, and one that says if it still is.
   function arm.keep()
-    local plan, inside, since = copy_plan(find_held()), arm.inside, arm.since
-    local stopped, homed, was_inside = arm.stopped, arm.homed, copy(arm.inside)
+    find_holding()
+    local kept, insides = copy_states(states), {}
+    for robot, state in pairs(states) do
+      insides[robot] = state.inside
+    end
     return function()
-      held, arm.inside, arm.since = copy_plan(plan), copy(was_inside), since
-      arm.stopped, arm.homed = stopped, homed
+      states = copy_states(kept)
     end, function()
-      return arm.inside == inside and arm.stopped == stopped and arm.homed == homed
+      for robot in ipairs(native.layout.robots) do
+        local was, is = kept[robot] or {}, state_of(robot)
+        if is.inside ~= insides[robot] or is.stopped ~= was.stopped or is.homed ~= was.homed then
+          return false
+        end
+      end
+      return true
     end
   end
 

@@ -39,6 +39,22 @@ return function(native, lookup)
     return bx * along + by * across, by * along - bx * across
   end
 
+  -- What the layout's corrections leave, as parts of both: corners, and the middles between them.
+  local ENDS = { { -1, -1 }, { -1, 0 }, { -1, 1 }, { 0, -1 }, { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } }
+
+  -- In a plan, at the end of the way in: raises unless the blade can go wherever beams may send it, from the
+  -- slot as it was taught.
+  function centring.check_room(target)
+    local most, place = native.layout.corrections, target.place
+    for _, part in ipairs(ENDS) do
+      local along, across = part[1] * most.dx - target.dx, part[2] * most.dy - target.dy
+      native.try_segment {
+        line = { along * place.dir_x - across * place.dir_y, along * place.dir_y + across * place.dir_x, 0 },
+        target = target, where = "where `centre` may lead (`corrections.x` and `.y` of the layout), in",
+      }
+    end
+  end
+
   local function told(target, found)
     local best = found.candidates[1]
     local result = {
@@ -71,6 +87,15 @@ return function(native, lookup)
     end
   end
 
+  local function say_too_large(target, result)
+    local name = too_large(target, result)
+    local axis, own = name:sub(2), target[name]
+    local text = "the wafer is %.3f mm off along the slot's %s (expected at most %.10g: corrections.%s of the layout)"
+    local all = own ~= 0 and ("; with %s = %.10g the blade would go %.3f mm aside, and both count"):format(name, own,
+      own - result[name]) or ""
+    return text:format(result[name], axis, native.layout.corrections[name], axis) .. all
+  end
+
   -- The blade stands in the station: how far the wafer's centre is off in base, or false.
   function centring.answer(target)
     local found = native.centre(notches[target.gripper] or {})
@@ -83,27 +108,33 @@ return function(native, lookup)
     return last.sure and { in_base(target.gripper, found.candidates[1].x, found.candidates[1].y) }
   end
 
+  local MISFIT = {
+    [0] = "no place of the wafer fits the crossings: a beam may stand elsewhere than the layout says (its `sd` says how "
+      .. "well that is known), or true diameters vary (wafer.spread)",
+    "the crossings fit one place alone, %s, with a radius of %.3f mm, which is not likely and which nothing confirms: a "
+      .. "beam may stand elsewhere than the layout says",
+    "the crossings fit two places of the wafer: %s",
+  }
+
   local function describe(candidates)
     local texts = {}
     for index, candidate in ipairs(candidates) do
       texts[index] = ("dX %.3f, dY %.3f mm"):format(candidate.dx, candidate.dy)
     end
-    return table.concat(texts, " or ")
+    local radius = candidates[1] and candidates[1].radius
+    return MISFIT[#candidates]:format(table.concat(texts, " or "), radius)
   end
 
   -- The PUT has brought its wafer out again: why.
   function centring.fail(target)
-    local result, errors = target.centred, lookup.errors
+    local result, errors, refused = target.centred, lookup.errors, target.refused
     local still = "; " .. native.layout.grippers[target.gripper].name .. " still holds the wafer"
-    if result.error == errors.CORRECTION_TOO_LARGE.number then
-      local name = too_large(target, result)
-      local text = "the wafer is %.3f mm off along the slot's %s (expected at most %.10g: corrections.%s of the layout)"
-      native.fail("CORRECTION_TOO_LARGE", text:format(result[name], name:sub(2), native.layout.corrections[name],
-        name:sub(2)) .. still)
+    if refused then
+      native.fail(refused.name, refused.text:gsub("^error %d+ [%u_]+: [^;]*; ", "") .. still)
+    elseif result.error == errors.CORRECTION_TOO_LARGE.number then
+      native.fail("CORRECTION_TOO_LARGE", say_too_large(target, result) .. still)
     elseif result.error == errors.CENTRE_NOT_SURE.number then
-      local text = #result.candidates > 0 and "the crossings fit two places of the wafer: "
-        .. describe(result.candidates) or "no place of the wafer fits the crossings: if true diameters vary, wafer.spread of the layout says so"
-      native.fail("CENTRE_NOT_SURE", text .. still)
+      native.fail("CENTRE_NOT_SURE", describe(result.candidates) .. still)
     end
     local text = "%d crossings of %d beams, %d latches missed"
     native.fail("TOO_FEW_SAMPLES",

@@ -1,37 +1,74 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
 -- Kept, for a script may set globals of these names.
-local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
+local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup)
+return function(native, patterns, lookup, alarms)
   local centring = native.module("mcs/centring.lua")(native, lookup)
-  local arm = native.module("mcs/arm.lua")(native, lookup, centring)
-  local align = native.module("mcs/align.lua")(native, patterns, lookup, arm)
-  local targets = native.module("mcs/targets.lua")(native, lookup, align)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring)
+  local tasks = native.module("mcs/tasks.lua")(native, lookup)
+  local arm = native.module("mcs/arm.lua")(native, lookup, centring, tasks, alarms)
+  local mechanisms = native.module("mcs/mechanisms.lua")(native, patterns, lookup, arm)
+  local align = native.module("mcs/align.lua")(native, patterns, lookup, arm, mechanisms)
+  local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms)
+
+  function lookup.bound()
+    return tasks.current().bound
+  end
+
+  function lookup.bound_station()
+    return tasks.current().station
+  end
+
+  lookup.phase, lookup.last_robot = arm.phase, arm.last_robot
+
+  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring,
+    alarms)
 
   ----------------------------------------------------------------------------------------------- single moves
 
   -- A wafer that is lost meanwhile is an error, unless it is the way out of trouble.
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = true })
+    local robot = tasks.current().robot
+    local gripper = robot and lookup.has_several() and lookup.on_robot(robot)[1] or nil
+    arm.play(patterns.single, { segment = segment, watched = true, gripper = gripper })
+  end
+
+  function alarms.robot()
+    return tasks.current().robot
+  end
+
+  function alarms.bearer()
+    return alarms.robot() or tasks.current()
+  end
+
+  function alarms.play(segment)
+    arm.play(patterns.single, { segment = segment })
   end
 
   local function rotate(station_name, degrees)
     local station = align.prealigner(station_name)
     local axis = native.layout.grippers[station.chuck].axis
     local axes = native.axes()
+    mechanisms.check_pins(station)
     axes[axis] = axes[axis] + math.rad(lookup.number("degrees", degrees))
     play { axes = axes }
   end
 
   function commands.rotate(station, degrees)
-    arm.move(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
+    arm.move(arm.needs(false, station), lookup.command("ROTATE", station, degrees), rotate, station, degrees)
   end
 
-  commands.edge_scan, commands.align = align.edge_scan, align.align
+  commands.edge_scan, commands.align, commands.lift = align.edge_scan, align.align, mechanisms.lift
+
+  local doors = native.module("mcs/doors.lua")(native, patterns, lookup, arm, tasks, alarms)
+  commands.open, commands.close = doors.open, doors.close
+
+  local flippers = native.module("mcs/flippers.lua")(native, patterns, lookup, arm, mechanisms, alarms)
 
   commands.centring = centring.last
+  commands.calibrate = native.module("mcs/calibration.lua")(native, patterns, lookup, arm, targets, align,
+    commands.carry)
+  commands.carry = nil
   commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
 
   local function valve(gripper, level)
@@ -39,12 +76,30 @@ return function(native, patterns, lookup)
       native.fail("BAD_VALVE", ("level: %s (expected 0, open, or 1, closed)"):format(lookup.quote(level)))
     end
     local index = lookup.gripper(gripper)
+    if native.layout.grippers[index].grip == "passive" then
+      local text = "gripper: %s (expected one with a valve: passive pads have none)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(gripper)))
+    end
     align.forget_chuck(index)
     play { valves = { [index] = math.tointeger(level) } }
   end
 
+  -- What carries the gripper, if there is one of that name.
+  local function needs_of_gripper(name)
+    for index, gripper in ipairs(native.layout.grippers) do
+      if gripper.name == name and gripper.on_robot then
+        return arm.needs(true, nil, { gripper = name })
+      end
+      for station_name, station in pairs(native.layout.stations) do
+        if gripper.name == name and (station.chuck == index or station.pins == index) then
+          return arm.needs(false, station_name)
+        end
+      end
+    end
+  end
+
   function commands.valve(gripper, level)
-    arm.move(lookup.command("VALVE", gripper, level), valve, gripper, level)
+    arm.move(needs_of_gripper(gripper), lookup.command("VALVE", gripper, level), valve, gripper, level)
   end
 
   -- The values of these fields by name, each checked.
@@ -63,18 +118,60 @@ return function(native, patterns, lookup)
   end
 
   local function move(positions)
-    local axes, to = native.axes(), read_fields("move", positions, lookup.axes)
-    for axis, name in ipairs(lookup.axes) do
-      local turns = name == "theta" or name == "yaw"
-      axes[axis] = to[name] and (turns and math.rad(to[name]) or to[name]) or axes[axis]
+    local known, own = {}, native.layout.robots[tasks.current().robot].axes
+    for place, axis in ipairs(own) do
+      known[place] = axis.name
+    end
+    local axes, to = native.axes(), read_fields("move", positions, known)
+    for _, axis in ipairs(own) do
+      local value = to[axis.name]
+      axes[axis.index] = value and (axis.turns and math.rad(value) or value) or axes[axis.index]
     end
     arm.check_homed()
     play { axes = axes }
   end
 
-  -- move { theta = , r = , z = , yaw = }: degrees and mm; an axis that is not named stays.
+  -- move { theta = , r = , z = , yaw = }, or the axes that the robot has: degrees and mm; an axis that is not
+  -- named stays.
   function commands.move(positions)
-    arm.move(lookup.command("MOVE", lookup.fields_text(positions, lookup.axes)), move, positions)
+    arm.move(arm.needs(true), lookup.command("MOVE", lookup.fields_text(positions, lookup.axes)), move, positions)
+  end
+
+  -- Turned over, passive pads hold nothing.
+  local function check_drops_nothing()
+    for _, index in ipairs(lookup.on_robot()) do
+      local gripper = native.layout.grippers[index]
+      if gripper.grip == "passive" and native.sensor(index) then
+        local text = "%s holds %s by its weight alone, and would drop it"
+        native.fail("SLIP_AHEAD", text:format(gripper.name, native.held(index) or "a wafer"))
+      end
+    end
+  end
+
+  -- How long a FLIP waits for a blade once it should be there, s.
+  local BLADE_TIMEOUT = 1
+
+  local function flip(name)
+    local gripper = native.layout.grippers[lookup.gripper(name) and lookup.effector(name)]
+    local axis, axes = lookup.axis("flip", gripper.robot), native.axes()
+    if not axis then
+      native.fail("BAD_ARGUMENT", ('gripper: "%s" (expected one of a robot with `flip`)'):format(gripper.name))
+    end
+    arm.check_outside()
+    check_drops_nothing()
+    axes[axis.index] = math.abs(axes[axis.index]) > math.pi / 2 and 0 or math.pi
+    alarms.break_flip(gripper.name)
+    play { axes = axes }
+    flippers.await(lookup.gripper(gripper.name), gripper.name, BLADE_TIMEOUT)
+  end
+
+  -- Turns the blade over about its x, by half a turn, or back; or the wafer in a flipper's clamp.
+  function commands.flip(gripper)
+    local station = flippers.find(gripper)
+    if station then
+      return flippers.flip(station)
+    end
+    arm.move(arm.needs(true, nil, { gripper = gripper }), lookup.command("FLIP", gripper), flip, gripper)
   end
 
   local function line(by)
@@ -86,7 +183,7 @@ return function(native, patterns, lookup)
   -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept;
   -- without a speed as fast as the axes go.
   function commands.line(by)
-    arm.move(lookup.command("LINE", lookup.fields_text(by, lookup.line_fields)), line, by)
+    arm.move(arm.needs(true), lookup.command("LINE", lookup.fields_text(by, lookup.line_fields)), line, by)
   end
 
   local function wait(seconds)
@@ -94,14 +191,14 @@ return function(native, patterns, lookup)
   end
 
   function commands.wait(seconds)
-    arm.run(lookup.command("WAIT", seconds), wait, seconds)
+    arm.run(arm.needs(false), lookup.command("WAIT", seconds), wait, seconds)
   end
 
   -------------------------------------------------------------------------------------- STOP and what follows
 
   -- Straight out of the station that the arm stands in, if it does.
   local function recover()
-    local target = arm.inside
+    local target = arm.state().inside
     if target then
       target.stands = native.gripper_pose(target.gripper).r
       target.loaded = native.sensor(target.gripper)
@@ -112,31 +209,45 @@ return function(native, patterns, lookup)
   end
 
   function commands.recover()
-    arm.move("RECOVER", recover)
+    arm.move(arm.needs_stand(), "RECOVER", recover)
   end
 
   local function home()
-    local axes = native.axes()
     recover()
-    for axis, position in ipairs(native.layout.home) do
-      axes[axis] = position
+    local axes, robot = native.axes(), native.layout.robots[tasks.current().robot]
+    for _, axis in ipairs(robot.retracts and robot.arms or {}) do
+      axes[axis] = robot.home[axis - robot.first + 1]
     end
-    arm.play(patterns.single, { segment = { axes = axes } })
-    arm.homed = true
+    if robot.retracts then
+      arm.play(patterns.single, { segment = { axes = axes } })
+    end
+    for axis, position in ipairs(robot.home) do
+      axes[robot.first + axis - 1] = position
+    end
+    arm.play(patterns.single, { segment = { axes = axes, homeward = true } })
+    arm.state().homed = true
   end
 
   function commands.home()
-    arm.move("HOME", home)
+    arm.move(arm.needs_stand(), "HOME", home)
   end
 
-  -- A STOP comes so many simulated seconds from now, whatever then runs: it ends there with STOPPED.
-  function commands.stop_in(seconds)
-    native.stop_in(lookup.number("seconds", seconds))
+  -- A STOP comes so many simulated seconds from now: what then runs ends there with STOPPED, or of it only the
+  -- command that has the mechanism of that name.
+  function commands.stop_in(seconds, mechanism)
+    local number = lookup.number("seconds", seconds)
+    if mechanism ~= nil then
+      tasks.open()
+    end
+    if mechanism ~= nil and type(mechanism) ~= "string" or not native.stop_in(number, mechanism) then
+      local text = "mechanism: %s (expected robot, or a station with a chuck)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(mechanism)))
+    end
   end
 
-  -- What a `stop` of GET, PUT or SWAP holds in a phase goes on.
+  -- What a `stop` of GET, PUT or SWAP holds in a phase goes on; returns what the PUT does.
   function commands.continue()
-    arm.continue()
+    return arm.continue()
   end
 
   -- Gives up what is held in a phase, as a STOP from outside does; without that nothing.
@@ -149,15 +260,39 @@ return function(native, patterns, lookup)
 
   -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
   function commands.keep()
-    local put_slots_back, put_found_back = keep_slots(), align.keep()
+    local put_slots_back, put_found_back, put_broken_back = keep_slots(), align.keep(), alarms.keep()
     local put_arm_back, is_as_was = arm.keep()
     return function()
       put_slots_back()
       put_found_back()
+      put_broken_back()
       put_arm_back()
     end, is_as_was
   end
 
-  commands.run = arm.run
+  -- Of what moves nothing.
+  function commands.run(text, action, ...)
+    return arm.run(nil, text, action, ...)
+  end
+
+  -- Calls a word for one of several robots: bound(index, word, ...).
+  function commands.bind(index, word, ...)
+    local task = tasks.current()
+    local function restore(before, ok, ...)
+      task.bound = before
+      if not ok then
+        error((...), 0)
+      end
+      return ...
+    end
+    local before = task.bound
+    task.bound = index
+    return restore(before, pcall(word, ...))
+  end
+
+  for name, word in pairs(tasks.words) do
+    commands[name] = word
+  end
+  commands.finish, commands.serve, commands.is_any_alive = tasks.finish, tasks.serve, tasks.is_any_alive
   return commands
 end

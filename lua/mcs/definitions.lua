@@ -51,6 +51,10 @@ return function(native, lookup, targets, words)
       close()
       faults[#faults + 1] = class.name:find("^fault") and "waferhand." .. class.name or nil
     end
+    open("fault_error", "An error on purpose: the next command that can answer it does.")
+    add_field("error", "integer", "its number")
+    close()
+    faults[#faults + 1] = "waferhand.fault_error"
     add("")
     add("---@alias waferhand.fault %s", table.concat(faults, "|"))
   end
@@ -71,15 +75,31 @@ return function(native, lookup, targets, words)
     return table.concat(list, "|")
   end
 
-  local function text_of(kind)
+  local function unit_of(kind)
     local unit = kind[3] or ""
     return kind[2] and ("%s from %.10g to %.10g"):format(unit, kind[1], kind[2]):gsub("^ ", "") or unit
+  end
+
+  local of_stations = {}
+  for _, class in ipairs(native.classes()) do
+    for _, field in ipairs(class.name == "station" and class.fields or {}) do
+      of_stations[field.name] = with_range(class, field)
+    end
+  end
+
+  -- What a command says for itself in place of its station is told as the station's. SWAP has those of its GET
+  -- and of its PUT.
+  local function text_of(name, kind)
+    local command, bare = name:match("^([gp][eu]t)_(.*)$")
+    local text, unit = words.options[bare or name], unit_of(kind)
+    text = not text and (of_stations[bare or name] or unit) or unit ~= "" and unit .. ": " .. text or text
+    return command and ("%s (of the %s)"):format(text, command:upper()) or text
   end
 
   local function add_numbers(name, text, fields)
     open(name, text)
     for _, field in ipairs(fields) do
-      add_field(field, "number", text_of(lookup.ranges[field]), true)
+      add_field(field, "number", unit_of(lookup.ranges[field]), true)
     end
     close()
   end
@@ -88,7 +108,7 @@ return function(native, lookup, targets, words)
     open(name, text)
     for _, kinds in ipairs({ ... }) do
       for field, kind in pairs(kinds) do
-        add_field(field, type_of(kind), text_of(kind), true)
+        add_field(field, type_of(kind), text_of(field, kind), true)
       end
     end
     close()
@@ -99,8 +119,10 @@ return function(native, lookup, targets, words)
     add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])
     add_options("get_options", "What GET may say for itself.", own.get, common[1], common[2])
     add_options("put_options", "What PUT may say for itself.", own.put, common[1], common[2])
-    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.swap, common[1], common[2])
+    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.swap, lookup.swap_options, common[2])
     add_options("align_options", "What ALIGN may say for itself.", lookup.align_fields)
+    add_options("calibrate_options", "What CALIBRATE may say for itself.", lookup.calibrate_fields,
+      { robot = lookup.options.robot })
     add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
     add("")
@@ -144,8 +166,8 @@ return function(native, lookup, targets, words)
     add("")
     add("---The check and the grasp table, and the catalogue of errors.")
     add("---@class waferhand.module")
-    add("---@field version string")
-    add("---@field errors table<waferhand.error_name, { number: integer, text: string }>")
+    add("---@field version string of the program")
+    add("---@field errors table<waferhand.error_name, { number: integer, text: string }> each by its name")
     add("wh = {}")
     for name, word in pairs(words.module) do
       add_function("wh." .. name, word)
@@ -164,6 +186,13 @@ return function(native, lookup, targets, words)
     for name, word in pairs(words.scripts) do
       add_function(name, word)
     end
+    for name, word in pairs(words.checks) do
+      add_function(name, word)
+    end
+    add("")
+    add("---In a file of checks: what `run --json` prints of the recorded run.")
+    add("---@type table")
+    add("run = {}")
     add_module()
     add("")
     add("---What --set NAME=VALUE handed over.")

@@ -1,10 +1,10 @@
--- The words for faults on purpose: fault { kind = , ... } and clear_fault(number).
+-- The words for faults on purpose: fault { kind = , ... }, fault { error = } and clear_fault(number).
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, table = error, ipairs, math, pairs, pcall, table
 local tostring, type = tostring, type
 
-return function(native, commands, run, lookup)
+return function(native, commands, run, lookup, alarms)
   local function text_of(value)
     if type(value) == "table" then
       local parts = {}
@@ -17,9 +17,10 @@ return function(native, commands, run, lookup)
   end
 
   local function describe(description)
-    local kind = type(description) == "table" and description.kind or description
-    local text = { "FAULT", tostring(kind) }
-    for name, value in pairs(type(description) == "table" and description or {}) do
+    local fields = type(description) == "table" and description or {}
+    local kind = fields.kind or fields.error == nil and description or nil
+    local text = { "FAULT", kind ~= nil and tostring(kind) or nil }
+    for name, value in pairs(fields) do
       if name ~= "kind" then
         text[#text + 1] = ("%s=%s"):format(tostring(name), text_of(value))
       end
@@ -27,10 +28,23 @@ return function(native, commands, run, lookup)
     return table.concat(text, " ")
   end
 
-  -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared.
-  -- Returns its number.
+  local function arm_error(description)
+    for name, value in pairs(description) do
+      if name ~= "error" then
+        local text = "fault: %s: %s (expected error alone: the next command that can answer it does)"
+        native.fail("BAD_ARGUMENT", text:format(tostring(name), lookup.quote(value)))
+      end
+    end
+    return alarms.arm(description.error)
+  end
+
+  -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared; one
+  -- with an `error` waits for a command. Returns its number.
   function commands.fault(description)
     return run(describe(description), function()
+      if type(description) == "table" and description.error ~= nil then
+        return arm_error(description)
+      end
       local ok, result = pcall(native.fault, lookup.table("fault", description))
       if not ok and type(result) == "string" then
         native.fail("BAD_ARGUMENT", result)

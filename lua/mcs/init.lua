@@ -3,7 +3,7 @@
 -- does. Returns as well what looks at stations for `waferhand layout`, and what `waferhand definitions` prints.
 
 -- Kept, for a script may set globals of these names.
-local error, ipairs, pairs, pcall, rawset, select = error, ipairs, pairs, pcall, rawset, select
+local error, ipairs, math, pairs, pcall, rawset, select = error, ipairs, math, pairs, pcall, rawset, select
 local setmetatable, tostring, type = setmetatable, tostring, type
 
 return function(native)
@@ -23,16 +23,23 @@ return function(native)
   end
 
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
-  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
+  local alarms = native.module("mcs/alarms.lua")(native, lookup)
+  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup, alarms)
   local queries = native.module("mcs/queries.lua")(native, lookup)
-  local run, keep = commands.run, commands.keep
+  local run, keep, finish_tasks, serve = commands.run, commands.keep, commands.finish, commands.serve
   local reach = native.module("mcs/reach.lua")(native, {
     rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
     try_out = commands.try_out, try_carrying = commands.try_carrying,
+    rehearse_centring = commands.rehearse_centring, rehearse_aside = commands.rehearse_aside,
   })
   commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
-  commands.try_out, commands.try_carrying = nil, nil
-  native.module("mcs/faults.lua")(native, commands, run, lookup)
+  local is_any_alive = commands.is_any_alive
+  commands.finish, commands.serve, commands.is_any_alive = nil, nil, nil
+  local bind = commands.bind
+  commands.bind = nil
+  commands.try_out, commands.try_carrying, commands.rehearse_centring = nil, nil, nil
+  commands.rehearse_aside = nil
+  native.module("mcs/faults.lua")(native, commands, run, lookup, alarms)
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
 
@@ -72,17 +79,20 @@ return function(native)
   local function word(name, action)
     local known = words.scripts[name]
     local most = known and #known.takes
-    if native.parameters(action) ~= most then
+    if not known or not known.any and native.parameters(action) ~= most then
       error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
     end
     return function(...)
       native.begin_word(name)
-      for place = most + 1, select("#", ...) do
+      for place = known.any and math.maxinteger or most + 1, select("#", ...) do
         local extra = select(place, ...)
         if extra ~= nil then
           local text = "%s: %s is one argument too many (expected at most %d)"
           native.fail("BAD_ARGUMENT", text:format(name, lookup.quote(extra), most))
         end
+      end
+      if queries[name] then
+        alarms.check(name:upper())
       end
       return finish(pcall(action, ...))
     end
@@ -94,13 +104,35 @@ return function(native)
     end
   end
 
+  -- The words that robot() binds.
+  local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop" }
+
+  -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
+  local function robot(name)
+    local index, words_of_it = lookup.robot(name), {}
+    for _, bound in ipairs(bound_words) do
+      local action = _G[bound]
+      words_of_it[bound] = function(self, ...)
+        if self ~= words_of_it then
+          native.fail("BAD_ARGUMENT", ("%s: called with a dot (expected a colon, as in ROBOT:%s(...))"):format(bound, bound))
+        end
+        return bind(index, action, ...)
+      end
+    end
+    return words_of_it
+  end
+
+  rawset(_G, "robot", word("robot", robot))
+
   local function open_prompt()
     local tokens = native.module("mcs/tokens.lua")(native)
     local states = native.module("mcs/saved_states.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep)
-    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states)
-    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
+    local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states, is_any_alive)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep, background)
+    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states, alarms,
+      bind, background)
+    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), serve
   end
 
   -- Of a layout that was read already: what looks at a station of it by its name, and what plays there, see
@@ -110,6 +142,7 @@ return function(native)
     return function(name, found, missed)
       reach.check(layout.stations[name], found)
       reach.check_later(layout.stations[name], found)
+      reach.check_corrections(layout.stations[name], missed)
       reach.check_blades(layout.stations[name], missed)
     end, function(from, name, cell, failed, gripper)
       local station = layout.stations[name]
@@ -126,5 +159,5 @@ return function(native)
     return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
   end
 
-  return open_prompt, survey, define
+  return open_prompt, survey, define, finish_tasks
 end

@@ -14,7 +14,9 @@ return function(native, errors)
   lookup.parameters.vacuum_check = { values = { "both", "get", "put", "none" } }
   lookup.parameters.handover = { values = { "new_first", "same_slice" } }
   lookup.parameters.check_map = { values = { true, false } }
-  lookup.options = { gripper = {}, force = { values = { true, false } } }
+  lookup.options = { gripper = {}, robot = {}, force = { values = { true, false } } }
+  -- SWAP takes with the empty gripper and puts with the other one.
+  lookup.swap_options = { robot = {}, force = lookup.options.force }
 
   -- How far a GET, PUT or SWAP may go beside what was taught, and where it may stop: in order.
   lookup.correction_fields = { "dx", "dy", "dz", "turn" }
@@ -26,15 +28,22 @@ return function(native, errors)
   -- What ALIGN may say.
   lookup.align_fields = {
     angle = { -360, 360, "degrees" }, mode = { values = { "robot", "stage", "pins" } },
-    mark = { values = { "own", "none" } }, glass = { 0, 0.9, "" }, correct = lookup.correct,
+    mark = { values = { "own", "none" } }, glass = { 0, 0.9, "" }, turns = { 1, 12, "" }, correct = lookup.correct,
   }
 
-  -- The fields of MOVE and LINE in order, and their ranges.
-  lookup.axes = { "theta", "r", "z", "yaw" }
+  -- Where LIFT brings pins.
+  lookup.up_or_down = { values = { "up", "down" } }
+
+  -- And CALIBRATE: how far the wafer is carried, how well, and how large it is.
+  lookup.calibrate_fields = { way = { 2, 20, "mm" }, sd = { 0, 1, "mm" }, diameter = { 20, 600, "mm" } }
+
+  -- The fields of MOVE, of any robot, and of LINE in order, and their ranges.
+  lookup.axes = { "theta", "r", "z", "yaw", "forearm", "rail", "tilt_x", "tilt_y", "flip", "r2", "yaw2" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
   local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
   lookup.ranges = {
     theta = turn, r = { nil, nil, "mm" }, z = { nil, nil, "mm" }, yaw = turn, degrees = turn,
+    forearm = turn, rail = { nil, nil, "mm" }, tilt_x = turn, tilt_y = turn, flip = turn, r2 = { nil, nil, "mm" }, yaw2 = turn,
     dx = way, dy = way, dz = way, speed = lookup.parameters.pickup_speed, seconds = { 0, 1e6, "s" },
   }
 
@@ -96,31 +105,146 @@ return function(native, errors)
     return whole
   end
 
-  function lookup.gripper(name)
-    local known = {}
-    for index, gripper in ipairs(native.layout.grippers) do
-      if gripper.name == name then
-        return index
+  -- The axis of that name of a robot, the first unless it is said, or nil.
+  function lookup.axis(name, robot)
+    for _, axis in ipairs(native.layout.robots[robot or 1].axes) do
+      if axis.name == name then
+        return axis
       end
-      known[index] = gripper.name
     end
-    refuse("NO_SUCH_GRIPPER", name, known)
   end
 
-  -- The grippers on the robot: their indices and their names.
-  function lookup.on_robot()
+  -- The names of these entries, in order.
+  function lookup.names_of(list)
+    local names = {}
+    for index, entry in ipairs(list) do
+      names[index] = entry.name
+    end
+    return names
+  end
+
+  -- The index of the entry that is called so, or nil.
+  local function find(list, name)
+    for index, entry in ipairs(list) do
+      if entry.name == name then
+        return index
+      end
+    end
+  end
+
+  function lookup.gripper(name)
+    local all = native.layout.grippers
+    return find(all, name) or refuse("NO_SUCH_GRIPPER", name, lookup.names_of(all))
+  end
+
+  function lookup.door(name)
+    local index = find(native.layout.doors, name)
+    if index then
+      return index
+    end
+    local known = lookup.names_of(native.layout.doors)
+    local expected = #known > 0 and "expected one of the doors: " .. lookup.listed(known)
+        or "expected none: the layout has no `doors`"
+    native.fail("BAD_ARGUMENT", ("door: %s (%s%s)"):format(lookup.quote(name), expected, lookup.nearest(name, known)))
+  end
+
+  ----------------------------------------------------------------------------------------------------- robots
+
+  function lookup.has_several()
+    return #native.layout.robots > 1
+  end
+
+  local function robot_names(robots)
+    local names = {}
+    for index, robot in ipairs(native.layout.robots) do
+      names[#names + 1] = (not robots or robots[index]) and robot.name or nil
+    end
+    return lookup.listed(names)
+  end
+
+  -- A robot's index by its name.
+  function lookup.robot(name)
+    local index = find(native.layout.robots, name)
+    if index then
+      return index
+    end
+    native.fail("NO_SUCH_ROBOT", ("%s (expected %s)"):format(lookup.quote(name), robot_names()))
+  end
+
+  -- "the robot", or which.
+  function lookup.robot_text(index)
+    return lookup.has_several() and "robot " .. native.layout.robots[index].name or "the robot"
+  end
+
+  -- The robot that a command's words are bound to, if they are: set by lua/mcs/commands.lua.
+  function lookup.bound()
+  end
+
+  -- The only station of the controller whose line it is, if it is one's: set by lua/mcs/commands.lua.
+  function lookup.bound_station()
+  end
+
+  -- lookup.phase(): where the command that the current task ran last is held, or nil; lookup.last_robot(): the robot of
+  -- that. Both are set by lua/mcs/commands.lua.
+
+  local function check_serves(station, robot)
+    if station and not station.by[robot] then
+      local text = "robot: %s (expected one that serves %s: %s)"
+      native.fail("BAD_ARGUMENT", text:format(native.layout.robots[robot].name, station.name, robot_names(station.by)))
+    end
+  end
+
+  -- What a command says itself of its robot: the gripper's, the one that it names, or the one that its word is bound
+  -- to. They must not contradict each other.
+  local function said_robot(options)
+    local gripper = options.gripper ~= nil and native.layout.grippers[lookup.gripper(options.gripper)]
+    local robot = options.robot ~= nil and lookup.robot(options.robot) or lookup.bound()
+    if gripper and gripper.robot and robot and gripper.robot ~= robot then
+      local text = "gripper: %s (expected one on %s)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.gripper), native.layout.robots[robot].name))
+    end
+    return robot or gripper and gripper.robot
+  end
+
+  -- The robot that carries out a command: what the command says, else the only one, else the one that serves the
+  -- station. Never by what is where.
+  function lookup.robot_for(station_name, options)
+    local station = type(station_name) == "string" and native.layout.stations[station_name] or nil
+    local robot = said_robot(type(options) == "table" and options or {})
+    if robot then
+      check_serves(station, robot)
+      return robot
+    elseif not lookup.has_several() then
+      return 1
+    elseif station and station.robot then
+      return station.robot
+    end
+    local text = "%s (expected robot \"NAME\", robot = or gripper =: %s)"
+    local what = station and ("%s is served by several"):format(station.name) or "the command names none"
+    native.fail("AMBIGUOUS_ROBOT", text:format(what, robot_names(station and station.by)))
+  end
+
+  -- Refuses what is for one robot alone.
+  function lookup.refuse_for_several(what)
+    if lookup.has_several() then
+      native.fail("BAD_ARGUMENT", what .. " (expected a layout with one robot)")
+    end
+  end
+
+  -- The grippers on the robot, or on one of several: their indices and their names.
+  function lookup.on_robot(robot)
     local indices, names = {}, {}
     for index, gripper in ipairs(native.layout.grippers) do
-      if gripper.on_robot then
+      if gripper.on_robot and (not robot or gripper.robot == robot) then
         indices[#indices + 1], names[#names + 1] = index, gripper.name
       end
     end
     return indices, names
   end
 
-  -- A gripper on the robot: the named one, the one with the index `otherwise`, or the first.
-  function lookup.effector(name, otherwise)
-    local indices, names = lookup.on_robot()
+  -- A gripper on the robot, or on one of several: the named one, the one with the index `otherwise`, or the first.
+  function lookup.effector(name, otherwise, robot)
+    local indices, names = lookup.on_robot(robot)
     if name == nil then
       return otherwise or indices[1]
     end
@@ -159,11 +283,8 @@ return function(native, errors)
   end
 
   local function gripper_frame(grippers, name)
-    for index, gripper in ipairs(grippers) do
-      if gripper.name == name then
-        return native.gripper_pose(index, "real")
-      end
-    end
+    local index = find(grippers, name)
+    return index and native.gripper_pose(index, "real")
   end
 
   local function wafer_frame(name)

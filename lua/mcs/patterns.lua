@@ -9,14 +9,20 @@
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
 --   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
--- of which `enters = target` begins the way into a station and `leaves = true` ends the way out, and whose
--- `target` and `where`, such as "on the way into", say in an error where the arm would be; or a question,
--- answered with true or false, of which a plan knows no more than what to `assume`:
+-- of which `lets_go = gripper` leaves a wafer of that one's behind, `enters = target` begins the way into a station
+-- and `leaves = true` ends the way out, and whose `target` and `where`, such as "on the way into", say in an error
+-- where the arm would be; or a question, answered with true or false, of which a plan knows no more than what to
+-- `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
+--   grip      = gripper                           answered with what its plunger does, a word: "open", "closing",
+--                                                 "closed", "jammed", "missed", "opening", or "still" if it is to
+--                                                 close and has not moved; with `note` its target keeps more
 --   centre    = target                            answered with { x, y }, mm in base: how far the wafer's
 --                                                 centre on its blade is from where it should be, or with false
 --                                                 if the beams that the way in has passed do not tell
+-- or word of passive pads, which have no valve that would tell it:
+--   carries = gripper, wafer = true or false      motion goes by that from here on
 -- or, if the target's `stop` asks for it,
 --   hold = "extended" or "up"                     the command ends here, and CONTINUE goes on behind it
 -- It returns what became of the wafer, a word, as the sensors tell.
@@ -32,17 +38,41 @@ local OPEN, CLOSED = 0, 1
 -- To the outer end of the line into the slot.
 local function approach(target, height)
   local p = target.place
-  local x, y = p.x - target.retract * p.dir_x, p.y - target.retract * p.dir_y
-  yield {
-    to = { x = x, y = y, z = p.z + height, heading = p.heading, gripper = target.gripper },
-    target = target, where = "in front of",
-  }
+  local x, y, z = p.x - target.retract * p.dir_x, p.y - target.retract * p.dir_y, p.z + height
+  if p.up then
+    x, y = x + height * p.up[1], y + height * p.up[2]
+    z = p.z - target.retract * p.dir_z + height * p.up[3]
+  end
+  local there = { x = x, y = y, z = z, heading = p.heading, gripper = target.gripper, place = p }
+  if target.retracts then
+    yield { before = there, target = target, where = "in front of" }
+  end
+  yield { to = there, target = target, where = "in front of" }
+end
+
+-- So far along the way in, and so far up through the slots. `up` and `dir_z` are of a robot that tilts.
+local function along(place, way)
+  return { way * place.dir_x, way * place.dir_y, place.up and way * place.dir_z or 0 }
+end
+
+local function upward(place, by)
+  local up = place.up
+  return up and { by * up[1], by * up[2], by * up[3] } or { 0, 0, by }
+end
+
+-- Of a point how far it is above the slot's plane, and how far along the way in.
+local function beside(place, at)
+  local x, y, z, up = at[1] - place.x, at[2] - place.y, at[3] - place.z, place.up
+  local inward = x * place.dir_x + y * place.dir_y
+  if up then
+    return x * up[1] + y * up[2] + z * up[3], inward + z * place.dir_z
+  end
+  return z, inward
 end
 
 -- In, and a wait there if the station has one.
 local function enter(target)
-  local place, way = target.place, target.retract
-  local line = { way * place.dir_x, way * place.dir_y, 0 }
+  local line = along(target.place, target.retract)
   yield { line = line, enters = target, target = target, where = "on the way into" }
   if target.wait > 0 then
     yield { dwell = target.wait }
@@ -50,16 +80,20 @@ local function enter(target)
 end
 
 local function leave(target)
-  local place, way = target.place, -target.retract
-  local line = { way * place.dir_x, way * place.dir_y, 0 }
+  local line = along(target.place, -target.retract)
   yield { line = line, leaves = true, target = target, where = "on the way out of" }
 end
 
-local function stroke(target, by)
+local function stroke(target, by, lets_go)
   yield {
-    line = { 0, 0, by }, speed = target.pickup_speed, acceleration = target.pickup_acceleration,
-    target = target, where = "in",
+    line = upward(target.place, by), speed = target.pickup_speed, acceleration = target.pickup_acceleration,
+    target = target, where = "in", lets_go = lets_go,
   }
+end
+
+-- Of axes beside the robot's: `to` has where each goes.
+local function shift(to)
+  yield { moves = to }
 end
 
 local function switch(gripper, valve)
@@ -86,8 +120,8 @@ local function is_on(gripper, assume)
   return yield { is_on = gripper, assume = assume }
 end
 
-local function is_loaded(gripper)
-  return yield { is_loaded = gripper, assume = false }
+local function is_loaded(gripper, assume)
+  return yield { is_loaded = gripper, assume = assume or false }
 end
 
 local function holds(target, gripper)
@@ -95,6 +129,69 @@ local function holds(target, gripper)
     yield { dwell = target.vacuum_delay, vacuum = true }
   end
   return not target.asks or yield { sensor = gripper, timeout = target.timeout }
+end
+
+---------------------------------------------------------------------------------------------------- edge grips
+
+-- Of a target whose gripper has an edge grip: `edge` = { travel, the time that a sound plunger needs at most, slice }.
+
+-- How long a sound plunger is waited for, s: two slices more than it takes, for one gives the order.
+local function patience(target)
+  return target.edge.travel + 2 * target.edge.slice
+end
+
+-- Waits until the plunger is where it was sent, `wanted`; at least as long as a sound one takes.
+local function settle(target, wanted)
+  yield { dwell = patience(target), vacuum = true }
+  local does = yield { grip = target.gripper, assume = wanted, note = target }
+  if does ~= wanted and target.timeout > patience(target) then
+    yield { dwell = target.timeout - patience(target), vacuum = true }
+    does = yield { grip = target.gripper, assume = wanted, note = target }
+  end
+  return does
+end
+
+-- Sends the plunger back: nil, or why it is not open: "unopened" on its way, "unmoved".
+local function open_plunger(target)
+  switch(target.gripper, CLOSED)
+  local does = settle(target, "open")
+  return does ~= "open" and (does == "opening" and "unopened" or "unmoved") or nil
+end
+
+-- Before a GET: as open_plunger, where the plunger is not open.
+local function check_open(target)
+  if (yield { grip = target.gripper, assume = "open" }) ~= "open" then
+    return open_plunger(target)
+  end
+end
+
+-- By what the plunger does that stands elsewhere than in its window, or should.
+local WHY = { jammed = "jammed", missed = "missing", still = "unmoved", closing = "unclosed", closed = "disagree" }
+
+-- Closes the plunger: "taken", or why it does not hold the wafer.
+local function close_plunger(target)
+  local gripper = target.gripper
+  switch(gripper, OPEN)
+  local on = yield { sensor = gripper, timeout = patience(target) }
+  if not on and target.timeout > patience(target) and (yield { grip = gripper, assume = "closed" }) == "closing" then
+    on = yield { sensor = gripper, timeout = target.timeout - patience(target) }
+  end
+  if on and is_loaded(gripper, true) then
+    return "taken"
+  end
+  local does = yield { grip = gripper, assume = "closed", note = target }
+  return on and does ~= "jammed" and "disagree" or WHY[does]
+end
+
+-- The chuck lets go before the plunger closes.
+local function close_over_chuck(target)
+  if target.chuck then
+    switch(target.chuck, CLOSED)
+    if target.edge.vent > 0 then
+      yield { dwell = target.edge.vent, vacuum = true }
+    end
+  end
+  return close_plunger(target)
 end
 
 -- On the way in the blade passed beams that tell where the wafer lies on it: the blade goes aside by that.
@@ -115,17 +212,222 @@ end
 -- Down to where a PUT lets go, valve closed, down below the wafer: whatever lies on the blade stays in the
 -- slot.
 local function set_back(target, height)
-  if height > target.release then
+  if height > target.release and not target.is_passive then
     stroke(target, target.release - height)
     height = target.release
   end
-  switch(target.gripper, CLOSED)
+  if target.edge then
+    open_plunger(target)
+  elseif not target.is_passive then
+    switch(target.gripper, CLOSED)
+  end
   stroke(target, target.offset - target.stroke - height)
+end
+
+---------------------------------------------------------------------------------------------------- passive pads
+
+-- They have no valve: a wafer is on them once they have lifted it off its support, and off them once one has it.
+
+local function reckon(gripper, wafer)
+  yield { carries = gripper, wafer = wafer }
+end
+
+-- The chuck lets go of what lies on it; true if it held something.
+local function free_chuck(target)
+  local held = is_on(target.chuck, true)
+  switch(target.chuck, CLOSED)
+  if target.vent > 0 then
+    yield { dwell = target.vent, vacuum = true }
+  end
+  return held
+end
+
+-- The chuck takes hold of what was set down on it.
+local function give_to_chuck(target)
+  switch(target.chuck, OPEN)
+  return holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
+end
+
+local function lift_off(target)
+  local chuck_held = target.chuck and free_chuck(target)
+  reckon(target.gripper, true)
+  stroke(target, target.stroke)
+  if holds(target, target.gripper) then
+    return "taken"
+  end
+  local found = is_loaded(target.gripper) and "late" or "missing"
+  stroke(target, -target.stroke)
+  reckon(target.gripper, false)
+  if chuck_held then
+    switch(target.chuck, OPEN)
+  end
+  return found
+end
+
+-- What no support has taken over comes out again as it went in.
+local function set_down(target)
+  stroke(target, -target.stroke, target.gripper)
+  if target.asks and is_on(target.gripper, false) then
+    stroke(target, target.stroke)
+    return "stuck"
+  end
+  reckon(target.gripper, false)
+  return target.chuck and give_to_chuck(target) or "kept"
+end
+
+-- Up with what lies on the chuck, or down to it.
+local function raise_pads(target)
+  shift { [target.axis] = 0 }
+  if target.chuck_holds then
+    free_chuck(target)
+  end
+  reckon(target.pins, true)
+  shift { [target.axis] = target.high }
+  if holds(target, target.pins) then
+    return "taken"
+  end
+  local found = is_loaded(target.pins) and "late" or "missed"
+  reckon(target.pins, false)
+  if not target.chuck_holds then
+    return "empty"
+  end
+  shift { [target.axis] = target.low }
+  switch(target.chuck, OPEN)
+  return found
+end
+
+local function lower_pads(target)
+  yield { moves = { [target.axis] = target.low }, lets_go = target.pins }
+  reckon(target.pins, false)
+  return target.pins_hold and give_to_chuck(target) or "empty"
 end
 
 local patterns = {}
 
+-------------------------------------------------------------------------------------------------- turned over
+
+-- A blade that is turned over comes from above, in and out with its pads `offset` above `target.touch`, which is
+-- how far over the slot's plane they stop to take a wafer and to let go of one.
+local function above(target)
+  return target.touch + target.offset
+end
+
+local function take_from_above(target)
+  stroke(target, -target.offset)
+  if target.edge then
+    local found = close_over_chuck(target)
+    if found ~= "taken" then
+      open_plunger(target)
+    end
+    return found
+  end
+  if target.chuck then
+    hand_over(target, target.chuck, target.gripper)
+  else
+    switch(target.gripper, OPEN)
+  end
+  if holds(target, target.gripper) then
+    return "taken"
+  end
+  local found = is_loaded(target.gripper) and "late" or "missing"
+  switch(target.gripper, CLOSED)
+  return found
+end
+
+local function get_from_above(target)
+  local found = target.edge and check_open(target)
+  if found then
+    return found
+  end
+  approach(target, above(target))
+  enter(target)
+  pause(target, "extended")
+  for _ = 0, target.retries do
+    found = take_from_above(target)
+    stroke(target, target.offset)
+    if found ~= "missing" and found ~= "late" then
+      break
+    end
+  end
+  if found == "taken" then
+    pause(target, "up")
+  end
+  leave(target)
+  return found
+end
+
+local function let_go(target)
+  if target.edge then
+    if target.chuck then
+      switch(target.chuck, OPEN)
+    end
+    local shut = open_plunger(target)
+    if shut and is_loaded(target.gripper) then -- it has not let go, and is not to do so on the way
+      switch(target.gripper, OPEN)
+    end
+    if shut or not target.chuck then
+      return shut or "kept"
+    end
+    return holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
+  end
+  if not target.chuck then
+    switch(target.gripper, CLOSED)
+    return "kept"
+  end
+  hand_over(target, target.gripper, target.chuck)
+  return holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
+end
+
+-- What hangs on the pads is let go before they go up again.
+local function let_go_below(target)
+  local became = let_go(target)
+  if became == "kept" and not target.edge and target.vent > 0 then
+    yield { dwell = target.vent, vacuum = true }
+  end
+  return became
+end
+
+-- Out behind a PUT, which has ended as `became` says.
+local function leave_empty(target, became)
+  if became == "kept" then
+    pause(target, "up")
+  end
+  leave(target)
+  if became == "kept" and not target.chuck and target.asks and is_on(target.gripper, false) then
+    return "stuck"
+  end
+  return became
+end
+
+local function put_from_above(target)
+  approach(target, above(target))
+  enter(target)
+  if not centre(target) then
+    leave(target)
+    return "uncentred"
+  end
+  pause(target, "extended")
+  stroke(target, -target.offset)
+  local became = let_go_below(target)
+  stroke(target, target.offset)
+  return leave_empty(target, became)
+end
+
 ---------------------------------------------------------------------------------------------------------- GET
+
+-- Up to the wafer's plane, where rests and plunger are beside its rim; a wafer that is not gripped stays behind.
+local function take_by_edge(target)
+  local bottom = target.offset - target.stroke
+  stroke(target, -bottom)
+  local found = close_over_chuck(target)
+  if found == "taken" then
+    stroke(target, target.offset)
+  else
+    open_plunger(target)
+    stroke(target, bottom)
+  end
+  return found
+end
 
 local function take_from_slot(target)
   switch(target.gripper, OPEN)
@@ -160,16 +462,25 @@ end
 -- In below the wafer, valve open, up through the slot, out. From a chuck: up to its plane, hand over, out
 -- above. Without a wafer down again, `retries` times up once more, and out below: "missing", or "late" when
 -- the vacuum did not come though a wafer is there; "early" when the sensor was on before the stroke. Without
--- a wafer nothing is held up there.
+-- a wafer nothing is held up there. With an edge grip: in with its plunger open, up to the wafer's plane, closed,
+-- up to `offset`, out; else "missing", "jammed", "unmoved", "unclosed", "unopened" or "disagree". Passive pads go as those
+-- with vacuum do, without valves.
 function patterns.get(target)
-  local take = target.chuck and take_from_chuck or take_from_slot
-  local found
+  if target.touch then
+    return get_from_above(target)
+  end
+  local take = target.is_passive and lift_off or target.edge and take_by_edge
+    or target.chuck and take_from_chuck or take_from_slot
+  local found = target.edge and check_open(target)
+  if found then
+    return found
+  end
   approach(target, target.offset - target.stroke)
   enter(target)
   pause(target, "extended")
   for _ = 0, target.retries do
     found = take(target)
-    if found == "taken" or found == "early" then
+    if found ~= "missing" and found ~= "late" then
       break
     end
   end
@@ -184,10 +495,19 @@ end
 
 -- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck
 -- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it, "stuck" when the
--- gripper's sensor is still on after it has left a plain slot. With `centre` aside before that, by what beams
+-- gripper's sensor is still on after it has left a plain slot; of an edge grip "unmoved" or "unopened" when its
+-- plunger did not go back before the blade went on down; with a wafer in it up and out again. With `centre` aside before that, by what beams
 -- say of the wafer; when they do not, out again with the wafer: "uncentred".
 function patterns.put(target)
-  local became = "kept"
+  if target.touch then
+    return put_from_above(target)
+  end
+  if target.is_passive then
+    reckon(target.gripper, true)
+  end
+  if target.stage_home then
+    yield { moves = target.stage_home }
+  end
   approach(target, target.offset)
   enter(target)
   if not centre(target) then
@@ -195,27 +515,20 @@ function patterns.put(target)
     return "uncentred"
   end
   pause(target, "extended")
+  if target.is_passive then
+    return leave_empty(target, set_down(target))
+  end
   stroke(target, target.release - target.offset)
-  if target.chuck then
-    hand_over(target, target.gripper, target.chuck)
-    if not holds(target, target.chuck) then
-      became = is_loaded(target.chuck) and "loose" or "lost"
-    end
+  local became = let_go(target)
+  if target.edge and is_loaded(target.gripper) then
+    stroke(target, target.offset - target.release)
   else
-    switch(target.gripper, CLOSED)
+    stroke(target, target.offset - target.stroke - target.release)
   end
-  stroke(target, target.offset - target.stroke - target.release)
-  if became == "kept" then
-    pause(target, "up")
-  end
-  leave(target)
-  if not target.chuck and target.asks and is_on(target.gripper, false) then
-    return "stuck"
-  end
-  return became
+  return leave_empty(target, became)
 end
 
-------------------------------------------------------------------------------------------------------- others
+------------------------------------------------------------------------------------------- SWAP, READY and MAP
 
 -- A GET with one gripper, and if it took the wafer a PUT with the other.
 function patterns.swap(target)
@@ -225,35 +538,105 @@ end
 
 -- To where a GET enters, or a PUT when the gripper is loaded.
 function patterns.ready(target)
+  if target.touch then
+    return approach(target, above(target))
+  end
   approach(target, target.loaded and target.offset or target.offset - target.stroke)
 end
+
+------------------------------------------------------------------------------------------------ stages and pins
+
+-- `pins` come up to the wafer, whose back is in the chuck's plane, take it, and lift it: "taken"; "empty" if there
+-- is none. From a chuck that held one: "missed", or "late" when the vacuum did not come though it lies there; it
+-- is the chuck's again, and the pins are down.
+function patterns.raise(target)
+  if target.is_passive then
+    return raise_pads(target)
+  end
+  shift { [target.axis] = 0 }
+  if target.chuck_holds then
+    hand_over(target, target.chuck, target.pins)
+  else
+    switch(target.pins, OPEN)
+  end
+  if holds(target, target.pins) then
+    shift { [target.axis] = target.high }
+    return "taken"
+  end
+  local found = is_loaded(target.pins) and "late" or "missed"
+  if target.chuck_holds then
+    yield { valves = { [target.chuck] = OPEN, [target.pins] = CLOSED } }
+    shift { [target.axis] = target.low }
+    return found
+  end
+  switch(target.pins, CLOSED)
+  shift { [target.axis] = target.high }
+  return "empty"
+end
+
+-- The pins bring down what they hold: "kept"; "empty" if their valve is closed; "lost" when the chuck has not
+-- taken it over, "loose" when its vacuum did not come though it lies there.
+function patterns.lower(target)
+  if target.is_passive then
+    return lower_pads(target)
+  end
+  local became = "empty"
+  if target.pins_hold then
+    shift { [target.axis] = 0 }
+    hand_over(target, target.pins, target.chuck)
+    became = holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
+  end
+  shift { [target.axis] = target.low }
+  return became
+end
+
+-- Pins hold the wafer while the stage brings the chuck to `aside`; with the wafer on the chuck it goes `home`.
+function patterns.grip_again(target)
+  local found = patterns.raise(target)
+  if found ~= "taken" then
+    return found
+  end
+  shift(target.aside)
+  target.pins_hold = true
+  local became = patterns.lower(target)
+  shift(target.home)
+  return became
+end
+
+------------------------------------------------------------------------------------------------------- others
 
 -- From below the stack to above it, in front of the station.
 function patterns.map(target)
   approach(target, -target.margin)
-  local line = { 0, 0, target.height + 2 * target.margin }
+  local line = upward(target.place, target.height + 2 * target.margin)
   yield { line = line, speed = target.map_speed, target = target, where = "in front of" }
 end
 
 -- Out of the station that the arm stands in, from where it came to stand: with a wafer up to where a GET
 -- leaves, else down to where a PUT does, then straight out. `stands` is the gripper's place.
 function patterns.recover(target)
-  local p, at = target.place, target.stands
-  local height = at[3] - p.z
-  if target.loaded then
+  local p = target.place
+  local height, inward = beside(p, target.stands)
+  if target.touch then
+    stroke(target, above(target) - height)
+  elseif target.loaded then
     stroke(target, target.offset - height)
   else
     set_back(target, height)
   end
-  local inside = (at[1] - p.x) * p.dir_x + (at[2] - p.y) * p.dir_y + target.retract
-  local way = inside > 0 and inside or 0
-  local line = { -way * p.dir_x, -way * p.dir_y, 0 }
+  local inside = inward + target.retract
+  local line = along(p, inside > 0 and -inside or 0)
   yield { line = line, leaves = true, target = target, where = "on the way out of" }
 end
 
 -- One segment by itself.
 function patterns.single(target)
   yield(target.segment)
+end
+
+-- Waits for what a switch tells: true if it came in time.
+function patterns.arrive(target)
+  return yield(target.segment)
 end
 
 return patterns

@@ -5,9 +5,11 @@
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
+-- asks      true: it has no record, so an error on purpose is looked for here
 -- keeps     true: it changes nothing that UNDO could take back, or sees to that itself
+-- alone     true: not while a task is alive
 
-return function(native, commands, queries, lookup, tokens, states, keep)
+return function(native, commands, queries, lookup, tokens, states, keep, background)
   local prompt_commands = {}
 
   -- WHERE stops after so many bytes: an answer is one line.
@@ -23,10 +25,18 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return list
   end
 
-  local function gripper_names()
-    local list = {}
-    for index, gripper in ipairs(native.layout.grippers) do
-      list[index] = gripper.name
+  -- The names of the layout's entries of a kind.
+  local function names_of(kind)
+    return function()
+      return lookup.names_of(native.layout[kind])
+    end
+  end
+
+  -- What FLIP turns over.
+  local function flips_names()
+    local list = lookup.names_of(native.layout.grippers)
+    for name, station in pairs(native.layout.stations) do
+      list[#list + 1] = station.flipper and name or nil
     end
     return list
   end
@@ -41,14 +51,17 @@ return function(native, commands, queries, lookup, tokens, states, keep)
 
   -- For each kind of argument the names that there are, or nothing: then it is a number.
   prompt_commands.kinds = {
-    station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
+    station = station_names, gripper = names_of "grippers", wafer = native.wafer_names, command = command_names,
     fault = native.fault_kinds, frame = lookup.frames,
     handover = function() return lookup.parameters.handover.values end,
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
     phase = function() return lookup.phases end,
     mode = function() return lookup.align_fields.mode.values end,
+    teaching = function() return { "beam", "touch" } end,
     mark = function() return lookup.align_fields.mark.values end,
+    up_or_down = function() return lookup.up_or_down.values end,
+    door = names_of "doors", robot = names_of "robots", flips = flips_names,
     name = function() return {} end, save = states.names,
   }
 
@@ -76,8 +89,9 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   local get_options, put_options = carrying_options(""), carrying_options("")
   local swap_options = carrying_options("get_", "put_")
   get_options.correct, swap_options.get_correct = "switch", "switch"
+  swap_options.gripper = nil
 
-  local align_options = { mode = "mode", mark = "mark", glass = "number", correct = "switch" }
+  local align_options = { mode = "mode", mark = "mark", glass = "number", turns = "number", correct = "switch" }
 
   local function fields(list)
     local options = {}
@@ -105,18 +119,21 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   local function effector_for(arguments, options)
-    return lookup.effector(options.gripper, lookup.station(arguments[1]).effector)
+    local station = lookup.station(arguments[1])
+    local robot = lookup.robot_for(station.name, options)
+    return lookup.effector(options.gripper, station.by[robot] or nil, robot)
   end
 
-  -- How the command that is held is answered: after a CONTINUE as after itself.
-  local answer_held
+  -- By robot: how the command that it holds is answered, after a CONTINUE as after itself.
+  local answers_held = {}
 
   function states.keep()
     local put_back, is_as_was = keep()
-    local answer = answer_held
+    local robots = #native.layout.robots
+    local answers = table.move(answers_held, 1, robots, 1, {})
     return function()
       put_back()
-      answer_held = answer
+      answers_held = table.move(answers, 1, robots, 1, {})
     end, is_as_was
   end
 
@@ -125,9 +142,9 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     local time = timed(action, ...)
     local list = answer()
     list[#list + 1] = time
-    local phase = native.is_held()
+    local phase = lookup.phase()
     list[#list + 1] = phase and { "stop", phase }
-    answer_held = answer
+    answers_held[lookup.last_robot()] = answer
     return tokens.pairs(list)
   end
 
@@ -162,7 +179,14 @@ return function(native, commands, queries, lookup, tokens, states, keep)
   end
 
   local function continue()
-    return carried(answer_held, commands.continue)
+    local answer
+    local function answer_again()
+      return answer()
+    end
+    return carried(answer_again, function()
+      commands.continue()
+      answer = answers_held[lookup.last_robot()]
+    end)
   end
 
   local function map(arguments, options)
@@ -205,9 +229,21 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return tokens.pairs(list)
   end
 
-  local function teach(arguments)
+  local CALIBRATED = { "offset", "sd_offset", "zero", "sd_zero", "gain", "sd_gain", "latency", "sd_latency",
+    "mismatch", "seconds" }
+
+  local function calibrate(arguments, options)
+    local list = {}
+    local found = commands.calibrate(arguments[1], options)
+    for place, name in ipairs(CALIBRATED) do
+      list[place] = { name, found[name] }
+    end
+    return tokens.pairs(list)
+  end
+
+  local function teach(arguments, options)
     local taught
-    local time = timed(function() taught = commands.teach(arguments[1]) end)
+    local time = timed(function() taught = commands.teach(arguments[1], options) end)
     return tokens.pairs {
       { "x", taught.at[1] }, { "y", taught.at[2] }, { "z", taught.at[3] }, { "yaw_deg", taught.rpy[3] }, time,
     }
@@ -279,13 +315,17 @@ return function(native, commands, queries, lookup, tokens, states, keep)
 
   local function axes()
     local at, list = native.axes(), {}
-    for axis, name in ipairs(lookup.axes) do
-      local turns = name == "theta" or name == "yaw"
-      list[axis] = { name, turns and math.deg(at[axis]) or at[axis] }
+    for _, robot in ipairs(native.layout.robots) do
+      local owner = lookup.has_several() and tokens.spell(robot.name) .. "." or ""
+      for _, axis in ipairs(robot.axes) do
+        local position = at[axis.index]
+        list[#list + 1] = { owner .. axis.name, axis.turns and math.deg(position) or position }
+      end
     end
     for _, gripper in ipairs(native.layout.grippers) do
       if gripper.axis then
-        list[#list + 1] = { tokens.spell(gripper.name), math.deg(at[gripper.axis]) }
+        local position = at[gripper.axis]
+        list[#list + 1] = { tokens.spell(gripper.name), gripper.kind == "pins" and position or math.deg(position) }
       end
     end
     return tokens.pairs(list)
@@ -300,6 +340,21 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return table.concat(list, "; ")
   end
 
+  -- A command's options; of MOVE the axes that the robot has.
+  function prompt_commands.options(command)
+    local options = command.options or {}
+    if command.of_axes then
+      local own = {}
+      for _, robot in ipairs(native.layout.robots) do
+        for _, axis in ipairs(robot.axes) do
+          own[axis.name] = options[axis.name]
+        end
+      end
+      options = own
+    end
+    return options
+  end
+
   -- How a command is typed: GET STATION SLOT [option=value ...]; with `all`, every option by name.
   function prompt_commands.usage(name, all)
     local command = prompt_commands.commands[name]
@@ -308,7 +363,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
       local word = kind:upper() .. (command.repeated and place == #command.takes and " ..." or "")
       text[#text + 1] = command.optional and place == #command.takes and "[" .. word .. "]" or word
     end
-    for option, kind in pairs(all and command.options or {}) do
+    for option, kind in pairs(all and prompt_commands.options(command) or {}) do
       text[#text + 1] = ("[%s=%s]"):format(option, kind:upper())
     end
     if command.options and not all then
@@ -335,13 +390,16 @@ return function(native, commands, queries, lookup, tokens, states, keep)
 
   -- What a turn is called in a line, and the fault's options.
   local TURNS = { "rx", "ry", "rz" }
-  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer" }
-  for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting" }) do
+  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer", door = "door", station = "station" }
+  for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting", "error", "beam" }) do
     fault_options[name] = "number"
   end
 
   local function fault(arguments, options)
     local description = { kind = arguments[1] }
+    if not arguments[1] and not options.error then
+      native.fail("BAD_ARGUMENT", ("too few words (expected %s)"):format(prompt_commands.usage("FAULT")))
+    end
     for place, name in ipairs(TURNS) do
       if options[name] then
         description.rpy = description.rpy or { 0, 0, 0 }
@@ -355,6 +413,10 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     return tokens.pairs { { "fault", commands.fault(description) } }
   end
 
+  local function alarm(arguments)
+    return tokens.pairs { { "fault", commands.fault { error = arguments[1] } } }
+  end
+
   --------------------------------------------------------------------------------------------------- commands
 
   -- A command of the scripts that takes its arguments in order, answered with its time.
@@ -366,6 +428,7 @@ return function(native, commands, queries, lookup, tokens, states, keep)
 
   -- STOP comes past the queue where a command runs: here none does, but one may be held.
   local function stop()
+    background.stop()
     commands.stop()
   end
 
@@ -432,19 +495,29 @@ return function(native, commands, queries, lookup, tokens, states, keep)
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
-    TEACH = { takes = { "station" }, run = teach,
-              does = "finds out where the station truly is, by its beam and the wafer in slot 1" },
+    TEACH = { takes = { "station" }, options = { by = "teaching" }, run = teach,
+              does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
     HOME = { takes = {}, run = moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },
     RECOVER = { takes = {}, run = moving(commands.recover),
                 does = "straight out of the station that the arm stands in" },
+    TASK = { takes = { "command" }, repeated = true, keeps = true,
+             does = "begins a command that goes on beside those that follow; tells the task's number" },
+    JOIN = { takes = { "number" }, repeated = true, keeps = true, run = background.join,
+             does = "waits until these tasks are over, and answers as their commands do" },
+    TASKS = { takes = {}, keeps = true, run = background.list, does = "the tasks that were not joined" },
+    SIGNAL = { takes = { "name", "number" }, optional = true, keeps = true, run = background.signal,
+               does = "adds a signal of this name, or so many, for those who await it" },
+    AWAIT = { takes = { "name", "seconds" }, optional = true, run = background.await,
+              does = "takes one signal of this name, and waits for it, at most so long" },
     STOP = { takes = {}, run = stop, does = "ends the command that runs, gives up one that is held" },
     RESET = { takes = {}, run = reset, keeps = true,
               does = "reads the layout anew and begins another run, with the layout's wafers" },
-    SAVE = { takes = { "name" }, run = save, keeps = true,
+    SAVE = { takes = { "name" }, run = save, keeps = true, alone = true,
              does = "keeps under this name all that simulator and motion control are" },
-    RESTORE = { takes = { "save" }, run = restore, does = "puts back what was saved under this name" },
-    UNDO = { takes = {}, run = undo, keeps = true,
+    RESTORE = { takes = { "save" }, run = restore, asks = true, alone = true,
+                does = "puts back what was saved under this name" },
+    UNDO = { takes = {}, run = undo, asks = true, keeps = true, alone = true,
              does = "takes back the last command that changed something, several times" },
     STATUS = { takes = {}, run = status, keeps = true,
                does = "what goes on, where the robot is, what is held, the last error" },
@@ -456,30 +529,41 @@ return function(native, commands, queries, lookup, tokens, states, keep)
     ALIGN = { takes = { "station", "degrees" }, optional = true, options = align_options, run = align,
               does = "turns a prealigner's wafer until its notch points there, to 0 without degrees; "
                 .. "the next GET makes good how it lies" },
+    CALIBRATE = { takes = { "station" }, options = fields(lookup.names(lookup.calibrate_fields)), run = calibrate,
+                  does = "finds out what a prealigner's edge sensor is off by, and takes it off from then on" },
+    OPEN = { takes = { "door" }, run = moving(commands.open), does = "opens a door, and waits until it is" },
+    CLOSE = { takes = { "door" }, run = moving(commands.close),
+              does = "shuts a door, unless an arm stands in its station, and waits until it is shut" },
+    LIFT = { takes = { "station", "up_or_down" }, run = moving(commands.lift),
+             does = "UP: pins lift what lies on a prealigner's chuck; DOWN: they set it down there again" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
               does = "0 opens it (vacuum on), 1 closes it" },
-    MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true,
+    MOVE = { takes = {}, options = fields(lookup.axes), of_axes = true, needs_option = true,
              run = moving_by_name(commands.move),
              does = "moves the named axes to these positions, degrees and mm" },
+    FLIP = { takes = { "flips" }, run = moving(commands.flip),
+             does = "turns the blade over, or back; of a flipper the wafer in its clamp" },
     LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
              run = moving_by_name(commands.line),
              does = "moves the end-effector straight by so much, mm and mm/s; "
                .. "without a speed as fast as the axes go" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
-    FAULT = { takes = { "fault" }, options = fault_options, run = fault,
-              does = "lets a fault begin, and tells its number" },
+    FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault,
+              does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },
+    ALARM = { takes = { "error" }, run = alarm,
+              does = "lets the next command that can answer the error of this number do so; tells the fault's number" },
     CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
-    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, keeps = true,
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, asks = true, keeps = true,
                does = "where the wafer is in that slot's frame" },
-    HOLDER = { takes = { "wafer" }, run = holder, keeps = true, does = "the gripper that holds the wafer" },
-    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, keeps = true,
+    HOLDER = { takes = { "wafer" }, run = holder, asks = true, keeps = true, does = "the gripper that holds the wafer" },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, asks = true, keeps = true,
                   does = "the check of the wafer against the gripper" },
-    MEASURE = { takes = { "frame", "frame" }, run = measure, keeps = true,
+    MEASURE = { takes = { "frame", "frame" }, run = measure, asks = true, keeps = true,
                 does = "how the second frame lies in the first one's axes: "
                   .. "a wafer, gripper, station, slot (A/1) or base" },
-    DISTANCE = { takes = { "frame", "frame" }, run = distance, keeps = true, does = "of two frames' origins" },
-    ANGLE = { takes = { "frame", "frame" }, run = angle, keeps = true, does = "between two frames' z axes" },
-    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, keeps = true,
+    DISTANCE = { takes = { "frame", "frame" }, run = distance, asks = true, keeps = true, does = "of two frames' origins" },
+    ANGLE = { takes = { "frame", "frame" }, run = angle, asks = true, keeps = true, does = "between two frames' z axes" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, asks = true, keeps = true,
               does = "where wafers are; without a name, all" },
     AXES = { takes = {}, run = axes, keeps = true, does = "where the axes stand, degrees and mm" },
     STATIONS = { takes = {}, run = stations, keeps = true, does = "the stations of the cell" },

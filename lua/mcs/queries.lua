@@ -1,7 +1,7 @@
 -- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
 
 -- Kept, for a script may set globals of these names.
-local select, tostring, type, wh = select, tostring, type, wh
+local math, select, tostring, type, wh = math, select, tostring, type, wh
 
 return function(native, lookup)
   local queries = {}
@@ -10,6 +10,11 @@ return function(native, lookup)
   function queries.offset(wafer, station_name, slot)
     local station = lookup.station(station_name)
     return native.measure(lookup.wafer(wafer), station.index, lookup.slot(station, slot))
+  end
+
+  -- "up" or "down": how the wafer lies, or is held.
+  function queries.face(wafer)
+    return native.face(lookup.wafer(wafer))
   end
 
   -- The name of the gripper that holds the wafer, or nil.
@@ -21,8 +26,9 @@ return function(native, lookup)
   -- The check of a wafer against a gripper as they stand now: see wh.proximity.
   function queries.proximity(wafer, gripper)
     local tolerance = native.layout.tolerance
-    local base_from_wafer = native.wafer_pose(lookup.wafer(wafer))
-    return wh.proximity(base_from_wafer, native.gripper_pose(lookup.gripper(gripper), "real"), tolerance)
+    local index = lookup.gripper(gripper)
+    local base_from_face = native.wafer_pose(lookup.wafer(wafer), index)
+    return wh.proximity(base_from_face, native.gripper_pose(index, "real"), tolerance)
   end
 
   -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first
@@ -79,7 +85,17 @@ return function(native, lookup)
     return station and ("lies in %s slot %d"):format(station, slot) or "lies in no slot"
   end
 
-  -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows.
+  -- A value at its limit says so.
+  local function found_text(value, expected, tolerance)
+    local off, text = math.abs(value - expected), ("%.12g"):format(value)
+    if off < tolerance or ("%.12g"):format(off) ~= ("%.12g"):format(tolerance) then
+      return text
+    end
+    return ("%s (%.17g off, expected less than %.17g)"):format(text, off, tolerance)
+  end
+
+  -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows. One that hangs
+  -- above it does not.
   function queries.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
     tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance, { nil, nil, "mm" })
     if tolerance <= 0 then
@@ -89,13 +105,16 @@ return function(native, lookup)
     lookup.number("dy", dy)
     local index, station = lookup.wafer(wafer), lookup.station(station_name)
     local place = lookup.slot(station, slot)
-    local verdict, x, y, found, at = native.lies(index, station.index, place, dx, dy, tolerance)
+    local verdict, x, y, z, found, at = native.lies(index, station.index, place, dx, dy, tolerance)
     local text = "%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"
     text = text:format(wafer, station_name, slot, dx, dy, tolerance)
     if verdict == 0 then
       text = ("%s; it %s"):format(text, where(found, at))
     elseif verdict == 1 then
-      text = ("%s; found dX %.12g, dY %.12g"):format(text, x, y)
+      local most = native.layout.tolerance.projz
+      text = ("%s; found dX %s, dY %s"):format(text, found_text(x, dx, tolerance), found_text(y, dy, tolerance))
+      text = math.abs(z) < most and text
+        or ("%s, dZ %s (expected within %.10g mm of the slot's plane)"):format(text, found_text(z, 0, most), most)
     end
     return queries.expect(verdict == 2, text)
   end

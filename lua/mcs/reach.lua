@@ -27,14 +27,25 @@ return function(native, transfer)
     return type(problem) == "table" and problem.text or tostring(problem)
   end
 
+  -- The grippers that come to a station, one of each robot that serves it.
+  local function servers(station)
+    local list = {}
+    for _, gripper in ipairs(station.by) do
+      list[#list + 1] = gripper or nil
+    end
+    return #list > 0 and list or { station.effector }
+  end
+
   -- Calls found(slot, word, reason) for each slot at which a command of that word is refused: then a run
   -- refuses the whole layout.
   function reach.check(station, found)
-    for _, slot in ipairs(slots_of(station)) do
-      native.reach(station.index, slot)
-      local word, problem = rehearse(station.name, slot)
-      if problem then
-        found(slot, word, reason_of(problem))
+    for _, gripper in ipairs(servers(station)) do
+      for _, slot in ipairs(slots_of(station)) do
+        native.reach(station.index, slot, native.layout.grippers[gripper].robot)
+        local word, problem = rehearse(station.name, slot, gripper)
+        if problem then
+          found(slot, word, reason_of(problem))
+        end
       end
     end
     native.reach()
@@ -44,10 +55,11 @@ return function(native, transfer)
   -- way. `found` as above, at most once a slot.
   local function check_wound(station, slot, found)
     local _, problem, theta = rehearse(station.name, slot)
-    for _, wound in ipairs(problem and {} or native.windings(theta)) do
-      native.stand(wound)
+    local robot = native.layout.grippers[station.effector].robot
+    for _, wound in ipairs(problem and {} or native.windings(theta, robot)) do
+      native.stand(wound, robot)
       local word, refused = rehearse(station.name, slot)
-      native.stand()
+      native.stand(nil, robot)
       if refused then
         local from = "coming from theta %.5g deg, where earlier commands can lead it, %s"
         found(slot, word, from:format(math.deg(wound), reason_of(refused)))
@@ -56,11 +68,15 @@ return function(native, transfer)
     end
   end
 
-  -- What else would be refused in the course of a run: a MAP at a station that insists on one, and the same
-  -- ways with theta wound up.
+  -- What else would be refused in the course of a run: a MAP at a station that insists on one, a PUT that has no
+  -- room to go aside by what beams say, and the same ways with theta wound up.
   function reach.check_later(station, found)
     for _, slot in ipairs(slots_of(station)) do
       check_wound(station, slot, found)
+      local cannot = station.centre and transfer.rehearse_centring(station.name, slot)
+      if cannot then
+        found(slot, "PUT", reason_of(cannot))
+      end
     end
     local problem = station.taught and station.check_map and rehearse_map(station.name)
     if problem then
@@ -68,9 +84,61 @@ return function(native, transfer)
     end
   end
 
+  -- What a GET may make good, as parts of the layout's corrections: corners, and the middles between them.
+  local ENDS = { { -1, -1 }, { -1, 0 }, { -1, 1 }, { 0, -1 }, { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } }
+
+  -- The first of them, at this part of their size, that is refused: the error.
+  local function refused_aside(station, part, retract)
+    local most = native.layout.corrections
+    for _, way in ipairs(ENDS) do
+      local dx, dy = part * way[1] * most.dx, part * way[2] * most.dy
+      local problem = transfer.rehearse_aside(station.name, 1, dx, dy, retract)
+      if problem then
+        return problem
+      end
+    end
+  end
+
+  -- The largest number from 0 to `most` that does, to a thousandth of it.
+  local function largest(most, does)
+    local good, bad = 0, most
+    for _ = 1, 10 do
+      local middle = (good + bad) / 2
+      if does(middle) then
+        good = middle
+      else
+        bad = middle
+      end
+    end
+    return good
+  end
+
+  -- A GET goes to where ALIGN found the wafer, as far aside as `corrections` allow: calls missed(slot, word, reason,
+  -- name) if there is no room for that.
+  function reach.check_corrections(station, missed)
+    local gripper, most = native.layout.grippers[station.effector], native.layout.corrections
+    if not station.sensor or not station.taught or gripper.grip == "edge" or refused_aside(station, 0) then
+      return
+    end
+    local problem = refused_aside(station, 1)
+    if problem then
+      local part = largest(1, function(some)
+        return not refused_aside(station, some)
+      end)
+      local way = largest(station.retract, function(some)
+        return not refused_aside(station, 1, some)
+      end)
+      local text = "what ALIGN finds is made good up to %.3g mm along x and %.3g along y alone, not to `corrections` "
+        .. "of %.10g and %.10g: %s%s"
+      local advice = way >= 1 and ("; retract = %.0f leaves room"):format(math.floor(way)) or ""
+      missed(1, "GET", text:format(part * most.dx, part * most.dy, most.dx, most.dy, reason_of(problem), advice),
+        gripper.name)
+    end
+  end
+
   local function check_blade(station, gripper, name, missed)
     for _, slot in ipairs(slots_of(station)) do
-      native.reach(station.index, slot)
+      native.reach(station.index, slot, native.layout.grippers[gripper].robot)
       local word, problem = rehearse(station.name, slot, gripper)
       if problem then
         missed(slot, word, reason_of(problem), name)
@@ -84,7 +152,7 @@ return function(native, transfer)
   -- slot at which that blade is refused: a run refuses it when a command names the blade.
   function reach.check_blades(station, missed)
     for index, gripper in ipairs(native.layout.grippers) do
-      if gripper.on_robot and index ~= station.effector then
+      if gripper.on_robot and index ~= station.effector and station.by[gripper.robot] then
         check_blade(station, index, gripper.name, missed)
       end
     end

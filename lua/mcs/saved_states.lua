@@ -61,11 +61,16 @@ return function(native)
     return last.line, #before
   end
 
+  -- What comes now cannot be taken back, and so nothing from before it.
+  function states.forget()
+    before = {}
+  end
+
   -- Carries out the command of this line so that it can be taken back: also one that ends past all Lua.
   function states.follow(line, action, ...)
     local can_take, state = pcall(take)
     if not can_take then
-      before = {} -- what comes now cannot be taken back, and so nothing from before it
+      states.forget()
       return action(...)
     end
     local entry = { line = line, state = state }

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, lookup, align)
+return function(native, lookup, align, mechanisms)
   local targets = {}
 
   local parameters = lookup.parameters
@@ -37,10 +37,11 @@ return function(native, lookup, align)
     if options ~= nil and type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
+    local common = own == targets.fields.swap and lookup.swap_options or lookup.options
     for name, value in pairs(options or {}) do
-      local kind = lookup.options[name] or parameters[name] or own[name]
+      local kind = common[name] or parameters[name] or own[name]
       if not kind then
-        lookup.refuse_field(name, value, lookup.names(own, lookup.options, parameters))
+        lookup.refuse_field(name, value, lookup.names(own, common, parameters))
       elseif kind[3] and not kind[2] then
         lookup.number(name, value, kind)
       else
@@ -123,21 +124,45 @@ return function(native, lookup, align)
     if not station.taught then
       native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
     end
+    mechanisms.check_pins(station)
+    mechanisms.check_flipper(station)
     local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
-    target.gripper = gripper or lookup.effector(options.gripper, station.effector)
+    target.stage_home = word == "put" and mechanisms.way_home(station) or nil
+    target.robot = gripper and native.layout.grippers[gripper].robot or lookup.robot_for(station.name, options)
+    target.gripper = gripper or lookup.effector(options.gripper, station.by[target.robot] or nil, target.robot)
     local found = word == "get" and prefix and align.correction(station.name, options, prefix)
     read_corrections(target, prefix and options or {}, prefix or "", found or {})
-    target.place = native.slot(station.index, number, target.dx, target.dy, target.dz, target.turn)
+    target.place = native.slot(station.index, number, target.dx, target.dy, target.dz, target.turn,
+      target.robot)
     for name in pairs(parameters) do
       target[name] = options[name]
       if target[name] == nil then
         target[name] = station[name]
       end
     end
+    local edge = native.layout.grippers[target.gripper].edge
+    if edge and options.release == nil and station.release_default then
+      target.release = 0 -- what it holds lies on no pads, which would be lower
+    end
     read_centre(target, word, station, options, prefix)
     check(target, rules(target, station, native.layout), prefix)
+    target.is_passive = native.layout.grippers[target.gripper].grip == "passive"
+    target.vent = target.is_passive and native.layout.vent or nil
+    -- A blade that is turned over comes from above: its pads stop at `touch`, above the slot's plane.
+    local flip = lookup.axis("flip", target.robot)
+    if flip and math.abs(native.axes()[flip.index]) > math.pi / 2 then
+      target.vent = native.layout.vent
+      target.touch = native.layout.thickness + math.abs(target.release)
+      if target.is_passive then
+        local text = "%s is passive and turned over, where it holds nothing: FLIP or HOME comes first"
+        native.fail("NOT_LEVEL", text:format(native.layout.grippers[target.gripper].name))
+      end
+    end
+    target.edge = edge and { travel = edge.travel, slice = native.layout.slice, vent = native.layout.vent } or nil
+    target.face = word == "put" and station.face or nil
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
+    target.retracts = native.layout.robots[target.robot].retracts
     return target
   end
 

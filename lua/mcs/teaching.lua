@@ -1,7 +1,8 @@
 -- Teaching: the robot finds out with its own motions where a station truly is. By a beam at the station's door:
 -- it comes up below the wafer in slot 1 until the vacuum sensor feels it, which tells z; carries it through the
 -- beam on both sides, its heading as in the station and turned either way, which tells x and y, and where the
--- beam is; and turns the wafer's notch through the beam, which tells yaw. Last the wafer is put back.
+-- beam is; and turns the wafer's notch through the beam, which tells yaw. Last the wafer is put back. By touch:
+-- touching.lua.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
@@ -30,6 +31,57 @@ return function(native, patterns, lookup, arm, targets)
     play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper }, stays = stays }
   end
 
+  -- Out of the station with an open mind: nothing was learnt.
+  local function withdraw(target, bottom, name, why)
+    local place, gripper = target.place, target.gripper
+    play { valves = { [gripper] = 1 } }
+    play { line = { 0, 0, place.z + bottom - native.gripper_pose(gripper).r[3] } }
+    play { line = along(place, -target.retract), leaves = true }
+    native.fail(name, why)
+  end
+
+  local function height_of(target)
+    return native.gripper_pose(target.gripper).r[3] - target.place.z
+  end
+
+  -- Up in steps, the valve open, until the sensor is on, from this height: at most to `top`. Returns if it is.
+  local function rise(target, top)
+    local on = native.sensor(target.gripper)
+    for _ = 1, on and 0 or math.ceil((top - height_of(target)) / STEP - 1e-6) do
+      play { line = { 0, 0, STEP } }
+      play { dwell = target.timeout }
+      on = native.sensor(target.gripper)
+      if on then
+        break
+      end
+    end
+    return on
+  end
+
+  -- What was felt is a wafer if the sensor goes off with the valve, is off at the height where the search began,
+  -- and comes on again where it did. The wafer is left where it was: a blade that draws it onto its pads lifts it
+  -- by as much before.
+  local function is_wafer(target, begin, felt)
+    local gripper, projz = target.gripper, native.layout.tolerance.projz
+    local drawn = native.layout.seat and projz - STEP / 2 or 0
+    play { line = { 0, 0, drawn } }
+    play { valves = { [gripper] = 1 } }
+    play { dwell = target.timeout }
+    if native.sensor(gripper) then
+      return false
+    end
+    play { line = { 0, 0, begin - height_of(target) }, speed = target.pickup_speed }
+    play { valves = { [gripper] = 0 } }
+    play { dwell = target.timeout }
+    if native.sensor(gripper) then
+      return false
+    end
+    play { line = { 0, 0, felt - 3.5 * STEP - begin }, speed = target.pickup_speed }
+    play { dwell = target.timeout }
+    return not native.sensor(gripper) and rise(target, felt + 1.5 * STEP)
+      and math.abs(height_of(target) - felt) < 1.5 * STEP
+  end
+
   -- Into the station below the wafer, and up to it. Returns the height of the wafer's back face, and the blade's.
   local function feel(target)
     local place, projz, gripper = target.place, native.layout.tolerance.projz, target.gripper
@@ -40,21 +92,19 @@ return function(native, patterns, lookup, arm, targets)
     play { line = along(place, target.retract), enters = target, target = target, where = "on the way into" }
     play { line = { 0, 0, begin - bottom }, speed = target.pickup_speed }
     play { valves = { [gripper] = 0 } }
-    local on = native.sensor(gripper)
-    for _ = 1, on and 0 or math.ceil((SEARCH - projz - begin) / STEP) do
-      play { line = { 0, 0, STEP } }
-      play { dwell = target.timeout }
-      on = native.sensor(gripper)
-      if on then
-        local height = native.gripper_pose(gripper).r[3]
-        return height + projz - STEP / 2, height - STEP / 2
-      end
+    local where = ("slot %d of %s"):format(target.slot, target.station)
+    if native.sensor(gripper) then
+      withdraw(target, bottom, "VACUUM_BEFORE_PICK", ("no wafer was felt within %.10g mm of %s: the sensor was on below it"):format(SEARCH, where))
+    elseif not rise(target, SEARCH - projz) then
+      withdraw(target, bottom, "WAFER_MISSING", ("no wafer was felt within %.10g mm of %s"):format(SEARCH, where))
     end
-    play { valves = { [gripper] = 1 } }
-    play { line = { 0, 0, place.z + bottom - native.gripper_pose(gripper).r[3] } }
-    play { line = along(place, -target.retract), leaves = true }
-    native.fail(on and "VACUUM_BEFORE_PICK" or "WAFER_MISSING",
-      ("no wafer was felt within %.10g mm of slot %d of %s"):format(SEARCH, target.slot, target.station))
+    local felt = height_of(target)
+    if not is_wafer(target, begin, felt) then
+      withdraw(target, bottom, "VACUUM_BEFORE_PICK", ("what was felt %.3f mm above %s is no wafer: the sensor of %s did not go off below it and come on there again"):format(
+        felt + projz - STEP / 2, where, native.layout.grippers[gripper].name))
+    end
+    local height = place.z + math.max(felt, height_of(target))
+    return height + projz - STEP / 2, height - STEP / 2
   end
 
   local function carry_out(target)
@@ -86,10 +136,16 @@ return function(native, patterns, lookup, arm, targets)
     local ahead = math.sqrt(radius * radius - aside * aside) + ROOM
     go(target, beam.x - aside * place.dir_y - ahead * place.dir_x, beam.y + aside * place.dir_x
       - ahead * place.dir_y, place.z + target.offset, place.heading + turn)
-    watch(station, target, function()
+    local found, count = watch(station, target, function()
       play { line = along(place, 2 * ROOM), speed = SPEED }
       play { line = along(place, -2 * ROOM), speed = SPEED }
-    end)
+    end), 0
+    for _, crossing in ipairs(found.crossings) do
+      count = count + (crossing.beam == 1 and 1 or 0)
+    end
+    if count < 2 then
+      native.fail("TOO_FEW_SAMPLES", ("%d crossings of the wafer's rim (expected 2, there and back)"):format(count))
+    end
     native.add_teaching(place.x, place.y)
   end
 
@@ -141,31 +197,57 @@ return function(native, patterns, lookup, arm, targets)
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
     for field, value in pairs(options or {}) do
-      if field ~= "by" or value ~= "beam" then
-        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\")"):format(lookup.quote(field),
+      if field ~= "by" or value ~= "beam" and value ~= "touch" then
+        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\" or \"touch\")"):format(lookup.quote(field),
           lookup.quote(value)))
       end
     end
-    if station.beams == 0 then
+    local by = options and options.by or station.beams == 0 and station.block and "touch" or "beam"
+    if by == "beam" and station.beams == 0 then
       native.fail("BAD_ARGUMENT", ("station: %s (expected one with beams at its door)"):format(
         lookup.quote(name)))
+    elseif by == "touch" and not station.block then
+      native.fail("BAD_ARGUMENT", ("station: %s (expected one with a block)"):format(lookup.quote(name)))
     end
-    return station
+    return station, by
   end
+
+  local touching = native.module("mcs/touching.lua")(native, patterns, lookup, arm, targets)
 
   local function to_rpy(R)
     return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1]) + 0.0), math.deg(math.atan(R[2][1], R[1][1]))
   end
 
-  local function result_of(station, guess, z, yaw, solved)
+  -- What a layout should say: the station's place, and its yaw by so much more than the guess.
+  local function result_of(station, guess, at, yaw)
     local roll, pitch, heading = to_rpy(guess.R)
-    local result = {
-      at = { guess.r[1] + solved.x, guess.r[2] + solved.y, z }, rpy = { roll, pitch, heading + math.deg(yaw) },
-      sd = { solved.sd_x, solved.sd_y, STEP / math.sqrt(12) }, beam = { solved.beam_x, solved.beam_y },
-    }
+    local result = { at = at, rpy = { roll, pitch, heading + math.deg(yaw) } }
     result.text = ("%s = { at = { %.4f, %.4f, %.4f }, rpy = { %.5g, %.5g, %.4f } }"):format(
       station.name:match("^[%a_][%w_]*$") or ("[%q]"):format(station.name), result.at[1], result.at[2],
       result.at[3], roll, pitch, result.rpy[3])
+    return result
+  end
+
+  local function by_touch(name, station)
+    local guess, solved = touching(name, station)
+    local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, guess.r[3] + solved.z }
+    local result = result_of(station, guess, at, solved.yaw)
+    result.sd, result.sd_yaw = { solved.sd_x, solved.sd_y, solved.sd_z }, math.deg(solved.sd_yaw)
+    return result
+  end
+
+  local function by_beam(station, target, beam, z)
+    for _, turn in ipairs(TURNS) do
+      cross(station, target, beam, turn, -1)
+      cross(station, target, beam, turn, 1)
+    end
+    local solved, guess = native.solve_teaching(), beam.station
+    if solved.error ~= 0 then
+      native.fail("CENTRE_NOT_SURE", "the crossings contradict each other")
+    end
+    local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, z }
+    local result = result_of(station, guess, at, find_yaw(station, target, beam, solved))
+    result.sd, result.beam = { solved.sd_x, solved.sd_y, STEP / math.sqrt(12) }, { solved.beam_x, solved.beam_y }
     return result
   end
 
@@ -178,8 +260,15 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local function teach(name, options)
-    local station = check(name, options)
+    local station, by = check(name, options)
+    if by == "touch" then
+      return by_touch(name, station)
+    end
     local target = targets.at("get", name, 1)
+    if target.is_passive then
+      local text = "gripper: %s (expected one with vacuum, whose sensor feels the wafer)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(native.layout.grippers[target.gripper].name)))
+    end
     arm.check_free()
     if native.sensor(target.gripper) then
       native.fail("WAFER_ON_GRIPPER", "TEACH takes the wafer in slot 1")
@@ -188,17 +277,7 @@ return function(native, patterns, lookup, arm, targets)
     carry_out(target)
     local beam = native.beam(station.index)
     native.begin_teaching()
-    local good, result = pcall(function()
-      for _, turn in ipairs(TURNS) do
-        cross(station, target, beam, turn, -1)
-        cross(station, target, beam, turn, 1)
-      end
-      local solved = native.solve_teaching()
-      if solved.error ~= 0 then
-        native.fail("CENTRE_NOT_SURE", "the crossings contradict each other")
-      end
-      return result_of(station, beam.station, z, find_yaw(station, target, beam, solved), solved)
-    end)
+    local good, result = pcall(by_beam, station, target, beam, z)
     if native.sensor(target.gripper) then
       put_back(name, target, z, felt)
     end
@@ -208,8 +287,9 @@ return function(native, patterns, lookup, arm, targets)
     return result
   end
 
-  -- Where the station truly is, by its beam and the wafer in its slot 1: see lua/mcs/words.lua.
+  -- Where the station truly is, by its beam and the wafer in its slot 1, or by its block: see lua/mcs/words.lua.
   return function(station, options)
-    return arm.move(lookup.command("TEACH", station), teach, station, options)
+    lookup.refuse_for_several("TEACH")
+    return arm.move(arm.needs(true, station), lookup.command("TEACH", station), teach, station, options)
   end
 end

@@ -2,9 +2,9 @@
 -- which only goes there; MAP, which only looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, pairs, pcall, select, type = ipairs, pairs, pcall, select, type
+local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets, align, centring)
+return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   local transfer = {}
 
   local slot_map = native.module("mcs/slot_map.lua")(native)
@@ -15,16 +15,17 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     return native.layout.grippers[gripper].name
   end
 
-  -- A sensor that is on behind a closed valve says nothing of wafers.
+  -- A sensor that is on behind a closed valve says nothing of wafers. Passive pads have no valve.
   local function check_empty(target)
     local gripper = target.gripper
     if target.asks and native.sensor(gripper) then
       local name, wafer = name_of(gripper), native.held(gripper)
-      if native.is_open(gripper) then
+      if target.is_passive or native.is_open(gripper) then
         native.fail("WAFER_ON_GRIPPER", wafer and ("%s holds %s"):format(name, wafer)
           or ("the sensor of %s is on, without a wafer on its pads"):format(name))
       end
-      native.fail("VACUUM_BEFORE_PICK", ("the sensor of %s is on, its valve closed"):format(name))
+      native.fail(target.edge and "SENSORS_DISAGREE" or "VACUUM_BEFORE_PICK",
+        ("the sensor of %s is on, its valve closed"):format(name))
     end
   end
 
@@ -42,6 +43,16 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     if target.asks and not native.sensor(target.gripper) then
       local text = "the sensor of %s is off; %s"
       native.fail("NO_WAFER_ON_GRIPPER", text:format(name_of(target.gripper), holders()))
+    end
+  end
+
+  -- A station may take wafers of one face alone.
+  local function check_face(target)
+    local face = target.face and native.held_face(target.gripper)
+    if face and face ~= target.face then
+      local text = "%s lies face %s on %s (expected face %s: %s says so)"
+      native.fail("WRONG_FACE", text:format(native.held(target.gripper), face, name_of(target.gripper), target.face,
+        target.station))
     end
   end
 
@@ -89,10 +100,55 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     return below < projz and text:format(below, projz) or ""
   end
 
+  local SAYS = { jammed = "stands before its window", missed = "stands behind its window", closed = "holds a wafer",
+                 closing = "is on its way", still = "has not moved", opening = "is on its way back", open = "is open" }
+
+  -- What became of a wafer, or of none, at a plunger, as an error if that is one.
+  local PLUNGER = {}
+
+  function PLUNGER.unmoved(_, name, was)
+    native.fail("PLUNGER_STUCK", ("that of %s is at %.3f mm"):format(name, was.s))
+  end
+
+  function PLUNGER.unclosed(target, name, was)
+    local text = "that of %s had %.10g s, and is at %.3f mm"
+    native.fail("GRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
+  end
+
+  function PLUNGER.unopened(target, name, was)
+    local text = "that of %s had %.10g s, and is at %.3f mm"
+    native.fail("UNGRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
+  end
+
+  function PLUNGER.disagree(_, name, was)
+    local text = "the sensor of %s is %s, but its plunger %s"
+    native.fail("SENSORS_DISAGREE", text:format(name, was.is_on and "on" or "off", SAYS[was.does]))
+  end
+
+  function PLUNGER.jammed(target, name, was)
+    local clearance = native.layout.grippers[target.gripper].edge.clearance
+    native.fail("WAFER_JAMMED", was.excess > 0
+      and ("a wafer lies %.3f mm off the centre of %s (expected at most its clearance, %.10g mm; by %.3f mm)"):format(
+        clearance + was.excess, name, clearance, was.excess)
+      or ("the plunger of %s stands at %.3f mm: the wafer is too large"):format(name, was.s))
+  end
+
+  local function judge_plunger(target, found)
+    local fail = target.edge and PLUNGER[found]
+    if fail then
+      fail(target, name_of(target.gripper), target.plunger)
+    end
+  end
+
   -- What a GET's pattern found, as an error unless it is a wafer.
   local function judge_get(target, found)
-    if found == "missing" then
-      native.fail("WAFER_MISSING", explain(target.gripper))
+    judge_plunger(target, found)
+    if found == "missing" and target.is_passive then
+      local text = "%s came up through %s slot %d without a wafer on its pads"
+      native.fail("WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
+    elseif found == "missing" then
+      native.fail("WAFER_MISSING", target.edge and ("the plunger of %s went on to the end of its stroke, and met "
+        .. "no wafer"):format(name_of(target.gripper)) or explain(target.gripper))
     elseif found == "late" then
       fail_late(target, target.gripper)
     elseif found == "early" then
@@ -102,6 +158,7 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   end
 
   local function judge_put(target, became)
+    judge_plunger(target, became)
     if became == "uncentred" then
       centring.fail(target)
     elseif became == "lost" then
@@ -110,6 +167,10 @@ return function(native, patterns, lookup, arm, targets, align, centring)
       fail_late(target, target.chuck)
     elseif became == "stuck" then
       local kept, name = native.held(target.gripper), name_of(target.gripper)
+      if kept and target.is_passive then
+        local text = "%s still holds %s: nothing in %s slot %d took it over"
+        native.fail("WAFER_LOST", text:format(name, kept, target.station, target.slot))
+      end
       native.fail("WAFER_LOST", kept and ("%s still holds %s: its valve or vacuum did not let go of it"):format(name, kept)
         or ("the sensor of %s is still on, with nothing on its pads"):format(name))
     end
@@ -125,7 +186,9 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   local function carry(word, station, slot, options)
     local kind, target = transfers[word], targets.at(word, station, slot, options, nil, "")
     arm.check_free()
+    alarms.break_at(word:upper(), word, target)
     kind.check_gripper(target)
+    check_face(target)
     kind.check_slot(target)
     local plan = arm.rehearse(kind.pattern, target, true)
     local notch, deviation
@@ -141,6 +204,9 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     end)
     return target.centred
   end
+
+  -- GET and PUT within another command.
+  transfer.carry = carry
 
   -- The options with what an ALIGN has found for the GET, which they do not say themselves.
   local function with_found(station, options, prefix)
@@ -173,31 +239,32 @@ return function(native, patterns, lookup, arm, targets, align, centring)
 
   function transfer.get(station, slot, options)
     local text = text_of("GET", station, slot, with_found(station, options, ""), "")
-    arm.move(text, carry, "get", station, slot, options)
+    arm.move(arm.needs(true, station, options), text, carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
-    return arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
+    local text = text_of("PUT", station, slot, options, "")
+    return arm.move(arm.needs(true, station, options), text, carry, "put", station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------- SWAP
 
   -- The robot's grippers: the first empty one and the first that holds a wafer, as the sensors tell.
-  local function choose_grippers()
-    local empty, loaded, count
-    count = 0
-    for index, gripper in ipairs(native.layout.grippers) do
-      if gripper.on_robot then
-        count = count + 1
-        if native.sensor(index) then
-          loaded = loaded or index
-        else
-          empty = empty or index
-        end
+  local function find_grippers(robot)
+    local empty, loaded
+    for _, index in ipairs(lookup.on_robot(robot)) do
+      if native.sensor(index) then
+        loaded = loaded or index
+      else
+        empty = empty or index
       end
     end
-    if count < 2 then
-      local names = select(2, lookup.on_robot())
+    return empty, loaded
+  end
+
+  local function check_grippers(robot, empty, loaded)
+    local indices, names = lookup.on_robot(robot)
+    if #indices < 2 then
       local text = "SWAP takes with one and puts with another (expected two on the robot; there is %s)"
       native.fail("NO_SUCH_GRIPPER", text:format(lookup.listed(names)))
     elseif not loaded then
@@ -205,24 +272,26 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     elseif not empty then
       native.fail("WAFER_ON_GRIPPER", "SWAP takes with an empty one on the robot; " .. holders())
     end
-    return empty, loaded
   end
 
   local function swap(station, slot, options)
-    local take = targets.at("get", station, slot, options, 1, "get_")
     if type(options) == "table" and options.gripper ~= nil then
       local text = "gripper: %s (expected none: SWAP takes with the empty one and puts with the other)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.gripper)))
     end
-    local empty, loaded = choose_grippers()
+    local robot = lookup.robot_for(station, type(options) == "table" and { robot = options.robot })
+    local empty, loaded = find_grippers(robot)
+    local take = targets.at("get", station, slot, options, empty or lookup.on_robot(robot)[1], "get_")
+    check_grippers(robot, empty, loaded)
     local give = targets.at("put", station, slot, options, loaded, "put_")
     if give.centre then
       native.fail("BAD_ARGUMENT", "put_centre: true (expected false: the beams would see both wafers of a SWAP)")
     end
-    take.gripper = empty
-    local target = { get = take, put = give, watched = take.watched }
+    local target = { get = take, put = give, watched = take.watched, robot = robot }
     arm.check_free()
+    alarms.break_at("SWAP", "get", take)
     check_empty(take)
+    check_face(give)
     slot_map.check_get(take)
     local plan = arm.rehearse(patterns.swap, target, true)
     local notch, deviation = align.notch(take)
@@ -240,7 +309,8 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
     local text = text_of("SWAP", station, slot, with_found(station, options, "get_"), "get_", "put_")
-    arm.move(text, swap, station, slot, options)
+    local which = type(options) == "table" and { robot = options.robot }
+    arm.move(arm.needs(true, station, which), text, swap, station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------ READY
@@ -254,13 +324,17 @@ return function(native, patterns, lookup, arm, targets, align, centring)
 
   -- Goes in front of the slot, to where a GET or, with a wafer, a PUT enters.
   function transfer.ready(station, slot, options)
-    arm.move(lookup.command("READY", station, slot), ready, station, slot, options)
+    local text = lookup.command("READY", station, slot)
+    arm.move(arm.needs(true, station, options, true), text, ready, station, slot, options)
   end
 
   -------------------------------------------------------------------------------------------------------- MAP
 
-  local function map_target(name, options)
-    local target, station = targets.at("get", name, 1, options), lookup.station(name)
+  local function map_target(name, options, gripper)
+    local target, station = targets.at("get", name, 1, options, gripper), lookup.station(name)
+    if target.touch then
+      native.fail("NOT_LEVEL", "the blade is turned over, and its sensors with it: FLIP or HOME comes first")
+    end
     target.margin = station.pitch / 2
     target.height = (station.slots - 1) * station.pitch
     return target, station
@@ -277,7 +351,7 @@ return function(native, patterns, lookup, arm, targets, align, centring)
 
   -- Sweeps over the station's slots; returns a list of their codes: 0 empty, 1 single, 2 double, 4 crossed.
   function transfer.map(station, options)
-    return arm.move(lookup.command("MAP", station), map, station, options)
+    return arm.move(arm.needs(true, station, options), lookup.command("MAP", station), map, station, options)
   end
 
   transfer.keep_slots = slot_map.keep
@@ -285,7 +359,17 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -------------------------------------------------------------------------------------------------- rehearsal
 
   local function plan(word, station, slot, gripper)
+    gripper = gripper or lookup.station(station).effector
     return arm.rehearse(transfers[word].pattern, targets.at(word, station, slot, nil, gripper))
+  end
+
+  -- The axes in front of the slot that a plan goes to.
+  local function before_slot(planned)
+    for _, request in ipairs(planned) do
+      if request.to then
+        return request.axes
+      end
+    end
   end
 
   -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
@@ -300,7 +384,25 @@ return function(native, patterns, lookup, arm, targets, align, centring)
     if not can_put then
       return "PUT", put
     end
-    return nil, nil, got[1].axes[1]
+    return nil, nil, before_slot(got)[arm.first_axis(got.target.gripper)]
+  end
+
+  -- Plans a PUT that goes aside by what beams say. Returns the error of one that is refused, or nil.
+  function transfer.rehearse_centring(station, slot)
+    local can, problem = pcall(function()
+      arm.rehearse(patterns.put, targets.at("put", station, slot, nil, lookup.station(station).effector, ""))
+    end)
+    return not can and problem or nil
+  end
+
+  -- Plans a GET that goes aside by what an ALIGN may find, its way in as long as `retract`, if that is given. Returns
+  -- the error of one that is refused, or nil.
+  function transfer.rehearse_aside(station, slot, dx, dy, retract)
+    local can, problem = pcall(function()
+      local options = { dx = dx, dy = dy, retract = retract }
+      arm.rehearse(patterns.get, targets.at("get", station, slot, options, lookup.station(station).effector, ""))
+    end)
+    return not can and problem or nil
   end
 
   ------------------------------------------------------------------------------------------------ trying out
@@ -309,6 +411,7 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -- Here and below `cell` is what lib/mcs/survey.c stands it in.
   local function try(word, station, slot, cell, gripper)
     local good, problem = pcall(function()
+      gripper = gripper or lookup.station(station).effector
       local kind, target = transfers[word], targets.at(word, station, slot, nil, gripper)
       kind.judge(target, arm.drive(arm.rehearse(kind.pattern, target)))
       if word == "get" and not native.held(target.gripper) then
@@ -322,7 +425,7 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -- transfer.rehearse. Returns the slot at which a command fails, its word and the error; or nil; or false if
   -- the cell cannot be had.
   function transfer.try_out(station, slots, cell, gripper)
-    if not cell.stage(plan("get", station, slots[1], gripper)[1].axes) then
+    if not cell.stage(before_slot(plan("get", station, slots[1], gripper))) then
       return false
     end
     for step = 1, 2 * #slots do
@@ -338,11 +441,11 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -- A GET at `from`, then a PUT at an empty slot: how the wafer lies on the blade is the other station's
   -- doing. With `again` a GET follows. Returns the word of the one that fails and the error; or nil.
   function transfer.try_carrying(from, station, slot, cell, again)
-    cell.stage(plan("get", from, 1)[1].axes, slot)
+    cell.stage(before_slot(plan("get", from, 1)), slot)
     if try("get", from, 1, cell) then
       return nil
     end
-    cell.move(plan("put", station, slot)[1].axes)
+    cell.move(before_slot(plan("put", station, slot)))
     local stand = { segment = { dwell = 4 * native.layout.slice } }
     arm.drive(arm.rehearse(patterns.single, stand))
     cell.begin()
@@ -356,7 +459,7 @@ return function(native, patterns, lookup, arm, targets, align, centring)
   -- The same for MAP: returns the error, or nil.
   function transfer.rehearse_map(station)
     local can_map, problem = pcall(function()
-      arm.rehearse(patterns.map, (map_target(station)))
+      arm.rehearse(patterns.map, (map_target(station, nil, lookup.station(station).effector)))
     end)
     return not can_map and problem or nil
   end

@@ -2,7 +2,7 @@
 # So the flags and inline functions of one never become another's, and a missing one is missing alone.
 
 BENCH_IN := $(B)/tests/bench
-BENCH_SUBJECTS := check index step profile program
+BENCH_SUBJECTS := check index step profile program collide serve
 PYPI := build/pypi
 # gcc 12 warns inside its own vector headers.
 NATIVE := -O3 -march=native -Wno-maybe-uninitialized
@@ -43,3 +43,8 @@ bench: $(BENCH_SUBJECTS:%=$(BENCH_IN)/%) $(BENCH_IN)/counts $(PEERS) program
 
 $(BENCH_SUBJECTS:%=$(BENCH_IN)/%): $(B)/obj/tests/bench/harness.o
 $(BENCH_SUBJECTS:%=$(BENCH_IN)/%): LIBS = -ldl
+# It reads a recording.
+$(BENCH_IN)/collide: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_collision.a $(B)/libwaferhand_lcm.a
+$(BENCH_IN)/collide: COLLISION = $(COLLISION_LIBS)
+$(BENCH_IN)/collide: LIBS = $(PROGRAM_LIBS)
+$(B)/obj/tests/bench/collide.o: $(B)/lcm/waferhand_messages.h

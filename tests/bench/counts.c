@@ -9,8 +9,7 @@
 #include <valgrind/callgrind.h>
 
 #include "batch/batch.h"
-#include "bench/scan.h"
-#include "bench/table.h"
+#include "bench/ours.h"
 #include "sim/simulator.h"
 
 #define COUNT(name, statement)                                                                               \

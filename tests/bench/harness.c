@@ -214,13 +214,17 @@ int bench_end(void) {
 }
 
 const void *bench_peer(const char *name, const char *needs) {
+    return bench_peer_symbol(name, "bench_peer", needs);
+}
+
+const void *bench_peer_symbol(const char *name, const char *symbol, const char *needs) {
     char path[4096];
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 64);
     path[length > 0 ? length : 0] = '\0';
     char *end = strrchr(path, '/');
     (void)snprintf(end ? end + 1 : path, 64, "peer_%s.so", name);
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    const void *found = library ? dlsym(library, "bench_peer") : NULL;
+    const void *found = library ? dlsym(library, symbol) : NULL;
     if (!found) {
         (void)fprintf(json ? stderr : stdout, "  SKIPPED %s: it needs %s%s%s\n", name, needs,
                       access(path, F_OK) == 0 ? "; " : "", access(path, F_OK) == 0 ? dlerror() : "");

@@ -65,9 +65,10 @@ void bench_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Ends the process: both sides do not give the same answer. */
 void bench_differ(const char *who, const char *what);
 
-/* What peer_NAME.so beside the program exports as `bench_peer`; null, and the peer skipped by name, when it was not built.
- */
+/* What peer_NAME.so beside the program exports as `bench_peer`, or as `symbol`; null, and the peer skipped by name, when it was
+ * not built. */
 const void *bench_peer(const char *name, const char *needs);
+const void *bench_peer_symbol(const char *name, const char *symbol, const char *needs);
 
 #ifdef __cplusplus
 }

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "bench/harness.h"
+#include "bench/ours.h"
 #include "bench/peers.h"
-#include "bench/table.h"
 
 enum { POSES = 16384, COMPARED = 200, PEERS = 3, SIZES = 4, TURNS = 2 };
 

@@ -1,9 +1,11 @@
-/* What a peer must be able to do to be raced: peer_NAME.so exports one of these as `bench_peer`. A peer takes its own copy
+/* What a peer must be able to do to be raced: peer_NAME.so exports one of these as `bench_peer`, or colliders as `bench_cell`. A peer takes its own copy
  * of the wafers into whatever structure is best for it, outside of what is timed. */
 #ifndef WH_TESTS_BENCH_PEERS_H
 #define WH_TESTS_BENCH_PEERS_H
 
 #include <waferhand.h>
+
+#include "collision/convex.h"
 
 #ifdef __cplusplus
 #define BENCH_PEER extern "C" __attribute__((visibility("default"))) const
@@ -45,6 +47,41 @@ typedef struct {
 typedef struct {
     bench_world_t worlds[BENCH_VARIANTS];
 } bench_step_peer_t;
+
+/* A cell's shapes, all of them at rest. Two that are neighbours (count x count) are never judged against each other. */
+typedef struct {
+    const wh_convex_t *const *convex;
+    const wh_pose_t *base_from_shape;
+    const bool *neighbours;
+    const bool *moves; /* the shape may ever move */
+    size_t count;
+} bench_cell_t;
+
+/* A shape that moves, at both ends of a slice. Those of one group are rigid, and not judged against each other. */
+typedef struct {
+    int32_t shape, group;
+    wh_pose_t before, now;
+} bench_mover_t;
+
+/* What moves. Other shapes rest where they were last. */
+typedef struct {
+    const bench_mover_t *movers;
+    size_t count;
+} bench_slice_t;
+
+/* A pair, of which one moves, that touches or overlaps; or the nearest pair with its gap, mm. */
+typedef struct {
+    int32_t a, b;
+    double gap;
+} bench_near_t;
+
+typedef struct {
+    const char *name;
+    bool is_nearest; /* `look` gives the nearest pair, if one is within 20 mm; else those that touch */
+    void *(*build)(const bench_cell_t *cell);
+    size_t (*look)(void *built, const bench_slice_t *slice, bench_near_t found[], size_t capacity);
+    void (*drop)(void *built);
+} bench_collider_t;
 
 /* The duration of a synchronised move from rest to rest of `axes` axes. */
 typedef struct {

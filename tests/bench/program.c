@@ -1,4 +1,4 @@
-/* What needs no peer: how much faster than real time the program plays the transfer run, how many instructions a step
+/* What needs no peer: how much faster than real time the program plays the transfer run and a tool, how many instructions a step
  * takes, as callgrind counts them, and how long the estimate of a scan does. To be started at the root, after
  * `make all tests`. */
 #include <stdio.h>
@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "bench/harness.h"
-#include "bench/scan.h"
+#include "bench/ours.h"
 
-enum { RUNS = 41 };
+enum { RUNS = 41, FEW_RUNS = 5 };
 
 /* The first number after `key` in what a command prints; the command's own complaints are shown. Negative: there is none. */
 static double ask(const char *command, const char *key) {
@@ -26,17 +26,18 @@ static double ask(const char *command, const char *key) {
     return number;
 }
 
-static void time_run(const char *row, double goal) {
-    static const char command[] = "build/waferhand run lua/examples/01_transfer.lua --json";
+static void time_run(const char *row, const char *example, size_t runs, double goal) {
+    char command[100];
     double times[RUNS];
     if (!bench_wanted(row)) {
         return;
     }
+    (void)snprintf(command, sizeof command, "build/waferhand run lua/examples/%s.lua --json", example);
     const double simulated = ask(command, "\"simulated_s\": ");
-    for (size_t i = 0; i < RUNS; ++i) {
+    for (size_t i = 0; i < runs; ++i) {
         times[i] = simulated / ask(command, "\"wall_s\": ");
     }
-    const bench_spread_t spread = bench_spread(times, RUNS);
+    const bench_spread_t spread = bench_spread(times, runs);
     bench_figure(row, "x real time", &spread, false, goal);
 }
 
@@ -82,9 +83,12 @@ static void time_estimate(const char *row, double goal) {
 
 int main(int argc, char **argv) {
     bench_begin("program", "", argc, argv);
-    bench_note("`waferhand run` on the transfer run with 1 ms slices, by its own clock; a step counted by "
-               "callgrind");
-    time_run("run, real time", 5000);
+    bench_note(
+        "`waferhand run` on the transfer run and on the tool of example 27 with 1 ms slices, by its own "
+        "clock; a step counted by callgrind");
+    time_run("run, real time", "01_transfer", RUNS, 5000);
+    /* Two robots, with collisions looked for between all parts, and the smallest gaps. */
+    time_run("tool, real time", "27_tool", FEW_RUNS, 300);
     count_step("step, 2 wafers", "step indexed 2 idle", 400);
     count_step("step, 2, turning", "step indexed 2 turning", 400);
     count_step("step, 2, carrying", "step indexed 2 carry", 400);

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "bench/harness.h"
+#include "bench/ours.h"
 #include "bench/peers.h"
-#include "bench/table.h"
 
 enum { POSES = 8192 };
 

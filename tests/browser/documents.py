@@ -6,6 +6,7 @@ import html
 import json
 import pathlib
 import re
+import struct
 import subprocess
 import zlib
 
@@ -78,6 +79,53 @@ def example(name):
     """An example's document, the caller's to change, and the page that the program makes of it."""
     text, page = made(name)
     return json.loads(text), page
+
+
+# Name, robot, `at` of the gripper, stations A and B.
+OTHER_ROBOTS = [
+    ("scara", 'kind = "SCARA", links = { 350, 300 }, at = { 100, 0, 0 }, heading = 10, rail = {}, flip = { height = 12 }', 250,
+     "at = { 850, 100, 900 }, rpy = { 0, 0, 10 }, rail = 100|at = { 100, 750, 900 }, rpy = { 0, 0, 90 }"),
+    ("trz", 'kind = "TRZ", rail = {}, at = { 0, -100, 0 }', 0,
+     "at = { 400, 600, 900 }, rpy = { 0, 0, 90 }, rail = 400|at = { -400, 600, 900 }, rpy = { 0, 0, 90 }, rail = -400"),
+    ("arms", 'kind = "TRZ", arms = { { heading = 30 }, { heading = 180, height = 10 } }', 0,
+     "at = { 700, 0, 900 }|at = { 0, 700, 900 }, rpy = { 0, 0, 90 }"),
+    ("leaning", "tilt = {}, heading = 20", 0, "at = { 700, 250, 900 }, rpy = { 1.5, -2, 0 }|at = { 0, 700, 900 }, rpy = { 0, 0, 90 }"),
+]
+
+
+def of_robot(name, robot, place, stations):
+    """The scene with its motion, and the page, of a run of another robot."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    layout, script, scene, page = (FOLDER / f"{name}{end}" for end in ("_cell.lua", ".lua", ".gltf", ".html"))
+    a, b = stations.split("|")
+    other = '{ name = "Other", arm = 2 },' if "arms" in robot else ""
+    layout.write_text(f"""return {{ robot = {{ {robot} }}, grippers = {{ {other} {{ name = "EE", at = {{ {place}, 0, 0 }} }} }},
+        stations = {{ A = {{ {a} }}, B = {{ {b} }} }}, wafers = {{ {{ name = "W", station = "A", slot = 1 }} }} }}""")
+    script.write_text(f'cell "{layout.name}"\nget("A", 1) put("B", 1)\n' + ('flip "EE"' if "flip" in robot else ""))
+    subprocess.run([PROGRAM, "run", script, "--gltf", scene, "--report", page], check=True, stdout=subprocess.DEVNULL)
+    return json.loads(scene.read_text()), page
+
+
+def numbers(scene, index, buffer):
+    accessor = scene["accessors"][index]
+    offset = accessor.get("byteOffset", 0) + scene["bufferViews"][accessor["bufferView"]].get("byteOffset", 0)
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+    flat = struct.unpack_from(f"<{width * accessor['count']}f", buffer, offset)
+    return [flat[i * width:(i + 1) * width] for i in range(accessor["count"])]
+
+
+def keyframes(scene, kind):
+    """Index, time, place in metres and quaternion of each keyframe of the nodes of one kind."""
+    buffer = base64.b64decode(scene["buffers"][0]["uri"].split(",")[1])
+    found = {}
+    for channel in scene["animations"][0]["channels"]:
+        node = scene["nodes"][channel["target"]["node"]]
+        if node.get("extras", {}).get("kind") == kind:
+            sampler = scene["animations"][0]["samplers"][channel["sampler"]]
+            for (t,), value in zip(numbers(scene, sampler["input"], buffer), numbers(scene, sampler["output"], buffer)):
+                found.setdefault((node["extras"]["index"], t), {})[channel["target"]["path"]] = value
+    return [(index, t, each["translation"], each["rotation"]) for (index, t), each in found.items()
+            if len(each) == 2]
 
 
 def page_of(document, name):

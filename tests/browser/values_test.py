@@ -67,6 +67,21 @@ class Values(unittest.TestCase):
                 for k in range(2):
                     self.assertAlmostEqual(x[k], wanted[1][k][0], delta=1e-8)
 
+    def test_links_of_other_robots(self):
+        """At keyframes of the program's own scene, which is thinned."""
+        for name, robot, place, stations in documents.OTHER_ROBOTS:
+            scene, path = documents.of_robot(name, robot, place, stations)
+            page.open(path)
+            moved = set()
+            for link, t, r, q in documents.keyframes(scene, "link"):
+                there, turned = page.js("""const pose = Waferhand.robot.link(Waferhand.shown.tracks, ...arguments);
+                    return [pose.r, pose.q]""", link, t)
+                for k in range(3):
+                    self.assertAlmostEqual(there[k], 1000 * r[k], delta=1.2, msg=(name, link, t))
+                self.assertGreater(abs(sum(a * b for a, b in zip(turned, q))), 1 - 1e-5, msg=(name, link, t))
+                moved.add(link)
+            self.assertLessEqual({0, 1, 2, 3} | ({4} if "rail" in robot else set()), moved, msg=name)
+
     def test_exact_at_points(self):
         """At a point of a track the page computes nothing: the same bits."""
         document, path = documents.example("01_transfer")

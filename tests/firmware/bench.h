@@ -77,7 +77,7 @@ static inline int set_up(void **unused) {
     (void)unused;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, 1, NULL, 0};
-    const wh_cell_t cell = {stations, STATIONS, wh_tolerance_paper(), WH_REAL(0.5), 0, true};
+    const wh_cell_t cell = {stations, STATIONS, wh_tolerance_paper(), WH_REAL(0.5), 0, true, 0, 0};
     wh_physics_t physics = wh_physics_default();
     physics.vacuum = wh_vacuum_delayed();
     wafers[0].base_from_wafer = wh_station_slot(&stations[0], 1);

@@ -17,16 +17,21 @@ static union {
 } memory;
 
 static wh_world_input_t seen(const wh_grasp_t *table) {
-    const wh_world_input_t input = {table->slice, table->storage.wafers, table->storage.grippers,
-                                    gripper_pose()};
+    static const wh_arm_t arm = {.reach = 250, .link = 350};
+    static wh_pose_t links[WH_ARM_BODIES];
+    const wh_pose_t effector = gripper_pose();
+    const wh_world_input_t input = {table->slice, table->storage.wafers, table->storage.grippers, links,
+                                    NULL};
+    wh_arm_place(&arm, &effector, links);
     return input;
 }
 
 /* The machine shows each slice to the world, which adds its events to the slice's own. */
-static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                 wh_event_list_t *list) {
+static void look(void *user, const wh_command_t *order, const wh_gripper_input_t inputs[],
+                 const wh_grasp_t *table, wh_event_list_t *list) {
     const wh_world_input_t input = seen(table);
     (void)user;
+    (void)order;
     (void)inputs;
     wh_world_step(world, &input, list);
 }
@@ -45,8 +50,6 @@ static void describe(void) {
     shapes.wafer.half = wh_vec3(150, 0, 0.3875);
     shapes.wafer.body_from_shape = wh_pose_identity();
     shapes.wafer.body_from_shape.r.z = 0.3875;
-    shapes.arm.reach = 250;
-    shapes.arm.link = 350;
     shapes.gripper_count = 1;
     shapes.wafer_count = WAFERS;
     shapes.cell = &machine.cell;

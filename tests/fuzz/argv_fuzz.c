@@ -15,6 +15,7 @@
 #include "app/test_find.h"
 #include "app/watch.h"
 #include "fuzz.h"
+#include "host/host.h"
 #include "layout/layout.h"
 #include "mcs/definitions.h"
 #include "study/study.h"
@@ -93,6 +94,9 @@ bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test
                          wh_test_result_t results[]);
 bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
 bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
+bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *options);
+bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path);
+bool __wrap_wh_transcript_open(wh_transcript_t *transcript, const char *path);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
@@ -237,6 +241,34 @@ bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *o
     return false;
 }
 
+/* `serve`, at whose ports nothing is listened for. */
+bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
+    reached = true;
+    if (!refused) {
+        REQUIRE(options->layout != NULL);
+        check_parameters(options->parameters, options->parameter_count);
+        REQUIRE(options->limits.memory_bytes == 0 || options->limits.memory_bytes >= (size_t)1 << 20);
+        REQUIRE(options->limits.memory_bytes <= (size_t)1000000 << 20);
+    }
+    memset(session, 0, sizeof *session);
+    snprintf(session->message, sizeof session->message, "not opened");
+    return false;
+}
+
+bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path) {
+    reached = true;
+    REQUIRE(refused || path != NULL);
+    memset(dialect, 0, sizeof *dialect);
+    return false;
+}
+
+bool __wrap_wh_transcript_open(wh_transcript_t *transcript, const char *path) {
+    reached = true;
+    REQUIRE(refused || path != NULL);
+    memset(transcript, 0, sizeof *transcript);
+    return false;
+}
+
 bool __wrap_wh_node_reaches_others(const char *url) {
     (void)url;
     return true;
@@ -335,12 +367,14 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run,   wh_app_mcs,      wh_app_sim,  wh_app_replay,      wh_app_report, wh_app_layout,
-        wh_app_study, wh_app_estimate, wh_app_test, wh_app_diff,        wh_app_events, wh_app_csv,
-        wh_app_check, wh_app_sweep,    wh_app_new,  wh_app_definitions, wh_app_budget};
-    static const char *const names[] = {"run",   "mcs",      "sim",  "replay",      "report", "layout",
-                                        "study", "estimate", "test", "diff",        "events", "csv",
-                                        "check", "sweep",    "new",  "definitions", "budget"};
+        wh_app_run,         wh_app_mcs,    wh_app_sim,      wh_app_replay,  wh_app_report,
+        wh_app_layout,      wh_app_study,  wh_app_estimate, wh_app_test,    wh_app_diff,
+        wh_app_events,      wh_app_csv,    wh_app_check,    wh_app_sweep,   wh_app_new,
+        wh_app_definitions, wh_app_budget, wh_app_serve,    wh_app_dialect, wh_app_converse};
+    static const char *const names[] = {"run",         "mcs",    "sim",      "replay",  "report",
+                                        "layout",      "study",  "estimate", "test",    "diff",
+                                        "events",      "csv",    "check",    "sweep",   "new",
+                                        "definitions", "budget", "serve",    "dialect", "converse"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

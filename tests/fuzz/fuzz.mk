@@ -1,5 +1,5 @@
 # Fuzz targets for clang's libFuzzer; tests/verify/fuzz builds them, with its flags. Each is linked with an archive of all
-# parts, so that it can bring one of its own: what it defines itself is not taken from there.
+# parts, so that it can bring one of its own: what it defines itself is not taken from there. The sanitizer checks types of C++, too.
 
 FUZZERS := $(basename $(wildcard tests/fuzz/*_fuzz.c))
 FUZZ_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(filter-out %_fuzz.c,$(wildcard tests/fuzz/*.c)))
@@ -12,8 +12,8 @@ $(B)/fuzz_parts.a: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)
 	$(archive)
 
 # Lua's memory from snapshots; LCM without a network; argp without exits, and nothing behind it.
-$(B)/tests/fuzz/script_fuzz $(B)/tests/fuzz/line_fuzz: $(B)/obj/tests/fuzz/snapshot.o
-$(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o $(B)/obj/tests/fuzz/message_frames.o
+$(B)/tests/fuzz/script_fuzz $(B)/tests/fuzz/line_fuzz $(B)/tests/fuzz/dialect_fuzz: $(B)/obj/tests/fuzz/snapshot.o
+$(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o
 WRAPPED := $(shell grep -oE '__wrap_[a-z_]+' tests/fuzz/argv_fuzz.c | sed 's/__wrap_//' | sort -u)
 $(B)/tests/fuzz/argv_fuzz: LINK += $(WRAPPED:%=-Wl,--wrap=%)
 
@@ -30,4 +30,4 @@ $(FUZZERS:%=$(B)/%): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/fuzz_parts.
     $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(LINK) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(B)/fuzz_parts.a $(COLLISION_LIBS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
+	$(LINK) -fsanitize=fuzzer -fsanitize-link-c++-runtime -o $@ $(filter %.o,$^) $(B)/fuzz_parts.a $(COLLISION_LIBS) $(B)/libwaferhand.a $(PROGRAM_LIBS)

@@ -4,12 +4,11 @@
  * The simulator: a datagram that is not stepped or taken over leaves the state as it was; whatever state it comes to,
  * another simulator takes over with the same hash. Motion control: every state that it takes is sound and of the hash that
  * it says, every event of it can be reported; else what it knows stays as it was. */
-#include "message_frames.h"
-
 #include <string.h>
 
 #include "fake_node.h"
 #include "fuzz.h"
+#include "grasp/grasp.h"
 #include "grasp/restore.h"
 #include "layout/layout.h"
 #include "link/mcs_process.h"
@@ -17,6 +16,172 @@
 #include "link/sim_process.h"
 #include "print/record_print.h"
 #include "text/array.h"
+
+/* ------------------------------------------------------------------------------------------------- datagrams */
+
+/* A sequence of datagrams in the bytes of an input, and what a fuzzer cannot guess put right in them. */
+
+/* Each begins with four bytes: channel, what to put right, and the length, big-endian. */
+typedef struct {
+    const char *channel;
+    uint8_t *bytes; /* in memory of the frame's own, free for use until the next */
+    size_t size;
+} frame_t;
+
+typedef struct {
+    const uint8_t *at;
+    size_t left;
+    const wh_link_identity_t *identity; /* whose run and layout a message is made to belong to */
+    int64_t next_seq;                   /* likewise */
+} frames_t;
+
+/* What to put right, or-ed. */
+enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };
+
+static const char *const channels[] = {WH_CHANNEL_COMMAND,   WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
+                                       WH_CHANNEL_MCS,       WH_CHANNEL_REQUEST, WH_CHANNEL_CELL,
+                                       WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
+
+static int64_t fingerprint_of(const char *channel) {
+    if (strcmp(channel, WH_CHANNEL_COMMAND) == 0) {
+        return __waferhand_command_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_MCS) == 0) {
+        return __waferhand_mcs_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_REQUEST) == 0) {
+        return __waferhand_request_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
+        return __waferhand_cell_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_EDGE_SCAN) == 0) {
+        return __waferhand_edge_scan_get_hash();
+    }
+    if (strcmp(channel, WH_CHANNEL_LATCH) == 0) {
+        return __waferhand_centring_get_hash();
+    }
+    return __waferhand_state_get_hash();
+}
+
+static void put_word(const frame_t *frame, size_t at, int64_t value) {
+    for (size_t i = 0; i < 8 && frame->size >= at + 8; ++i) {
+        frame->bytes[at + i] = (uint8_t)((uint64_t)value >> (56 - 8 * i) & 0xffU);
+    }
+}
+
+/* wh_grasp_hash of what a state message says, in its own terms; 0 when it cannot be. */
+static uint64_t hash_of(const waferhand_state *message) {
+    static wh_link_arrays_t arrays;
+    const wh_tolerance_t tolerance = wh_tolerance_paper();
+    wh_state_t state;
+    wh_grasp_t table;
+    if (message->missed < 0 || message->seq < message->missed ||
+        wh_link_state_from_message(message, &tolerance, &arrays, &state) != WH_OK) {
+        return 0;
+    }
+    memset(&table, 0, sizeof table);
+    table.slice = (uint64_t)(message->seq - message->missed);
+    table.storage.wafers = arrays.wafers;
+    table.storage.wafer_count = state.wafer_count;
+    table.storage.grippers = arrays.grippers;
+    table.storage.gripper_count = state.gripper_count;
+    return wh_physics_state_hash(&arrays.physics, &table);
+}
+
+/* Where the hash stands: fingerprint, four words, status and five counts before it. */
+#define HASH_AT (8 + 4 * 8 + 6 * 4)
+
+static void put_hash(frame_t *frame) {
+    waferhand_state message;
+    wh_link_seal(frame->bytes, frame->size);
+    if (wh_link_decode_state(frame->bytes, frame->size, &message)) {
+        put_word(frame, HASH_AT, (int64_t)hash_of(&message));
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+}
+
+static bool is_checked(const char *channel) {
+    return strcmp(channel, WH_CHANNEL_COMMAND) == 0 || strcmp(channel, WH_CHANNEL_STATE) == 0 ||
+           strcmp(channel, WH_CHANNEL_RESTORE) == 0;
+}
+
+static void put_right(const frames_t *frames, frame_t *frame, unsigned what) {
+    if (what & FINGERPRINT) {
+        put_word(frame, 0, fingerprint_of(frame->channel));
+    }
+    if (what & SEQ) {
+        put_word(frame, 16, frames->next_seq + (what & SLICE_LATER ? 1 : 0));
+    }
+    if (what & IDENTITY) {
+        put_word(frame, 24, frames->identity->run);
+        put_word(frame, 32, (int64_t)frames->identity->layout_hash);
+    }
+    if (what & HASH && is_checked(frame->channel) && strcmp(frame->channel, WH_CHANNEL_COMMAND) != 0) {
+        put_hash(frame);
+    }
+    if (what & SEAL && is_checked(frame->channel)) {
+        wh_link_seal(frame->bytes, frame->size);
+    }
+}
+
+/* The next one; false when there is none. */
+static bool next_frame(frames_t *frames, frame_t *frame) {
+    static uint8_t bytes[WH_LINK_DATAGRAM + 1];
+    if (frames->left < 4) {
+        return false;
+    }
+    const uint8_t *const head = frames->at;
+    const size_t length = (size_t)head[2] << 8 | head[3];
+    frames->at += 4;
+    frames->left -= 4;
+    frame->channel = channels[head[0] % (sizeof channels / sizeof channels[0])];
+    frame->bytes = bytes;
+    frame->size = length < frames->left ? length : frames->left;
+    memcpy(bytes, frames->at, frame->size);
+    frames->at += frame->size;
+    frames->left -= frame->size;
+    put_right(frames, frame, head[1]);
+    return true;
+}
+
+static uint8_t again[2 * WH_LINK_DATAGRAM];
+
+#define DEFINE_CHECK(name)                                                                                   \
+    static bool again_##name(const frame_t *frame) {                                                         \
+        waferhand_##name message;                                                                            \
+        if (!wh_link_decode_##name(frame->bytes, frame->size, &message)) {                                   \
+            return false;                                                                                    \
+        }                                                                                                    \
+        const int size = waferhand_##name##_encode(again, 0, (int)sizeof again, &message);                   \
+        REQUIRE(size >= 0 && (size_t)size == frame->size);                                                   \
+        REQUIRE(memcmp(again, frame->bytes, frame->size) == 0);                                              \
+        REQUIRE(waferhand_##name##_decode_cleanup(&message) == 0);                                           \
+        return true;                                                                                         \
+    }
+
+DEFINE_CHECK(command)
+DEFINE_CHECK(state)
+DEFINE_CHECK(mcs)
+DEFINE_CHECK(request)
+DEFINE_CHECK(cell)
+DEFINE_CHECK(edge_scan)
+DEFINE_CHECK(centring)
+
+/* Whatever its channel's decoder takes, LCM encodes to the same bytes. True when it was taken. */
+static bool check_decoding(const frame_t *frame) {
+    static bool (*const checks[])(const frame_t *frame) = {again_command,   again_state,   again_state,
+                                                           again_mcs,       again_request, again_cell,
+                                                           again_edge_scan, again_centring};
+    for (size_t i = 0; i < sizeof channels / sizeof channels[0]; ++i) {
+        if (frame->channel == channels[i]) {
+            return checks[i](frame);
+        }
+    }
+    return false;
+}
+
+/* ----------------------------------------------------------------------------------------------- the cell */
 
 /* An input's first byte. */
 enum { TO_MOTION_CONTROL = 1, FREE_RUNNING = 2, SWEPT = 4 };
@@ -67,7 +232,7 @@ static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
 
 /* ------------------------------------------------------------------------------------------------- any cell */
 
-static void check_cell(const fuzz_frame_t *frame) {
+static void check_cell(const frame_t *frame) {
     static wh_protocol_server_t server;
     waferhand_cell cell;
     if (!wh_link_decode_cell(frame->bytes, frame->size, &cell)) {
@@ -116,7 +281,7 @@ static void check_published(const char *channel, const void *data, size_t size) 
     REQUIRE(waferhand_state_decode_cleanup(&message) == 0);
 }
 
-static void deliver_to_simulator(const fuzz_frame_t *frame) {
+static void deliver_to_simulator(const frame_t *frame) {
     wh_protocol_server_t *const server = &simulation.server;
     const uint64_t hash = wh_protocol_server_hash(server);
     const uint64_t done = server->counters.stepped + server->counters.restored;
@@ -133,8 +298,8 @@ static void deliver_to_simulator(const fuzz_frame_t *frame) {
     REQUIRE(server->seq == (int64_t)server->simulator.table.slice + server->missed);
 }
 
-static void run_simulator(fuzz_frames_t *frames) {
-    fuzz_frame_t frame;
+static void run_simulator(frames_t *frames) {
+    frame_t frame;
     fuzz_on_publish = check_published;
     REQUIRE(wh_sim_process_open(&simulation, &node, layout, true) == WH_OK);
     wh_link_identity_t identity = simulation.server.identity;
@@ -142,10 +307,10 @@ static void run_simulator(fuzz_frames_t *frames) {
     while (true) {
         identity.run = simulation.server.identity.run != 0 ? simulation.server.identity.run : RUN;
         frames->next_seq = simulation.server.seq + 1;
-        if (!fuzz_next_frame(frames, &frame)) {
+        if (!next_frame(frames, &frame)) {
             break;
         }
-        (void)fuzz_check_decoding(&frame);
+        (void)check_decoding(&frame);
         deliver_to_simulator(&frame);
         fuzz_clock_us += WH_SIMULATION_SILENCE_US / 2;
         wh_sim_process_tick(&simulation);
@@ -156,19 +321,19 @@ static void run_simulator(fuzz_frames_t *frames) {
 /* ------------------------------------------------------------------------------------------- motion control */
 
 static wh_mcs_process_t control;
-static fuzz_frames_t *incoming;
+static frames_t *incoming;
 static volatile sig_atomic_t stop;
 static wh_record_t record;
 static wh_record_t asked; /* what STATUS looks at */
 
 static bool next_message(wh_node_t *to) {
-    fuzz_frame_t frame;
+    frame_t frame;
     incoming->next_seq = control.client.command.seq;
-    if (!fuzz_next_frame(incoming, &frame)) {
+    if (!next_frame(incoming, &frame)) {
         stop = 1;
         return false;
     }
-    (void)fuzz_check_decoding(&frame);
+    (void)check_decoding(&frame);
     if (strcmp(frame.channel, WH_CHANNEL_CELL) == 0) {
         check_cell(&frame);
     }
@@ -261,7 +426,7 @@ static wh_link_t *open_control(bool free_running) {
     return link;
 }
 
-static void run_motion_control(fuzz_frames_t *frames, bool free_running) {
+static void run_motion_control(frames_t *frames, bool free_running) {
     wh_command_t command;
     wh_state_t state;
     fuzz_on_publish = NULL;
@@ -291,7 +456,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size == 0) {
         return 0;
     }
-    fuzz_frames_t frames = {.at = data + 1, .left = size - 1};
+    frames_t frames = {.at = data + 1, .left = size - 1};
     layout = data[0] & SWEPT ? swept : sampled;
     fuzz_next_message = next_message;
     fuzz_clock_us = 1000000;

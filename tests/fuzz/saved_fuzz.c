@@ -29,7 +29,7 @@ static wh_snapshot_room_t room = {.wafers = wafers, .grippers = grippers};
 static void begin(void) {
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {run.wafers, WAFERS, run.grippers, GRIPPERS, NULL, 0};
-    const wh_cell_t cell = {&station, 1, wh_tolerance_paper(), 1, 1, true};
+    const wh_cell_t cell = {&station, 1, wh_tolerance_paper(), 1, 1, true, 0, 0};
     wh_physics_t physics = wh_physics_default();
     physics.vacuum = wh_vacuum_delayed();
     physics.pads = (wh_pads_t){0.5, 10, 0.128, 9.81};

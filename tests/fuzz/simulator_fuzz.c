@@ -8,6 +8,9 @@
 #include <string.h>
 
 #include "fuzz.h"
+#include "grasp/edge.h"
+#include "grasp/grips.h"
+#include "grasp/passive.h"
 #include "grasp/restore.h"
 #include "math/trig.h"
 #include "sim/simulator.h"
@@ -340,10 +343,23 @@ static void set_up_scanning(run_t *run) {
     REQUIRE(wh_simulator_set_scanning(&run->simulator, &scanning) == WH_OK);
 }
 
+/* Vacuum that sees front faces, where the cell has a thickness. */
+static void set_up_grips(run_t *run, const wh_cell_t *cell) {
+    static const wh_grip_t vacuum[WH_GRIPPERS];
+    static wh_grip_state_t states[WH_GRIPPERS];
+    static wh_wafer_t seen[WAFERS];
+    const wh_grips_parts_t parts = {
+        .thickness = cell->thickness, .dt = 0.001, .grips = vacuum, .states = states, .seen = seen};
+    if (cell->thickness > 0) {
+        REQUIRE(wh_simulator_set_grips(&run->simulator, &parts) == WH_OK);
+    }
+}
+
 static wh_status_t set_up(run_t *run, const wh_grasp_config_t *config, const wh_cell_t *cell,
                           const wh_physics_t *physics) {
     static wh_simulator_t before;
     memcpy(&before, &run->simulator, sizeof before);
+    run->storage.bucket_count = cell->thickness > 0 ? 0 : run->storage.bucket_count;
     const wh_status_t status = wh_simulator_init(&run->simulator, config, &run->storage, cell);
     if (status != WH_OK) {
         REQUIRE(memcmp(&before, &run->simulator, sizeof before) == 0);
@@ -351,6 +367,7 @@ static wh_status_t set_up(run_t *run, const wh_grasp_config_t *config, const wh_
     }
     REQUIRE(wh_cell_validate(cell, run->storage.gripper_count) == WH_OK);
     set_up_scanning(run);
+    set_up_grips(run, cell);
     const uint64_t hash = wh_simulator_hash(&run->simulator);
     const wh_status_t refusal = wh_simulator_set_physics(&run->simulator, physics);
     REQUIRE(refusal == wh_physics_validate(physics, run->storage.gripper_count, run->storage.wafer_count));
@@ -364,15 +381,107 @@ static wh_cell_t take_cell(bytes_t *in, wh_station_t stations[], size_t count) {
     cell.settle = (kind & 1) != 0;
     cell.off_centre = kind & 2 ? 1 : 0;
     cell.askew = kind & 4 ? 0.01 : 0;
+    cell.thickness = kind & 8 ? 0.775 : 0;
     if (kind > 250) {
         cell.tolerance = (wh_tolerance_t){take_real(in), take_real(in), take_real(in)};
         cell.off_centre = take_real(in);
         cell.askew = take_real(in);
+        cell.thickness = take_real(in);
     }
     for (size_t s = 0; s < count; ++s) {
         stations[s] = take_station(in);
     }
     return cell;
+}
+
+/* ------------------------------------------------------------------------------------------- the grips beside the table */
+
+/* Numbers near good ones, or any at all. */
+static void take_doubles(bytes_t *in, double *numbers[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        *numbers[i] += take_byte(in) < 200 ? (take_byte(in) - 128) / 1024.0 : take_real(in);
+    }
+}
+
+static void check_edge(bytes_t *in) {
+    wh_edge_t edge = wh_edge_default(take_byte(in) < 128 ? 150 : 100);
+    wh_edge_wafer_t wafer = wh_edge_wafer_nominal(edge.radius);
+    wh_edge_place_t place;
+    wh_edge_place_t before;
+    double s = take_byte(in) / 16.0 - 8;
+    double *numbers[] = {&edge.rest, &edge.alpha, &edge.clearance, &edge.gripped_to, &wafer.radius,
+                         &wafer.x,   &wafer.y,    &wafer.depth,    &wafer.opening,   &wafer.bottom,
+                         &s};
+    take_doubles(in, numbers, sizeof numbers / sizeof numbers[0]);
+    memset(&place, 0, sizeof place);
+    before = place;
+    if (wh_edge_at(&edge, &wafer, s, &place) != WH_OK) {
+        REQUIRE(memcmp(&place, &before, sizeof place) == 0);
+        return;
+    }
+    REQUIRE(fabs(place.x) < 60 && fabs(place.y) < 60 && place.s <= edge.end && place.s <= s);
+    REQUIRE(!place.held || (place.phase == WH_EDGE_SEATED && place.window == WH_EDGE_GRIPPED));
+    REQUIRE((place.excess > 0) == (place.phase == WH_EDGE_JAMMED));
+}
+
+static void check_passive(bytes_t *in) {
+    const wh_passive_t passive = {wh_tolerance_paper(), (wh_check_t)(take_byte(in) % 3),
+                                  WH_REAL(take_real(in))};
+    const wh_pose_t begin = take_pose(in);
+    const wh_pose_t end = take_pose(in);
+    const wh_pose_t support = take_pose(in);
+    wh_passive_wafer_t wafer = {take_pose(in), take_pose(in), take_byte(in) % 2 == 0};
+    const wh_passive_wafer_t before = wafer;
+    wh_passive_change_t change = WH_PASSIVE_STAYS;
+    if (wh_passive_step(&passive, &begin, &end, &support, &wafer, &change) != WH_OK) {
+        REQUIRE(memcmp(&wafer.base_from_wafer, &before.base_from_wafer, sizeof wafer.base_from_wafer) == 0);
+        REQUIRE(wafer.carried == before.carried);
+        return;
+    }
+    REQUIRE(wh_mat3_is_orthonormal(&wafer.base_from_wafer.R));
+    REQUIRE(wafer.carried == (change == WH_PASSIVE_TAKEN || (before.carried && change == WH_PASSIVE_STAYS)));
+}
+
+/* Any grips, any poses: what a step refuses it leaves as it was, and after each one the table agrees with itself. */
+static void check_grips(bytes_t *in) {
+    enum { MIXED = 2 };
+    wh_wafer_t wafers[MIXED] = {0};
+    wh_wafer_t seen[MIXED];
+    wh_gripper_t grippers[MIXED];
+    wh_grip_state_t states[MIXED];
+    wh_event_t events[WH_EVENTS_PER_GRIPPER * MIXED];
+    wh_event_list_t list = {events, WH_EVENTS_PER_GRIPPER * MIXED, 0};
+    wh_gripper_input_t inputs[MIXED];
+    wh_grip_t kinds[MIXED];
+    wh_edge_wafer_t shapes[MIXED];
+    for (size_t i = 0; i < MIXED; ++i) {
+        wafers[i].base_from_wafer = take_pose(in);
+        kinds[i].kind = (wh_grip_kind_t)(take_byte(in) % 4);
+        kinds[i].edge = wh_edge_default(150);
+        shapes[i] = wh_edge_wafer_nominal(150 + (take_byte(in) - 128) / 256.0);
+    }
+    const wh_pose_t support = take_pose(in);
+    const wh_grips_parts_t parts = {
+        WH_REAL(0.775), take_byte(in) / 256.0, kinds, shapes, &support, 1, states, seen, NULL};
+    const wh_grasp_storage_t storage = {wafers, MIXED, grippers, MIXED, NULL, 0};
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.check = (wh_check_t)(take_byte(in) % 2);
+    wh_grasp_t table;
+    wh_grips_t grips;
+    if (wh_grasp_init(&table, &config, &storage) != WH_OK || wh_grips_init(&grips, &parts, &table) != WH_OK) {
+        return;
+    }
+    for (int step = 0; step < 8; ++step) {
+        const uint64_t before = wh_grips_hash(&grips);
+        for (size_t g = 0; g < MIXED; ++g) {
+            inputs[g].base_from_gripper = take_pose(in);
+            inputs[g].valve = take_byte(in) % 3;
+        }
+        const wh_status_t status = wh_grips_step(&grips, inputs, &list);
+        REQUIRE(status == WH_OK || wh_grips_hash(&grips) == before);
+        REQUIRE(wh_grasp_is_consistent(&table));
+        REQUIRE(wh_grips_support(&grips, 0) == WH_NONE || wafers[0].holder == WH_NONE);
+    }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -398,6 +507,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         const wh_command_t command = take_command(&in, gripper_count, 1);
         check_blank(&command);
     }
+    check_edge(&in);
+    check_passive(&in);
+    check_grips(&in);
     end_run(&first);
     end_run(&second);
     free(stations);

@@ -6,7 +6,11 @@
  * buckets hold is anything.
  */
 #include "eva_any.h"
+#include "grasp/edge.h"
+#include "grasp/face.h"
+#include "grasp/grips.h"
 #include "grasp/hold.h"
+#include "grasp/passive.h"
 #include "grasp/restore.h"
 
 #define GRIPPERS 2
@@ -83,6 +87,39 @@ static wh_event_t any_event(void) {
     return event;
 }
 
+static void call_grips(void) {
+    const wh_pose_t axis = any_pose();
+    const wh_pose_t gripper = any_pose();
+    const wh_tolerance_t tolerance = any_tolerance();
+    wh_pose_t wafer = any_pose();
+    wh_face_t face;
+    wh_proximity_t measured;
+    (void)wh_face_measure(any_bool() ? &wafer : NULL, real, &gripper, &tolerance, any_bool() ? &face : NULL,
+                          &measured);
+    wh_face_turn_over(&axis, &wafer);
+    (void)wh_face_swept_radius(real, real, real);
+    const wh_passive_t passive = {tolerance, (wh_check_t)integer, real};
+    const wh_pads_t pads = {real, real, real, real};
+    wh_passive_wafer_t lying = {any_pose(), any_pose(), any_bool()};
+    wh_passive_change_t change;
+    (void)wh_passive_step(&passive, &axis, &gripper, any_bool() ? &axis : NULL, any_bool() ? &lying : NULL,
+                          any_bool() ? &change : NULL);
+    (void)wh_passive_limit(&pads, &axis.R);
+    const double x = real;
+    const wh_edge_t edge = {x, x, x, x, x, x, x, x, x, x};
+    const wh_edge_wafer_t lies = {x, x, x, x, x, x, x, x};
+    wh_edge_t some = wh_edge_default(x);
+    wh_edge_wafer_t other = wh_edge_wafer_nominal(x);
+    wh_edge_place_t place;
+    some.clearance = any_bool() ? x : some.clearance;
+    other.x = x;
+    other.y = x;
+    other.notch_x = x;
+    (void)wh_edge_at(any_bool() ? &edge : NULL, any_bool() ? &lies : NULL, x, &place);
+    (void)wh_edge_at(&some, &other, x, &place);
+    (void)wh_edge_meets_notch(&other, x, x);
+}
+
 static void call_names(void) {
     (void)wh_status_text((wh_status_t)integer);
     (void)wh_status_name((wh_status_t)integer);
@@ -142,6 +179,8 @@ static void call_holding(void) {
     pads.mass = any_bool() ? real : wh_wafer_mass(real, real);
     pads.gravity = real;
     (void)wh_pads_validate(any_bool() ? &pads : NULL);
+    const wh_pads_t passive = wh_passive_pads(&pads);
+    (void)wh_pads_validate(&passive);
     const wh_pose_t gripper = any_pose();
     const wh_vec3_t place = wh_vec3(real, real, real);
     (void)wh_hold_judge(&pads, real, &gripper.R, &place);
@@ -231,6 +270,77 @@ static void use(wh_grasp_t *table, size_t gripper_count) {
     }
 }
 
+static void call_grips_step(wh_grips_t *grips) {
+    wh_gripper_input_t inputs[GRIPPERS];
+    wh_event_t events[EVENTS];
+    wh_event_list_t list = {events, EVENTS, size};
+    for (size_t i = 0; i < EVENTS; ++i) {
+        events[i] = any_event();
+    }
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        inputs[g].base_from_gripper = any_pose();
+        inputs[g].valve = integer;
+    }
+    (void)wh_grips_step(any_bool() ? grips : NULL, any_bool() ? inputs : NULL, any_bool() ? &list : NULL);
+}
+
+/* States as a message may have them. */
+static void call_complete(const wh_grips_parts_t *parts, const wh_gripper_t grippers[]) {
+    wh_grip_state_t states[GRIPPERS];
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        states[g].phase = (wh_grip_phase_t)integer;
+        states[g].wafer = integer;
+        states[g].s = real;
+        states[g].excess = real;
+        states[g].x = real;
+        states[g].y = real;
+        states[g].lying.x = real;
+        states[g].lying.y = real;
+        states[g].lying.notch_x = real;
+        states[g].lying.notch_y = real;
+    }
+    (void)wh_grips_complete(parts, grippers, GRIPPERS, WAFERS, states);
+}
+
+/* A table of its own, whose grips are of any kind; steps, in which wafers are picked and let go, and questions between. */
+static void call_table_of_grips(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
+    static wh_grip_state_t states[GRIPPERS];
+    static wh_wafer_t seen[WAFERS];
+    const wh_pose_t support = any_pose();
+    const double x = real;
+    wh_grasp_t table;
+    wh_grips_t grips;
+    wh_grip_t kinds[GRIPPERS];
+    wh_edge_wafer_t shapes[WAFERS];
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        kinds[g].kind = (wh_grip_kind_t)integer;
+        kinds[g].edge = (wh_edge_t){x, x, x, x, x, x, x, x, x, x};
+    }
+    for (size_t w = 0; w < WAFERS; ++w) {
+        shapes[w] = (wh_edge_wafer_t){x, x, x, x, x, x, x, x};
+    }
+    const wh_grasp_config_t config = any_config();
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    const wh_grips_parts_t parts = {real, real, kinds, shapes, &support, 1, states, seen, NULL};
+    if (wh_grasp_init(&table, &config, &storage) != WH_OK || wh_grips_init(&grips, &parts, &table) != WH_OK) {
+        return;
+    }
+    /* That each is one of these is what was asked just now. */
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        kinds[g].kind = any_bool() ? WH_GRIP_VACUUM : WH_GRIP_EDGE;
+        kinds[g].kind = any_bool() ? WH_GRIP_PASSIVE : kinds[g].kind;
+    }
+    while (any_bool()) {
+        spoil(&table);
+        call_grips_step(&grips);
+        for (size_t w = 0; w < WAFERS; ++w) {
+            (void)wh_grips_support(&grips, w);
+        }
+        (void)wh_grips_hash(&grips);
+        call_complete(&parts, grippers);
+    }
+}
+
 static void call_refused_init(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
     wh_grasp_t table;
     const wh_grasp_config_t config = any_config();
@@ -276,11 +386,13 @@ int main(void) {
         wafers[w] = any_wafer();
     }
     call_names();
+    call_grips();
     call_values();
     call_proximity();
     call_vacuum();
     call_holding();
     call_refused_init(wafers, grippers);
+    call_table_of_grips(wafers, grippers);
     call_empty();
     call_blank();
 

@@ -119,6 +119,7 @@ static wh_cell_t any_cell(const wh_station_t *stations, size_t count) {
     cell.tolerance = (wh_tolerance_t){real, real, real};
     cell.off_centre = real;
     cell.askew = real;
+    cell.thickness = real;
     cell.settle = any_bool();
     return cell;
 }
@@ -216,6 +217,8 @@ static void call_physics(void) {
     (void)wh_physics_state_validate(any_bool() ? &state : NULL, grippers, size);
     state.faults.count = any_bool() ? WH_FAULTS : 0;
     (void)wh_physics_state_sensors(&state, size);
+    (void)wh_faults_plunger(&state.faults, any_bool() ? 0 : WH_GRIPPERS - 1);
+    (void)wh_faults_find(&state.faults, (wh_fault_kind_t)integer, integer);
     const wh_fault_t fault = any_fault();
     (void)wh_fault_validate(any_bool() ? &fault : NULL, size, size);
     (void)wh_fault_name((wh_fault_kind_t)integer);
@@ -254,6 +257,7 @@ static void call_simulator(wh_simulator_t *simulator) {
         (void)simulator->link.exchange(&simulator->link, &command, &state);
         (void)simulator->link.missed(&simulator->link);
         (void)simulator->link.hash(&simulator->link);
+        (void)wh_physics_state_hash(&simulator->physics, &simulator->table);
         wh_simulator_view(simulator, &state);
         if (any_bool()) {
             fill_physics(&physics);

@@ -173,6 +173,7 @@ static void the_centre_is_as_near_as_it_says(void **state) {
     double squares = 0;
     double worst = 0;
     double exact = 0;
+    int not_sure = 0;
     for (int trial = 0; trial < trials; ++trial) {
         scene_t scene = draw(60, -110);
         wh_crossing_t list[WH_CROSSINGS];
@@ -183,23 +184,28 @@ static void the_centre_is_as_near_as_it_says(void **state) {
             known.radius += known.sd_radius * normal();
         }
         const size_t count = pass(&scene, trial % 2 ? 1 : -1, list, 0);
-        assert_int_equal(wh_centring_solve(&known, list, count, &centres), WH_OK);
         const wh_centre_t *centre = &centres.candidates[0];
-        assert_int_equal(centre->used, 4);
-        squares +=
-            pow((centre->x - scene.x) / centre->sd_x, 2) + pow((centre->y - scene.y) / centre->sd_y, 2);
-        worst = fmax(worst, off(centre, &scene) / centre->sd_centre);
+        if (wh_centring_solve(&known, list, count, &centres) == WH_OK) {
+            assert_int_equal(centre->used, 4);
+            squares +=
+                pow((centre->x - scene.x) / centre->sd_x, 2) + pow((centre->y - scene.y) / centre->sd_y, 2);
+            worst = fmax(worst, off(centre, &scene) / centre->sd_centre);
+        } else {
+            ++not_sure;
+        }
         scene.jitter = 0;
         known.radius = scene.rim.radius;
         (void)pass(&scene, 1, list, 0);
         assert_int_equal(wh_centring_solve(&known, list, count, &centres), WH_OK);
         exact = fmax(exact, off(centre, &scene));
     }
-    const double honest = sqrt(squares / (2 * trials));
+    const double honest = sqrt(squares / (2 * (trials - not_sure)));
     printf(
         "beams at +60 and -110: %.3f of the stated deviations in the root mean square, at most %.2f; without "
-        "noise off by %.1e mm\n",
-        honest, worst, exact);
+        "noise off by %.1e mm; %d not sure\n",
+        honest, worst, exact, not_sure);
+    /* A latch that is off by five deviations may as well be a notch's: 6 of 1,800,000 passes. */
+    assert_true(not_sure <= 2);
     assert_near(honest, 1, WH_TEST_SHARE > 1 ? 0.1 : 0.05);
     assert_true(worst <= 6);
     assert_true(exact <= 1e-9);
@@ -223,6 +229,20 @@ static double depth_of(const scene_t *scene, const wh_crossing_t *list, size_t c
     return deepest;
 }
 
+/* Of how far the crossings that are no hit are truly off the rim, in deviations of their latches. */
+static double squares_of(const scene_t *scene, const wh_crossing_t *list, size_t count) {
+    double squares = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const double x = list[i].x - scene->x;
+        const double y = list[i].y - scene->y;
+        const double distance = hypot(x, y);
+        const double through = (x * list[i].vx + y * list[i].vy) / distance;
+        const double off = distance - scene->rim.radius;
+        squares += off > -0.09 ? pow(off / (through * scene->jitter), 2) : 0;
+    }
+    return squares;
+}
+
 static void look_at_hit(const scene_t *scene, const wh_centring_t *known, tally_t *tally) {
     wh_crossing_t list[WH_CROSSINGS];
     wh_centres_t centres;
@@ -239,6 +259,9 @@ static void look_at_hit(const scene_t *scene, const wh_centring_t *known, tally_
         tally->used += depth_of(scene, list, count, best) < 0.09 ? 0 : 1;
         tally->near += error <= 0.02 ? 1 : 0;
         tally->worst = fmax(tally->worst, error);
+    } else if (centres.count == 0) { /* chance: once in a million those of the rim contradict each other */
+        assert_int_equal(status, WH_STATUS_CENTRE_NOT_SURE);
+        assert_true(squares_of(scene, list, count) > 24);
     } else { /* the truth is among the candidates */
         assert_int_equal(status, WH_STATUS_CENTRE_NOT_SURE);
         assert_int_equal(centres.count, 2);
@@ -318,6 +341,38 @@ static void candidates_that_agree_are_one(void **state) {
         wide += c->sd_centre > 0.05 ? 1 : 0;
     }
     assert_true(wide > 100 / WH_TEST_SHARE);
+}
+
+/* The second beam stands elsewhere than believed, and the radius is known to 15 um: wherever that beam is, along the way, what
+ * passes for sure is as near as it says. */
+static void a_beam_that_stands_elsewhere_makes_no_sure_centre(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    int sure = 0;
+    double worst = 0;
+    const int trials = 10000 / WH_TEST_SHARE;
+    for (int trial = 0; trial < trials; ++trial) {
+        scene_t scene = draw(60, -110);
+        wh_crossing_t list[WH_CROSSINGS];
+        wh_centres_t centres;
+        wh_centring_t known = known_of(&scene);
+        known.sd_radius = 0.015;
+        const double off_by = wh_test_uniform(-0.5, 0.5);
+        const size_t count = pass(&scene, 1, list, 0);
+        for (size_t i = 0; i < count; ++i) {
+            list[i].x += list[i].beam == 1 ? off_by : 0;
+        }
+        if (wh_centring_solve(&known, list, count, &centres) == WH_OK) {
+            ++sure;
+            const double error = off(&centres.candidates[0], &scene);
+            worst = fmax(worst, error > 0.02 ? error / centres.candidates[0].sd_centre : 0);
+        }
+    }
+    printf("a beam elsewhere by up to 0.5 mm: %d of %d sure, of those off by more than 0.02 mm at most %.2f "
+           "of the stated "
+           "deviations\n",
+           sure, trials, worst);
+    assert_true(worst <= 6);
 }
 
 /* ------------------------------------------------------------------------------------- latency and the blade */
@@ -653,6 +708,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(deviations_are_the_closed_forms),
         cmocka_unit_test(the_centre_is_as_near_as_it_says),
+        cmocka_unit_test(a_beam_that_stands_elsewhere_makes_no_sure_centre),
         cmocka_unit_test(hits_are_found),
         cmocka_unit_test(equal_distances_do_not_tell),
         cmocka_unit_test(candidates_that_agree_are_one),

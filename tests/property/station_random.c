@@ -89,7 +89,7 @@ static void the_nearest_slot_of_all_is_found(void **state) {
         wh_pose_t wafer = wh_test_random_pose(100);
         wafer.R = wh_test_random_turn(0.2);
         const search_t want = search_all(&wafer);
-        wh_place_t got = {WH_NONE, 0, 0, 0, 0, 0};
+        wh_place_t got = {.station = WH_NONE};
         const bool lies = wh_cell_locate(&cell, &wafer, &got);
         if (!want.edge && (want.second < 0 || want.second - want.best > 1e-9L)) {
             assert_int_equal(lies, want.best >= 0);

@@ -131,7 +131,7 @@ static inline void fixture_measure(fixture_t *f, wh_event_t *event, double dx, d
 
 static inline void fixture_place(fixture_t *f, size_t wafer, int32_t station, int32_t slot, double dx,
                                  double dy, double dz, double tilt) {
-    const wh_place_t place = {station, slot, dx, dy, dz, tilt * WH_PI / 180};
+    const wh_place_t place = {station, slot, dx, dy, dz, tilt * WH_PI / 180, WH_FACE_BACK};
     f->wafers[wafer].place = place;
 }
 

@@ -6,7 +6,7 @@
 
 #include <waferhand.h>
 
-#include "bench/scan.h"
+#include "bench/ours.h"
 #include "support/random.h"
 
 enum { WAFERS = 25, GRIPPERS = 2, STEPS = 20000 };

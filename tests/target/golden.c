@@ -1,6 +1,6 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
  * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles
- * in float as well. Prints a hash of each: the lines of tests/target/golden.txt for its number type, but for the last,
+ * in float as well; both faces of a wafer, and an edge grip's path; steps of mixed grips. Prints a hash of each: the lines of tests/target/golden.txt for its number type, but for the last,
  * "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
@@ -191,7 +191,7 @@ static bool snapshot(void) {
     static uint8_t bytes[WH_SNAPSHOT_SIZE(2, 1)];
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {wafers, 2, grippers, 1, NULL, 0};
-    const wh_cell_t cell = {NULL, 0, config.tolerance, 0, 0, false};
+    const wh_cell_t cell = {NULL, 0, config.tolerance, 0, 0, false, 0, 0};
     wh_physics_t physics = wh_physics_default();
     wh_state_t answer;
     size_t size = 0;
@@ -421,6 +421,132 @@ static bool chains(uint32_t call) {
     return good;
 }
 
+/* A wafer before a gripper, either face towards it, and turned over; on passive pads; on its way in an edge grip, a few angles of the
+ * notch at a rest. False if a call is refused, or a gripped wafer is not held. */
+static bool grips(void) {
+    static const double along[4] = {-8, -2, -0.125, 4};
+    const wh_pose_t gripper = somewhere(60, 2);
+    const wh_tolerance_t tolerance = wh_tolerance_paper();
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_pose_t wafer = somewhere(60, 2);
+    wh_face_t face = WH_FACE_BACK;
+    wh_proximity_t p;
+    if (below(2) == 0) {
+        wh_face_turn_over(&gripper, &wafer);
+    }
+    bool good = wh_face_measure(&wafer, WH_REAL(0.775), &gripper, &tolerance, &face, &p) == WH_OK;
+    hash = wh_hash_pose(hash, &wafer);
+    hash = wh_hash_int(hash, (int32_t)face);
+    add(p.dr_proj_z);
+    add(p.dr_proj_xy_norm);
+    add(wh_face_swept_radius(150, WH_REAL(0.775), p.dr_proj_z));
+    const wh_passive_t passive = {tolerance, below(2) == 0 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT,
+                                  WH_REAL(0.775)};
+    const wh_pose_t support = somewhere(10, 0);
+    wh_pose_t begin = somewhere(10, 2);
+    wh_passive_wafer_t lying = {support, support, false};
+    for (int slice = 0; slice < 3; ++slice) {
+        const wh_pose_t end = somewhere(10, 2);
+        wh_passive_change_t change = WH_PASSIVE_STAYS;
+        good = wh_passive_step(&passive, &begin, &end, &support, &lying, &change) == WH_OK && good;
+        hash = wh_hash_pose(wh_hash_int(hash, (int32_t)change), &lying.base_from_wafer);
+        begin = end;
+    }
+    wh_edge_wafer_t lies = wh_edge_wafer_nominal(150 + ((double)below(200) - 100) / 1000);
+    const double tangent = 0.5773 + ((double)below(100) - 50) / 5000;
+    lies.notch_x = 1 / sqrt(1 + tangent * tangent);
+    lies.notch_y = tangent * lies.notch_x;
+    lies.x = ((double)below(3000) - 1500) / 1000;
+    lies.y = ((double)below(3000) - 1500) / 1000;
+    for (size_t i = 0; i < 4; ++i) {
+        wh_edge_place_t place = {WH_EDGE_FREE, WH_EDGE_SHORT, false, 0, 0, 0, 0};
+        good = wh_edge_at(&edge, &lies, along[i], &place) == WH_OK && good;
+        hash = wh_hash_int(hash, (int32_t)place.phase);
+        add_double(place.s);
+        add_double(place.x);
+        add_double(place.y);
+        good = good && (i < 3 || place.held);
+    }
+    return good;
+}
+
+/* 200 of them. */
+static int report_grips(void) {
+    bool good = true;
+    hash = WH_HASH_START;
+    for (int wafer = 0; wafer < 200; ++wafer) {
+        good = grips() && good;
+    }
+    return report("grips", good);
+}
+
+static void place_wafers(wh_wafer_t wafers[WAFERS], wh_edge_wafer_t shapes[WAFERS],
+                         const wh_pose_t *support) {
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w].base_from_wafer = somewhere(20, 2);
+        shapes[w] = wh_edge_wafer_nominal(150);
+        if (w % 2 == 1) {
+            wh_face_turn_over(support, &wafers[w].base_from_wafer);
+        }
+    }
+}
+
+static void redraw_inputs(wh_gripper_input_t inputs[GRIPPERS], bool all) {
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        if (all || below(4) == 0) {
+            inputs[g].base_from_gripper = somewhere(3, 2);
+            inputs[g].valve = (int32_t)below(2);
+        }
+    }
+}
+
+/* Steps of a table with vacuum, an edge grip and passive pads; some wafers lie face down, and slices are long enough for plungers to
+ * come to their ends. False if a call is refused. */
+static bool mix(wh_check_t check, bool seat) {
+    static wh_wafer_t wafers[WAFERS];
+    static wh_wafer_t seen[WAFERS];
+    static wh_edge_wafer_t shapes[WAFERS];
+    static wh_gripper_t grippers[GRIPPERS];
+    static wh_grip_state_t states[GRIPPERS];
+    static wh_event_t events[WH_EVENTS_PER_GRIPPER * GRIPPERS];
+    const wh_grip_t kinds[GRIPPERS] = {{WH_GRIP_VACUUM, wh_edge_default(150)},
+                                       {WH_GRIP_EDGE, wh_edge_default(150)},
+                                       {WH_GRIP_PASSIVE, wh_edge_default(150)}};
+    const wh_pose_t supports[2] = {somewhere(10, 1), somewhere(10, 1)};
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    const wh_grips_parts_t parts = {WH_REAL(0.775), 0.0625, kinds, shapes, supports, 2, states, seen, NULL};
+    wh_grasp_config_t config = wh_grasp_config_default();
+    wh_gripper_input_t inputs[GRIPPERS];
+    wh_event_list_t list = {events, sizeof events / sizeof events[0], 0};
+    wh_grasp_t table;
+    wh_grips_t grips;
+    config.check = check;
+    config.seat = seat;
+    place_wafers(wafers, shapes, &supports[0]);
+    bool good = wh_grasp_init(&table, &config, &storage) == WH_OK;
+    good = wh_grips_init(&grips, &parts, &table) == WH_OK && good;
+    for (int step = 0; step < 1000; ++step) {
+        redraw_inputs(inputs, step == 0);
+        good = wh_grips_step(&grips, inputs, &list) == WH_OK && good;
+        for (size_t i = 0; i < list.count; ++i) {
+            add_event(&events[i]);
+            hash = wh_hash_int(hash, (int32_t)events[i].face);
+        }
+        hash = wh_hash_word(hash, wh_grips_hash(&grips));
+        hash = wh_hash_int(hash, wh_grips_support(&grips, (size_t)step % WAFERS));
+    }
+    return good && table.counters.picked > 0;
+}
+
+static int report_mixed(void) {
+    bool good = true;
+    hash = WH_HASH_START;
+    for (int way = 0; way < 4; ++way) {
+        good = mix(way < 2 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT, way % 2 != 0) && good;
+    }
+    return report("mixed", good);
+}
+
 int main(void) {
     state = 20240229;
     hash = WH_HASH_START;
@@ -463,5 +589,7 @@ int main(void) {
         good = chains(call) && good;
     }
     failed += report("chains", good);
+    failed += report_grips();
+    failed += report_mixed();
     return failed;
 }

@@ -208,8 +208,8 @@ static wh_line_event_t take_lines(wh_prompt_t *prompt) {
 
 /* The arm stays in a station behind a command that nobody ended. */
 static void judge_held(wh_prompt_t *prompt) {
-    const wh_mcs_held_t *held = &prompt->input.session->mcs.held;
-    if (held->command[0] != '\0') {
+    const wh_mcs_held_t *held = wh_mcs_find_held(&prompt->input.session->mcs, WH_NONE);
+    if (held) {
         char text[WH_MCS_HELD_BYTES + 100];
         (void)snprintf(text, sizeof text, "mcs: %s is left held, %s: no CONTINUE or STOP came", held->command,
                        held->phase);

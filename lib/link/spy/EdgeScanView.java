@@ -9,16 +9,13 @@ import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
 import java.awt.Shape;
-import java.awt.event.ActionEvent;
 import java.awt.event.MouseAdapter;
 import java.awt.event.MouseEvent;
 import java.awt.geom.Path2D;
 import java.util.List;
 import java.util.Locale;
-import javax.swing.AbstractAction;
 import javax.swing.JComponent;
 import javax.swing.JPanel;
-import javax.swing.KeyStroke;
 import javax.swing.Timer;
 
 /** One scan at a time: rho over theta with the fitted circle, the residuals on a scale of their own, and the words. */
@@ -71,16 +68,7 @@ final class EdgeScanView extends JPanel {
     }
 
     private void bind(String key, Runnable command) {
-        getInputMap(JComponent.WHEN_IN_FOCUSED_WINDOW).put(KeyStroke.getKeyStroke(key), key);
-        getActionMap().put(key, new AbstractAction() {
-            private static final long serialVersionUID = 1;
-
-            @Override
-            public void actionPerformed(ActionEvent event) {
-                command.run();
-                repaint();
-            }
-        });
+        SpyWindow.bind(this, key, command);
     }
 
     /** To an earlier or later scan; past the last one the newest is followed again. */

@@ -12,15 +12,15 @@ final class ProximityHistory {
     /** Values of a gripper. */
     static final int Z = 0, XY = 1, PLANAR = 2, VALUES = 3;
     /** Bits of a gripper's flags. */
-    static final int READY = 1, OPEN = 2, HOLDS = 4;
+    static final int READY = 1, OPEN = 2, HOLDS = 4, FRONT = 64;
     /** Shifted left by the value's number: its condition holds. */
     static final int CONDITION = 8;
-    private static final int MOMENTARY = READY | OPEN | HOLDS;
+    private static final int MOMENTARY = READY | OPEN | HOLDS | FRONT;
 
     /** Samples: 87 minutes of those that come each 5 ms; of eight grippers 137 MB. */
     static final int CAPACITY = 1 << 20;
     private static final int CHUNK = 1 << 12;
-    private static final int GRIPPERS = 8;
+    private static final int GRIPPERS = 16;
     /** A message older than the newest by more than this, us, is the same run played again, not a late one. */
     private static final double LATE = 1e6;
     /** So are this many late ones in a row. */
@@ -259,7 +259,7 @@ final class ProximityHistory {
         final double[] limits = {message.eps_projz, message.eps_projxy, message.eps_planar};
         final boolean some = message.wafer[g] >= 0;
         int flags = (message.ready[g] == 1 ? READY : 0) | (message.valve[g] == 0 ? OPEN : 0) |
-                    (message.holds[g] == 1 ? HOLDS : 0);
+                    (message.holds[g] == 1 ? HOLDS : 0) | (message.face[g] == 1 ? FRONT : 0);
         for (int v = 0; v < VALUES; v++) {
             chunk.values[k * VALUES + v] = some ? (float)values[v] : Float.NaN;
             flags |= some && ProximityChart.holds(v, values[v], limits[v]) ? CONDITION << v : 0;

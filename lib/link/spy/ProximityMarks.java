@@ -59,7 +59,7 @@ final class ProximityMarks {
     static final class Command {
         static final int GOES_ON = 2, DONE = 3, FAILED = 4;
         long run, begin, end;
-        int phase, line, error;
+        int phase, task, line, error;
         String text, result;
 
         boolean isOver() {
@@ -72,6 +72,7 @@ final class ProximityMarks {
             other.begin = begin;
             other.end = (long)Math.max(begin, until);
             other.phase = phase;
+            other.task = task;
             other.line = line;
             other.error = error;
             other.text = text;
@@ -82,10 +83,10 @@ final class ProximityMarks {
 
     /** The events of one state message. */
     static final class State {
-        private static final int HEAD = 125, WAFER = 100, GRIPPER = 446, EVENT = 156, FAULT = 328, SAMPLE = 4,
-                                 LATCHING = 41, LATCH = 24, CHECK = 8;
-        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, SAMPLES = 64,
-                                 LATCHES = 16;
+        private static final int HEAD = 117, WAFER = 101, GRIPPER = 515, EVENT = 157, FAULT = 328, SAMPLE = 4,
+                                 LOST = 1, DOOR = 8, LATCHING = 41, LATCH = 24, CHECK = 8;
+        private static final int WAFERS = 256, GRIPPERS = 16, EVENTS = 128, FAULTS = 16, SAMPLES = 64,
+                                 DOORS = 8, LATCHES = 16;
 
         final long utime, seq, run, layout;
         final List<Event> events = new ArrayList<>();
@@ -104,14 +105,16 @@ final class ProximityMarks {
             final int count = count(data, EVENTS);
             final int faults = count(data, FAULTS);
             final int samples = count(data, SAMPLES);
-            final int body = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers + EVENT * count +
-                             FAULT * faults + SAMPLE * samples;
-            demand(size >= body + LATCHING + CHECK, "a whole state");
-            data.position(body);
+            final int first = HEAD + WAFER * wafers + GRIPPER * grippers;
+            final int lost = first + EVENT * count + FAULT * faults + SAMPLE * samples;
+            demand(size >= lost + LOST + 4 + LATCHING + CHECK, "a whole state");
+            data.position(lost + LOST);
+            final int latching = lost + LOST + 4 + DOOR * count(data, DOORS);
+            demand(size >= latching + LATCHING + CHECK, "a whole state");
+            data.position(latching);
             final int latches = count(data, LATCHES) + count(data, LATCHES);
-            demand(size == body + LATCHING + LATCH * latches + CHECK, "a whole state");
+            demand(size == latching + LATCHING + LATCH * latches + CHECK, "a whole state");
             demand(utime >= 0 && seq >= 0 && isSound(data, size), "a sound state");
-            final int first = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers;
             for (int k = 0; status == 0 && k < count; k++) {
                 data.position(first + k * EVENT);
                 events.add(event(data));
@@ -128,7 +131,7 @@ final class ProximityMarks {
             data.position(data.position() + 4 + 8 + 8); // status, the slice measured, height
             event.value = data.getDouble();
             event.limit = data.getDouble();
-            data.position(data.position() + 2 * 4 + 3 * 8 + 3 * 8); // parts, place, dr
+            data.position(data.position() + 2 * 4 + 3 * 8 + 1 + 3 * 8); // parts, place, face, dr
             event.planar = data.getDouble();
             event.z = data.getDouble();
             data.position(data.position() + 3 * 8);
@@ -156,7 +159,7 @@ final class ProximityMarks {
     static final class Progress {
         static final int BEGINS = 1;
         final long utime, run, request;
-        final int phase, line, error;
+        final int phase, task, line, error;
         final String command, text;
 
         /** Throws like State. */
@@ -168,6 +171,8 @@ final class ProximityMarks {
             data.getLong(); // the layout
             phase = data.getInt();
             request = data.getLong();
+            task = data.getInt();
+            data.getLong(); // the axes and the grippers
             line = data.getInt();
             error = data.getInt();
             command = text(data);
@@ -232,7 +237,7 @@ final class ProximityMarks {
             message.command.isEmpty()) {
             return;
         }
-        Command command = commands.isEmpty() ? null : commands.get(commands.size() - 1);
+        Command command = last(message.task);
         final boolean same = command != null && (command.run == 0 || command.run == message.run) &&
                              command.line == message.line && command.text.equals(message.command);
         final boolean begins = message.phase == Progress.BEGINS;
@@ -244,6 +249,7 @@ final class ProximityMarks {
             command = new Command();
             command.run = message.run;
             command.begin = message.utime;
+            command.task = message.task;
             command.line = message.line;
             command.text = message.command;
             commands.add(command);
@@ -254,6 +260,16 @@ final class ProximityMarks {
         command.phase = message.phase;
         command.error = message.error;
         command.result = message.text;
+    }
+
+    /** The last command of a task, of which one runs at a time; or null. */
+    private Command last(int task) {
+        for (int k = commands.size() - 1; k >= 0; k--) {
+            if (commands.get(k).task == task) {
+                return commands.get(k);
+            }
+        }
+        return null;
     }
 
     private static void forget(ArrayList<?> marks) {
@@ -279,13 +295,12 @@ final class ProximityMarks {
     }
 
     /** The commands of a run that lie at least in part between two times, us. One that is not over goes on to `to`,
-     * unless another one has begun. */
+     * unless another one of its task has begun. */
     List<Command> commands(long run, double from, double to) {
         final List<Command> found = new ArrayList<>();
         for (int k = 0; k < commands.size(); k++) {
             final Command command = commands.get(k);
-            final boolean last = k + 1 == commands.size();
-            final double end = command.isOver() ? command.end : last ? to : commands.get(k + 1).begin;
+            final double end = command.isOver() ? command.end : next(k, to);
             if (command.run == run && end >= from && command.begin <= to) {
                 found.add(command.copy(end));
             }
@@ -293,15 +308,38 @@ final class ProximityMarks {
         return found;
     }
 
+    /** When the next command of the same task begins; `otherwise` if there is none. */
+    private double next(int place, double otherwise) {
+        for (int k = place + 1; k < commands.size(); k++) {
+            if (commands.get(k).task == commands.get(place).task) {
+                return commands.get(k).begin;
+            }
+        }
+        return otherwise;
+    }
+
+    /** For each command, which are in the order in which they begin, a row in which none is shown at the same time. */
+    static int[] rows(List<Command> commands) {
+        final int[] rows = new int[commands.size()];
+        final ArrayList<Long> ends = new ArrayList<>();
+        for (int k = 0; k < rows.length; k++) {
+            while (rows[k] < ends.size() && ends.get(rows[k]) > commands.get(k).begin) {
+                rows[k]++;
+            }
+            if (rows[k] == ends.size()) {
+                ends.add(0L);
+            }
+            ends.set(rows[k], commands.get(k).end);
+        }
+        return rows;
+    }
+
     /** A copy that later messages do not change. */
     ProximityMarks copy() {
         final ProximityMarks other = new ProximityMarks();
         other.events.addAll(events);
         other.commands.addAll(commands);
-        if (!commands.isEmpty()) { // only the last one still changes
-            final Command last = commands.get(commands.size() - 1);
-            other.commands.set(commands.size() - 1, last.copy(last.end));
-        }
+        other.commands.replaceAll(command -> command.isOver() ? command : command.copy(command.end));
         other.lastSeq = lastSeq;
         other.missing = missing;
         return other;

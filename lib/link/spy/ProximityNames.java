@@ -12,14 +12,15 @@ final class ProximityNames {
     final long layout;
     final String[] grippers, valves, wafers;
 
-    private static final int GRIPPERS = 8;
+    private static final int GRIPPERS = 16;
     private static final int WAFERS = 256;
     private static final int FAULTS = 16;
-    private static final int SENSORS = 8;
+    private static final int SENSORS = 16;
     private static final int BEAMS = 16;
+    private static final int DOORS = 8;
     /** Bytes of a station after its name, and in the message before and after the layout's path. */
     private static final int STATION = 3 * 8 + 9 * 8 + 4 + 8 + 4, BEFORE_LAYOUT = 3 * 8,
-                             AFTER_PATH = 6 * 8 + 3 + 12 * 8;
+                             AFTER_PATH = 6 * 8 + 4 + 15 * 8;
 
     /** Throws an IOException when the data are not a whole cell. */
     ProximityNames(LCMDataInputStream data) throws IOException {
@@ -38,7 +39,10 @@ final class ProximityNames {
         count(data, BEAMS);
         count(data, GRIPPERS);   // outlines
         count(data, WAFERS + 1); // rims
+        count(data, GRIPPERS);   // edge grips
+        count(data, DOORS);
         valves = new String[grippers.length];
+        skip(data, grippers.length); // grips
         texts(data, grippers);
         texts(data, valves);
         for (int k = 0; k < stations; k++) {

@@ -22,6 +22,8 @@ final class ProximityTimes {
     private static final BasicStroke DOTTED =
         new BasicStroke(1, BasicStroke.CAP_BUTT, BasicStroke.JOIN_MITER, 10, new float[] {2, 3}, 0);
 
+    private static final int MOST_ROWS = 4;
+
     private final double from, to;
     private final int left, width;
 
@@ -117,24 +119,39 @@ final class ProximityTimes {
         g.drawString(text, begin, baseline);
     }
 
-    /** A box from each command's begin to its end, with its line where there is room. */
-    void paintCommands(Graphics2D g, List<ProximityMarks.Command> commands, Rectangle lane) {
-        laneName(g, "command", lane);
+    /** Of a row of commands a box from each one's begin to its end, with its line where there is room. */
+    void paintCommands(Graphics2D g, List<ProximityMarks.Command> commands, int row, Rectangle lane) {
+        laneName(g, row == 0 ? "command" : "beside", lane);
         final Font plain = g.getFont();
         final int baseline = small(g, lane);
-        final FontMetrics metrics = g.getFontMetrics();
-        for (final ProximityMarks.Command command : commands) {
-            final int begin = x(command.begin);
-            final int wide = Math.max(2, x(command.end) - begin - 1);
-            final boolean failed = command.phase == ProximityMarks.Command.FAILED;
-            g.setColor(failed ? ALARM : COMMAND);
-            g.fillRect(begin, lane.y, wide, lane.height - 1);
-            final String result = failed ? command.text + ": error " + command.error : command.text;
-            final String text = ProximityView.fitting(g, wide - 4, result, command.text, "");
-            g.setColor(failed ? Color.WHITE : ProximityChart.INK);
-            g.drawString(text, begin + (wide - metrics.stringWidth(text)) / 2, baseline);
+        final int[] rows = ProximityMarks.rows(commands);
+        for (int k = 0; k < rows.length; k++) {
+            if (Math.min(rows[k], MOST_ROWS - 1) == row) {
+                paintCommand(g, commands.get(k), lane, baseline);
+            }
         }
         g.setFont(plain);
+    }
+
+    /** How many rows the commands have: at least one; commands that would need more share the last one. */
+    static int countRows(List<ProximityMarks.Command> commands) {
+        int most = 0;
+        for (final int row : ProximityMarks.rows(commands)) {
+            most = Math.max(most, row);
+        }
+        return Math.min(most + 1, MOST_ROWS);
+    }
+
+    private void paintCommand(Graphics2D g, ProximityMarks.Command command, Rectangle lane, int baseline) {
+        final int begin = x(command.begin);
+        final int wide = Math.max(2, x(command.end) - begin - 1);
+        final boolean failed = command.phase == ProximityMarks.Command.FAILED;
+        g.setColor(failed ? ALARM : COMMAND);
+        g.fillRect(begin, lane.y, wide, lane.height - 1);
+        final String result = failed ? command.text + ": error " + command.error : command.text;
+        final String text = ProximityView.fitting(g, wide - 4, result, command.text, "");
+        g.setColor(failed ? Color.WHITE : ProximityChart.INK);
+        g.drawString(text, begin + (wide - g.getFontMetrics().stringWidth(text)) / 2, baseline);
     }
 
     /** What is marked near a place: of each event a line or two, of the command one. */
@@ -166,7 +183,8 @@ final class ProximityTimes {
     }
 
     private static String words(ProximityMarks.Command command) {
-        final String line = command.line > 0 ? " (line " + command.line + ")" : "";
+        final String task = command.task > 0 ? ", task " + command.task : "";
+        final String line = command.line > 0 ? " (line " + command.line + task + ")" : "";
         final String result = command.phase == ProximityMarks.Command.FAILED
                                   ? ": error " + command.error + ", " + command.result
                                   : "";

@@ -10,17 +10,14 @@ import java.awt.Graphics2D;
 import java.awt.Point;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
-import java.awt.event.ActionEvent;
 import java.awt.event.MouseAdapter;
 import java.awt.event.MouseEvent;
 import java.awt.event.MouseWheelEvent;
 import java.util.List;
 import java.util.Locale;
-import javax.swing.AbstractAction;
 import javax.swing.JButton;
 import javax.swing.JComponent;
 import javax.swing.JPanel;
-import javax.swing.KeyStroke;
 import javax.swing.Timer;
 
 /**
@@ -121,16 +118,7 @@ final class ProximityView extends JPanel {
 
     // ------------------------------------------------------------------------------------------- commands
     private void bind(String key, Runnable command) {
-        getInputMap(JComponent.WHEN_IN_FOCUSED_WINDOW).put(KeyStroke.getKeyStroke(key), key);
-        getActionMap().put(key, new AbstractAction() {
-            private static final long serialVersionUID = 1;
-
-            @Override
-            public void actionPerformed(ActionEvent event) {
-                command.run();
-                repaint();
-            }
-        });
+        SpyWindow.bind(this, key, command);
     }
 
     /** Stops the picture, or lets it go on. */
@@ -223,11 +211,13 @@ final class ProximityView extends JPanel {
 
         final ProximityTimes times = new ProximityTimes(from, to, left, width);
         final List<ProximityMarks.Event> events = shown.events(gripper, from, to);
+        final List<ProximityMarks.Command> commands = shown.commands(from, Math.min(to, summary.last));
+        final int rows = ProximityTimes.countRows(commands);
 
         int y = area.y + line / 2;
         paintHeader(g, summary, gripper, reading, new Rectangle(left, y, width, 3 * line));
         y += 3 * line;
-        final int lanes = (LANES.length + 2) * (line + 3);
+        final int lanes = (LANES.length + 1 + rows) * (line + 3);
         final int each = Math.max(2 * line, (area.y + area.height - y - lanes - 2 * line) / 3);
         for (int v = 0; v < ProximityHistory.VALUES; v++) {
             final Rectangle plot = new Rectangle(left, y + line + 6, width, Math.max(4, each - line - 14));
@@ -246,16 +236,17 @@ final class ProximityView extends JPanel {
         }
         times.paintEvents(g, events, shown, new Rectangle(left, y, width, line));
         y += line + 3;
-        final List<ProximityMarks.Command> commands = shown.commands(from, Math.min(to, summary.last));
-        times.paintCommands(g, commands, new Rectangle(left, y, width, line));
-        y += line + 3;
+        for (int row = 0; row < rows; row++) {
+            times.paintCommands(g, commands, row, new Rectangle(left, y, width, line));
+            y += line + 3;
+        }
         times.paintTicks(g, y);
         if (pointed) {
             g.setStroke(new BasicStroke(1));
             g.setColor(ProximityChart.INK);
             g.drawLine(mouse, area.y + 3 * line + line / 2, mouse, y);
             if (mouseY >= area.y && mouseY < area.y + area.height) {
-                final boolean onLane = mouseY >= y - line - 3 && mouseY < y;
+                final boolean onLane = mouseY >= y - rows * (line + 3) && mouseY < y;
                 words = times.words(mouse, onLane ? 0 : NEAR, onLane ? List.of() : events, commands, shown);
             }
         }
@@ -295,9 +286,10 @@ final class ProximityView extends JPanel {
         final int room = area.width - g.getFontMetrics().stringWidth(level + "  ");
         final String wafer = wafer(reading, gripper);
         final boolean holds = (flags & ProximityHistory.HOLDS) != 0;
-        final String text = wafer == null
-                                ? fitting(g, room, "no wafer", "")
-                                : fitting(g, room, (holds ? "holds " : "measured: ") + wafer, wafer, "");
+        final String face = (flags & ProximityHistory.FRONT) != 0 ? " by its front" : "";
+        final String text = wafer == null ? fitting(g, room, "no wafer", "")
+                                          : fitting(g, room, (holds ? "holds " : "measured: ") + wafer + face,
+                                                    wafer + face, "");
         g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
     }
 

@@ -63,14 +63,18 @@
 
     const COLOURS = { loaded: 's0', empty: 's5', vacuum: 's3', handover: 's2', waiting: 's4' };
 
+    /* Of several robots each has its name. */
     function laneName(entry) {
-        return entry.gripper ? `${entry.gripper} ${entry.resource === 'gripper' ? 'holds' : entry.resource}` : entry.resource;
+        if (entry.resource === 'robot') {
+            return entry.gripper || 'robot';
+        }
+        return `${entry.gripper} ${entry.resource === 'gripper' ? 'holds' : entry.resource}`;
     }
 
-    /* The robot's and the chucks' time, by what it went into; grippers and valves have lanes of their own above. */
+    /* The robot's, the chucks' and the doors' time, by what it went into; grippers and valves have lanes of their own above. */
     function busy(doc) {
         const lanes = new Map();
-        (doc.run.gantt || []).filter((entry) => entry.resource === 'robot' || entry.resource === 'chuck').forEach((entry) => {
+        (doc.run.gantt || []).filter((entry) => ['robot', 'chuck', 'door'].includes(entry.resource)).forEach((entry) => {
             const name = laneName(entry);
             if (!lanes.has(name)) {
                 lanes.set(name, { name, bars: [] });
@@ -81,11 +85,42 @@
         return Array.from(lanes.values());
     }
 
+    /* Who waited for what, of a script with tasks. */
+    const waits = (doc) => (doc.run.waits || []).map((wait) => ({ from: wait.from_s, to: wait.to_s,
+        text: `${wait.task > 0 ? `task ${wait.task}` : 'script'}: ${wait.for}`, colour: COLOURS.waiting }));
+
+    /* Bars that overlap get lanes of their own. */
+    function apart(name, bars) {
+        const lanes = [];
+        bars.forEach((bar) => {
+            let lane = lanes.find((each) => each.bars[each.bars.length - 1].to <= bar.from + 1e-9);
+            if (!lane) {
+                lane = { name: lanes.length === 0 ? name : 'beside them', bars: [] };
+                lanes.push(lane);
+            }
+            lane.bars.push(bar);
+        });
+        return lanes;
+    }
+
+    /* Which of several robots carries a command out; the text says it at its end, the name may be quoted. */
+    const robotOf = (text) => (/.* robot=("?)(.*)\1$/.exec(text || '') || [])[2];
+
+    /* Each of several robots has its own commands in lanes of its own, all others come first. */
+    function commandLanes(doc) {
+        const by = new Map([[undefined, []]]);
+        doc.commands.filter((command) => typeof command.begin_s === 'number').forEach((command) => {
+            const robot = robotOf(command.text);
+            by.set(robot, by.get(robot) || []);
+            by.get(robot).push({ from: command.begin_s, to: command.end_s, text: command.text,
+                colour: command.error ? 'bad' : 's0', alternate: true });
+        });
+        const names = Array.from(by.keys()).filter((name) => name).sort();
+        return apart('commands', by.get(undefined)).concat(...names.map((name) => apart(`${name} commands`, by.get(name))));
+    }
+
     function commands(doc) {
-        const bars = doc.commands.filter((command) => typeof command.begin_s === 'number')
-            .map((command) => ({ from: command.begin_s, to: command.end_s, text: command.text,
-                colour: command.error ? 'bad' : 's0', alternate: true }));
-        const lanes = (bars.length > 0 ? [{ name: 'commands', bars }] : []).concat(busy(doc));
+        const lanes = commandLanes(doc).concat(apart('waits', waits(doc)), busy(doc));
         return { id: 'commands-chart', title: 'Commands, and what the time goes into', lanes,
             why: 'The document holds no commands: a log of moves alone has none.' };
     }

@@ -7,11 +7,16 @@
 
     function names(from) {
         return { wafers: list(from.wafers), grippers: list(from.grippers), axes: list(from.axes),
-            stations: list(from.stations) };
+            stations: list(from.stations), doors: list(from.doors) };
     }
 
     function machine(from) {
-        return { grippers: list(from.grippers), links: list(from.links), arm: Object.assign({ reach: 0, link: 1 }, from.arm) };
+        const chain = (of) => (of ? Object.assign({ axes: [], links: [], r: [0, 0, 0], q: [0, 0, 0, 1] }, of) : null);
+        const arm = (of) => ({ robot: of.robot || 0, number: of.number || 0, first: of.first || 0, chain: chain(of.chain),
+            lengths: Object.assign({ reach: 0, link: 1 }, of.arm) });
+        const arms = list(from.arms).length > 0 ? from.arms : [from];
+        return { grippers: list(from.grippers), links: list(from.links), bodies: list(from.bodies), doors: list(from.doors),
+            arms: arms.map(arm) };
     }
 
     function tracks(from, robot) {

@@ -13,6 +13,7 @@
         const add = (kind, i, name, at) => { found[W.gltf.key(kind, i)] = { kind, i, name, at }; };
         doc.tracks.machine.links.forEach((name, i) => add('link', i, name, (t) => W.robot.link(doc.tracks, i, t)));
         doc.names.grippers.forEach((name, i) => add('gripper', i, name, (t) => W.robot.gripper(doc.tracks, i, t)));
+        doc.names.doors.forEach((name, i) => add('door', i, name, (t) => W.robot.door(doc.tracks, i, t)));
         doc.names.wafers.forEach((name, i) => add('wafer', i, name, (t) => W.tracks.wafer(doc.tracks, i, t)));
         return found;
     }
@@ -165,7 +166,8 @@
     }
 
     function drawFrames(view, panel) {
-        Object.values(view.movers).filter((mover) => mover.kind !== 'link' && mover.pose).forEach(({ pose: { r, q } }) => {
+        const framed = Object.values(view.movers).filter((mover) => !['link', 'door'].includes(mover.kind) && mover.pose);
+        framed.forEach(({ pose: { r, q } }) => {
             [0, 1, 2].forEach((i) => {
                 const tip = W.pose.add(r, W.pose.axis(q, i).map((x) => 100 * x));
                 line(view, panel.spot(r), panel.spot(tip), W.theme.colour('axis-' + 'xyz'[i]), 2);

@@ -26,11 +26,17 @@
             kind: known && within ? 'within' : '' };
     }
 
+    /* A front face that points down is worth a word. */
+    function faced(doc, name, t) {
+        const pose = W.tracks.wafer(doc.tracks, doc.names.wafers.indexOf(name), t);
+        return pose && pose.q[0] ** 2 + pose.q[1] ** 2 > 0.5 ? `${name}, face down` : name;
+    }
+
     function holds(doc, gripper, t) {
         const found = doc.names.wafers.filter((_, i) => {
             const state = W.tracks.hold(doc.tracks.wafers[i], t);
             return state && state.holder === gripper;
-        });
+        }).map((name) => faced(doc, name, t));
         return { text: found.join(', ') || 'nothing' };
     }
 

@@ -10,7 +10,7 @@
     function groupOf(doc, { kind, index }) {
         const chuck = kind === 'gripper' && (doc.tracks.machine.grippers[index] || { axis: null }).axis !== null;
         const groups = { base: 'robot', link: 'robot', gripper: chuck ? 'stations' : 'robot', station: 'stations',
-            wafer: 'wafers', obstacle: 'obstacles' };
+            wafer: 'wafers', obstacle: 'obstacles', door: 'obstacles' };
         return groups[kind];
     }
 

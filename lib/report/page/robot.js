@@ -29,9 +29,10 @@
         return W.tracks.pose(tracks.grippers[i], at) || (fixed && ofAxes(tracks, fixed, at));
     }
 
-    /* base_from_effector, by the first gripper on the robot. */
-    function effector(tracks, at) {
-        const i = tracks.machine.grippers.findIndex((fixed) => fixed.axis === null);
+    /* base_from_effector, by the first gripper on the arm. */
+    function effector(tracks, arm, at) {
+        const i = tracks.machine.grippers.findIndex((fixed) => fixed.axis === null && (fixed.arm || 0) === arm.number
+            && (fixed.robot || 0) === arm.robot);
         const found = i < 0 ? null : gripper(tracks, i, at);
         return found && W.pose.compose(found, W.pose.inverse(mount(tracks, i)));
     }
@@ -41,24 +42,82 @@
         return { r, q: Math.hypot(x, y) > 1e-9 ? about(Math.atan2(y, x)) : other.q };
     }
 
-    /* As collision/arm.h says: the column's lift, the upper arm, the forearm, the hand. */
-    function links(tracks, at) {
-        const end = effector(tracks, at);
-        if (!end) {
-            return null;
-        }
-        const { reach, link, right_handed: right } = tracks.machine.arm;
-        const wrist = W.pose.subtract(end.r, W.pose.axis(end.q, 0).map((x) => reach * x));
-        const shoulder = [0, 0, end.r[2]];
-        const out = level(shoulder, wrist[0], wrist[1], end);
-        const half = Math.hypot(wrist[0], wrist[1]) / 2;
-        const aside = Math.sqrt(Math.max(link * link - half * half, 0));
-        const elbow = W.pose.add(shoulder, W.pose.rotate(out.q, [Math.min(half, link), right ? -aside : aside, 0]));
-        return [{ r: shoulder, q: about(0) }, level(shoulder, elbow[0], elbow[1], out),
-            level(elbow, wrist[0] - elbow[0], wrist[1] - elbow[1], out), { r: wrist, q: end.q }];
+    const tilted = (angle, i) => [0, 1, 2].map((k) => (k === i ? Math.sin(angle / 2) : 0)).concat(Math.cos(angle / 2));
+    const STILL = { r: [0, 0, 0], q: [0, 0, 0, 1] };
+
+    /* A value of the arm's robot; null: it has no such axis. */
+    function value(tracks, { chain, first }, name, at) {
+        const i = chain ? chain.axes.indexOf(name) : -1;
+        return i < 0 ? null : axis(tracks, first + i, at);
     }
 
-    const link = (tracks, i, at) => (links(tracks, at) || [])[i] || null;
+    /* The column's foot and lift, and the plane in which the arm is (motion/chain.h). Base's plane is the usual robot's. */
+    function column(tracks, arm, at) {
+        const of = (name) => value(tracks, arm, name, at) || 0;
+        if (!arm.chain) {
+            return { foot: STILL, plane: STILL };
+        }
+        const foot = W.pose.compose(arm.chain, { r: [of('rail'), 0, 0], q: STILL.q });
+        const lift = W.pose.compose(foot, { r: [0, 0, of('z')], q: STILL.q });
+        const tilt = W.pose.multiply(tilted(of('tilt_x'), 0), tilted(of('tilt_y'), 1));
+        return { foot, lift, plane: W.pose.compose(lift, { r: [0, 0, 0], q: tilt }) };
+    }
 
-    W.robot = { gripper, link };
+    /* From the blade as it is turned over to the blade face up, which the hand is in line with. */
+    function unflipped(tracks, arm, at) {
+        const angle = value(tracks, arm, 'flip', at);
+        if (angle === null) {
+            return STILL;
+        }
+        const up = { r: [0, 0, arm.chain.flip_height], q: tilted(-angle, 0) };
+        return W.pose.compose(up, { r: [0, 0, -arm.chain.flip_height], q: STILL.q });
+    }
+
+    /* The lengths of upper arm and forearm, and whether the elbow is on the right. */
+    function build(tracks, arm, at) {
+        const { lengths, chain } = arm;
+        const [upper, forearm] = chain && chain.links.length === 2 ? chain.links : [lengths.link, lengths.link];
+        const elbow = value(tracks, arm, 'forearm', at);
+        return { upper, forearm, right: elbow === null ? lengths.right_handed : elbow > 0 };
+    }
+
+    /* As collision/arm.h says: the column, its lift, the upper arm, the forearm, the hand. */
+    function bodies(tracks, arm, at) {
+        const there = effector(tracks, arm, at);
+        if (!there) {
+            return null;
+        }
+        const { foot, lift, plane } = column(tracks, arm, at);
+        const end = W.pose.compose(W.pose.compose(W.pose.inverse(plane), there), unflipped(tracks, arm, at));
+        const { upper, forearm, right } = build(tracks, arm, at);
+        const wrist = W.pose.subtract(end.r, W.pose.axis(end.q, 0).map((x) => arm.lengths.reach * x));
+        const shoulder = [0, 0, arm.chain ? 0 : end.r[2]];
+        const out = level(shoulder, wrist[0], wrist[1], end);
+        const far = Math.hypot(wrist[0], wrist[1]);
+        const along = upper === forearm ? far / 2 : (far * far + upper * upper - forearm * forearm) / (2 * far);
+        const aside = Math.sqrt(Math.max(upper * upper - along * along, 0));
+        const elbow = W.pose.add(shoulder, W.pose.rotate(out.q, [Math.min(along, upper), right ? -aside : aside, 0]));
+        const links = [level(shoulder, elbow[0], elbow[1], out),
+            level(elbow, wrist[0] - elbow[0], wrist[1] - elbow[1], out), { r: wrist, q: end.q }];
+        return [foot, lift || { r: shoulder, q: about(0) }, ...links.map((body) => W.pose.compose(plane, body))];
+    }
+
+    /* base_from_door, or null where nothing tells. */
+    function door(tracks, i, at) {
+        const { way, axis: moving } = tracks.machine.doors[i];
+        const open = axis(tracks, moving, at);
+        return open === null ? null : { r: way.map((x) => open * x), q: about(0) };
+    }
+
+    const BODIES = 5;
+
+    /* Link i is this body; of one arm the column comes last. */
+    function link(tracks, i, at) {
+        const { arms, bodies: numbers } = tracks.machine;
+        const number = numbers.length > 0 ? numbers[i] : (i + 1) % BODIES;
+        const arm = arms[Math.floor(number / BODIES)];
+        return ((arm && bodies(tracks, arm, at)) || [])[number % BODIES] || null;
+    }
+
+    W.robot = { gripper, door, link };
 }(window.Waferhand));

@@ -27,6 +27,7 @@
         };
         doc.tracks.machine.links.forEach((name, i) => take('link', i, name));
         doc.names.grippers.forEach((name, i) => take('gripper', i, name));
+        doc.names.doors.forEach((name, i) => take('door', i, name));
         doc.names.wafers.forEach((name, i) => take('wafer', i, name));
         return found;
     }
@@ -37,6 +38,8 @@
             return W.tracks.wafer(doc.tracks, mover.i, t);
         case 'gripper':
             return W.robot.gripper(doc.tracks, mover.i, t);
+        case 'door':
+            return W.robot.door(doc.tracks, mover.i, t);
         default:
             return W.robot.link(doc.tracks, mover.i, t);
         }
@@ -90,7 +93,8 @@
             return made;
         };
         add(scene, 0.3);
-        moving.filter((mover) => mover.kind !== 'link').forEach((mover) => add(mover.object, 0.12));
+        moving.filter((mover) => mover.kind !== 'link' && mover.kind !== 'door')
+            .forEach((mover) => add(mover.object, 0.12));
         doc.slots.filter((slot) => slot.slot === 1).forEach((slot) => put(add(scene, 0.2), slot));
         return triads;
     }
@@ -231,7 +235,7 @@
             }
         });
         view.moving.forEach((mover) => {
-            if (mover.kind !== 'link') {
+            if (mover.kind !== 'link' && mover.kind !== 'door') {
                 dye(mover.object, mover.kind === 'wafer' ? waferColour(mover.holder) : W.theme.series(mover.i));
             }
         });

@@ -72,9 +72,11 @@
     function choose(doc, trial) {
         const known = doc.result.worst.find((each) => each.trial === trial);
         const ok = known ? known.ok : doc.points.ok[doc.points.trial.indexOf(trial)];
+        const why = known ? known.why : doc.points.why[doc.points.trial.indexOf(trial)];
         const made = document.getElementById('chosen');
         const drawn = known ? values(known) : [];
         made.replaceChildren(W.element('h2', {}, `Trial ${trial}: ${ok ? 'ok' : 'failed'}`),
+            why ? W.element('p', { class: 'failure' }, why) : '',
             W.reproduce.commandOf(`${doc.command} --trial ${trial}`, 'replay'),
             terms(ends(doc, trial)),
             drawn.length > 0 ? W.element('h3', {}, 'What it drew (mm, degrees, slices)') : '',
@@ -88,16 +90,20 @@
     /* ------------------------------------------------------------------------------------------------- sections */
 
     function tables(doc) {
-        const { expectations, errors } = doc.result;
-        const met = expectations.map((each) => () => W.tables.row([num(String(each.line)), each.text, num(String(each.met)),
-            num(percent(each.rate)), range(each)], each.met === each.seen ? 'good' : 'bad'));
+        const { expectations, errors, events } = doc.result;
+        const met = expectations.map((each) => () => W.tables.row([num(String(each.line)), each.text, num(String(each.seen)),
+            num(String(each.met)), num(percent(each.rate)), range(each)], each.met === each.seen ? 'good' : 'bad'));
         const failed = errors.map((each) => () => W.tables.row([num(String(each.line)), each.text, `${each.error} ${each.name}`,
             num(String(each.trials)), num(percent(each.rate)), range(each)]));
+        const happened = events.map((each) => () => W.tables.row([each.kind, num(String(each.trials)), num(percent(each.rate)),
+            range(each), num(String(each.total))], each.complaint ? 'bad' : ''));
         host().append(
             W.tables.section('expectations', 'What was expected, and how often it came out so',
-                ['line', 'expected', 'met', 'rate', '95 % sure'], met, 'The script states no expectations.'),
+                ['line', 'expected', 'seen', 'met', 'rate of those', '95 % sure'], met, 'The script states no expectations.'),
             W.tables.section('errors', 'Commands that failed', ['line', 'command', 'error', 'trials', 'rate', '95 % sure'],
-                failed, 'No command failed in any trial.'));
+                failed, 'No command failed in any trial.'),
+            W.tables.section('events', 'What happened in the cell: a complaint, in red, makes its trial fail',
+                ['event', 'trials', 'rate', '95 % sure', 'all in all'], happened, 'Nothing happened in any trial.'));
     }
 
     function points(doc, w) {
@@ -160,14 +166,14 @@
             const button = W.element('button', { type: 'button', class: 'time', title: 'Show this trial',
                 click: () => choose(doc, each.trial) }, String(each.trial));
             const off = each.off === null ? 'elsewhere' : W.number(each.off, 4);
-            const made = W.tables.row([button, each.ok ? 'ok' : 'failed', num(off)], each.ok ? '' : 'bad');
+            const made = W.tables.row([button, each.ok ? 'ok' : 'failed', num(off), each.why || ''], each.ok ? '' : 'bad');
             made.dataset.trial = each.trial;
             return made;
         });
         host().append(group('chosen', 'One trial',
             W.why('Click a trial, here below or among the points, to have the command that plays it again.')),
         W.tables.section('worst', 'The worst trials: failed ones first, then those that leave a wafer farthest off',
-            ['trial', 'result', 'off (mm)'], rows, 'There are none.'));
+            ['trial', 'result', 'off (mm)', 'why'], rows, 'There are none.'));
     }
 
     function show(doc) {

@@ -38,7 +38,10 @@
 
     /* By what the cell was off, if it was on purpose. */
     function displacements(doc) {
-        const given = doc.run.errors || [];
+        const given = doc.run.errors || [], of = doc.run.trial;
+        if (of) {
+            return [W.why(`The cell was off by what trial ${of.trial} of seed ${of.seed} draws.`)];
+        }
         return given.length === 0 ? [] : [W.why(`The cell was off, as --error asked for: ${given.join(', ')}.`)];
     }
 

@@ -44,12 +44,15 @@
     }
 
     function wafers(doc) {
-        const rows = (doc.run.wafers || []).map((wafer) => () => row([wafer.name, wafer.holder || W.DASH,
+        const all = doc.run.wafers || [];
+        const faces = all.some((wafer) => wafer.face === 'down');
+        const rows = all.map((wafer) => () => row([wafer.name, wafer.holder || W.DASH,
             wafer.station || W.DASH, num(wafer.slot === null || wafer.slot === undefined ? W.DASH : String(wafer.slot)),
             num(W.number(wafer.dx, 4)), num(W.number(wafer.dy, 4)), num(W.number(wafer.dz, 4)),
-            num(W.number(wafer.tilt_deg, 4))]));
+            num(W.number(wafer.tilt_deg, 4))].concat(faces ? [wafer.face] : [])));
         return section('wafers', 'Where the wafers lie at the end', ['wafer', 'held by', 'station', 'slot', 'dX (mm)',
-            'dY (mm)', 'dz (mm)', 'tilt (\u00b0)'], rows, 'The document does not hold where the wafers lie.');
+            'dY (mm)', 'dz (mm)', 'tilt (\u00b0)'].concat(faces ? ['face'] : []), rows,
+            'The document does not hold where the wafers lie.');
     }
 
     function expectations(doc) {

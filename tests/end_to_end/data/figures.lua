@@ -62,4 +62,15 @@ function cases.aligner()
   get("A", 1) put("P", 1)
 end
 
+-- Two tasks at the prealigner and one that waits for a signal, beside the paper's first run; one that fails.
+function cases.tasks()
+  cell "../../../lua/layouts/paper.lua"
+  local turned = task(function() for _ = 1, 3 do rotate("P", 90) signal("turned") end end)
+  local noted = task(function() return await("turned") and await("turned", 5) end)
+  local twice = task(function() rotate("P", -20) valve("PA", 1) end)
+  get("A", 1) put("B", 2)
+  expect(join(noted) and not pcall(join, task(function() get("A", 99) end)), "two turns, and no slot 99")
+  join(turned, twice)
+end
+
 cases[params.case or "cycles"]()

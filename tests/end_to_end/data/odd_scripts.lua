@@ -65,6 +65,7 @@ function cases.wrong_values()
   local slot = { "NO_SUCH_SLOT", 1, with(0, 2, -1, 1.5, 1e300, NIL) }
   local gripper = { "NO_SUCH_GRIPPER", "EE", { "Q", 5, {}, NIL } }
   local wafer = { "NO_SUCH_WAFER", "Wafer 1", { "Q", 5, {}, NIL } }
+  local door = { "door: ", "D", { "Q", 5, {}, true, NIL } }
   local function frames(word)
     local frame = { word .. ": ", "base", { "Q", 5, {}, NIL } }
     return { frame, frame }
@@ -80,14 +81,21 @@ function cases.wrong_values()
     ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
     continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) },
     edge_scan = { station }, align = { station, { "options: ", nil, { 5, true, "90" } } },
-    valve = { gripper, number("level", 1, 2, -1, 0.5) },
+    calibrate = { station, options }, lift = { station, { "where: ", "up", { "left", 5, {}, NIL } } },
+    valve = { gripper, number("level", 1, 2, -1, 0.5) }, flip = { gripper },
+    open = { door }, close = { door },
     move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
-    wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7) },
+    wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7), { "mechanism: ", nil, { 5, "", "EE", "B", true, {} } } },
     fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },
-    offset = { wafer, station, slot }, holder = { wafer }, proximity = { wafer, gripper },
+    offset = { wafer, station, slot }, holder = { wafer }, face = { wafer }, proximity = { wafer, gripper },
     measure = frames("measure"), distance = frames("distance"), angle = frames("angle"), hits = {},
     clearance = { { "kind: ", "blade_other", { "blade_others", 5, {}, NIL } } }, expect = {},
     cycle = { { "cycle: ", "A", { 5, {}, true } } },
+    robot = { { "NO_SUCH_ROBOT", "robot", { "VAC", 5, true, {}, NIL } } },
+    task = { { "body: ", print, { 5, "get", true, {}, NIL } } },
+    join = { { "task 1: ", nil, { 5, "get", true, {} } } },
+    signal = { { "name: ", "x", { 5, true, {}, NIL } }, { "n: ", 1, with(0, -1, 1.5, 1e7) } },
+    await = { { "name: ", "x", { 5, true, {}, NIL } }, { "timeout: ", 0, with(-1, 1e7) } },
     expect_offset = { wafer, station, slot, number("dx", 0), number("dy", 0, 1e7),
       { "tolerance: ", 1, with(0, -1) } },
   }
@@ -130,16 +138,16 @@ function cases.wrong_values()
     for name in unknown.text:match("expected ([%w_, ]+)%)"):gmatch("[%w_]+") do
       known = known + 1
       for _, value in ipairs { {}, 0/0, 1/0, -1/0, "wrong" } do
-        local number = name == "gripper" and word ~= "swap" and "NO_SUCH_GRIPPER"
+        local number = name == "gripper" and "NO_SUCH_GRIPPER" or name == "robot" and "NO_SUCH_ROBOT"
         try(word, { number or name .. ": " }, value, call { [name] = value })
       end
     end
     return known
   end
-  for word, count in pairs { get = 23, put = 22, swap = 29, ready = 16 } do
+  for word, count in pairs { get = 24, put = 23, swap = 29, ready = 17 } do
     expect(try_fields(word, "A", 1) == count, ("%s has %d fields"):format(word, count))
   end
-  expect(try_fields("map", "A") == 16 and try_fields("align", "P") == 5 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")
+  expect(try_fields("map", "A") == 17 and try_fields("align", "P") == 6 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")
   for field, values in pairs { stroke = with(0, -1, 2000), retract = with(0.5), timeout = with(-1), wait = with(-1),
     release = with(4, -4), retries = with(0.5, -1, 101), pickup_speed = with(0, 501), map_speed = with(0),
     pickup_acceleration = with(-1, 1e-7), offset = with(-1, 7), vacuum_delay = with(3601) } do

@@ -45,7 +45,7 @@ final class SpyTest {
         message.eps_projxy = 50;
         message.eps_planar = 0.99;
         message.gripper_count = 2;
-        for (int g = 0; g < 8; g++) {
+        for (int g = 0; g < message.valve.length; g++) {
             message.dr_proj_z[g] = -0.001 * seq;
             message.dr_proj_xy_norm[g] = seq + g;
             message.n1_proj_n2[g] = 0.999;
@@ -93,6 +93,10 @@ final class SpyTest {
             message.events[k].measured.n1_proj_n2 = 0.9996;
         }
         message.faults = new fault_slot[0];
+        message.sample_count = 3;
+        message.samples = new int[3];
+        message.door_count = 2;
+        message.doors = new double[] {0, 250};
         return message;
     }
 
@@ -284,6 +288,7 @@ final class SpyTest {
         message.layout_hash = 7;
         message.layout = "layouts/größe.lua";
         message.gripper_count = 1;
+        message.grips = new byte[] {1};
         message.gripper_names = new String[] {"EE"};
         message.valve_names = new String[] {"eeVacValve[0]"};
         final station taught = new station();
@@ -293,6 +298,12 @@ final class SpyTest {
         message.wafer_count = 1;
         message.wafer_names = new String[] {"Wafer 1"};
         message.wafers = new wafer_state[] {new wafer_state()};
+        message.edge_count = 1;
+        message.edges = new edge_grip[] {new edge_grip()};
+        final door gate = new door();
+        gate.name = "gate";
+        message.door_count = 2;
+        message.doors = new door[] {gate, gate};
         return message;
     }
 
@@ -369,14 +380,14 @@ final class SpyTest {
 
         history = filled(RUN, 1, 5);
         final proximity other = message(RUN, 6);
-        other.gripper_count = 8;
+        other.gripper_count = 16;
         history.add(other);
-        check(history.summary().grippers == 8 && history.summary().seen == 1, "other grippers clear");
+        check(history.summary().grippers == 16 && history.summary().seen == 1, "other grippers clear");
     }
 
     private static void refuses() {
         final ProximityHistory history = filled(RUN, 1, 3);
-        for (final int count : new int[] {0, -1, 9, Integer.MAX_VALUE}) {
+        for (final int count : new int[] {0, -1, 17, Integer.MAX_VALUE}) {
             final proximity bad = message(RUN, 4);
             bad.gripper_count = count;
             check(!history.add(bad), "a bad count");
@@ -453,6 +464,35 @@ final class SpyTest {
         check(history.events(1, 0, AT_END).size() <= ProximityMarks.MOST, "no more than there is room for");
         check(history.events(1, 2e6 * ProximityMarks.MOST / 1000 - 1000, AT_END).size() > 0,
               "the newest stay");
+    }
+
+    private static mcs ofTask(int task, mcs message) {
+        message.task = task;
+        return message;
+    }
+
+    /** Each task has commands of its own, at the same time as others. */
+    private static void marksTasks() throws IOException {
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_MCS");
+        fill(history, RUN, 1, 900);
+        take(feed, "WAFERHAND_MCS", ofTask(0, progress(RUN, 0, 1, "GET A 1")));
+        take(feed, "WAFERHAND_MCS", ofTask(1, progress(RUN, 50, 1, "ALIGN P 90")));
+        take(feed, "WAFERHAND_MCS", ofTask(2, progress(RUN, 60, 1, "ALIGN Q 90")));
+        take(feed, "WAFERHAND_MCS", ofTask(0, progress(RUN, 100, 3, "GET A 1")));
+        final ProximityHistory copy = history.copy();
+        take(feed, "WAFERHAND_MCS", ofTask(2, progress(RUN, 150, 4, "ALIGN Q 90")));
+        take(feed, "WAFERHAND_MCS", ofTask(0, progress(RUN, 160, 1, "PUT Q 1")));
+        take(feed, "WAFERHAND_MCS", ofTask(1, progress(RUN, 200, 9, "ALIGN P 90")));
+        take(feed, "WAFERHAND_MCS", ofTask(1, progress(RUN, 220, 3, "ALIGN P 90")));
+        take(feed, "WAFERHAND_MCS", ofTask(0, progress(RUN, 240, 3, "PUT Q 1")));
+        check(lines(history).equals(
+                  "GET A 1 0-100, ALIGN P 90 50-220, ALIGN Q 90 60-150 failed, PUT Q 1 160-240, "),
+              lines(history));
+        check(java.util.Arrays.equals(ProximityMarks.rows(history.commands(0, 1e9)), new int[] {0, 1, 2, 0}),
+              "none covers another one");
+        check(lines(copy).startsWith("GET A 1 0-100, ALIGN P 90 50-1000000, ALIGN Q 90 60-1000000, "),
+              "a copy stays: " + lines(copy));
     }
 
     /** Commands come with motion control's messages, of which some are missing. */
@@ -636,7 +676,7 @@ final class SpyTest {
         for (final int size : new int[] {0, 1, 50, 700}) {
             paint(empty, size, size);
         }
-        for (int grippers = 1; grippers <= 8; grippers++) {
+        for (int grippers = 1; grippers <= 16; grippers++) {
             final ProximityHistory history = new ProximityHistory();
             for (long seq = 1; seq <= 3000; seq++) {
                 final proximity message = message(RUN, seq);
@@ -653,7 +693,7 @@ final class SpyTest {
                 paint(view, size, 900);
                 paint(view, 900, size);
             }
-            check(count(paint(view, 1000, 700), ProximityChart.LINE) > 1000, "lines are drawn");
+            check(count(paint(view, 1920, 1080), ProximityChart.LINE) > 1000, "lines are drawn");
         }
     }
 
@@ -745,6 +785,7 @@ final class SpyTest {
         drawsMarks();
         marksEvents();
         marksCommands();
+        marksTasks();
         believesTheSimulator();
         takesARecordedRun(arguments[0]);
         putsScansTogether();

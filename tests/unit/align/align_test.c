@@ -3,6 +3,7 @@
 
 #include "align/align.h"
 #include "align/calibration.h"
+#include "align/merge.h"
 
 enum { SAMPLES = 3600 };
 
@@ -305,9 +306,30 @@ static void bad_numbers_change_nothing(void **state) {
     assert_true(result.turn == 7);
 }
 
+/* The mean of what sees the rim, without what light makes of it; and what does not see it if most do not. */
+static void turns_are_merged(void **state) {
+    (void)state;
+    const wh_rim_point_t of_turns[5] = {{1, 150.01, WH_SIGHT_RIM},
+                                        {7, 149.99, WH_SIGHT_RIM},
+                                        {1, 143, WH_SIGHT_RIM},
+                                        {1, 150.03, WH_SIGHT_RIM},
+                                        {1, 0, WH_SIGHT_COVERED}};
+    wh_rim_point_t merged = wh_rim_points_merge(of_turns, 5);
+    assert_int_equal(merged.sight, WH_SIGHT_RIM);
+    assert_true(fabs(merged.radius - 150.01) < 1e-12 && fabs(merged.angle - 1) <= 0);
+    merged = wh_rim_points_merge(of_turns, 1);
+    assert_true(fabs(merged.radius - 150.01) <= 0);
+    merged = wh_rim_points_merge(&of_turns[3], 2);
+    assert_true(merged.sight == WH_SIGHT_RIM && fabs(merged.radius - 150.03) <= 0);
+    const wh_rim_point_t covered[3] = {of_turns[0], of_turns[4], of_turns[4]};
+    merged = wh_rim_points_merge(covered, 3);
+    assert_int_equal(merged.sight, WH_SIGHT_COVERED);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
+        cmocka_unit_test(turns_are_merged),
         cmocka_unit_test(a_notch_is_as_deep_and_as_wide_as_drawn),
         cmocka_unit_test(samples_are_due_once_whatever_the_slices),
         cmocka_unit_test(the_centre_is_found_and_nothing_is_allocated),

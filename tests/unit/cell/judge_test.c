@@ -263,6 +263,25 @@ static void limits_of_placing(void **state) {
     cell.off_centre = cell.askew = 0;
 }
 
+/* Over its slot, but higher than what it may fall. */
+static void a_wafer_let_go_in_the_air(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.drop = 2;
+    const wh_pose_t high = wh_test_at(703, 4, 902.25);
+    let_go(&scene, &high);
+    assert_int_equal(judge(&scene), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_RELEASED_UNSUPPORTED);
+    assert_near(scene.events[1].height, 2.25, 64 * WH_TEST_ROUNDING * 900);
+    assert_near(scene.events[1].limit, 2, 0);
+    const wh_pose_t low = wh_test_at(703, 4, 901.75);
+    let_go(&scene, &low);
+    assert_int_equal(judge(&scene), 0);
+    cell.drop = 0;
+    let_go(&scene, &high);
+    assert_int_equal(judge(&scene), 0);
+}
+
 static void a_full_list_takes_no_more(void **state) {
     (void)state;
     scene_t scene;
@@ -359,6 +378,48 @@ static void a_support_stops_what_was_let_go_below_it(void **state) {
 }
 
 /* Each release of a list, and none that stands beyond its end. */
+/* Of a wafer that is turned over, whose front face is at this pose. */
+static wh_pose_t face_down(const wh_pose_t *base_from_front) {
+    wh_pose_t wafer;
+    wh_face_frame(base_from_front, WH_REAL(0.775), WH_FACE_FRONT, &wafer);
+    return wafer;
+}
+
+static void a_wafer_face_down_lies_on_its_front_and_settles_on_it(void **state) {
+    (void)state;
+    scene_t scene;
+    wh_place_t place;
+    wh_pose_t front = in_station(1, 3, 2, 10.25);
+    const wh_pose_t leaning = {wh_mat3_from_rpy_deg(1, -2, 40), {0, 0, 0}};
+    front = wh_pose_compose(&front, &leaning);
+    const wh_pose_t wafer = face_down(&front);
+    assert_false(wh_cell_locate(&cell, &wafer, &place));
+    cell.thickness = WH_REAL(0.775);
+    assert_true(wh_cell_locate(&cell, &wafer, &place));
+    assert_int_equal(place.face, WH_FACE_FRONT);
+    assert_int_equal(place.slot, 2);
+    assert_near(place.dx, 3, 1e5 * WH_TEST_ROUNDING);
+    assert_near(place.dy, 2, 1e5 * WH_TEST_ROUNDING);
+    assert_near(place.dz, 0.25, 1e5 * WH_TEST_ROUNDING);
+    assert_int_equal(settle(&scene, &wafer), 1);
+    assert_true(wh_cell_locate(&cell, &scene.wafers[0].base_from_wafer, &place));
+    assert_int_equal(place.face, WH_FACE_FRONT);
+    assert_near(place.dx, 3, 1e5 * WH_TEST_ROUNDING);
+    assert_near(place.dz, 0, 1e5 * WH_TEST_ROUNDING);
+    assert_near(place.tilt, 0, 1e5 * WH_TEST_ROUNDING);
+    const wh_pose_t above = in_station(1, 0, 0, 0.25);
+    const wh_pose_t on = in_station(1, 0, 0, 0);
+    const wh_pose_t hangs = face_down(&above);
+    const wh_pose_t lies = face_down(&on);
+    assert_false(wh_cell_stops(&cell, &hangs, &hangs));
+    assert_true(wh_cell_stops(&cell, &hangs, &lies));
+    cell.thickness = -1;
+    assert_int_equal(wh_cell_validate(&cell, 2), WH_STATUS_OUT_OF_RANGE);
+    cell.thickness = WH_REAL(100.5);
+    assert_int_equal(wh_cell_validate(&cell, 2), WH_STATUS_OUT_OF_RANGE);
+    cell.thickness = 0;
+}
+
 static void each_release_settles_in_turn(void **state) {
     (void)state;
     scene_t scene;
@@ -418,10 +479,12 @@ int main(void) {
         cmocka_unit_test_setup(a_neighbours_slot_is_not_this_one, set_up),
         cmocka_unit_test_setup(a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
         cmocka_unit_test_setup(limits_of_placing, set_up),
+        cmocka_unit_test_setup(a_wafer_let_go_in_the_air, set_up),
         cmocka_unit_test_setup(a_full_list_takes_no_more, set_up),
         cmocka_unit_test_setup(a_wafer_comes_to_lie_on_its_slot, set_up),
         cmocka_unit_test_setup(what_does_not_settle, set_up),
         cmocka_unit_test_setup(a_support_stops_what_was_let_go_below_it, set_up),
+        cmocka_unit_test_setup(a_wafer_face_down_lies_on_its_front_and_settles_on_it, set_up),
         cmocka_unit_test_setup(each_release_settles_in_turn, set_up),
         cmocka_unit_test_setup(settling_without_room_or_while_held, set_up),
     };

@@ -149,6 +149,7 @@ static void a_cell_has_its_ranges(void **state) {
     refuse_numbers(&stations[1].pitch, bad, 7, WH_STATUS_OUT_OF_RANGE);
     refuse_numbers(&cell.off_centre, bad, 6, WH_STATUS_OUT_OF_RANGE);
     refuse_numbers(&cell.askew, bad, 6, WH_STATUS_OUT_OF_RANGE);
+    refuse_numbers(&cell.drop, bad, 6, WH_STATUS_OUT_OF_RANGE);
     refuse_numbers(&cell.tolerance.projz, bad, 7, WH_STATUS_BAD_TOLERANCE);
     refuse_numbers(&cell.tolerance.projxy, bad, 7, WH_STATUS_BAD_TOLERANCE);
     refuse_numbers(&cell.tolerance.planar, bad, 6, WH_STATUS_BAD_TOLERANCE);

@@ -28,7 +28,10 @@ static wh_pose_t at_height(double z) {
 
 /* What the world sees with the blade there. */
 static wh_world_input_t blade_at(wh_pose_t pose) {
-    const wh_world_input_t input = {table.slice, NULL, &gripper, pose};
+    static const wh_arm_t arm = {.link = 300};
+    static wh_pose_t links[WH_ARM_BODIES];
+    const wh_world_input_t input = {table.slice, NULL, &gripper, links, NULL};
+    wh_arm_place(&arm, &pose, links);
     gripper.base_from_gripper = pose;
     return input;
 }
@@ -44,7 +47,6 @@ static int open_world(void **state) {
     config = (wh_world_config_t){
         .parts = parts, .part_count = PARTS, .gripper_count = 1, .cell = &cell, .grasp = &table.config};
     config.wafer = box(1, 1, 1);
-    config.arm.link = 300;
     assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
     assert_int_equal(wh_grasp_init(&table, &grasp, &storage), WH_OK);
     memory = malloc(wh_world_bytes(&config));
@@ -71,7 +73,11 @@ static void step_to(uint64_t slice) {
     }
 }
 
-static void bins_hold_the_gaps_at_their_ends(void **state) {
+static double lower(double a, double b) {
+    return a < b ? a : b;
+}
+
+static void bins_hold_their_smallest_gaps(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
     assert_int_equal(curves->first, 0);
@@ -82,7 +88,7 @@ static void bins_hold_the_gaps_at_their_ends(void **state) {
     assert_int_equal(curves->slices, 10);
     assert_int_equal(curves->count, 90);
     for (size_t bin = 0; bin < 90; ++bin) {
-        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(10 * (bin + 1)), 1e-6);
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(10 * (bin + 1)), 1e-3);
         assert_near(curves->gaps[WH_CLEARANCE_ARM_OTHER][bin], WH_CLEARANCE_RANGE, 0);
     }
 }
@@ -100,7 +106,7 @@ static void smallest_gap_is_in_its_bin(void **state) {
     assert_int_equal(curves->count, 102);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][99], height_in(1000), 1e-3);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][100], 0.5, 1e-3);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][101], height_in(1020), 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][101], height_in(1010), 1e-3);
 }
 
 static void full_bins_become_half_as_many(void **state) {
@@ -113,7 +119,7 @@ static void full_bins_become_half_as_many(void **state) {
     assert_int_equal(curves->slices, 20);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][0], height_in(20), 1e-6);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][49], 2, 1e-3);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][50], height_in(1010), 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][50], height_in(1000), 1e-3);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][299], WH_CLEARANCE_RANGE, 0);
     step_to(10 * WH_CURVE_BINS + 19);
     assert_int_equal(curves->count, WH_CURVE_BINS / 2);
@@ -137,9 +143,39 @@ static void lost_slices_leave_no_gap(void **state) {
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][5], height_in(60), 1e-6);
 }
 
+enum { CYCLE = 1280, CYCLES = 40 };
+
+/* Down to 2.5 mm for one slice, at 7 mm for some, and else above what is near, but for one cycle to 3 mm. */
+static double height_of_cycle(uint64_t slice) {
+    const uint64_t in_cycle = slice % CYCLE;
+    return in_cycle == 333 ? 2.5 : in_cycle > 900 && in_cycle < 990 ? 7 : 30;
+}
+
+/* Cycles that begin with a bin have the same smallest gaps, however long bins are by then: the first one of
+ * the run counts no more than the others. */
+static void cycles_that_are_alike_look_alike(void **state) {
+    (void)state;
+    const wh_curves_t *curves = wh_world_curves(world);
+    const wh_real_t *gaps = curves->gaps[WH_CLEARANCE_BLADE_OTHER];
+    while (table.slice < (uint64_t)CYCLE * CYCLES) {
+        ++table.slice;
+        const wh_world_input_t input = blade_at(at_height(height_of_cycle(table.slice)));
+        wh_world_step(world, &input, NULL);
+    }
+    assert_true(curves->slices > 100);
+    for (size_t bin = 0; bin < curves->count; ++bin) {
+        double least = WH_CLEARANCE_RANGE;
+        for (uint64_t slice = bin * curves->slices; slice <= (bin + 1) * curves->slices; ++slice) {
+            least = lower(least, height_of_cycle(slice));
+        }
+        assert_near(gaps[bin], least, 1e-3);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(bins_hold_the_gaps_at_their_ends, open_world, close_world),
+        cmocka_unit_test_setup_teardown(bins_hold_their_smallest_gaps, open_world, close_world),
+        cmocka_unit_test_setup_teardown(cycles_that_are_alike_look_alike, open_world, close_world),
         cmocka_unit_test_setup_teardown(smallest_gap_is_in_its_bin, open_world, close_world),
         cmocka_unit_test_setup_teardown(lost_slices_leave_no_gap, open_world, close_world),
         cmocka_unit_test_setup_teardown(full_bins_become_half_as_many, open_world, close_world),

@@ -1,7 +1,7 @@
 /* The collision world's rules, one by one. */
 #include <stdlib.h>
 
-#include "collision/world.h"
+#include "collision/world_internal.h"
 #include "support/heap.h"
 #include "support/station.h"
 
@@ -16,7 +16,8 @@ static wh_world_t *world;
 static void *memory;
 static wh_event_t events[EVENTS];
 static wh_event_list_t list;
-static wh_pose_t effector;
+static const wh_arm_t arm = {.reach = 250, .link = 350};
+static wh_pose_t effector, links[WH_ARM_BODIES], base_from_door;
 static wh_gripper_input_t inputs[2];
 
 static wh_part_t box_part(wh_part_kind_t kind, int owner, double x, double y, double z, wh_vec3_t size) {
@@ -47,8 +48,6 @@ static void describe(void) {
         (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 2, .wafer_count = WAFERS};
     config.cell = &cell;
     config.grasp = &table.config;
-    config.arm.reach = 250;
-    config.arm.link = 350;
     config.wafer.kind = WH_CONVEX_CYLINDER;
     config.wafer.half = wh_vec3(150, 0, WH_REAL(0.3875));
     config.wafer.body_from_shape = wh_test_at(0, 0, WH_REAL(0.3875));
@@ -73,7 +72,9 @@ static int open_world(void **state) {
 
 /* What the table's last step left. */
 static wh_world_input_t seen(void) {
-    const wh_world_input_t input = {table.slice, table.storage.wafers, table.storage.grippers, effector};
+    wh_arm_place(&arm, &effector, links);
+    const wh_world_input_t input = {table.slice, table.storage.wafers, table.storage.grippers, links,
+                                    &base_from_door};
     return input;
 }
 
@@ -207,6 +208,34 @@ static void a_wafer_that_was_put_elsewhere_is_there(void **state) {
     wh_world_place(world, 1, &wafers[1].base_from_wafer);
     assert_int_equal(go(400, 0, 951, WH_VALVE_CLOSED), 1);
     assert_int_equal(events[0].wafer, 1);
+}
+
+/* What is known of two held wafers is of no use for the next one, to which the blade went empty. */
+static void the_next_wafer_hits_one_on_another_gripper(void **state) {
+    (void)state;
+    inputs[1] = (wh_gripper_input_t){wh_test_at(300, 600, 950), WH_VALVE_OPEN};
+    wafers[1].base_from_wafer = inputs[1].base_from_gripper;
+    wafers[2].base_from_wafer = wh_test_at(400, 180, 970);
+    begin();
+    size_t count = go(400, 0, 897, WH_VALVE_CLOSED);
+    assert_int_equal(grippers[1].wafer, 1);
+    count += go(700, 0, 897, WH_VALVE_CLOSED);
+    count += go(700, 0, 899.7, WH_VALVE_OPEN);
+    count += go(700, 0, 903, WH_VALVE_OPEN);
+    count += go(400, 0, 903, WH_VALVE_OPEN);
+    count += go(400, -300, 903, WH_VALVE_OPEN);
+    count += go(400, -300, 903, WH_VALVE_CLOSED);
+    count += go(400, -300, 895, WH_VALVE_CLOSED);
+    for (int y = -300; y <= 180; y += 10) {
+        count += go(400, y, 895, WH_VALVE_CLOSED);
+    }
+    count += go(400, 180, 969.7, WH_VALVE_OPEN);
+    count += go(400, 180, 972, WH_VALVE_OPEN);
+    assert_int_equal(count, 0);
+    assert_int_equal(grippers[0].wafer, 2);
+    assert_int_equal(go(400, 330, 950, WH_VALVE_OPEN), 1);
+    assert_int_equal(events[0].kind, WH_EVENT_HIT);
+    assert_true(is_pair(events[0].parts, PARTS + 1, PARTS + 2));
 }
 
 static void links_of_the_arm_are_neighbours(void **state) {
@@ -353,6 +382,190 @@ static void bad_descriptions_are_refused(void **state) {
     assert_null(wh_world_init(&config, &input, events, 8));
 }
 
+/* -------------------------------------------------------------------------------------------- robots' links */
+
+/* On a rail that leads aside, with a column that tilts. */
+static wh_chain_t chain_of(wh_chain_kind_t kind) {
+    wh_chain_t chain = {.kind = kind, .is_placed = true, .has_rail = true, .has_tilt = true};
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        chain.travel[axis] = (wh_travel_t){-1, 1};
+        chain.limits[axis] = (wh_limits_t){1, 10, 100};
+    }
+    chain.travel[WH_CHAIN_REACH].min = 0;
+    chain.links[0] = 300;
+    chain.links[1] = 400;
+    chain.base_from_robot = wh_test_at(100, 200, 30);
+    chain.base_from_robot.R = wh_mat3_from_rpy_deg(0, 0, 90);
+    return chain;
+}
+
+static void assert_way(const wh_pose_t *from, double along, const wh_pose_t *to) {
+    const wh_vec3_t x = wh_mat3_column(&from->R, 0);
+    const wh_vec3_t way = wh_vec3_scale(along, &x);
+    const wh_vec3_t there = wh_vec3_add(&from->r, &way);
+    const wh_vec3_t off = wh_vec3_subtract(&there, &to->r);
+    assert_true(wh_vec3_norm(&off) < 1e-9);
+}
+
+/* The elbow is as far aside of the way from shoulder to wrist, in the arm's own plane, as this says. */
+static double aside(const wh_pose_t bodies[]) {
+    const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
+    const wh_vec3_t elbow = wh_vec3_subtract(&bodies[WH_ARM_FOREARM].r, &bodies[WH_ARM_UPPER].r);
+    const wh_vec3_t normal = wh_mat3_column(&bodies[WH_ARM_UPPER].R, 2);
+    const wh_vec3_t across = wh_vec3_cross(&out, &elbow);
+    return wh_vec3_dot(&across, &normal);
+}
+
+/* Each link begins where the one before it ends, and the last one carries the end-effector. */
+static void links_of_every_kind_hang_together(void **state) {
+    static const wh_real_t axes[][7] = {{0.3, 700, 900, 0.2, 120, 0.05, -0.03},
+                                        {-2, 420, 650, 1.5, -300, -0.2, 0.1},
+                                        {1, 610, 700, 0, 0, 0, 0.3}};
+    (void)state;
+    for (int i = 0; i < 9; ++i) {
+        const wh_chain_kind_t kind = (wh_chain_kind_t)(i % 3);
+        const wh_chain_t chain = chain_of(kind);
+        const bool is_scara = kind == WH_CHAIN_SCARA;
+        const wh_arm_t polar = {.reach = 250, .link = 400, .right_handed = i > 4};
+        wh_carrier_t carrier;
+        wh_real_t q[7];
+        wh_pose_t bodies[WH_ARM_BODIES];
+        wh_pose_t end;
+        memcpy(q, axes[i / 3], sizeof q);
+        q[1] = is_scara ? 0.5 * (i / 3 - 1) + 0.7 : q[1];
+        q[3] = kind == WH_CHAIN_TRZ ? 0 : q[3];
+        assert_int_equal(wh_carrier_init(&carrier, &chain), WH_OK);
+        carrier.forward(&carrier, q, &end);
+        wh_arm_place_carrier(&polar, &carrier, q, bodies);
+        const wh_vec3_t foot = wh_vec3(100, 200 + q[4], 30);
+        const wh_vec3_t lift = wh_vec3(100, 200 + q[4], 30 + q[2]);
+        assert_near(bodies[WH_ARM_BASE].r.x - foot.x, 0, 1e-9);
+        assert_near(bodies[WH_ARM_BASE].r.y - foot.y, 0, 1e-9);
+        assert_near(bodies[WH_ARM_BASE].r.z - foot.z, 0, 1e-9);
+        assert_near(bodies[WH_ARM_LIFT].r.z - lift.z, 0, 1e-9);
+        assert_near(bodies[WH_ARM_LIFT].R.m[2][2], 1, 1e-15);
+        assert_way(&bodies[WH_ARM_LIFT], 0, &bodies[WH_ARM_UPPER]);
+        assert_way(&bodies[WH_ARM_UPPER], is_scara ? 300 : 400, &bodies[WH_ARM_FOREARM]);
+        assert_way(&bodies[WH_ARM_FOREARM], 400, &bodies[WH_ARM_HAND]);
+        assert_way(&bodies[WH_ARM_HAND], is_scara ? 0 : 250, &end);
+        assert_true((aside(bodies) < 0) == (is_scara ? q[1] > 0 : polar.right_handed));
+        for (int k = 0; k < 9; ++k) {
+            assert_near(bodies[WH_ARM_HAND].R.m[k / 3][k % 3], end.R.m[k / 3][k % 3], 1e-12);
+            assert_near(bodies[WH_ARM_UPPER].R.m[k / 3][2], end.R.m[k / 3][2], 1e-12);
+            assert_near(bodies[WH_ARM_FOREARM].R.m[k / 3][2], end.R.m[k / 3][2], 1e-12);
+        }
+    }
+}
+
+/* A second robot beside the first: its hand may not touch what the first one's hand may. */
+static void parts_of_two_robots_are_judged(void **state) {
+    (void)state;
+    static const wh_world_arm_t arms[] = {{0, WH_ARM_BASE}, {1, WH_ARM_BASE}, {1, WH_ARM_UPPER}};
+    static const uint8_t carried_by[] = {0, WH_WORLD_NO_ARM};
+    config.arm_count = 3;
+    config.arms = arms;
+    config.carried_by = carried_by;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
+    static const struct {
+        int32_t one, other; /* numbers of bodies */
+        bool together;
+    } rows[] = {
+        {WH_ARM_HAND, WH_ARM_FOREARM, true},
+        {WH_ARM_HAND, WH_ARM_BODIES + WH_ARM_FOREARM, false},
+        {WH_ARM_BASE, WH_ARM_BODIES + WH_ARM_BASE, false},
+        {WH_ARM_BODIES + WH_ARM_LIFT, 2 * WH_ARM_BODIES + WH_ARM_UPPER, true},
+        {WH_ARM_BODIES + WH_ARM_UPPER, 2 * WH_ARM_BODIES + WH_ARM_UPPER, true},
+        {WH_ARM_BODIES + WH_ARM_UPPER, 2 * WH_ARM_BODIES + WH_ARM_FOREARM, false},
+        {WH_ARM_BODIES + WH_ARM_FOREARM, 2 * WH_ARM_BODIES + WH_ARM_FOREARM, false},
+        {WH_ARM_LIFT, 2 * WH_ARM_BODIES + WH_ARM_UPPER, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        const wh_part_t one = {.kind = WH_PART_ARM, .owner = rows[i].one};
+        const wh_part_t other = {.kind = WH_PART_ARM, .owner = rows[i].other};
+        assert_int_equal(wh_world_belong_together(&config, &one, &other), rows[i].together);
+        assert_int_equal(wh_world_belong_together(&config, &other, &one), rows[i].together);
+    }
+    const wh_part_t blade = {.kind = WH_PART_BLADE, .owner = 0};
+    const wh_part_t hand = {.kind = WH_PART_ARM, .owner = WH_ARM_HAND};
+    const wh_part_t other_hand = {.kind = WH_PART_ARM, .owner = WH_ARM_BODIES + WH_ARM_HAND};
+    assert_true(wh_world_belong_together(&config, &blade, &hand));
+    assert_false(wh_world_belong_together(&config, &blade, &other_hand));
+}
+
+/* At one wrist both hands are on one axis, and each blade passes the other hand; the blades themselves are judged. */
+static void hands_at_one_wrist_belong_together(void **state) {
+    (void)state;
+    static const wh_world_arm_t arms[] = {{0, WH_ARM_BASE}, {0, WH_ARM_HAND}};
+    static const uint8_t carried_by[] = {0, 1};
+    config.arm_count = 2;
+    config.arms = arms;
+    config.carried_by = carried_by;
+    const wh_part_t hand = {.kind = WH_PART_ARM, .owner = WH_ARM_BODIES + WH_ARM_HAND};
+    const wh_part_t first_hand = {.kind = WH_PART_ARM, .owner = WH_ARM_HAND};
+    const wh_part_t forearm = {.kind = WH_PART_ARM, .owner = WH_ARM_FOREARM};
+    const wh_part_t upper = {.kind = WH_PART_ARM, .owner = WH_ARM_UPPER};
+    const wh_part_t blade = {.kind = WH_PART_BLADE, .owner = 0};
+    const wh_part_t second = {.kind = WH_PART_BLADE, .owner = 1};
+    assert_true(wh_world_belong_together(&config, &hand, &first_hand));
+    assert_true(wh_world_belong_together(&config, &hand, &forearm));
+    assert_false(wh_world_belong_together(&config, &hand, &upper));
+    assert_true(wh_world_belong_together(&config, &hand, &blade));
+    assert_false(wh_world_belong_together(&config, &blade, &second));
+}
+
+static void arms_beyond_the_room_are_refused(void **state) {
+    (void)state;
+    static const wh_world_arm_t arms[WH_WORLD_ARMS + 1];
+    static const uint8_t bad[] = {2, 0};
+    static const uint8_t good[] = {1, 0};
+    config.arm_count = 2;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_NULL_ARGUMENT);
+    config.arms = arms;
+    config.carried_by = bad;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_OUT_OF_RANGE);
+    config.carried_by = good;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
+    config.arm_count = WH_WORLD_ARMS + 1;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_BAD_CAPACITY);
+}
+
+/* In place of the chuck a door hangs in its frame, the wall, and goes down from above: through that, and then
+ * onto wafer 0 or beside it. */
+static void lower_door(double x, size_t *hits, double *z) {
+    free(memory);
+    parts[FIXED + 3] = box_part(WH_PART_DOOR, 0, 0, 0, 0, wh_vec3(20, 100, 100));
+    config.door_count = 1;
+    base_from_door = wh_test_at(x, 0, 1100);
+    assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
+    memory = malloc(wh_world_bytes(&config));
+    wh_world_input_t input = seen();
+    world = wh_world_init(&config, &input, memory, wh_world_bytes(&config));
+    list = (wh_event_list_t){events, EVENTS, 0};
+    for (*z = 1100; *z > 800 && list.count == 0; *z -= 1) {
+        base_from_door.r.z = (wh_real_t)*z;
+        input = seen();
+        wh_world_step(world, &input, &list);
+    }
+    *hits = list.count;
+}
+
+static void a_door_passes_its_frame_and_hits_what_is_in_its_way(void **state) {
+    (void)state;
+    size_t hits = 0;
+    double z = 0;
+    lower_door(1000, &hits, &z); /* in the wall */
+    assert_int_equal(hits, 0);
+    lower_door(700, &hits, &z);
+    assert_int_equal(hits, 1);
+    assert_int_equal(events[0].kind, WH_EVENT_HIT);
+    assert_int_equal(events[0].wafer, 0);
+    assert_near(z, 949, 1.5); /* its lower side reached the wafer's upper one */
+    config.door_count = 0;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_OUT_OF_RANGE);
+    config.door_count = WH_WORLD_DOORS + 1;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_BAD_CAPACITY);
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, open_world, close_world)
     const struct CMUnitTest tests[] = {
@@ -364,6 +577,7 @@ int main(void) {
         TEST(a_wafer_let_go_rests_where_it_is),
         TEST(letting_go_on_the_way_is_no_contact),
         TEST(a_wafer_that_was_put_elsewhere_is_there),
+        TEST(the_next_wafer_hits_one_on_another_gripper),
         TEST(links_of_the_arm_are_neighbours),
         TEST(a_limit_is_reported_once),
         TEST(a_full_list_loses_events_but_no_figures),
@@ -371,6 +585,11 @@ int main(void) {
         TEST(stepping_allocates_nothing),
         TEST(all_that_touches_before_a_run_is_found),
         TEST(bad_descriptions_are_refused),
+        TEST(links_of_every_kind_hang_together),
+        TEST(parts_of_two_robots_are_judged),
+        TEST(hands_at_one_wrist_belong_together),
+        TEST(arms_beyond_the_room_are_refused),
+        TEST(a_door_passes_its_frame_and_hits_what_is_in_its_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
-/* Holding: Coulomb's law against its formula, and its verdict at the limit. */
+/* Holding: Coulomb's law against its formula, and its verdict at the limit; the edge grip's path against the forms of its
+ * header. */
 #include "support/pose.h"
 
+#include "grasp/edge.h"
 #include "grasp/hold.h"
 
 #define DT WH_REAL(0.001)
@@ -252,6 +254,251 @@ static void a_motion_beyond_all_numbers_slips(void **state) {
     }
 }
 
+static wh_edge_place_t edge_at(const wh_edge_t *edge, const wh_edge_wafer_t *wafer, double s) {
+    wh_edge_place_t place;
+    assert_int_equal(wh_edge_at(edge, wafer, s, &place), WH_OK);
+    return place;
+}
+
+/* The nominal wafer of 300 mm with the notch at this angle from +x, deg. */
+static wh_edge_wafer_t notch_at(double degrees) {
+    wh_edge_wafer_t wafer = wh_edge_wafer_nominal(150);
+    wafer.notch_x = cos(degrees * WH_TEST_PI / 180);
+    wafer.notch_y = sin(degrees * WH_TEST_PI / 180);
+    return wafer;
+}
+
+static double shift_with_notch_at(double degrees) {
+    const wh_edge_t edge = wh_edge_default(150);
+    const wh_edge_wafer_t wafer = notch_at(degrees);
+    const wh_edge_place_t place = edge_at(&edge, &wafer, 4);
+    assert_true(place.phase == WH_EDGE_SEATED && place.held);
+    return hypot(place.x, place.y);
+}
+
+/* Over diameters, offsets and angles: the exact form, wherever the wafer began. */
+static void an_edge_grip_seats_a_round_wafer_by_the_exact_form(void **state) {
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        wh_edge_t edge = wh_edge_default(wh_test_uniform(25, 225));
+        edge.rest = wh_test_uniform(0.5, 5);
+        edge.alpha = wh_test_uniform(25, 60) * WH_TEST_PI / 180;
+        wh_edge_wafer_t wafer = wh_edge_wafer_nominal(edge.radius);
+        wafer.radius += wh_test_uniform(-0.15, 0.15);
+        const double off = wh_test_uniform(0, edge.clearance);
+        const double towards = wh_test_uniform(-4, 4);
+        wafer.x = off * cos(towards);
+        wafer.y = off * sin(towards);
+        wafer.depth = 0;
+        const double reach = edge.radius + edge.rest;
+        const double across = reach * sin(edge.alpha);
+        const double x = reach * cos(edge.alpha) - sqrt(pow(wafer.radius + edge.rest, 2) - across * across);
+        const wh_edge_place_t place = edge_at(&edge, &wafer, edge.end);
+        assert_true(place.phase == WH_EDGE_SEATED);
+        assert_near(place.x, x, 1e-9);
+        assert_near(place.y, 0, 1e-9);
+        assert_near(place.s, x - (wafer.radius - edge.radius), 1e-9);
+        assert_true(place.held == (place.s >= edge.gripped_from && place.s <= edge.gripped_to));
+    }
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t larger = notch_at(90);
+    larger.radius = 150.1;
+    assert_near(edge_at(&edge, &larger, 4).x, -0.115457, 5e-7);
+}
+
+/* Known values: 3 mm rests in a SEMI notch; the largest shift of all angles. */
+static void a_rest_over_the_notch_sinks_in(void **state) {
+    (void)state;
+    double largest = 0;
+    double angle = 0;
+    for (double a = -0.7; a < 0.7; a += 0.001) {
+        const double shift = shift_with_notch_at(30 - a);
+        angle = shift > largest ? a : angle;
+        largest = shift > largest ? shift : largest;
+        assert_near(shift_with_notch_at(-30 + a), shift, 1e-9);
+    }
+    assert_near(shift_with_notch_at(30), 0.550, 5e-4);
+    assert_near(largest, 0.867, 7e-4);
+    assert_near(fabs(angle), 0.164, 3e-3);
+    const double sign = angle < 0 ? 1 : -1;
+    assert_near(shift_with_notch_at(30 - sign * 0.1), 0.369, 5e-4);
+    assert_near(shift_with_notch_at(30 + sign * 0.4), 0.046, 5e-4);
+    assert_near(shift_with_notch_at(30 + 0.8), 0, 1e-9);
+}
+
+/* The pin's distance from points along both flanks, to the corners. */
+static double nearest_of_outline(const wh_edge_wafer_t *wafer, double x, double y) {
+    const double h = wafer->opening / 2;
+    const double apex = wafer->radius - wafer->depth - wafer->bottom * (1 / sin(h) - 1);
+    double corner = 3;
+    for (double step = 1; step > 1e-12; step /= 2) {
+        corner -= hypot(apex + (corner - step) * cos(h), (corner - step) * sin(h)) > wafer->radius ? step : 0;
+    }
+    double least = 1e9;
+    for (int i = 0; i <= 20000; ++i) {
+        const double first = wafer->bottom / tan(h);
+        const double u = first + (corner - first) * i / 20000;
+        for (int side = -1; side <= 1; side += 2) {
+            const double along = apex + u * cos(h);
+            const double aside = side * u * sin(h);
+            least = fmin(least, hypot(x - along * wafer->notch_x + aside * wafer->notch_y,
+                                      y - along * wafer->notch_y - aside * wafer->notch_x));
+        }
+    }
+    return least;
+}
+
+/* Random notches at a rest: the other rest touches the circle, this one the outline. */
+static void a_sunk_rest_touches_the_notchs_outline(void **state) {
+    (void)state;
+    for (int i = 0; i < 300; ++i) {
+        wh_edge_t edge = wh_edge_default(150);
+        edge.alpha = wh_test_uniform(25, 60) * WH_TEST_PI / 180;
+        edge.gripped_to = 3;
+        const double notch = edge.alpha + wh_test_uniform(-0.5, 0.5) * WH_TEST_PI / 180;
+        wh_edge_wafer_t wafer = wh_edge_wafer_nominal(150 + wh_test_uniform(-0.1, 0.1));
+        wafer.depth = wh_test_uniform(1, 1.25);
+        wafer.opening = wh_test_uniform(89, 95) * WH_TEST_PI / 180;
+        wafer.notch_x = cos(notch);
+        wafer.notch_y = sin(notch);
+        const wh_edge_place_t place = edge_at(&edge, &wafer, edge.end);
+        const double x = 151.5 * cos(edge.alpha) - place.x;
+        const double y = 151.5 * sin(edge.alpha) - place.y;
+        assert_true(place.phase == WH_EDGE_SEATED);
+        assert_true(wh_edge_meets_notch(&wafer, 151.5 * cos(edge.alpha), 151.5 * sin(edge.alpha)));
+        assert_near(hypot(x, -151.5 * sin(edge.alpha) - place.y), wafer.radius + 1.5, 1e-9);
+        assert_near(nearest_of_outline(&wafer, x, y), 1.5, 1e-6);
+    }
+}
+
+static void a_notch_at_the_plunger_moves_the_plunger_alone(void **state) {
+    (void)state;
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t wafer = notch_at(180);
+    const wh_edge_place_t place = edge_at(&edge, &wafer, 4);
+    assert_near(place.x, 0, 1e-9);
+    assert_near(place.y, 0, 1e-9);
+    assert_near(place.s, 1 - 0.6 * (sqrt(2) - 1), 1e-9);
+    assert_true(place.held);
+    static const double spread[2][3] = {{1, 89, 0.744}, {1.25, 95, 1.036}};
+    for (size_t i = 0; i < 2; ++i) {
+        wafer.depth = spread[i][0];
+        wafer.opening = spread[i][1] * WH_TEST_PI / 180;
+        assert_near(edge_at(&edge, &wafer, 4).s, spread[i][2], 5e-4);
+    }
+}
+
+/* From retracted to the end in steps of the plunger: the wafer moves with it, never ahead of what pushes it, through the
+ * phases in their order, and begins where it lay. */
+static void on_its_path_the_wafer_never_jumps(void **state) {
+    (void)state;
+    int seen = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const wh_edge_t edge = wh_edge_default(150);
+        wh_edge_wafer_t wafer =
+            notch_at(i % 3 == 0 ? wh_test_uniform(29.4, 30.6) : wh_test_uniform(-180, 180));
+        const double off = wh_test_uniform(0, 2.5);
+        const double towards = wh_test_uniform(-4, 4);
+        wafer.radius += wh_test_uniform(-0.1, 0.1);
+        wafer.x = off * cos(towards);
+        wafer.y = off * sin(towards);
+        wh_edge_place_t before = edge_at(&edge, &wafer, edge.retracted);
+        assert_true(before.phase == WH_EDGE_FREE && before.window == WH_EDGE_RETRACTED);
+        assert_true(before.x == wafer.x && before.y == wafer.y);
+        for (double s = edge.retracted; s < edge.end; s += 0.01) {
+            const wh_edge_place_t now = edge_at(&edge, &wafer, s);
+            assert_true(now.phase >= before.phase && now.phase <= WH_EDGE_SEATED);
+            assert_true(hypot(now.x - before.x, now.y - before.y) < 0.1);
+            assert_true(now.phase == WH_EDGE_SEATED || now.s == s);
+            seen |= 1 << now.phase;
+            before = now;
+        }
+        assert_true(before.phase == WH_EDGE_SEATED);
+    }
+    assert_int_equal(seen, 31);
+}
+
+static void beyond_the_clearance_a_wafer_jams(void **state) {
+    (void)state;
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t wafer = notch_at(90);
+    wafer.x = -2.5;
+    assert_true(edge_at(&edge, &wafer, 4).held);
+    wafer.x = -2.75;
+    wh_edge_place_t place = edge_at(&edge, &wafer, 4);
+    assert_true(place.phase == WH_EDGE_JAMMED && place.window == WH_EDGE_SHORT && !place.held);
+    assert_near(place.excess, 0.25, 1e-12);
+    assert_near(place.s, -2.75, 1e-9);
+    assert_true(place.x == wafer.x && place.y == 0);
+    assert_int_equal(edge_at(&edge, &wafer, -2.76).phase, WH_EDGE_FREE);
+    wafer.x = 0;
+    wafer.y = 2.6;
+    place = edge_at(&edge, &wafer, 4);
+    assert_true(place.phase == WH_EDGE_JAMMED && place.window == WH_EDGE_GRIPPED && !place.held);
+}
+
+/* Its rim is behind the open plunger, which goes nowhere. */
+static void a_wafer_over_the_open_plunger_jams_there(void **state) {
+    (void)state;
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t wafer = notch_at(90);
+    wafer.x = -40;
+    for (int way = 0; way <= 12; ++way) {
+        const wh_edge_place_t place = edge_at(&edge, &wafer, edge.retracted + way);
+        assert_true(place.phase == WH_EDGE_JAMMED && place.window == WH_EDGE_RETRACTED && !place.held);
+        assert_true(place.s == edge.retracted && place.x == -40 && place.y == 0);
+        assert_near(place.excess, 37.5, 1e-12);
+    }
+}
+
+static void a_miss_an_empty_blade_and_a_large_wafer_are_told_apart(void **state) {
+    (void)state;
+    const wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t wafer = notch_at(90);
+    wafer.x = 3;
+    wh_edge_place_t place = edge_at(&edge, &wafer, 3.5);
+    assert_true(place.phase == WH_EDGE_FREE && place.window == WH_EDGE_OVERTRAVEL && !place.held);
+    assert_int_equal(edge_at(&edge, &wafer, 9).phase, WH_EDGE_MISSED);
+    place = edge_at(&edge, NULL, 9);
+    assert_true(place.phase == WH_EDGE_MISSED && place.window == WH_EDGE_OVERTRAVEL && place.s == 4);
+    wafer = notch_at(90);
+    wafer.radius = 150.2;
+    place = edge_at(&edge, &wafer, 4);
+    assert_true(place.phase == WH_EDGE_SEATED && place.window == WH_EDGE_SHORT && !place.held);
+}
+
+static void an_edge_grip_refuses_what_is_out_of_range(void **state) {
+    (void)state;
+    wh_edge_t edge = wh_edge_default(150);
+    wh_edge_wafer_t wafer = notch_at(0);
+    wh_edge_place_t place;
+    wh_edge_place_t before;
+    memset(&place, 1, sizeof place);
+    memcpy(&before, &place, sizeof place);
+    double *const of_edge[] = {&edge.radius,    &edge.rest,      &edge.plunger,      &edge.alpha,
+                               &edge.clearance, &edge.retracted, &edge.gripped_from, &edge.gripped_to,
+                               &edge.end,       &edge.speed};
+    double *const of_wafer[] = {&wafer.radius,  &wafer.x,      &wafer.y,      &wafer.depth,
+                                &wafer.opening, &wafer.bottom, &wafer.notch_x};
+    static const double bad_edges[] = {9, 0.05, 21, 0.4, 11, -3, -9, 6, 1, 0};
+    static const double bad_wafers[] = {148.9, 51, -51, 0.1, 1.4, 1.6, 0.9};
+    for (size_t i = 0; i < 17; ++i) {
+        double *field = i < 10 ? of_edge[i] : of_wafer[i - 10];
+        const double good = *field;
+        *field = i < 10 ? bad_edges[i] : bad_wafers[i - 10];
+        assert_int_equal(wh_edge_at(&edge, &wafer, 0, &place), WH_STATUS_OUT_OF_RANGE);
+        *field = (double)NAN;
+        assert_int_equal(wh_edge_at(&edge, &wafer, 0, &place), WH_STATUS_NOT_FINITE);
+        *field = good;
+    }
+    assert_int_equal(wh_edge_at(NULL, &wafer, 0, &place), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_edge_wafer_validate(&edge, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_edge_at(&edge, &wafer, 0, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_edge_at(&edge, &wafer, (double)INFINITY, &place), WH_STATUS_NOT_FINITE);
+    assert_memory_equal(&place, &before, sizeof place);
+    assert_int_equal(wh_edge_at(&edge, &wafer, 0, &place), WH_OK);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_mass_of_silicon, set_up),
@@ -269,6 +516,15 @@ int main(void) {
         cmocka_unit_test_setup(each_excursion_is_told_once, set_up),
         cmocka_unit_test_setup(without_a_wafer_nothing_is_known, set_up),
         cmocka_unit_test(a_motion_beyond_all_numbers_slips),
+        cmocka_unit_test(an_edge_grip_seats_a_round_wafer_by_the_exact_form),
+        cmocka_unit_test(a_rest_over_the_notch_sinks_in),
+        cmocka_unit_test(a_sunk_rest_touches_the_notchs_outline),
+        cmocka_unit_test(a_notch_at_the_plunger_moves_the_plunger_alone),
+        cmocka_unit_test(on_its_path_the_wafer_never_jumps),
+        cmocka_unit_test(beyond_the_clearance_a_wafer_jams),
+        cmocka_unit_test(a_wafer_over_the_open_plunger_jams_there),
+        cmocka_unit_test(a_miss_an_empty_blade_and_a_large_wafer_are_told_apart),
+        cmocka_unit_test(an_edge_grip_refuses_what_is_out_of_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* The proximity check at its limits: strict comparisons, reasons, margins, and one verdict from two
  * functions. */
+#include "grasp/face.h"
 #include "grasp/proximity.h"
 #include "support/proximity.h"
 
@@ -322,6 +323,165 @@ static void papers_limit_leaves_21_mm_at_the_rim(void **state) {
     assert_near(wh_proximity_rim_gap(&hardly, &gripper, 150), 1.5e-5, 1e-7);
 }
 
+#define THICK WH_REAL(0.775)
+
+/* A wafer that lies face down, its front face `z` mm over a level gripper at base's origin. */
+static wh_pose_t face_down(double x, double y, double z) {
+    return wh_test_pose(wh_test_rotation(1, 0, 0, WH_TEST_PI), x, y, z + (double)THICK);
+}
+
+static void the_face_that_looks_at_the_gripper_is_asked(void **state) {
+    (void)state;
+    const wh_tolerance_t t = wh_tolerance_paper();
+    const wh_pose_t gripper = wh_pose_identity();
+    const wh_pose_t wafer = face_down(3, -4, 0.25);
+    const wh_pose_t upright = wh_test_at(3, -4, 0.25);
+    wh_face_t face = WH_FACE_BACK;
+    wh_proximity_t p;
+    wh_proximity_t plain;
+    assert_false(wh_proximity_ready(&wafer, &gripper, &t));
+    assert_int_equal(wh_face_measure(&wafer, THICK, &gripper, &t, &face, &p), WH_OK);
+    assert_true(p.ready && face == WH_FACE_FRONT);
+    assert_near(p.dr_proj_z, 0.25, 16 * WH_TEST_ROUNDING);
+    assert_near(p.dr_proj_xy.x, 3, 16 * WH_TEST_ROUNDING);
+    assert_near(p.dr_proj_xy.y, -4, 16 * WH_TEST_ROUNDING);
+    assert_int_equal(wh_face_measure(&wafer, 0, &gripper, &t, &face, &p), WH_OK);
+    assert_int_equal(p.failed, WH_FAILED_PROJZ);
+    assert_int_equal(wh_face_measure(&upright, THICK, &gripper, &t, &face, &p), WH_OK);
+    assert_int_equal(wh_proximity_measure(&upright, &gripper, &t, &plain), WH_OK);
+    assert_int_equal(face, WH_FACE_BACK);
+    assert_memory_equal(&p.dr, &plain.dr, offsetof(wh_proximity_t, ready));
+}
+
+/* Random pairs against the rule's words, in a frame that is built otherwise: by a product of poses. */
+static void the_fronts_frame_is_a_product_of_poses(void **state) {
+    (void)state;
+    const wh_tolerance_t t = wh_tolerance_paper();
+    const double close = 1e5 * WH_TEST_ROUNDING;
+    int fronts = 0;
+    for (int pair = 0; pair < 20000; ++pair) {
+        const wh_pose_t wafer = wh_test_random_pose(300);
+        const wh_pose_t gripper = wh_test_random_pose(300);
+        const wh_real_t thickness = WH_REAL(wh_test_uniform(0, 2));
+        const wh_pose_t front = wh_test_pose(wh_test_rotation(1, 0, 0, WH_TEST_PI), 0, 0, thickness);
+        const wh_pose_t looked_at = wh_pose_compose(&wafer, &front);
+        wh_face_t face = WH_FACE_BACK;
+        wh_proximity_t p;
+        wh_proximity_t expected;
+        assert_int_equal(wh_face_measure(&wafer, thickness, &gripper, &t, &face, &p), WH_OK);
+        const bool is_front = wh_face_towards(&wafer, &gripper) == WH_FACE_FRONT;
+        assert_int_equal(wh_proximity_measure(is_front ? &looked_at : &wafer, &gripper, &t, &expected),
+                         WH_OK);
+        fronts += is_front;
+        assert_int_equal(face, is_front);
+        assert_true(p.n1_proj_n2 >= 0);
+        assert_near(p.n1_proj_n2, expected.n1_proj_n2, close);
+        assert_near(p.dr_proj_z, expected.dr_proj_z, close);
+        assert_near(p.dr_proj_xy.x, expected.dr_proj_xy.x, close);
+        assert_near(p.dr_proj_xy.y, expected.dr_proj_xy.y, close);
+    }
+    assert_in_range(fronts, 8000, 12000);
+}
+
+/* At e3 . n2 = 0, and a little to either side. */
+static void on_edge_a_wafer_shows_its_back(void **state) {
+    (void)state;
+    const wh_pose_t gripper = wh_pose_identity();
+    wh_pose_t wafer = {{{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}}, {0, 0, 0}};
+    assert_int_equal(wh_face_towards(&wafer, &gripper), WH_FACE_BACK);
+    wafer.R.m[2][2] = WH_REAL(-1e-30);
+    assert_int_equal(wh_face_towards(&wafer, &gripper), WH_FACE_FRONT);
+    wafer.R.m[2][2] = WH_REAL(1e-30);
+    assert_int_equal(wh_face_towards(&wafer, &gripper), WH_FACE_BACK);
+}
+
+/* Where no layout speaks of faces, wafers have no thickness. */
+static void without_a_thickness_a_wafer_shows_its_back(void **state) {
+    (void)state;
+    const wh_pose_t gripper = wh_pose_identity();
+    const wh_pose_t over = face_down(0, 0, 0);
+    const wh_pose_t upright = wh_test_at(0, 0, 0);
+    assert_int_equal(wh_face_seen(&over, 0, &gripper), WH_FACE_BACK);
+    assert_int_equal(wh_face_seen(&over, THICK, &gripper), WH_FACE_FRONT);
+    assert_int_equal(wh_face_seen(&upright, THICK, &gripper), WH_FACE_BACK);
+}
+
+static void measuring_a_face_refuses_what_it_cannot_judge(void **state) {
+    (void)state;
+    const wh_tolerance_t t = wh_tolerance_paper();
+    const wh_pose_t gripper = wh_pose_identity();
+    const wh_pose_t wafer = face_down(0, 0, 0);
+    wh_pose_t bad = wafer;
+    wh_face_t face = (wh_face_t)7;
+    wh_proximity_t p;
+    wh_proximity_t before;
+    memset(&p, 1, sizeof p);
+    memcpy(&before, &p, sizeof p);
+    bad.R.m[0][0] = 2;
+    assert_int_equal(wh_face_measure(NULL, THICK, &gripper, &t, &face, &p), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_face_measure(&wafer, THICK, NULL, &t, &face, &p), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_face_measure(&wafer, THICK, &gripper, NULL, &face, &p), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_face_measure(&wafer, THICK, &gripper, &t, NULL, &p), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_face_measure(&wafer, THICK, &gripper, &t, &face, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_face_measure(&bad, THICK, &gripper, &t, &face, &p), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_face_measure(&wafer, THICK, &bad, &t, &face, &p), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_face_measure(&wafer, (wh_real_t)NAN, &gripper, &t, &face, &p), WH_STATUS_NOT_FINITE);
+    assert_int_equal(wh_face_measure(&wafer, -THICK, &gripper, &t, &face, &p), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_face_measure(&wafer, WH_REAL(100.001), &gripper, &t, &face, &p),
+                     WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(face, 7);
+    assert_memory_equal(&p, &before, sizeof p);
+    assert_int_equal(wh_face_measure(&wafer, 100, &gripper, &t, &face, &p), WH_OK);
+}
+
+/* (dx, dy) goes to (dx, -dy), a notch at a to -a, and twice is nothing. */
+static void turned_over_twice_a_wafer_is_where_it_was(void **state) {
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        const wh_pose_t axis = wh_test_random_pose(1000);
+        wh_pose_t start = wh_test_random_pose(150);
+        start.r = wh_vec3_add(&start.r, &axis.r);
+        wh_pose_t wafer = start;
+        wh_face_turn_over(&axis, &wafer);
+        const wh_pose_t before = wh_pose_relative(&axis, &start);
+        const wh_pose_t after = wh_pose_relative(&axis, &wafer);
+        const double close = 1e4 * WH_TEST_ROUNDING;
+        assert_near(after.r.x, before.r.x, close);
+        assert_near(after.r.y, -before.r.y, close);
+        assert_near(after.r.z, -before.r.z, close);
+        assert_near(atan2((double)after.R.m[1][0], (double)after.R.m[0][0]),
+                    -atan2((double)before.R.m[1][0], (double)before.R.m[0][0]), 1e6 * WH_TEST_ROUNDING);
+        assert_int_equal(wh_pose_validate(&wafer), WH_OK);
+        wh_face_turn_over(&axis, &wafer);
+        assert_true(wh_test_difference_r(&wafer, &start) <=
+                    (sizeof(wh_real_t) == sizeof(double) ? 1e-12 : 1e-3));
+        assert_true(wh_test_difference_R(&wafer, &start) <= 16 * WH_TEST_ROUNDING);
+    }
+}
+
+/* Turned over about a level axis, a wafer that lay with its back on a plane below shows its front to what is below. */
+static void a_flip_changes_the_face_and_moves_the_contact_plane(void **state) {
+    (void)state;
+    const wh_pose_t slot = wh_pose_identity();
+    const wh_pose_t axis = wh_test_at(0, 0, 50);
+    wh_pose_t wafer = wh_test_at(1, 2, 0);
+    wh_pose_t front;
+    assert_int_equal(wh_face_towards(&wafer, &slot), WH_FACE_BACK);
+    wh_face_turn_over(&axis, &wafer);
+    assert_int_equal(wh_face_towards(&wafer, &slot), WH_FACE_FRONT);
+    wh_face_frame(&wafer, THICK, WH_FACE_FRONT, &front);
+    assert_near(front.r.x, 1, 1e3 * WH_TEST_ROUNDING);
+    assert_near(front.r.y, -2, 1e3 * WH_TEST_ROUNDING);
+    assert_near(front.r.z, 100 - 0.775, 1e3 * WH_TEST_ROUNDING);
+    assert_near(front.R.m[2][2], 1, 8 * WH_TEST_ROUNDING);
+    wh_pose_t again;
+    wh_face_frame(&front, THICK, WH_FACE_FRONT, &again);
+    assert_true(wh_test_difference_r(&again, &wafer) <= 1e3 * WH_TEST_ROUNDING);
+    assert_near(wh_face_swept_radius(150, THICK, 12), sqrt(150.0 * 150 + 12.3875 * 12.3875),
+                1e3 * WH_TEST_ROUNDING);
+    assert_near(wh_face_swept_radius(150, THICK, -12), wh_face_swept_radius(150, THICK, 12), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_limit_itself_fails),
@@ -339,6 +499,13 @@ int main(void) {
         cmocka_unit_test(presets_have_names),
         cmocka_unit_test(rim_gap_is_the_farthest_point_of_the_rim),
         cmocka_unit_test(papers_limit_leaves_21_mm_at_the_rim),
+        cmocka_unit_test(the_face_that_looks_at_the_gripper_is_asked),
+        cmocka_unit_test(the_fronts_frame_is_a_product_of_poses),
+        cmocka_unit_test(on_edge_a_wafer_shows_its_back),
+        cmocka_unit_test(without_a_thickness_a_wafer_shows_its_back),
+        cmocka_unit_test(measuring_a_face_refuses_what_it_cannot_judge),
+        cmocka_unit_test(turned_over_twice_a_wafer_is_where_it_was),
+        cmocka_unit_test(a_flip_changes_the_face_and_moves_the_contact_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,9 @@
-/* Vacuum under a gripper: command, level and sensor, each by its own rule. */
+/* Vacuum under a gripper: command, level and sensor, each by its own rule. And pads without any: what they take and leave
+ * where. */
 #include "support/pose.h"
 
+#include "grasp/face.h"
+#include "grasp/passive.h"
 #include "grasp/vacuum.h"
 
 enum { OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
@@ -217,6 +220,264 @@ static void no_valve_changes_nothing(void **state) {
     assert_true(vacuum.level == before.level && vacuum.command == before.command && vacuum.on == before.on);
 }
 
+static wh_passive_t passive;
+static wh_passive_wafer_t lying;
+static wh_pose_t pads;
+
+/* A wafer on a support at base's origin, pads 1 mm below. */
+static int set_up_passive(void **state) {
+    (void)state;
+    passive.tolerance = wh_tolerance_paper();
+    passive.check = WH_CHECK_SAMPLED;
+    passive.thickness = WH_REAL(0.775);
+    memset(&lying, 0, sizeof lying);
+    lying.base_from_wafer = wh_pose_identity();
+    pads = wh_test_at(0, 0, -1);
+    return 0;
+}
+
+/* The pads go on to (x, 0, z); what happens is this. */
+static void pads_to(double x, double z, wh_passive_change_t expected) {
+    const wh_pose_t support = wh_pose_identity();
+    const wh_pose_t begin = pads;
+    wh_passive_change_t change = (wh_passive_change_t)7;
+    pads.r.x = WH_REAL(x);
+    pads.r.z = WH_REAL(z);
+    assert_int_equal(wh_passive_step(&passive, &begin, &pads, &support, &lying, &change), WH_OK);
+    assert_int_equal(change, expected);
+    assert_int_equal(lying.carried, lying.base_from_wafer.r.z > 0);
+}
+
+static void expect_wafer_at(double x, double z) {
+    assert_near(lying.base_from_wafer.r.x, x, 1e3 * WH_TEST_ROUNDING);
+    assert_near(lying.base_from_wafer.r.z, z, 1e3 * WH_TEST_ROUNDING);
+}
+
+static void lifted_off_its_support_a_wafer_is_carried_until_a_support_takes_it_over(void **state) {
+    (void)state;
+    pads_to(0, -0.25, WH_PASSIVE_STAYS);
+    pads_to(0, 0, WH_PASSIVE_STAYS);
+    pads_to(0, 0.25, WH_PASSIVE_TAKEN);
+    expect_wafer_at(0, 0.25);
+    pads_to(30, 2, WH_PASSIVE_STAYS);
+    expect_wafer_at(30, 2);
+    pads_to(30, 1, WH_PASSIVE_STAYS);
+    pads_to(30, 0, WH_PASSIVE_LEFT);
+    expect_wafer_at(30, 0);
+    pads_to(30, -2, WH_PASSIVE_STAYS);
+    expect_wafer_at(30, 0);
+}
+
+/* Sampled, the wafer comes up where it lies; swept, it goes with the pads from the instant on, and is left at the instant. */
+static void swept_the_instant_counts(void **state) {
+    if (!WH_SWEEP_BUILT) {
+        skip();
+    }
+    (void)state;
+    pads_to(4, 3, WH_PASSIVE_TAKEN);
+    expect_wafer_at(0, 3);
+    pads_to(8, -1, WH_PASSIVE_LEFT);
+    expect_wafer_at(4, 0);
+    set_up_passive(state);
+    passive.check = WH_CHECK_SWEPT;
+    pads_to(4, 3, WH_PASSIVE_TAKEN);
+    expect_wafer_at(3, 3);
+    pads_to(8, -1, WH_PASSIVE_LEFT);
+    expect_wafer_at(6, 0);
+}
+
+static void what_passes_beside_or_from_above_takes_nothing(void **state) {
+    (void)state;
+    pads.r.x = 50;
+    pads_to(50, 1, WH_PASSIVE_STAYS);
+    pads_to(0, 1, WH_PASSIVE_STAYS);
+    pads_to(0, -1, WH_PASSIVE_STAYS);
+    pads_to(wh_test_ulps(50, -1), -1, WH_PASSIVE_STAYS);
+    pads_to(wh_test_ulps(50, -1), 1, WH_PASSIVE_TAKEN);
+    pads_to(200, 1, WH_PASSIVE_STAYS);
+    const double x = (double)lying.base_from_wafer.r.x;
+    assert_true(x > 100);
+    const wh_pose_t support = wh_pose_identity();
+    const wh_pose_t below = wh_test_at(200, 0, -3);
+    wh_passive_change_t change;
+    assert_int_equal(wh_passive_step(&passive, &pads, &below, &support, &lying, &change), WH_OK);
+    assert_true(change == WH_PASSIVE_STAYS && lying.carried);
+    assert_near(lying.base_from_wafer.r.z, -3, 1e3 * WH_TEST_ROUNDING);
+}
+
+/* A wafer that lies face down is lifted by its front; its frame, in its back, is its thickness higher. */
+static void a_wafer_face_down_is_lifted_by_its_front(void **state) {
+    (void)state;
+    const wh_pose_t support = wh_pose_identity();
+    wh_passive_change_t change;
+    lying.base_from_wafer = wh_test_pose(wh_test_rotation(1, 0, 0, WH_TEST_PI), 0, 0, 0.775);
+    for (int slice = 1; slice <= 8; ++slice) {
+        const wh_pose_t begin = pads;
+        pads.r.z = WH_REAL(-1 + 0.25 * slice);
+        assert_int_equal(wh_passive_step(&passive, &begin, &pads, &support, &lying, &change), WH_OK);
+        assert_int_equal(change, slice == 5 ? WH_PASSIVE_TAKEN : WH_PASSIVE_STAYS);
+        assert_near(lying.base_from_wafer.r.z, fmax((double)pads.r.z, 0) + 0.775, 1e3 * WH_TEST_ROUNDING);
+    }
+}
+
+/* Random moves of tilted pads, swept: never both carried and supported, on the pads' plane or on the support's, and where it
+ * is taken or left it is as the rule's words say at an instant between. */
+static void a_random_walk_keeps_the_wafer_on_one_plane(void **state) {
+    const wh_pose_t support = wh_pose_identity();
+    int changes[3] = {0, 0, 0};
+    set_up_passive(state);
+    for (int slice = 0; slice < 200000; ++slice) {
+        const wh_pose_t begin = pads;
+        const wh_passive_wafer_t before = lying;
+        wh_passive_change_t change;
+        passive.check = WH_SWEEP_BUILT && slice % 2 == 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
+        pads = wh_test_pose(wh_test_random_turn(0.05), wh_test_uniform(-5, 5), wh_test_uniform(-5, 5),
+                            wh_test_uniform(-1, 1.5));
+        assert_int_equal(wh_passive_step(&passive, &begin, &pads, &support, &lying, &change), WH_OK);
+        ++changes[change];
+        assert_true(lying.carried ==
+                    (change == WH_PASSIVE_TAKEN || (before.carried && change == WH_PASSIVE_STAYS)));
+        assert_int_equal(wh_pose_validate(&lying.base_from_wafer), WH_OK);
+        if (lying.carried) {
+            const wh_pose_t carried = wh_pose_compose(&pads, &lying.gripper_from_wafer);
+            assert_true(wh_test_difference_r(&carried, &lying.base_from_wafer) <= 1e4 * WH_TEST_ROUNDING);
+            assert_near(lying.gripper_from_wafer.r.z, 0, 1e6 * WH_TEST_ROUNDING);
+        } else if (before.carried) {
+            assert_near(lying.base_from_wafer.r.z, 0, 1e4 * WH_TEST_ROUNDING);
+        } else {
+            assert_memory_equal(&lying.base_from_wafer, &before.base_from_wafer,
+                                sizeof lying.base_from_wafer);
+        }
+        if (!lying.carried) {
+            lying.base_from_wafer = wh_pose_identity();
+        }
+    }
+    assert_true(changes[WH_PASSIVE_TAKEN] > 10000 && changes[WH_PASSIVE_LEFT] > 10000);
+}
+
+/* Pads and a grip that just pass wh_pose_validate: their product would not. */
+static void a_carried_wafer_can_go_on_to_the_next_slice(void **state) {
+    (void)state;
+    const wh_real_t length = 1 + WH_REAL(0.49) * WH_ROTATION_TOLERANCE;
+    wh_passive_change_t change;
+    pads.r.z = 1;
+    for (int i = 0; i < 3; ++i) {
+        pads.R.m[i][i] = length;
+    }
+    lying.gripper_from_wafer = pads;
+    lying.carried = true;
+    for (int slice = 0; slice < 3; ++slice) {
+        assert_int_equal(wh_passive_step(&passive, &pads, &pads, NULL, &lying, &change), WH_OK);
+        assert_int_equal(wh_pose_validate(&lying.base_from_wafer), WH_OK);
+    }
+}
+
+static void pads_move_over(const wh_pose_t *support, double height) {
+    const wh_pose_t begin = pads;
+    const wh_pose_t over = wh_test_at(0, 0, height);
+    wh_passive_change_t change;
+    pads = wh_pose_compose(support, &over);
+    assert_int_equal(wh_passive_step(&passive, &begin, &pads, support, &lying, &change), WH_OK);
+}
+
+static void pads_that_stop_within_rounding_of_a_support_miss_neither_wafer_nor_support(void **state) {
+    set_up_passive(state);
+    for (int i = 0; i < 20000; ++i) {
+        const wh_pose_t support = wh_test_random_pose(1000);
+        const double rounding = wh_test_uniform(-1, 1) * (double)WH_TEST_ROUNDING;
+        passive.check = i % 2 == 0 || !WH_SWEEP_BUILT ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT;
+        lying.base_from_wafer = support;
+        lying.carried = false;
+        pads = support;
+        pads_move_over(&support, -1);
+        pads_move_over(&support, rounding);
+        pads_move_over(&support, rounding);
+        pads_move_over(&support, 1);
+        assert_true(lying.carried);
+        pads_move_over(&support, -rounding);
+        pads_move_over(&support, -rounding);
+        pads_move_over(&support, -1);
+        assert_false(lying.carried);
+        const wh_vec3_t off = wh_vec3_subtract(&lying.base_from_wafer.r, &support.r);
+        assert_true(wh_vec3_norm(&off) < 1e5 * WH_TEST_ROUNDING);
+    }
+}
+
+static void a_passive_step_refuses_what_it_cannot_judge(void **state) {
+    (void)state;
+    const wh_pose_t good = wh_pose_identity();
+    const wh_passive_wafer_t before = lying;
+    wh_passive_change_t change = (wh_passive_change_t)7;
+    wh_pose_t bad = good;
+    bad.R.m[1][1] = 2;
+    assert_int_equal(wh_passive_step(NULL, &good, &good, &good, &lying, &change), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_passive_step(&passive, NULL, &good, &good, &lying, &change), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_passive_step(&passive, &good, NULL, &good, &lying, &change), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, NULL, &change), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_passive_step(&passive, &bad, &good, &good, &lying, &change),
+                     WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_passive_step(&passive, &good, &bad, &good, &lying, &change),
+                     WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &bad, &lying, &change),
+                     WH_STATUS_NOT_A_ROTATION);
+    lying.carried = true;
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, &change),
+                     WH_STATUS_NOT_A_ROTATION);
+    lying.carried = false;
+    passive.check = (wh_check_t)2;
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, &change), WH_STATUS_OUT_OF_RANGE);
+    set_up_passive(state);
+    passive.thickness = -1;
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, &change), WH_STATUS_OUT_OF_RANGE);
+    passive.thickness = (wh_real_t)NAN;
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, &change), WH_STATUS_NOT_FINITE);
+    set_up_passive(state);
+    passive.tolerance.planar = 1;
+    assert_int_equal(wh_passive_step(&passive, &good, &good, &good, &lying, &change),
+                     WH_STATUS_BAD_TOLERANCE);
+    assert_memory_equal(&lying, &before, sizeof lying);
+    assert_int_equal(change, 7);
+}
+
+/* Just below the limit a wafer holds in the worst direction, just above it slips. */
+static void the_limit_of_friction_alone(void **state) {
+    (void)state;
+    const wh_pads_t grip = {WH_REAL(0.3), 0, WH_REAL(0.128), WH_REAL(9.81)};
+    const wh_mat3_t level_pads = wh_mat3_identity();
+    const wh_mat3_t down = wh_test_rotation(1, 0, 0, WH_TEST_PI);
+    assert_near(wh_passive_limit(&grip, &level_pads), 2943, 1e4 * WH_TEST_ROUNDING);
+    assert_true(wh_passive_limit(&grip, &down) < 0);
+    for (int i = 0; i < 2000; ++i) {
+        const double tilt = wh_test_uniform(1e-3, 0.25);
+        const double towards = wh_test_uniform(-3, 3);
+        const wh_mat3_t R = wh_test_rotation(cos(towards), sin(towards), 0, tilt);
+        const double limit = (double)wh_passive_limit(&grip, &R);
+        assert_near(limit, 9810 * (0.3 * cos(tilt) - sin(tilt)), 1e6 * WH_TEST_ROUNDING);
+        const wh_vec3_t n = wh_mat3_column(&R, 2);
+        const wh_vec3_t up = {0, 0, 1};
+        const wh_vec3_t back = wh_vec3_scale(n.z, &n);
+        wh_vec3_t along = wh_vec3_subtract(&up, &back);
+        const double size = (double)wh_vec3_norm(&along);
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const wh_vec3_t asked = wh_vec3_scale(WH_REAL((limit + sign * 0.1) / size), &along);
+            assert_int_equal(wh_hold_judge(&grip, 0, &R, &asked).slips, sign > 0);
+        }
+    }
+}
+
+static void passive_pads_have_no_force_and_usual_ones_where_there_are_none(void **state) {
+    (void)state;
+    const wh_pads_t given = {WH_REAL(0.3), 6, WH_REAL(0.128), WH_REAL(1.62)};
+    const wh_pads_t none = wh_pads_none();
+    const wh_pads_t usual = wh_passive_pads(&none);
+    const wh_pads_t own = wh_passive_pads(&given);
+    const wh_mat3_t level_pads = wh_mat3_identity();
+    assert_true(own.friction == given.friction && own.gravity == given.gravity && own.mass == given.mass);
+    assert_true(own.force == 0 && usual.force == 0 && usual.mass > 0);
+    assert_near(wh_passive_limit(&usual, &level_pads), 1962, 1e4 * WH_TEST_ROUNDING);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_presets_are_valid, set_up),
@@ -231,6 +492,17 @@ int main(void) {
         cmocka_unit_test_setup(a_slow_pump_is_slower_only, set_up),
         cmocka_unit_test_setup(any_slice_keeps_the_level_within_its_range, set_up),
         cmocka_unit_test_setup(no_valve_changes_nothing, set_up),
+        cmocka_unit_test_setup(lifted_off_its_support_a_wafer_is_carried_until_a_support_takes_it_over,
+                               set_up_passive),
+        cmocka_unit_test_setup(swept_the_instant_counts, set_up_passive),
+        cmocka_unit_test_setup(what_passes_beside_or_from_above_takes_nothing, set_up_passive),
+        cmocka_unit_test_setup(a_wafer_face_down_is_lifted_by_its_front, set_up_passive),
+        cmocka_unit_test_setup(a_random_walk_keeps_the_wafer_on_one_plane, set_up_passive),
+        cmocka_unit_test_setup(a_carried_wafer_can_go_on_to_the_next_slice, set_up_passive),
+        cmocka_unit_test(pads_that_stop_within_rounding_of_a_support_miss_neither_wafer_nor_support),
+        cmocka_unit_test_setup(a_passive_step_refuses_what_it_cannot_judge, set_up_passive),
+        cmocka_unit_test(the_limit_of_friction_alone),
+        cmocka_unit_test(passive_pads_have_no_force_and_usual_ones_where_there_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,10 +8,11 @@
 enum {
     DATAGRAM = 65499,
     WAFERS = 256,
-    GRIPPERS = 8,
-    EVENTS = 64,
+    GRIPPERS = 16,
+    EVENTS = 128,
     FAULTS = 16,
     SAMPLES = 64,
+    DOORS = 8,
     LATCHES = 16,
     NAME = 64
 };
@@ -44,6 +45,7 @@ static void largest_state_fits(void **state) {
     static waferhand_fault_slot faults[FAULTS];
     static int32_t samples[SAMPLES];
     static waferhand_latch latches[LATCHES];
+    static double doors[DOORS];
     (void)state;
     const waferhand_state message = {
         .wafer_count = WAFERS,
@@ -51,6 +53,8 @@ static void largest_state_fits(void **state) {
         .event_count = EVENTS,
         .fault_count = FAULTS,
         .sample_count = SAMPLES,
+        .door_count = DOORS,
+        .doors = doors,
         .wafers = wafers,
         .grippers = grippers,
         .events = events,
@@ -60,10 +64,10 @@ static void largest_state_fits(void **state) {
             .waiting_count = LATCHES, .latch_count = LATCHES, .waiting = latches, .latches = latches}};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
-    /* Computed by hand: a header of 117, a check of 8, beams of 41, wafers of 100, grippers of 446, events of 156, slots of
+    /* Computed by hand: a header of 122, doors of 8, a check of 8, beams of 41, wafers of 101, grippers of 515, events of 157, slots of
      * faults of 328, samples of 4 and latches of 24 bytes. */
-    assert_int_equal(size, 166 + SAMPLES * 4 + 2 * LATCHES * 24 + WAFERS * 100 + GRIPPERS * 446 +
-                               EVENTS * 156 + FAULTS * 328);
+    assert_int_equal(size, 171 + DOORS * 8 + SAMPLES * 4 + 2 * LATCHES * 24 + WAFERS * 101 + GRIPPERS * 515 +
+                               EVENTS * 157 + FAULTS * 328);
     assert_true(size <= DATAGRAM);
 }
 
@@ -99,8 +103,8 @@ static void fixed_sizes(void **state) {
     (void)state;
     const waferhand_command command = {0};
     const waferhand_proximity proximity = {0};
-    assert_int_equal(waferhand_command_encoded_size(&command), 1501);
-    assert_int_equal(waferhand_proximity_encoded_size(&proximity), 508);
+    assert_int_equal(waferhand_command_encoded_size(&command), 2493);
+    assert_int_equal(waferhand_proximity_encoded_size(&proximity), 964);
 }
 
 int main(void) {

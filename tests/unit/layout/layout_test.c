@@ -1,6 +1,7 @@
 /* Layouts: every field's default and unit, what is refused and how that is said. */
 #include "support/layout.h"
 
+#include "layout/axes.h"
 #include "layout/layout.h"
 #include "math/status.h"
 #include "math/trig.h"
@@ -36,6 +37,13 @@ static void the_default_robot(void **state) {
     assert_int_equal(machine->axis_count, WH_ROBOT_AXES);
     assert_int_equal(machine->gripper_count, 1);
     assert_int_equal(machine->mounts[0].axis, WH_NONE);
+    /* Written out they make no other robot. */
+    assert_null(machine->carrier);
+    machine =
+        &read_sound(GRIPPERS STATIONS "robot = { kind = 'TRZY', at = { 0, 0, 0 }, heading = 0 }")->machine;
+    assert_null(machine->carrier);
+    machine = &read_sound(GRIPPERS STATIONS "robot = { heading = 0.1 }")->machine;
+    assert_non_null(machine->carrier);
 }
 
 static void defaults_of_a_station(void **state) {
@@ -262,6 +270,12 @@ static void a_blades_place_is_in_the_hash(void **state) {
     " } }, "
 #define RIM(rim) "wafers = { { station = 'A', slot = 1 }, { station = 'A', slot = 2, rim = { " rim " } } }, "
 
+static void assert_all_near(const double numbers[], const double wanted[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        assert_near(numbers[i], wanted[i], 1e-12);
+    }
+}
+
 static void an_edge_sensor_and_the_rims_that_it_sees_are_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(PREALIGNER("sensor = { }") RIM(""));
@@ -277,7 +291,8 @@ static void an_edge_sensor_and_the_rims_that_it_sees_are_read(void **state) {
     assert_memory_equal(layout->rims[1], &notched, sizeof notched);
     layout = read_sound(PREALIGNER(
         "sensor = { samples = 1000, pixel = 0.01, noise = 0.005, length = 20, offset = 0.1, tilt = 2, "
-        "latency = 2e-5, zero = -0.1, gain = 0.001, at = 90, encoder = 20000, seed = 5, "
+        "latency = 2e-5, zero = -0.1, gain = 0.001, believed = { offset = 0.2, latency = 1e-5 }, at = 90, "
+        "encoder = 20000, seed = 5, "
         "hidden = { { from = 45, width = 90 } } }") RIM("diameter = 299.9, notch = { at = 90, depth = 1.1, "
                                                         "angle = 92, bottom = 1, corner = 0.2 }, flats = { "
                                                         "{ at = 180, length = 20 } }, chips = { { at = 270, "
@@ -312,13 +327,11 @@ static void an_edge_sensor_and_the_rims_that_it_sees_are_read(void **state) {
     const double wanted_rim[] = {149.95, WH_PI / 2, 1.1, 92 * WH_PI / 180, 1, 0.2, WH_PI,
                                  20,     0,         1,   3 * WH_PI / 2,    2, 0.5, 0.1,
                                  0.2,    WH_PI,     0.5};
-    for (size_t i = 0; i < sizeof wanted_sensor / sizeof wanted_sensor[0]; ++i) {
-        assert_near(sensor_numbers[i], wanted_sensor[i], 1e-12);
-    }
-    for (size_t i = 0; i < sizeof wanted_rim / sizeof wanted_rim[0]; ++i) {
-        assert_near(rim_numbers[i], wanted_rim[i], 1e-12);
-    }
+    assert_all_near(sensor_numbers, wanted_sensor, sizeof wanted_sensor / sizeof wanted_sensor[0]);
+    assert_all_near(rim_numbers, wanted_rim, sizeof wanted_rim / sizeof wanted_rim[0]);
     assert_int_equal(layout->scanners[0].seed, 5);
+    const wh_sensor_error_t believed = {0.2, 0, 0, 1e-5};
+    assert_memory_equal(&layout->believed[0], &believed, sizeof believed);
 }
 
 /* Wafers of 150 mm have a flat, at the notch's direction; without depth there is no mark at all. */
@@ -384,6 +397,18 @@ static void beams_at_a_door_are_read(void **state) {
     assert_false(layout->stations[0].centre);
 }
 
+/* Up to 30 mm above the last slot, which is 20 mm above the first; 60 mm high if it begins above that. */
+static void how_high_a_beam_is_unless_it_is_said(void **state) {
+    (void)state;
+    static const double lows[] = {-30, 45, 49, 50, 60};
+    static const double highs[] = {50, 50, 50, 110, 120};
+    for (size_t i = 0; i < sizeof lows / sizeof lows[0]; ++i) {
+        char fields[300];
+        (void)snprintf(fields, sizeof fields, GRIPPERS DOOR("{ y = 60, low = %g }"), lows[i]);
+        assert_near(read_sound(fields)->beams[0].high, highs[i], 0);
+    }
+}
+
 static void beams_are_in_the_hash_once_there_are_some(void **state) {
     (void)state;
     const uint64_t none = wh_layout_hash(read_sound(GRIPPERS DOOR("")));
@@ -428,6 +453,8 @@ static void wafers_lie_where_the_slots_frame_says(void **state) {
     assert_string_equal(layout->wafers[0].name, "Wafer 1");
     assert_int_equal(wh_layout_find_wafer(layout, "W"), 1);
     assert_int_equal(layout->wafers[1].slot, 3);
+    const wh_pose_t usual = wh_station_slot(&layout->places[0], 1);
+    assert_memory_equal(&layout->start[0].base_from_wafer, &usual, sizeof usual);
     const wh_pose_t *start = &layout->start[1].base_from_wafer;
     assert_near(start->r.x, -7.25, 1e-12);
     assert_near(start->r.y, 713.5, 1e-12);
@@ -461,7 +488,7 @@ static void what_is_wrong_is_named(void **state) {
         {GRIPPERS STATIONS "tolerance = 'loose'", "tolerance: \"loose\" (expected \"paper\" or \"strict\")"},
         {GRIPPERS STATIONS "tolerance = 3", "tolerance: 3 (expected"},
         {GRIPPERS STATIONS "collision = 1", "true or false"},
-        {GRIPPERS STATIONS "robot = { kind = 'SCARA' }", "robot.kind: \"SCARA\" (expected \"TRZY\")"},
+        {GRIPPERS STATIONS "robot = { kind = 'SCARA' }", "robot.links: nothing (expected a list of two"},
         {GRIPPERS STATIONS "robot = { r = { min = 500, max = 400 } }", "robot.r.max: 400"},
         {GRIPPERS STATIONS "robot = { r = { min = 400 } }",
          "cell.lua: robot.r.home: 300 (expected a number from 400 to 900)"},
@@ -491,12 +518,175 @@ static void what_is_wrong_is_named(void **state) {
     expect_all_refused(rows, sizeof rows / sizeof rows[0]);
 }
 
+static const wrong_t wrong_robots[] = {
+    {GRIPPERS STATIONS "robot = { kind = 'SCARA', links = { 450, 0 } }",
+     "robot.links: { 450, 0 } (expected a"},
+    {GRIPPERS STATIONS "robot = { kind = 'SCARA', links = { 450, 450 }, r = {} }",
+     "robot.r: a table (expected nothing: a robot of kind \"SCARA\" has a forearm)"},
+    {GRIPPERS STATIONS "robot = { kind = 'SCARA', links = { 450, 450 }, elbow = 'up' }",
+     "robot.elbow: \"up\""},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', yaw = {} }",
+     "robot.yaw: a table (expected nothing: a robot of kind"},
+    {GRIPPERS STATIONS "robot = { elbow = 'left' }", "robot.elbow: \"left\" (expected nothing: this is of"},
+    {GRIPPERS STATIONS "robot = { tilt = {}, links = { 1, 2 } }", "robot.links: { 1, 2 } (expected nothing"},
+    {GRIPPERS STATIONS "robot = { rail = {}, transit = 500 }",
+     "robot.transit: 500 (expected nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" without rail, "
+     "tilt, flip and arms)"},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', arms = { {}, {}, {} } }", "robot.arms: "},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', arms = { {}, { heading = 400 } } }",
+     "robot.arms[2].heading: 400 (expected a number from -360 to 360)"},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', arms = { {}, {} } }", "at least one gripper with arm = 2"},
+    {STATIONS "grippers = { { name = 'E', arm = 2 } }",
+     "grippers[1].arm: 2 (expected nothing: the robot does not have two arms)"},
+    {STATIONS "robot = { kind = 'TRZ', arms = { {}, {} } }, grippers = { { name = 'E', arm = 3 } }",
+     "grippers[1].arm: 3 (expected a whole number from 1 to 2)"},
+    {GRIPPERS STATIONS "robot = { arms = { {}, {} } }", "robot.arms: a table (expected nothing: this is of"},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', wrists = { {}, {} } }",
+     "robot.wrists: a table (expected nothing: this is of"},
+    {GRIPPERS STATIONS "robot = { kind = 'TRZ', arms = { {}, {} }, transit = 500 }",
+     "robot.transit: 500 (expected nothing"},
+    {GRIPPERS STATIONS "robot = { kind = 'SCARA', links = { 450, 450 }, wrists = { {}, { heading = 300 } } }",
+     "expected a second wrist whose home is within yaw's travel"},
+    {GRIPPERS STATIONS "robot = { flip = { home = 180 } }", "robot.flip.home: 180 (expected one of"},
+    {GRIPPERS STATIONS "robot = { flip = { max = 170 } }",
+     "robot.flip.max: 170 (expected a number from 180 to 360)"},
+    {GRIPPERS STATIONS "robot = { flip = { seconds = 1, jerk = 5 } }",
+     "robot.flip.jerk: 5 (expected nothing: `seconds` says how fast it goes)"},
+    {GRIPPERS STATIONS "robot = { flip = {}, transit = 500 }", "robot.transit: 500 (expected nothing"},
+    {GRIPPERS STATIONS "robot = { kind = 'SCARA', links = { 450, 450 } }, shapes = { arm = { reach = 9 } }",
+     "shapes.arm: a table (expected nothing: the links of a robot of kind \"SCARA\" are in its `links`)"},
+    {GRIPPERS STATIONS "robot = { tilt = { max = 58 } }", "robot.tilt.max: 58 (expected a number from"},
+    {GRIPPERS "robot = { tilt = {} }, stations = { A = { at = { 700, 0, 900 }, beams = { { y = 60 } } } }",
+     "stations.A.beams: a table (expected nothing: beams are for"},
+    {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, rail = 5 } }",
+     "stations.A.rail: 5 (expected nothing: the robot has no rail)"},
+    {GRIPPERS "robot = { rail = {} }, stations = { A = { at = { 700, 0, 900 }, rail = 2000 } }",
+     "stations.A.rail: 2000 (expected a number from -1000 to 1000)"},
+    {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, elbow = 'left' } }",
+     "stations.A.elbow: \"left\" (expected nothing: the robot is not of kind"},
+};
+
+static void what_is_wrong_with_other_robots_is_named(void **state) {
+    (void)state;
+    expect_all_refused(wrong_robots, sizeof wrong_robots / sizeof wrong_robots[0]);
+}
+
+#define TWO "robots = { V = { kind = 'TRZ', at = { 2000, 0, 0 } }, A = {} }, "
+#define ON_TWO "grippers = { { name = 'a', on = 'A' }, { name = 'v', on = 'V' } }, "
+#define SHARED(by) TWO ON_TWO "stations = { S = { at = { 700, 0, 900 }, " by " } }, "
+
+static void what_is_wrong_with_several_robots_is_named(void **state) {
+    (void)state;
+    static const wrong_t rows[] = {
+        {TWO ON_TWO STATIONS "robot = {}", "robot: a table (expected nothing: `robots` has them all)"},
+        {GRIPPERS STATIONS "robots = {}", "robots: a table (expected at least one robot by name)"},
+        {GRIPPERS STATIONS
+         "robots = { A = {}, B = {}, C = {}, D = {}, E = {}, F = {}, G = {}, H = {}, I = {} }",
+         "robots: a table (expected at most 8 robots)"},
+        {GRIPPERS STATIONS "robots = { A = {}, B = { at = { 0, 0, 50 } } }",
+         "robots.B.at: { 0, 0, 50 } (expected a place of its own: A stands there)"},
+        {GRIPPERS STATIONS "robots = { A = {}, B = { at = { 2000, 0, 0 } }, C = { at = { 4000, 0, 0 } }, "
+                           "D = { at = { 6000, 0, 0 } }, E = { at = { 8000, 0, 0 } }, "
+                           "F = { at = { 10000, 0, 0 } }, G = { at = { 12000, 0, 0 } }, "
+                           "H = { at = { 14000, 0, 0 }, rail = {} } }",
+         "robots: 33 (expected robots with at most 32 axes together)"},
+        {GRIPPERS STATIONS "robots = { A = {}, B = { at = { 2000, 0, 0 }, reach = 5 } }",
+         "robots.B.reach: 5 (expected one of the fields"},
+        {GRIPPERS STATIONS "robots = { A = { transit = 400, rail = {} } }",
+         "robots.A.transit: 400 (expected nothing: it is for a robot of kind"},
+        {GRIPPERS STATIONS "robots = { A = { urdf = 'a.urdf' } }",
+         "robots.A.urdf: \"a.urdf\" (expected nothing"},
+        {"robots = { V = { kind = 'TRZ', arms = { {}, {} }, at = { 2000, 0, 0 } }, A = {} }, " ON_TWO
+         "stations = { S = { at = { 700, 0, 900 } } }",
+         "(expected at least one gripper with arm = 2 on V)"},
+        {TWO "grippers = { { name = 'a' } }, "
+             "stations = { S = { at = { 700, 0, 900 } } }",
+         "grippers[1].on: nothing"},
+        {TWO "grippers = { { name = 'a', on = 'B' } }, "
+             "stations = { S = { at = { 700, 0, 900 } } }",
+         "grippers[1].on: \"B\" (expected a robot's name or the name of a station of kind"},
+        {TWO "grippers = { { name = 'a', on = 'A' } }, "
+             "stations = { S = { at = { 700, 0, 900 } } }",
+         "(expected at least one gripper on = \"V\")"},
+        {TWO ON_TWO "stations = { V = { at = { 700, 0, 900 } } }",
+         "stations.V: a table (expected a name that no robot has)"},
+        {SHARED("rail = 5"),
+         "stations.S.rail: 5 (expected nothing: with several robots `by` says it of each)"},
+        {SHARED("by = {}"), "stations.S.by: a table (expected at least one robot by name)"},
+        {SHARED("by = { B = {} }"), "stations.S.by: \"B\" (expected robots of this layout by name)"},
+        {SHARED("by = { A = { side = 1 } }"), "stations.S.by.A.side: 1 (expected one of the fields"},
+        {SHARED("by = { A = { rail = 5 } }"),
+         "stations.S.by.A.rail: 5 (expected nothing: the robot has no rail)"},
+        {SHARED("by = { A = { rpy = { 2, 0, 0 } } }"),
+         "stations.S.by.A.rpy: { 2, 0, 0 } (expected one whose z is the station's own"},
+        {SHARED("effector = 'v', by = { A = {} }"),
+         "stations.S.effector: \"v\" (expected a gripper on a robot that `by` names)"},
+        {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, by = {} } }",
+         "stations.A.by: a table (expected nothing: it is for a layout with several robots)"},
+        {"robots = { V = { kind = 'TRZ', tilt = {}, at = { 2000, 0, 0 } }, A = {} }, " ON_TWO
+         "stations = { S = { at = { 1300, 0, 900 }, by = { V = { rpy = { 0, 0, 180 } } } } }, "
+         "study = { teaching = { y = 0.25 } }",
+         "study.teaching: 0.25 (expected 0 as x, y and z of S: V tilts, and its blade points along the arm)"},
+        {SHARED("") "obstacles = { { name = 'o', on = 'forearm', box = { 9, 9, 9 } } }",
+         "obstacles[1].on: \"forearm\" (expected \"base\", a gripper's name, or \"A lift\", \"A upper arm\""},
+    };
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
+}
+
+static void what_is_wrong_with_their_shapes_is_named(void **state) {
+    (void)state;
+    static const wrong_t rows[] = {
+        {SHARED("") "shapes = { arm = { reach = 200 } }",
+         "shapes.arm: a table (expected nothing: with several robots `arms` has each one's by name)"},
+        {SHARED("") "shapes = { arms = { B = {} } }",
+         "shapes.arms: \"B\" (expected robots of this layout by name)"},
+        {SHARED("") "shapes = { arms = { A = { link = 5 } } }",
+         "shapes.arms.A.link: 5 (expected a number from 10 to 5000)"},
+        {GRIPPERS STATIONS "shapes = { arms = {} }",
+         "shapes.arms: a table (expected nothing: it is for a layout with several robots; this has `arm`)"},
+        {"robots = { V = { kind = 'SCARA', links = { 450, 450 }, at = { 2000, 0, 0 } }, A = {} }, " ON_TWO
+         "stations = { S = { at = { 700, 0, 900 } } }, shapes = { arms = { V = {} } }",
+         "shapes.arms.V: a table (expected nothing: the links of a robot of kind"},
+    };
+    expect_all_refused(rows, sizeof rows / sizeof rows[0]);
+}
+
+/* Who serves a station: the only one in `by`, the effector's robot, or the only one that comes there. */
+static void the_layout_says_who_serves_a_station(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        TWO ON_TWO "stations = { Both = { at = { 1000, 0, 900 }, by = { A = {}, V = { rpy = { 0, "
+                   "0, 180 } } } }, Left = { at = { -700, 0, 900 }, rpy = { 0, 0, 180 } }, Named = "
+                   "{ at = { 1000, 0, 900 }, effector = 'v', by = { A = {}, V = {} } }, "
+                   "One = { at = { 1000, 0, 900 }, by = { V = { rpy = { 0, 0, 180 } } } } }");
+    static const int32_t robots[] = {WH_NONE, 0, 1, 1};
+    assert_int_equal(layout->robot_count, 2);
+    assert_string_equal(layout->robots[0].name, "A");
+    assert_int_equal(layout->machine.axis_count, 8);
+    assert_int_equal(layout->machine.mounts[1].robot, 1);
+    for (size_t s = 0; s < 4; ++s) {
+        assert_int_equal(layout->stations[s].robot, robots[s]);
+    }
+    assert_true(layout->stations[0].by[1].is_turned);
+    assert_near(layout->stations[0].by[1].R.m[0][0], -1, 1e-12);
+    assert_false(layout->stations[0].by[0].is_turned);
+    assert_false(layout->stations[1].by[1].serves);
+    assert_int_equal(layout->stations[3].effector, 1);
+    char name[WH_NAME_SIZE];
+    wh_layout_name_axis(layout, 5, name, sizeof name);
+    assert_string_equal(name, "V r");
+}
+
 static void what_is_wrong_with_sensors_and_rims_is_named(void **state) {
     (void)state;
     static const wrong_t rows[] = {
         {GRIPPERS "stations = { A = { at = { 700, 0, 900 }, sensor = { } } }",
          "stations.A.sensor: a table (expected nothing: only a station of kind \"prealigner\""},
         {PREALIGNER("sensor = { pixels = 3 }"), "stations.P.sensor.pixels: 3 (expected one of the fields"},
+        {PREALIGNER("sensor = { believed = { offset = 2 } }"),
+         "stations.P.sensor.believed.offset: 2 (expected a number from -1 to 1"},
+        {PREALIGNER("sensor = { believed = { tilt = 2 } }"),
+         "stations.P.sensor.believed.tilt: 2 (expected one of the fields"},
         {PREALIGNER("sensor = { samples = 89 }"),
          "stations.P.sensor.samples: 89 (expected a whole number from 90"},
         {PREALIGNER("sensor = { samples = 36000 }") "chuck = { speed = 720 }",
@@ -519,7 +709,7 @@ static void what_is_wrong_with_sensors_and_rims_is_named(void **state) {
         {PREALIGNER("sensor = { }") RIM("glass = 1"),
          "wafers[2].rim.glass: 1 (expected a number from 0 to 0.9"},
         {PREALIGNER("sensor = { }") RIM("notch = { depth = 0.3, bottom = 2 }"),
-         "wafers[2].rim.notch.bottom: nothing (expected a notch of depth 0"},
+         "wafers[2].rim.notch.bottom: 2 (expected a notch of depth 0"},
         {PREALIGNER("sensor = { }") RIM("flats = { { at = 0, length = 300 } }"),
          "wafers[2].rim.flats[1].length: 300 (expected a number from 2 to 210"},
         {PREALIGNER("sensor = { }") RIM("chips = { { at = 0, width = 1, depth = 2 } }"),
@@ -626,9 +816,10 @@ static void a_width_that_leaves_no_rim_is_named(void **state) {
     assert_draw_refused("rim = { chip_width = 1 }",
                         "cell.lua: study.rim.chip_depth: 0 (expected a width above 0 beside chip_width)");
     assert_draw_refused("rim = { bow = -1 }", "cell.lua: study.rim.bow: -1 (expected a number from 0 to 2)");
-    expect_refused(GRIPPERS STATIONS "study = { rim = { bow = 1 } }",
-                   "cell.lua: study.rim: a table (expected nothing: no prealigner of this layout has a "
-                   "`sensor` that would see it)");
+    expect_refused(
+        GRIPPERS STATIONS "study = { rim = { bow = 1 } }",
+        "cell.lua: study.rim: a table (expected nothing: no prealigner of this layout has a "
+        "`sensor` that would see it, no station `beams`, no gripper an edge grip that would meet it)");
 }
 
 int main(void) {
@@ -653,6 +844,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_usual_rim_is_that_of_the_layouts_wafer, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(beams_at_a_door_are_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(how_high_a_beam_is_unless_it_is_said, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(beams_are_in_the_hash_once_there_are_some, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_wrong_with_beams_is_named, open_sandbox, close_sandbox),
@@ -660,6 +852,13 @@ int main(void) {
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_wrong_is_named, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_other_robots_is_named, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_their_shapes_is_named, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_with_several_robots_is_named, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(the_layout_says_who_serves_a_station, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_wrong_with_sensors_and_rims_is_named, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(the_first_unknown_field_by_name_is_reported, open_sandbox,

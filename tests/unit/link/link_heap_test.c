@@ -18,8 +18,7 @@ static void step(const uint8_t *bytes, size_t size) {
     const unsigned long before = heap_calls();
     assert_true(wh_link_decode_command(bytes, size, &command));
     assert_int_not_equal(wh_protocol_server_command(server, &command, NULL), WH_SERVER_IGNORED);
-    wh_link_proximity_to_message(&server->state, &server->identity, &server->layout->grasp.tolerance,
-                                 &proximity);
+    wh_link_proximity_to_message(&server->state, &server->identity, server->layout, &proximity);
     assert_true(waferhand_proximity_encode(encoded, 0, (int)sizeof encoded, &proximity) > 0);
     calls_in_steps += heap_calls() - before;
 }

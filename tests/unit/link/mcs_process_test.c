@@ -315,10 +315,36 @@ static void stop_goes_past_the_queue(void **state) {
     assert_heard(1, WH_STATUS_STOPPED);
     assert_heard(2, WH_STATUS_STOPPED);
     assert_heard(3, WH_OK);
-    assert_int_equal(control.running[0], '\0');
+    assert_int_equal(control.running_count, 0);
     assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
     assert_int_equal(execute("RECOVER"), WH_OK);
     assert_int_equal(execute("GET A 1"), WH_OK);
+}
+
+/* It ends the command that has the mechanism, and not what waits. */
+static void stop_of_a_mechanism_is_of_that_alone(void **state) {
+    (void)state;
+    plan.at = 700;
+    plan.count = 4;
+    plan.lines[0] = "STOP P";
+    plan.lines[1] = "stop nobody";
+    plan.lines[2] = "MOVE z=1000";
+    plan.lines[3] = "stop  \"PA\" ";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    execute_requests();
+    assert_heard(1, WH_OK);
+    assert_heard(2, WH_STATUS_BAD_ARGUMENT);
+    assert_heard(3, WH_OK);
+    assert_heard(4, WH_OK);
+}
+
+static void stop_of_the_robot_ends_its_command(void **state) {
+    (void)state;
+    plan.at = 700;
+    plan.count = 1;
+    plan.lines[0] = "STOP Robot";
+    assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
+    assert_in_range(session.mcs.track.slice, 700, 710);
 }
 
 /* All that came together: the command has not begun when the STOP is read. */
@@ -743,6 +769,8 @@ int main(void) {
         IN_PAPER(a_request_for_another_run_or_layout_or_too_long_is_told_so),
         IN_PAPER(one_too_many_is_turned_away),
         IN_PAPER(stop_goes_past_the_queue),
+        IN_PAPER(stop_of_a_mechanism_is_of_that_alone),
+        IN_PAPER(stop_of_the_robot_ends_its_command),
         IN_PAPER(stop_is_no_later_than_what_waits),
         IN_PAPER(stop_of_nothing),
         IN_PAPER(what_waits_for_a_run_is_not_executed_in_the_next_one),

@@ -168,8 +168,8 @@ static waferhand_command make_command(const uint64_t kinds[WH_SLICES_COLUMNS], s
                                  .run = 77,
                                  .layout_hash = -3,
                                  .lockstep = 1,
-                                 .gripper_count = 1 + (int32_t)(kinds[0] >> 8 & 7),
-                                 .axis_count = (int32_t)(kinds[1] >> 8) & 7};
+                                 .gripper_count = 1 + (int32_t)(kinds[0] >> 8 & 15),
+                                 .axis_count = (int32_t)(kinds[1] >> 8) & 31};
     size_t column = 0;
     for (int32_t a = 0; a < command.axis_count; ++a) {
         command.axis_position[a] = number(kinds[column++], i);
@@ -204,8 +204,8 @@ static void collect(size_t count, uint64_t most) {
 }
 
 static void assert_given(const slice_t *slice, size_t i) {
-    uint8_t wanted[2000];
-    uint8_t got[2000];
+    uint8_t wanted[4000];
+    uint8_t got[4000];
     waferhand_command command;
     int32_t told[WH_GRIPPERS];
     uint64_t hash;
@@ -283,8 +283,8 @@ static void a_block_takes_no_slice_that_it_could_not_give_back(void **state) {
     LEFT_OUT(valve[0] = 2);
     LEFT_OUT(valve[count] = 1);
     LEFT_OUT(gripper_position[count][0] = 1);
-    LEFT_OUT(gripper_rotation[7][8] = -0.0);
-    LEFT_OUT(axis_position[7] = 1);
+    LEFT_OUT(gripper_rotation[15][8] = -0.0);
+    LEFT_OUT(axis_position[31] = 1);
     LEFT_OUT(fault_count = 1);
     LEFT_OUT(fault_index[3] = 1);
     LEFT_OUT(faults[3].until_seq = 1);

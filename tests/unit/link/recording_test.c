@@ -100,7 +100,7 @@ static wh_log_t in;
 static wh_slices_t block;
 
 static void take_block(content_t *content) {
-    uint8_t bytes[2000];
+    uint8_t bytes[4000];
     waferhand_command command;
     int32_t told[WH_GRIPPERS];
     uint64_t hash;
@@ -147,7 +147,7 @@ static void take_event(content_t *content) {
         ++content->whole_commands;
     } else if (strcmp(in.channel, WH_CHANNEL_RECORDING) == 0) {
         assert_true(wh_link_decode_recording(in.data, in.size, &recording));
-        assert_int_equal(recording.version, 4);
+        assert_int_equal(recording.version, 7);
         assert_string_equal(recording.program, "test");
         *(recording.closed ? &content->last : &content->first) = recording;
         (void)waferhand_recording_decode_cleanup(&recording);
@@ -444,7 +444,7 @@ static void a_new_record_leaves_what_is_there(void **state) {
 }
 
 static void send_slice(int64_t seq) {
-    uint8_t bytes[2000];
+    uint8_t bytes[4000];
     waferhand_command command = {.utime = 1000 * seq, .seq = seq, .run = 5, .gripper_count = 1};
     const int32_t told[WH_GRIPPERS] = {0};
     command.gripper_position[0][0] = (double)seq;

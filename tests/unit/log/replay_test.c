@@ -348,6 +348,14 @@ static void garbage_is_counted(void **state) {
     wh_replay_event(&replay, WH_CHANNEL_CELL, bytes, 0);
     wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, 1000);
     assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 3);
+    /* What is only passed over if it is sound, too. */
+    static const char *const others[] = {WH_CHANNEL_MCS,       WH_CHANNEL_RESTORE, WH_CHANNEL_REQUEST,
+                                         WH_CHANNEL_PROXIMITY, WH_CHANNEL_SLICES,  WH_CHANNEL_RECORDING,
+                                         WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
+    for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
+        wh_replay_event(&replay, others[i], bytes, 1000);
+        assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 4 + i);
+    }
     assert_int_equal(replay.run_count, 0);
 }
 
@@ -756,7 +764,7 @@ static void an_unknown_version_is_refused(void **state) {
     record_all_versions();
     const log_t *log = &whole[OF_SLICES];
     const size_t data = log->starts[0] + HEADER + strlen(WH_CHANNEL_RECORDING);
-    for (uint8_t version = 3; version <= 5; version += 2) {
+    for (uint8_t version = WH_RECORDING_VERSION - 1; version <= WH_RECORDING_VERSION + 1; version += 2) {
         copy_whole(log);
         damaged.bytes[data + 43] = version;
         wh_link_seal(damaged.bytes + data, log->starts[1] - data);

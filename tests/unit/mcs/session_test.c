@@ -75,8 +75,10 @@ static void every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP", "OK ALIGN ANGLE AXES CLEAR CONTINUE DISTANCE EDGE_SCAN FAULT GET HELP"},
+        {"HELP", "OK ALARM ALIGN ANGLE AWAIT AXES CALIBRATE CLEAR CLOSE CONTINUE DISTANCE EDGE_SCAN FAULT "
+                 "FLIP GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
+        {"FLIP EE", "ERROR 48 BAD_ARGUMENT: a command's argument is"},
     };
     ASSERT_DIALOGUE(dialogue);
     assert_answer("AXES", "OK theta=");
@@ -84,6 +86,19 @@ static void every_command(void **state) {
     assert_answer("WHERE", "OK wafer=\"Wafer 1\"");
     assert_non_null(strstr(answer, "; wafer=\"Wafer 2\""));
     assert_int_equal(session.complaints, 0);
+}
+
+/* The last error stays, however many commands went well since: more than the record keeps. */
+static void an_old_error_is_not_forgotten(void **state) {
+    (void)state;
+    assert_answer("GET B 5", "ERROR 42 WAFER_MISSING: ");
+    assert_answer("GET A 26", "ERROR 41 NO_SUCH_SLOT: ");
+    for (int i = 0; i < 2500; ++i) {
+        assert_answer("VALVE EE 1", "OK seconds=0.001");
+    }
+    assert_answer("STATUS", "OK phase=idle ");
+    assert_non_null(strstr(answer, " error=41 error_name=NO_SUCH_SLOT error_command=\"GET A 26\""));
+    assert_in_range(session.record.command_count, 1, 1001);
 }
 
 static void case_and_spelling(void **state) {
@@ -222,6 +237,7 @@ static const kind_t *find_kind(const char *name, size_t length) {
                                    {"NAME", "n", {NULL}},
                                    {"SAVE", "n", {"Q", "5"}},
                                    {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
+                                   {"UP_OR_DOWN", "up", {"left", "5", "inf"}},
                                    {"SECONDS", "1", {"-1", "2000000", "x", "inf", "nan"}}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
         if (strlen(kinds[i].kind) == length && strncmp(kinds[i].kind, name, length) == 0) {
@@ -567,7 +583,7 @@ static void completion(void **state) {
     assert_candidates("GET A 1 g", 8, "gripper=|");
     assert_candidates("GET A 1 gripper=", 8, "gripper=EE|gripper=PA|");
     assert_candidates("PUT P 1 stroke=3 handover=s", 17, "handover=same_slice|");
-    assert_candidates("MOVE ", 5, "r=|theta=|yaw=|z=|");
+    assert_candidates("MOVE ", 5, "flip=|forearm=|r=|r2=|rail=|theta=|tilt_x=|tilt_y=|yaw=|yaw2=|z=|");
     assert_candidates("HOLDER W", 7, "\"Wafer 1\"|\"Wafer 2\"|");
     assert_candidates("HOLDER \"Wafer 1", 7, "\"Wafer 1\"|");
     assert_candidates("OFFSET \"Wafer 1\" ", 17, "A|B|P|");
@@ -820,6 +836,7 @@ int main(void) {
         cmocka_unit_test_teardown(a_line_is_reported, close_session),
         cmocka_unit_test(what_cannot_be_opened),
         cmocka_unit_test(a_layout_that_spoils_the_strings),
+        IN_PAPER(an_old_error_is_not_forgotten),
         IN_PAPER(what_was_saved_goes_on_with_the_same_bits),
         IN_PAPER(what_was_done_is_taken_back),
         IN_PAPER(so_many_are_taken_back_and_no_more),

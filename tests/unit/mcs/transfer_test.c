@@ -211,13 +211,18 @@ static struct {
     int64_t slice;
 } judge;
 
-static bool judge_segment(void *user, const wh_track_t *track, const wh_state_t *state, bool first,
+static bool judge_segment(void *user, const wh_track_t *track, const wh_ahead_start_t *start, int64_t *slices,
                           char *reason) {
     assert_ptr_equal(user, &judge);
     assert_true(session.mcs.rehearsal.is_on);
+    if (!track) { /* the command is over: nothing else moves here */
+        return false;
+    }
     assert_int_equal(track->slice, judge.slice);
-    assert_int_equal(state->seq, judge.slice);
-    assert_int_equal(first, session.mcs.rehearsal.count == 0);
+    assert_int_equal(start != NULL, session.mcs.rehearsal.planned.count == 0);
+    assert_int_equal(start ? start->state->seq : judge.slice, judge.slice);
+    assert_int_equal(start ? start->other_count : 0, 0);
+    ++*slices;
     ++judge.asked;
     if (track->segment.kind == WH_SEGMENT_LINE && judge.refused_line > 0 && --judge.refused_line == 0) {
         snprintf(reason, WH_REHEARSAL_REASON_BYTES, "the blade would meet the moon");

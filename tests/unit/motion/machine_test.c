@@ -60,6 +60,96 @@ static void the_greatest_counts_pass(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_OK);
 }
 
+/* The chuck on a stage that goes 5 mm to either side, and pins beside it, 3 mm below its plane at rest. */
+static wh_machine_t machine_with_stage(void) {
+    wh_machine_t machine = machine_with_chuck();
+    static const wh_limits_t limits = {50, 500, 5000};
+    machine.gripper_count = 3;
+    machine.axis_count = 8;
+    machine.mounts[1].kind = WH_MOUNT_STAGE;
+    machine.mounts[1].travel.max = 5;
+    machine.mounts[1].limits = limits;
+    machine.mounts[2] = machine.mounts[1];
+    machine.mounts[2].kind = WH_MOUNT_PINS;
+    machine.mounts[2].axis = 7;
+    machine.mounts[2].travel.min = -3;
+    return machine;
+}
+
+/* The station's x points to base's -x. */
+static void a_stage_shifts_its_chuck_and_pins_go_up(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_stage();
+    wh_real_t q[WH_AXES];
+    wh_pose_t poses[3];
+    wh_gripper_input_t grippers[3];
+    wh_machine_cache_t last = {.is_taken = false};
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+    wh_machine_home(&machine, q);
+    wh_machine_update(&machine, q, &last, grippers);
+    assert_near(grippers[2].base_from_gripper.r.z, 947, 1e-9);
+    static const wh_real_t moved[] = {1, 2, -3, 4};
+    for (size_t axis = 4; axis < 8; ++axis) {
+        q[axis] = moved[axis - 4];
+        wh_machine_update(&machine, q, &last, grippers);
+        wh_machine_grippers(&machine, q, poses);
+        assert_memory_equal(&grippers[1].base_from_gripper, &poses[1], sizeof poses[1]);
+        assert_memory_equal(&grippers[2].base_from_gripper, &poses[2], sizeof poses[2]);
+    }
+    assert_near(poses[1].r.x, -602, 1e-3);
+    assert_near(poses[1].r.y, 3, 1e-3);
+    assert_near(poses[1].R.m[0][0], -wh_cos(1), 1e-6);
+    assert_near(poses[2].r.z, 954, 1e-3);
+    assert_near(poses[2].R.m[0][0], -1, 1e-6);
+}
+
+static void stages_and_pins_have_limits_of_their_own(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_stage();
+    static const wh_real_t ends[4][2] = {{-WH_CHUCK_TRAVEL, WH_CHUCK_TRAVEL}, {-5, 5}, {-5, 5}, {-3, 5}};
+    wh_real_t q[WH_AXES];
+    assert_ptr_equal(wh_machine_limits(&machine, 4), &machine.chuck_limits);
+    assert_ptr_equal(wh_machine_limits(&machine, 5), &machine.mounts[1].limits);
+    assert_ptr_equal(wh_machine_limits(&machine, 6), &machine.mounts[1].limits);
+    assert_ptr_equal(wh_machine_limits(&machine, 7), &machine.mounts[2].limits);
+    for (size_t axis = 4; axis < 8; ++axis) {
+        const wh_travel_t travel = wh_machine_beside(&machine, axis);
+        assert_near(travel.min, ends[axis - 4][0], 0);
+        assert_near(travel.max, ends[axis - 4][1], 0);
+        for (int end = 0; end < 2; ++end) {
+            wh_machine_home(&machine, q);
+            q[axis] = ends[axis - 4][end];
+            assert_int_equal(wh_machine_check_travel(&machine, q), WH_OK);
+            q[axis] *= WH_REAL(1.01);
+            assert_int_equal(wh_machine_check_travel(&machine, q), WH_STATUS_LIMIT_EXCEEDED);
+        }
+    }
+}
+
+static void a_stage_or_pins_that_cannot_be_are_refused(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_stage();
+    machine.axis_count = 7; /* pins have none left */
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    machine = machine_with_stage();
+    machine.mounts[1].axis = 6; /* nor has a stage its third */
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    machine = machine_with_stage();
+    machine.mounts[2].kind = (wh_mount_kind_t)4;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    machine = machine_with_stage();
+    machine.mounts[1].travel.max = 0;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
+    machine = machine_with_stage();
+    machine.mounts[2].travel.max = -3;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
+    machine.mounts[2].travel.max = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_FINITE);
+    machine = machine_with_stage();
+    machine.mounts[2].limits.jerk = 0;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
+}
+
 /* Without a chuck: four axes, one gripper on the robot. */
 static void the_least_counts_pass(void **state) {
     (void)state;
@@ -484,6 +574,528 @@ static void a_command_follows_a_track(void **state) {
     assert_true(seq > 10);
 }
 
+/* ------------------------------------------------------------------------------------- robots of other kinds */
+
+static wh_chain_t chain_of(wh_chain_kind_t kind) {
+    static const size_t axes[WH_ROBOT_AXES] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_Z, WH_CHAIN_YAW};
+    const wh_limits_t limits = {1, 10, 100};
+    wh_chain_t chain;
+    wh_robot_t robot;
+    memset(&chain, 0, sizeof chain);
+    wh_robot_default(&robot);
+    chain.kind = kind;
+    for (size_t i = 0; i < WH_ROBOT_AXES; ++i) {
+        chain.travel[axes[i]] = robot.travel[i];
+        chain.limits[axes[i]] = robot.limits[i];
+        chain.home[axes[i]] = robot.home[i];
+    }
+    for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
+        const bool is_tilt = axis == WH_CHAIN_TILT_X || axis == WH_CHAIN_TILT_Y;
+        if (is_tilt || axis == WH_CHAIN_RAIL || axis == WH_CHAIN_FLIP) {
+            chain.travel[axis].min = axis == WH_CHAIN_RAIL ? -500 : is_tilt ? WH_REAL(-0.1) : -WH_PI;
+            chain.travel[axis].max = -chain.travel[axis].min;
+            chain.limits[axis] = limits;
+        }
+    }
+    if (kind == WH_CHAIN_SCARA) {
+        chain.links[0] = chain.links[1] = 450;
+        chain.travel[WH_CHAIN_REACH].min = -3;
+        chain.travel[WH_CHAIN_REACH].max = 3;
+        chain.home[WH_CHAIN_REACH] = -2;
+    }
+    return chain;
+}
+
+/* The carrier's robot, a gripper on it 20 mm ahead of its end-effector, and one on a chuck after its axes. */
+static wh_machine_t machine_with_carrier(wh_carrier_t *carrier, const wh_chain_t *chain) {
+    wh_machine_t carried = machine_with_chuck();
+    assert_int_equal(wh_carrier_init(carrier, chain), WH_OK);
+    wh_machine_take_carrier(&carried, carrier);
+    carried.mounts[0].is_shifted = true;
+    carried.mounts[0].effector_from_gripper = wh_pose_identity();
+    carried.mounts[0].effector_from_gripper.r.x = 20;
+    carried.mounts[1].axis = (int32_t)carried.axis_count++;
+    assert_int_equal(wh_machine_validate(&carried), WH_OK);
+    return carried;
+}
+
+static void a_carriers_axes_have_an_order(void **state) {
+    (void)state;
+    wh_carrier_t carrier;
+    wh_chain_t chain = chain_of(WH_CHAIN_SCARA);
+    chain.has_rail = chain.has_flip = true;
+    chain.home[WH_CHAIN_RAIL] = 7;
+    const wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+    static const size_t order[] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_Z,
+                                   WH_CHAIN_YAW,   WH_CHAIN_RAIL,  WH_CHAIN_FLIP};
+    wh_real_t home[WH_AXES];
+    wh_machine_home(&carried, home);
+    assert_int_equal(wh_machine_robot_axes(&carried), 6);
+    assert_int_equal(carried.axis_count, 7);
+    for (size_t axis = 0; axis < 6; ++axis) {
+        assert_memory_equal(wh_machine_limits(&carried, axis), &chain.limits[order[axis]],
+                            sizeof(wh_limits_t));
+        assert_memory_equal(wh_machine_travel(&carried, axis), &chain.travel[order[axis]],
+                            sizeof(wh_travel_t));
+        assert_near(home[axis], chain.home[order[axis]], 0);
+    }
+    assert_near(home[6], 0, 0);
+    assert_ptr_equal(wh_machine_limits(&carried, 6), &carried.chuck_limits);
+    home[4] = 501;
+    assert_int_equal(wh_machine_check_travel(&carried, home), WH_STATUS_LIMIT_EXCEEDED);
+    home[4] = 500;
+    home[6] = WH_CHUCK_TRAVEL + 1;
+    assert_int_equal(wh_machine_check_travel(&carried, home), WH_STATUS_LIMIT_EXCEEDED);
+}
+
+static void a_bad_chain_makes_no_carrier(void **state) {
+    (void)state;
+    wh_carrier_t carrier;
+    wh_chain_t chain = chain_of(WH_CHAIN_TRZ);
+    assert_int_equal(wh_carrier_init(NULL, &chain), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_carrier_init(&carrier, NULL), WH_STATUS_NULL_ARGUMENT);
+    chain.limits[WH_CHAIN_Z].jerk = 0;
+    assert_int_equal(wh_carrier_init(&carrier, &chain), WH_STATUS_BAD_LIMITS);
+}
+
+/* The last gives the poses of wh_machine_grippers, and the inverse leads back to them. */
+static void a_carrier_goes_where_it_is_brought(void **state) {
+    (void)state;
+    static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZY, WH_CHAIN_TRZ, WH_CHAIN_SCARA};
+    for (size_t k = 0; k < 3; ++k) {
+        wh_carrier_t carrier;
+        wh_chain_t chain = chain_of(kinds[k]);
+        chain.has_rail = chain.has_tilt = chain.is_placed = true;
+        chain.base_from_robot.R = wh_mat3_from_rpy_deg(0, 0, 35);
+        chain.base_from_robot.r = wh_vec3(120, -80, 40);
+        const wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+        wh_real_t q[WH_AXES] = {WH_REAL(0.4), 500, 950, WH_REAL(0.3), 60, WH_REAL(0.02), WH_REAL(-0.03), 1};
+        q[1] = kinds[k] == WH_CHAIN_SCARA ? WH_REAL(-1.1) : q[1];
+        q[3] = kinds[k] == WH_CHAIN_TRZ ? 0 : q[3];
+        wh_machine_cache_t last = {.is_taken = false};
+        wh_gripper_input_t grippers[2];
+        wh_pose_t poses[2];
+        wh_real_t home[WH_AXES], found[WH_AXES];
+        wh_machine_home(&carried, home);
+        wh_machine_update(&carried, home, &last, grippers);
+        wh_machine_update(&carried, q, &last, grippers);
+        wh_machine_grippers(&carried, q, poses);
+        assert_memory_equal(&grippers[0].base_from_gripper, &poses[0], sizeof poses[0]);
+        assert_memory_equal(&grippers[1].base_from_gripper, &poses[1], sizeof poses[1]);
+        const wh_chain_choice_t choice = {60, 0, WH_ELBOW_LEFT};
+        assert_int_equal(wh_machine_bring(&carried, 0, &poses[0], &choice, home, found), WH_OK);
+        for (size_t axis = 0; axis < 7; ++axis) {
+            assert_near(found[axis], q[axis], 1e6 * WH_TEST_ROUNDING);
+        }
+    }
+}
+
+/* Turned over about an axis 5 mm above its contact plane the gripper hangs 10 mm higher, face down; it is brought
+ * to a point with the flip as it is, and its lines are straight there, too. */
+static void a_flip_is_held(void **state) {
+    (void)state;
+    static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZY, WH_CHAIN_TRZ, WH_CHAIN_SCARA};
+    for (size_t k = 0; k < 3; ++k) {
+        wh_carrier_t carrier;
+        wh_chain_t chain = chain_of(kinds[k]);
+        chain.has_flip = true;
+        chain.flip_height = 5;
+        const wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+        wh_real_t q[WH_AXES], found[WH_AXES];
+        wh_pose_t up[2], down[2];
+        wh_machine_home(&carried, q);
+        q[0] = WH_REAL(0.7);
+        wh_machine_grippers(&carried, q, up);
+        q[4] = WH_PI;
+        wh_machine_grippers(&carried, q, down);
+        assert_near(down[0].r.x, up[0].r.x, 1e4 * WH_TEST_ROUNDING);
+        assert_near(down[0].r.y, up[0].r.y, 1e4 * WH_TEST_ROUNDING);
+        assert_near(down[0].r.z, up[0].r.z + 10, 1e4 * WH_TEST_ROUNDING);
+        assert_near(down[0].R.m[2][2], -1, 10 * WH_TEST_ROUNDING);
+        const wh_real_t heading = wh_atan2(down[0].R.m[1][0], down[0].R.m[0][0]);
+        assert_int_equal(wh_machine_inverse(&carried, 0, &down[0].r, heading, q, found), WH_OK);
+        for (size_t axis = 0; axis < 5; ++axis) {
+            assert_near(found[axis], q[axis], 1e6 * WH_TEST_ROUNDING);
+        }
+        const wh_vec3_t ahead = wh_mat3_column(&down[0].R, 0);
+        const wh_vec3_t travel = wh_vec3_scale(kinds[k] == WH_CHAIN_SCARA ? 50 : 120, &ahead);
+        wh_track_t track;
+        wh_pose_t at[2];
+        assert_int_equal(wh_track_init(&track, &carried, 1000), WH_OK);
+        memcpy(track.axes, q, sizeof q);
+        wh_segment_t line = wh_track_blank(&track);
+        line.kind = WH_SEGMENT_LINE;
+        line.travel = travel;
+        assert_int_equal(wh_track_begin(&track, &line), WH_OK);
+        wh_track_skip(&track);
+        assert_near(track.axes[4], WH_PI, 0);
+        wh_machine_grippers(&carried, track.axes, at);
+        const wh_vec3_t gone = wh_vec3_subtract(&at[0].r, &down[0].r);
+        const wh_vec3_t off = wh_vec3_subtract(&gone, &travel);
+        assert_true(wh_vec3_norm(&off) < 1e6 * WH_TEST_ROUNDING);
+    }
+}
+
+/* The second gripper goes 60 mm ahead, in a line from where it is at these axes; the axis `still` does not move. */
+static void go_ahead(wh_track_t *track, const wh_machine_t *carried, const wh_real_t q[],
+                     const wh_pose_t *from, size_t still) {
+    wh_pose_t again[2];
+    const wh_vec3_t ahead = wh_mat3_column(&from->R, 0);
+    assert_int_equal(wh_track_init(track, carried, 1000), WH_OK);
+    memcpy(track->axes, q, sizeof track->axes);
+    wh_segment_t line = wh_track_blank(track);
+    line.kind = WH_SEGMENT_LINE;
+    line.gripper = 1;
+    line.travel = wh_vec3_scale(60, &ahead);
+    assert_int_equal(wh_track_begin(track, &line), WH_OK);
+    while (wh_track_next(track, 0) == WH_TRACK_MOVING) {
+        wh_machine_grippers(carried, track->axes, again);
+        const wh_vec3_t gone = wh_vec3_subtract(&again[1].r, &from->r);
+        const wh_vec3_t off = wh_vec3_cross(&gone, &ahead);
+        assert_true(wh_vec3_norm(&off) < 1e6 * WH_TEST_ROUNDING);
+        assert_near(track->axes[still], q[still], 0);
+    }
+    const wh_vec3_t gone = wh_vec3_subtract(&again[1].r, &from->r);
+    assert_near(wh_vec3_dot(&gone, &ahead), 60, 1e6 * WH_TEST_ROUNDING);
+    line.gripper = 2;
+    assert_int_equal(wh_track_begin(track, &line), WH_STATUS_BAD_SEGMENT);
+}
+
+/* Two arms of a TRZ, opposite to each other, and two wrists of a SCARA: each gripper is brought by its own arm and goes
+ * its own lines, while the other arm's own axis stands still. */
+static void a_second_arm_goes_its_own_way(void **state) {
+    (void)state;
+    static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZ, WH_CHAIN_SCARA};
+    for (size_t k = 0; k < 2; ++k) {
+        const size_t still = kinds[k] == WH_CHAIN_TRZ ? 1 : 3;
+        wh_carrier_t carrier, second;
+        wh_chain_t chain = chain_of(kinds[k]);
+        chain.has_rail = true;
+        wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+        assert_int_equal(wh_carrier_add(&carrier, &second, kinds[k] == WH_CHAIN_TRZ ? WH_PI : 1, 12), WH_OK);
+        wh_machine_take_carrier(&carried, &carrier);
+        carried.mounts[1] = carried.mounts[0];
+        carried.mounts[1].arm = 1;
+        assert_int_equal(wh_machine_validate(&carried), WH_OK);
+        assert_int_equal(carried.axis_count, 6);
+        assert_ptr_equal(wh_machine_travel(&carried, 5),
+                         &second.chain.travel[kinds[k] == WH_CHAIN_TRZ ? WH_CHAIN_REACH : WH_CHAIN_YAW]);
+        wh_real_t home[WH_AXES], q[WH_AXES], found[WH_AXES];
+        wh_pose_t poses[2];
+        wh_gripper_input_t updated[2];
+        wh_machine_cache_t last = {.is_taken = false};
+        wh_machine_home(&carried, home);
+        memcpy(q, home, sizeof q);
+        q[0] = WH_REAL(0.3);
+        q[4] = 40;
+        q[5] += kinds[k] == WH_CHAIN_TRZ ? 150 : WH_REAL(0.5);
+        wh_machine_grippers(&carried, q, poses);
+        assert_near(poses[1].r.z, poses[0].r.z + 12, 1e4 * WH_TEST_ROUNDING);
+        wh_machine_update(&carried, home, &last, updated);
+        wh_machine_update(&carried, q, &last, updated);
+        assert_memory_equal(&updated[1].base_from_gripper, &poses[1], sizeof poses[1]);
+        const wh_chain_choice_t choice = {40, 0, WH_ELBOW_NEAR};
+        memcpy(found, home, sizeof found);
+        assert_int_equal(wh_machine_bring(&carried, 1, &poses[1], &choice, home, found), WH_OK);
+        assert_near(found[5], q[5], 1e6 * WH_TEST_ROUNDING);
+        assert_near(found[still], home[still], 0);
+        wh_track_t track;
+        go_ahead(&track, &carried, q, &poses[1], still);
+        track.axes[5] = 1e6;
+        assert_int_not_equal(wh_machine_check_travel(&carried, track.axes), WH_OK);
+        carried.mounts[1].arm = 2;
+        assert_int_equal(wh_machine_validate(&carried), WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
+static void a_second_arm_is_of_some_kinds(void **state) {
+    (void)state;
+    wh_carrier_t carrier, second;
+    wh_chain_t chain = chain_of(WH_CHAIN_TRZY);
+    assert_int_equal(wh_carrier_init(&carrier, &chain), WH_OK);
+    assert_int_equal(wh_carrier_add(&carrier, NULL, 0, 0), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_carrier_add(NULL, &second, 0, 0), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_carrier_add(&carrier, &second, 0, 0), WH_STATUS_OUT_OF_RANGE);
+    chain = chain_of(WH_CHAIN_SCARA);
+    assert_int_equal(wh_carrier_init(&carrier, &chain), WH_OK);
+    assert_int_equal(wh_carrier_add(&carrier, &second, 100, 0), WH_STATUS_BAD_LIMITS);
+    assert_null(carrier.second);
+    assert_int_equal(carrier.axis_count, 4);
+    assert_int_equal(wh_carrier_add(&carrier, &second, 1, 0), WH_OK);
+    assert_int_equal(wh_carrier_add(&carrier, &second, 1, 0), WH_STATUS_OUT_OF_RANGE);
+}
+
+/* Worked out by hand: a station at (700, 250, 900), rolled by 1.5 degrees, entered over 300 mm. */
+static void a_tilting_robot_comes_in_the_stations_own_plane(void **state) {
+    (void)state;
+    wh_carrier_t carrier;
+    wh_chain_t chain = chain_of(WH_CHAIN_TRZY);
+    chain.has_tilt = true;
+    wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+    carried.mounts[0].is_shifted = false;
+    const wh_chain_choice_t choice = {0, 0, WH_ELBOW_NEAR};
+    static const double expected[2][3] = {{32.0142, 471.74, 893.4535}, {19.6600, 743.33, 893.4535}};
+    wh_real_t q[WH_AXES];
+    wh_machine_home(&carried, q);
+    for (int end = 0; end < 2; ++end) {
+        const wh_pose_t slot = {wh_mat3_from_rpy_deg(WH_REAL(1.5), 0, 0), {end == 0 ? 400 : 700, 250, 900}};
+        assert_int_equal(wh_machine_bring(&carried, 0, &slot, &choice, q, q), WH_OK);
+        assert_near(wh_deg_from_rad(q[WH_AXIS_THETA]), expected[end][0], 1e-3);
+        assert_near(q[WH_AXIS_R], expected[end][1], 1e-2);
+        assert_near(q[WH_AXIS_Z], expected[end][2], 1e-3);
+        assert_near(q[WH_AXIS_YAW], -q[WH_AXIS_THETA], 1e-5);
+        assert_near(wh_deg_from_rad(q[4]), 1.5, 1e-4);
+        assert_near(q[5], 0, 1e-6);
+    }
+}
+
+/* A track plays lines of each kind: on the way the gripper stays on the line, and its heading stays. */
+static void a_track_plays_a_carriers_lines(void **state) {
+    (void)state;
+    static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZY, WH_CHAIN_TRZ, WH_CHAIN_SCARA};
+    for (size_t k = 0; k < 3; ++k) {
+        wh_carrier_t carrier;
+        wh_chain_t chain = chain_of(kinds[k]);
+        chain.has_rail = true;
+        const wh_machine_t carried = machine_with_carrier(&carrier, &chain);
+        wh_track_t track;
+        wh_pose_t begin[2], poses[2];
+        assert_int_equal(wh_track_init(&track, &carried, 1000), WH_OK);
+        wh_track_take_ways(&track);
+        wh_machine_grippers(&carried, track.axes, begin);
+        wh_segment_t segment = wh_track_blank(&track);
+        segment.kind = WH_SEGMENT_LINE;
+        segment.travel = wh_vec3(100, kinds[k] == WH_CHAIN_TRZ ? 0 : 40, 10);
+        assert_int_equal(wh_track_begin(&track, &segment), WH_OK);
+        int slices = 0;
+        while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {
+            wh_machine_grippers(&carried, track.axes, poses);
+            const wh_vec3_t gone = wh_vec3_subtract(&poses[0].r, &begin[0].r);
+            const wh_real_t share = gone.x / 100;
+            assert_near(gone.y, share * segment.travel.y, 1e7 * WH_TEST_ROUNDING);
+            assert_near(gone.z, share * segment.travel.z, 1e7 * WH_TEST_ROUNDING);
+            assert_near(poses[0].R.m[1][0], begin[0].R.m[1][0], 1e4 * WH_TEST_ROUNDING);
+            ++slices;
+        }
+        assert_true(slices > 50);
+        assert_near(poses[0].r.x, begin[0].r.x + 100, 1e7 * WH_TEST_ROUNDING);
+        segment = wh_track_blank(&track);
+        segment.kind = WH_SEGMENT_WAY;
+        segment.reach = 500;
+        segment.target[WH_AXIS_THETA] += WH_REAL(0.5);
+        segment.target[4] += 10; /* the rail */
+        assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
+        segment.target[4] -= 10;
+        assert_int_equal(wh_track_begin(&track, &segment),
+                         kinds[k] == WH_CHAIN_SCARA ? WH_STATUS_BAD_SEGMENT : WH_OK);
+        segment.kind = WH_SEGMENT_LINE;
+        segment.travel = wh_vec3(0, 0, 1000);
+        assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_LIMIT_EXCEEDED);
+        segment.travel = wh_vec3(0, 50, 0);
+        assert_int_equal(wh_track_begin(&track, &segment),
+                         kinds[k] == WH_CHAIN_TRZ ? WH_STATUS_NOT_ALONG_ARM : WH_OK);
+    }
+}
+
+/* A SCARA at (0, 0) and a polar arm without wrist at (1500, 200), a gripper on each, and no chuck. */
+static wh_machine_t machine_with_two(wh_carrier_t carriers[2]) {
+    wh_machine_t two = machine_with_chuck();
+    wh_chain_t chain = chain_of(WH_CHAIN_SCARA);
+    assert_int_equal(wh_carrier_init(&carriers[0], &chain), WH_OK);
+    chain = chain_of(WH_CHAIN_TRZ);
+    chain.is_placed = true;
+    chain.base_from_robot.R = wh_mat3_from_rpy_deg(0, 0, 180);
+    chain.base_from_robot.r = wh_vec3(1500, 200, 0);
+    chain.home[WH_CHAIN_REACH] = 444;
+    assert_int_equal(wh_carrier_init(&carriers[1], &chain), WH_OK);
+    carriers[0].next = &carriers[1];
+    wh_machine_take_carrier(&two, carriers);
+    two.mounts[1] = two.mounts[0];
+    two.mounts[1].robot = 1;
+    assert_int_equal(wh_machine_validate(&two), WH_OK);
+    return two;
+}
+
+static void several_robots_have_axes_one_after_another(void **state) {
+    (void)state;
+    wh_carrier_t carriers[2];
+    wh_machine_t two = machine_with_two(carriers);
+    wh_real_t q[WH_AXES];
+    size_t first, own = 99;
+    assert_int_equal(two.axis_count, 8);
+    assert_int_equal(wh_machine_robot_axes(&two), 8);
+    assert_int_equal(wh_machine_robots(&two), 2);
+    assert_ptr_equal(wh_machine_carrier(&two, 1, &first), &carriers[1]);
+    assert_int_equal(first, 4);
+    assert_int_equal(wh_machine_robot_of(&two, 3, &own), 0);
+    assert_int_equal(own, 3);
+    assert_int_equal(wh_machine_robot_of(&two, 5, &own), 1);
+    assert_int_equal(own, 1);
+    assert_int_equal(wh_machine_robot_of(&two, 8, &own), WH_NONE);
+    assert_int_equal(own, 1);
+    assert_ptr_equal(wh_machine_limits(&two, 5), &carriers[1].chain.limits[WH_CHAIN_REACH]);
+    assert_ptr_equal(wh_machine_travel(&two, 5), &carriers[1].chain.travel[WH_CHAIN_REACH]);
+    assert_null(wh_machine_travel(&two, 8));
+    assert_ptr_equal(wh_machine_limits(&two, 8), &two.chuck_limits);
+    wh_machine_home(&two, q);
+    assert_near(q[1], -2, 0);
+    assert_near(q[5], 444, 0);
+    assert_int_equal(wh_machine_check_travel(&two, q), WH_OK);
+    q[5] = 99999;
+    assert_int_equal(wh_machine_check_travel(&two, q), WH_STATUS_OUT_OF_REACH);
+    two.mounts[0].robot = 2;
+    assert_int_equal(wh_machine_validate(&two), WH_STATUS_OUT_OF_RANGE);
+    two.mounts[0].robot = 0;
+    two.axis_count = 7;
+    assert_int_equal(wh_machine_validate(&two), WH_STATUS_OUT_OF_RANGE);
+}
+
+/* What moves one robot leaves the other's grippers and axes as they were, to the last bit. */
+static void each_robot_goes_by_itself(void **state) {
+    (void)state;
+    wh_carrier_t carriers[2];
+    const wh_machine_t two = machine_with_two(carriers);
+    wh_real_t home[WH_AXES], q[WH_AXES], found[WH_AXES];
+    wh_machine_cache_t last = {.is_taken = false};
+    wh_gripper_input_t grippers[2];
+    wh_pose_t poses[2], effector;
+    wh_machine_home(&two, home);
+    wh_machine_update(&two, home, &last, grippers);
+    wh_machine_grippers(&two, home, poses);
+    assert_near(poses[1].r.x, 1500 - 444, 1e3 * WH_TEST_ROUNDING);
+    memcpy(q, home, sizeof q);
+    q[4] += WH_REAL(0.25);
+    q[5] += 30;
+    memset(&grippers[0], 0x55, sizeof grippers[0]); /* must not be written */
+    const wh_gripper_input_t untouched = grippers[0];
+    wh_machine_update(&two, q, &last, grippers);
+    wh_machine_grippers(&two, q, poses);
+    wh_machine_effector(&two, 1, q, &effector);
+    assert_memory_equal(&grippers[0], &untouched, sizeof untouched);
+    assert_memory_equal(&grippers[1].base_from_gripper, &poses[1], sizeof poses[1]);
+    assert_memory_equal(&effector, &poses[1], sizeof effector);
+    const wh_chain_choice_t choice = {0, 0, WH_ELBOW_NEAR};
+    memcpy(found, home, sizeof found);
+    assert_int_equal(wh_machine_bring(&two, 1, &poses[1], &choice, home, found), WH_OK);
+    assert_memory_equal(found, home, 4 * sizeof found[0]);
+    for (size_t axis = 4; axis < 8; ++axis) {
+        assert_near(found[axis], q[axis], 1e6 * WH_TEST_ROUNDING);
+    }
+    const wh_real_t heading = wh_atan2(poses[1].R.m[1][0], poses[1].R.m[0][0]);
+    assert_int_equal(wh_machine_inverse(&two, 1, &poses[1].r, heading, home, found), WH_OK);
+    assert_near(found[5], q[5], 1e6 * WH_TEST_ROUNDING);
+    assert_memory_equal(found, home, 4 * sizeof found[0]);
+}
+
+/* Plays a segment; the four axes of the other robot, from `from` on, stay. */
+static void play_alone(wh_track_t *track, const wh_segment_t *segment, size_t from) {
+    wh_real_t before[WH_AXES];
+    memcpy(before, track->axes, sizeof before);
+    assert_int_equal(wh_track_begin(track, segment), WH_OK);
+    while (wh_track_next(track, 0) == WH_TRACK_MOVING) {
+        assert_memory_equal(&track->axes[from], &before[from], 4 * sizeof before[0]);
+    }
+}
+
+static void a_track_moves_the_robot_that_is_named(void **state) {
+    (void)state;
+    wh_carrier_t carriers[2];
+    const wh_machine_t two = machine_with_two(carriers);
+    wh_track_t track;
+    wh_pose_t begin[2], poses[2];
+    assert_int_equal(wh_track_init(&track, &two, 1000), WH_OK);
+    wh_track_take_ways(&track);
+    wh_machine_grippers(&two, track.axes, begin);
+    wh_segment_t segment = wh_track_blank(&track);
+    segment.kind = WH_SEGMENT_LINE;
+    segment.travel = wh_vec3(-100, 0, 10); /* straight out: the arm without wrist looks along -x */
+    segment.gripper = 1;
+    play_alone(&track, &segment, 0);
+    wh_machine_grippers(&two, track.axes, poses);
+    assert_near(poses[1].r.x, begin[1].r.x - 100, 1e7 * WH_TEST_ROUNDING);
+    assert_near(poses[1].r.z, begin[1].r.z + 10, 1e7 * WH_TEST_ROUNDING);
+    segment = wh_track_blank(&track);
+    segment.kind = WH_SEGMENT_LINE;
+    segment.travel = wh_vec3(50, 20, 0); /* without a name the first one */
+    play_alone(&track, &segment, 4);
+    wh_machine_grippers(&two, track.axes, poses);
+    assert_near(poses[0].r.y, begin[0].r.y + 20, 1e7 * WH_TEST_ROUNDING);
+    segment = wh_track_blank(&track);
+    segment.kind = WH_SEGMENT_WAY;
+    segment.gripper = 1;
+    segment.reach = 500;
+    segment.target[4] += 1;
+    play_alone(&track, &segment, 0);
+    assert_memory_equal(track.axes, segment.target, 8 * sizeof track.axes[0]);
+    segment.target[0] += 1; /* the other one's */
+    assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
+    segment.gripper = WH_NONE; /* a SCARA takes no ways */
+    assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
+    segment.kind = WH_SEGMENT_LINE;
+    segment.gripper = 2;
+    assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
+}
+
+/* Doors have the last axes: their travel, limits and homes are their own. */
+static void doors_have_the_last_axes(void **state) {
+    (void)state;
+    wh_door_t doors[2] = {{{0, 0, 1}, 100, false, {200, 800, 8000}}, {{1, 0, 0}, 50, true, {20, 80, 800}}};
+    wh_machine_t cell = machine_with_chuck();
+    wh_real_t axes[WH_AXES];
+    cell.axis_count = 7;
+    cell.doors = doors;
+    cell.door_count = 2;
+    assert_int_equal(wh_machine_validate(&cell), WH_OK);
+    assert_int_equal(wh_machine_door_axis(&cell, 1), 6);
+    assert_true(wh_machine_limits(&cell, 6) == &doors[1].limits);
+    wh_machine_home(&cell, axes);
+    assert_near(axes[5], 0, 0);
+    assert_near(axes[6], 50, 0);
+    assert_int_equal(wh_machine_check_travel(&cell, axes), WH_OK);
+    axes[6] = WH_REAL(50.1);
+    assert_int_equal(wh_machine_check_travel(&cell, axes), WH_STATUS_LIMIT_EXCEEDED);
+    doors[0].way.x = 1;
+    assert_int_equal(wh_machine_validate(&cell), WH_STATUS_BAD_LIMITS);
+    doors[0].way.x = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&cell), WH_STATUS_NOT_FINITE);
+    cell.doors = NULL;
+    assert_int_equal(wh_machine_validate(&cell), WH_STATUS_NULL_ARGUMENT);
+    cell.door_count = 4;
+    assert_int_equal(wh_machine_validate(&cell), WH_STATUS_OUT_OF_RANGE);
+    cell.doors = doors;
+    cell.door_count = 3; /* the chuck's axis would be one of theirs */
+    assert_int_not_equal(wh_machine_validate(&cell), WH_OK);
+}
+
+/* A flipper turns about x through `height`: half a turn brings its plane to twice the height, upside down, and
+ * back again to the very bits. */
+static void a_flipper_turns_about_the_middle_of_a_wafer(void **state) {
+    (void)state;
+    wh_machine_t cell = machine_with_chuck();
+    wh_real_t axes[WH_AXES];
+    wh_pose_t flat[2], over[2], again[2];
+    cell.mounts[1].kind = WH_MOUNT_FLIPPER;
+    cell.mounts[1].travel.max = WH_PI;
+    cell.mounts[1].limits = cell.chuck_limits;
+    cell.mounts[1].height = WH_REAL(0.3875);
+    assert_int_equal(wh_machine_validate(&cell), WH_OK);
+    wh_machine_home(&cell, axes);
+    wh_machine_grippers(&cell, axes, flat);
+    axes[4] = WH_PI;
+    assert_int_equal(wh_machine_check_travel(&cell, axes), WH_OK);
+    wh_machine_grippers(&cell, axes, over);
+    axes[4] = 0;
+    wh_machine_grippers(&cell, axes, again);
+    assert_memory_equal(&again[1], &flat[1], sizeof flat[1]);
+    assert_near(over[1].r.z - flat[1].r.z, 0.775, 1e-4);
+    assert_near(over[1].r.x - flat[1].r.x, 0, 1e-4);
+    assert_near(over[1].r.y - flat[1].r.y, 0, 1e-4);
+    assert_near(over[1].R.m[2][2], -1, 1e-6);
+    assert_near(over[1].R.m[0][0], flat[1].R.m[0][0], 1e-6);
+    axes[4] = 4;
+    assert_int_equal(wh_machine_check_travel(&cell, axes), WH_STATUS_LIMIT_EXCEEDED);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_shifted_gripper_sits_beside_the_effector),
@@ -500,6 +1112,9 @@ int main(void) {
         cmocka_unit_test(every_mount_is_looked_at),
         cmocka_unit_test(each_gripper_has_its_pose),
         cmocka_unit_test(a_mount_on_no_chuck_axis_is_refused),
+        cmocka_unit_test(a_stage_shifts_its_chuck_and_pins_go_up),
+        cmocka_unit_test(stages_and_pins_have_limits_of_their_own),
+        cmocka_unit_test(a_stage_or_pins_that_cannot_be_are_refused),
         cmocka_unit_test(a_chuck_that_stands_nowhere_is_refused),
         cmocka_unit_test(the_robots_mount_is_not_looked_at),
         cmocka_unit_test(bad_limits_are_refused),
@@ -508,11 +1123,24 @@ int main(void) {
         cmocka_unit_test(the_robots_gripper_is_the_robots_effector),
         cmocka_unit_test(a_chuck_turns_about_its_own_z),
         cmocka_unit_test(a_chuck_has_a_pose_over_its_whole_travel),
+        cmocka_unit_test(a_carriers_axes_have_an_order),
+        cmocka_unit_test(a_bad_chain_makes_no_carrier),
+        cmocka_unit_test(a_carrier_goes_where_it_is_brought),
+        cmocka_unit_test(a_flip_is_held),
+        cmocka_unit_test(a_second_arm_goes_its_own_way),
+        cmocka_unit_test(a_second_arm_is_of_some_kinds),
+        cmocka_unit_test(a_tilting_robot_comes_in_the_stations_own_plane),
+        cmocka_unit_test(a_track_plays_a_carriers_lines),
+        cmocka_unit_test(several_robots_have_axes_one_after_another),
+        cmocka_unit_test(each_robot_goes_by_itself),
+        cmocka_unit_test(a_track_moves_the_robot_that_is_named),
         cmocka_unit_test_setup(the_poses_are_the_machines, set_up),
         cmocka_unit_test_setup(the_bits_decide, set_up),
         cmocka_unit_test_setup(what_stands_still_is_not_written, set_up),
         cmocka_unit_test_setup(the_axes_beyond_the_last_are_left_alone, set_up),
         cmocka_unit_test_setup(a_command_follows_a_track, set_up),
+        cmocka_unit_test(doors_have_the_last_axes),
+        cmocka_unit_test(a_flipper_turns_about_the_middle_of_a_wafer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

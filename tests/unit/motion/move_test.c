@@ -203,6 +203,24 @@ static void durations_too_far_apart_are_refused(void **state) {
     }
 }
 
+/* Just as long as it may is taken. */
+static void a_move_that_takes_longer_than_it_may_changes_nothing(void **state) {
+    (void)state;
+    const wh_real_t from[2] = {0, 0};
+    const wh_real_t to[2] = {100, 7};
+    const wh_limits_t limits[2] = {{100, 500, 5000}, {10, 50, 500}};
+    wh_move_t move;
+    wh_move_t again;
+    assert_int_equal(wh_move_plan(&move, 2, from, to, limits), WH_OK);
+    const wh_real_t seconds = wh_move_duration(&move);
+    assert_int_equal(wh_move_plan_within(&again, 2, from, to, limits, seconds), WH_OK);
+    assert_near(wh_move_duration(&again), seconds, 0);
+    const wh_move_t before = move;
+    const wh_real_t less = seconds * WH_REAL(0.9999);
+    assert_int_equal(wh_move_plan_within(&move, 2, from, to, limits, less), WH_STATUS_BAD_SEGMENT);
+    assert_memory_equal(&move, &before, sizeof move);
+}
+
 static void bad_arguments_change_nothing(void **state) {
     (void)state;
     const task_t task = random_task();
@@ -473,6 +491,7 @@ int main(void) {
         cmocka_unit_test(a_move_to_nowhere_takes_no_time),
         cmocka_unit_test(a_move_goes_on_from_the_last_ones_end),
         cmocka_unit_test(durations_too_far_apart_are_refused),
+        cmocka_unit_test(a_move_that_takes_longer_than_it_may_changes_nothing),
         cmocka_unit_test(bad_arguments_change_nothing),
         cmocka_unit_test(ways_keep_limits_and_circle),
         cmocka_unit_test(no_inner_position_is_faster),

@@ -4,7 +4,7 @@
 
 #include "record/activity.h"
 
-enum { GRIPPERS = 3, SLICES = 20000 };
+enum { GRIPPERS = 3, SLICES = 20000, FIRST = WH_BUSY_ROBOTS };
 
 typedef struct {
     int64_t shares[WH_SHARES];
@@ -50,19 +50,19 @@ static int tear_down(void **state) {
 
 /* What resource `r` is busy with in this slice of this share: the meaning of wh_busy_t. */
 static int32_t busy(size_t r, wh_share_t share) {
-    const size_t g = r > 0 ? (r - 1) / 3 : 0;
+    const size_t g = r >= FIRST ? (r - FIRST) / 3 : GRIPPERS;
     if (r == 0) {
         return task.robot ? 1 + (int32_t)share : 0;
     }
     if (g >= GRIPPERS) {
         return 0;
     }
-    if (r == 1 + 3 * g) {
+    if (r == FIRST + 3 * g) {
         const bool turns = g > 0 && (task.carried >> g & 1U) != 0;
         const wh_share_t own = grippers[g].wafer == WH_NONE ? WH_SHARE_EMPTY : WH_SHARE_LOADED;
         return turns ? 1 + (int32_t)own : 0;
     }
-    return r == 2 + 3 * g ? 1 + grippers[g].wafer : command.grippers[g].valve == WH_VALVE_OPEN;
+    return r == FIRST + 1 + 3 * g ? 1 + grippers[g].wafer : command.grippers[g].valve == WH_VALVE_OPEN;
 }
 
 static wh_share_t share_now(void) {
@@ -77,7 +77,7 @@ static wh_share_t share_now(void) {
 }
 
 static bool is_state(size_t r) {
-    return r % 3 != 1 && r > 0;
+    return r >= FIRST && (r - FIRST) % 3 != 0;
 }
 
 static void keep(size_t r, int32_t what, int64_t slice) {
@@ -88,8 +88,8 @@ static void keep(size_t r, int32_t what, int64_t slice) {
     }
     if (oracle.what[r] != 0) {
         wh_busy_span_t *kept = &oracle.intervals[oracle.count++];
-        kept->who = r == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + (r - 1) % 3);
-        kept->gripper = r == 0 ? WH_NONE : (int32_t)((r - 1) / 3);
+        kept->who = r == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + (r - FIRST) % 3);
+        kept->gripper = r == 0 ? 0 : (int32_t)((r - FIRST) / 3);
         kept->what = oracle.what[r];
         kept->begin = oracle.begin[r];
         kept->end = border;
@@ -212,12 +212,138 @@ static void the_first_slice_is_like_no_other(void **state) {
     assert_int_equal(activity.interval_count, 2 * GRIPPERS);
 }
 
+/* ------------------------------------------------------------------------------------------------- tasks */
+
+static void expect_task(const wh_segment_t *segment, bool for_vacuum, const wh_task_t *wanted) {
+    const wh_track_t track = {.machine = &machine, .axes = {0.5, 400, 900, 0, 0.25, 0}};
+    const wh_task_t found = wh_activity_task(&track, segment, for_vacuum);
+    assert_int_equal(found.share, wanted->share);
+    assert_int_equal(found.moves, wanted->moves);
+    assert_int_equal(found.robot, wanted->robot);
+    assert_int_equal(found.carried, wanted->carried);
+}
+
+/* The robot carries the first gripper; the others turn on chucks, axes 4 and 5. */
+static void a_segment_keeps_busy_what_it_moves(void **state) {
+    (void)state;
+    wh_segment_t segment = {
+        .kind = WH_SEGMENT_AXES, .gripper = WH_NONE, .target = {0.5, 400, 900, 0, 0.25, 0}};
+    /* A motion of no length is one, but keeps nobody busy. */
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, false, 0, 0, {0}});
+    segment.target[1] = 401;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, true, 1, 0, {0}});
+    segment.target[4] = 0.5;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, true, 3, 0, {0}});
+    segment.target[1] = 400;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, false, 2, 0, {0}});
+    segment.target[5] = -1;
+    segment.kind = WH_SEGMENT_WAY;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, false, 6, 0, {0}});
+    segment.kind = WH_SEGMENT_LINE;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, true, 1, 0, {0}});
+}
+
+static void what_stands_still_has_its_share(void **state) {
+    (void)state;
+    wh_segment_t segment = {.kind = WH_SEGMENT_DWELL, .gripper = WH_NONE, .target = {9, 9, 9, 9, 9, 9}};
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, false, true, 0, 0, {0}});
+    expect_task(&segment, true, &(wh_task_t){WH_SHARE_VACUUM, false, true, 0, 0, {0}});
+    segment.kind = WH_SEGMENT_SENSOR;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_VACUUM, false, true, 0, 0, {0}});
+    /* The track's valves are open. One that is told what it is does not switch: a log could not tell. */
+    segment.kind = WH_SEGMENT_VALVES;
+    expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, false, true, 0, 0, {0}});
+    segment.valves[0] = WH_NONE;
+    expect_task(&segment, true, &(wh_task_t){WH_SHARE_VACUUM, false, true, 0, 0, {0}});
+    segment.valves[GRIPPERS - 1] = WH_VALVE_CLOSED;
+    expect_task(&segment, true, &(wh_task_t){WH_SHARE_HANDOVER, false, true, 0, 0, {0}});
+}
+
+/* ---------------------------------------------------------------------------------------- several robots */
+
+static wh_carrier_t carriers[2];
+
+/* Two robots of four axes, the first has gripper 0, the second grippers 1 and 2. */
+static int set_up_two(void **state) {
+    (void)set_up(state);
+    memset(carriers, 0, sizeof carriers);
+    carriers[0].axis_count = carriers[1].axis_count = 4;
+    carriers[0].next = &carriers[1];
+    machine.carrier = carriers;
+    machine.axis_count = 8;
+    for (int g = 0; g < GRIPPERS; ++g) {
+        machine.mounts[g].axis = WH_NONE;
+        machine.mounts[g].robot = g > 0;
+    }
+    return 0;
+}
+
+static void step_with(const wh_task_t *now) {
+    ++command.seq;
+    (void)wh_activity_count(&activity, &machine, now, &command, &answer);
+}
+
+static void expect_span(size_t i, int32_t robot, wh_share_t share, int64_t begin, int64_t last) {
+    const wh_busy_span_t *span = &activity.intervals[i];
+    assert_int_equal(span->who, WH_BUSY_ROBOT);
+    assert_int_equal(span->gripper, robot);
+    assert_int_equal(span->what, 1 + (int32_t)share);
+    assert_int_equal(span->begin, begin);
+    assert_int_equal(span->end, last);
+}
+
+/* One goes loaded while the other one stands for vacuum: each has its own. */
+static void each_of_several_robots_is_busy_by_itself(void **state) {
+    (void)state;
+    bool moving[WH_AXES] = {false};
+    const bool still[WH_AXES] = {false};
+    moving[5] = true;
+    wh_task_t goes = wh_activity_motion(&machine, moving, WH_SHARE_WAITING);
+    wh_task_t stands = wh_activity_motion(&machine, still, WH_SHARE_VACUUM);
+    wh_activity_narrow(&goes, &machine, 0xF0);
+    wh_activity_narrow(&stands, &machine, 0x0F);
+    assert_true(goes.robot && stands.robot && goes.carried == 6);
+    grippers[2].wafer = 1;
+    wh_task_t both = goes;
+    both.robots[0] = stands.robots[0];
+    step_with(&both);
+    step_with(&both);
+    step_with(&stands);
+    end();
+    expect_span(0, 1, WH_SHARE_LOADED, 0, 2);
+    expect_span(1, 0, WH_SHARE_VACUUM, 0, 3);
+}
+
+/* What nobody says whose it is, those stand for that went last; what has no robot keeps none busy. */
+static void those_stand_that_went_last(void **state) {
+    (void)state;
+    bool moving[WH_AXES] = {false};
+    const bool still[WH_AXES] = {false};
+    const wh_task_t waits = wh_activity_motion(&machine, still, WH_SHARE_WAITING);
+    wh_task_t nobodys = waits;
+    wh_activity_narrow(&nobodys, &machine, 0);
+    step_with(&waits); /* nobody went as yet */
+    moving[4] = true;
+    const wh_task_t goes = wh_activity_motion(&machine, moving, WH_SHARE_WAITING);
+    step_with(&goes);
+    step_with(&waits);
+    step_with(&nobodys);
+    end();
+    assert_int_equal(activity.interval_count, 2);
+    expect_span(0, 1, WH_SHARE_EMPTY, 1, 2);
+    expect_span(1, 1, WH_SHARE_WAITING, 2, 3);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(each_change_alone, set_up, tear_down),
         cmocka_unit_test_setup_teardown(several_changes_at_once, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_goes_on_after_an_end_begins_anew, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_first_slice_is_like_no_other, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_segment_keeps_busy_what_it_moves, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_stands_still_has_its_share, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_of_several_robots_is_busy_by_itself, set_up_two, tear_down),
+        cmocka_unit_test_setup_teardown(those_stand_that_went_last, set_up_two, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* Which wafer a gripper is shown against: never another one than the one that it holds or could take. */
 #include "support/support.h"
 
-#include "grasp/grasp.h"
+#include "cell/station.h"
 #include "record/counterpart.h"
 
 enum { WAFERS = 12 };
@@ -46,36 +46,40 @@ static double largest_share(size_t w, const wh_tolerance_t *tolerance) {
 static void a_wafer_that_is_ready_is_the_one_though_another_centre_is_nearer(void **unused) {
     (void)unused;
     const wh_tolerance_t paper = wh_tolerance_paper();
+    const wh_cell_t cell = {.tolerance = paper};
     wafers[0].base_from_wafer.r = wh_vec3(30, 0, 0.4);
     wafers[1].base_from_wafer.r = wh_vec3(0, 0, 10);
-    assert_int_equal(wh_counterpart(&state, 0, &paper, NULL, 2), 0);
+    assert_int_equal(wh_counterpart(&state, 0, &cell, NULL, 2), 0);
 }
 
 static void what_is_held_is_the_one_wherever_it_is(void **unused) {
     (void)unused;
     const wh_tolerance_t paper = wh_tolerance_paper();
+    const wh_cell_t cell = {.tolerance = paper};
     fill();
     gripper.wafer = 7;
-    assert_int_equal(wh_counterpart(&state, 0, &paper, NULL, WAFERS), 7);
-    assert_int_equal(wh_counterpart(&state, 0, &paper, NULL, 0), 7);
+    assert_int_equal(wh_counterpart(&state, 0, &cell, NULL, WAFERS), 7);
+    assert_int_equal(wh_counterpart(&state, 0, &cell, NULL, 0), 7);
 }
 
 static void without_candidates_there_is_none(void **unused) {
     (void)unused;
     const wh_tolerance_t paper = wh_tolerance_paper();
+    const wh_cell_t cell = {.tolerance = paper};
     const int32_t one[] = {3};
-    assert_int_equal(wh_counterpart(&state, 0, &paper, NULL, 0), WH_NONE);
-    assert_int_equal(wh_counterpart(&state, 0, &paper, one, 1), 3);
+    assert_int_equal(wh_counterpart(&state, 0, &cell, NULL, 0), WH_NONE);
+    assert_int_equal(wh_counterpart(&state, 0, &cell, one, 1), 3);
 }
 
 static void the_smallest_of_the_largest_shares_wins(void **unused) {
     (void)unused;
     const wh_tolerance_t paper = wh_tolerance_paper();
+    const wh_cell_t cell = {.tolerance = paper};
     for (int trial = 0; trial < 2000; ++trial) {
         fill();
         gripper.base_from_gripper.r =
             wh_vec3(wh_test_uniform(-60, 60), wh_test_uniform(-60, 60), wh_test_uniform(-15, 130));
-        const int32_t found = wh_counterpart(&state, 0, &paper, NULL, WAFERS);
+        const int32_t found = wh_counterpart(&state, 0, &cell, NULL, WAFERS);
         assert_in_range(found, 0, WAFERS - 1);
         for (size_t w = 0; w < WAFERS; ++w) {
             assert_true(largest_share((size_t)found, &paper) <= largest_share(w, &paper) + 1e-12);

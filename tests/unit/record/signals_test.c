@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "layout/arms.h"
 #include "math/trig.h"
 #include "mcs/script_run.h"
 #include "record/quaternion.h"
@@ -148,7 +149,8 @@ static void check_links(int64_t n) {
     wh_pose_t links[WH_SIGNALS_LINKS], bodies[WH_ARM_BODIES];
     assert_true(wh_signals_links(&signals, n, links));
     wh_arm_place(&signals.layout->shapes.arm, &was->grippers[0], bodies);
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+    int32_t numbers[WH_SIGNALS_LINKS];
+    for (size_t i = 0; i < wh_signals_link_bodies(signals.layout, numbers); ++i) {
         /* The elbow goes further than the wrist where the arm is folded or stretched. */
         assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
     }
@@ -616,8 +618,11 @@ static void check_nodes(const json_t *scene) {
         check_still(scene, name, &layout->places[i].base_from_station);
     }
     assert_true(wh_signals_links(&signals, signals.first, links));
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        check_still(scene, wh_signals_link_names[i], &links[i]);
+    int32_t numbers[WH_SIGNALS_LINKS];
+    for (size_t i = 0; i < wh_signals_link_bodies(layout, numbers); ++i) {
+        char name[2 * WH_NAME_SIZE];
+        wh_layout_name_body(layout, (size_t)numbers[i], "column", name, sizeof name);
+        check_still(scene, name, &links[i]);
     }
     check_still(scene, "Wafer 2", &layout->start[1].base_from_wafer);
     assert_int_equal(read_list(json_object_get(node(scene, "cell"), "rotation"), q), 4);
@@ -880,15 +885,20 @@ static void a_document_is_made(void **state) {
 
 /* ---------------------------------------------------------------------------------------------------- scans */
 
-static wh_edge_sample_t samples[4000];
+static wh_edge_point_t samples[4000];
 
 /* What the estimate says of the only scan, in words. */
-static wh_scan_words_t words_of(const wh_edge_scan_t *scan, wh_align_result_t *result) {
+static wh_scan_words_t words_as(const wh_edge_scan_t *scan, const char *command, wh_align_result_t *result) {
     wh_scan_words_t words;
+    const wh_edge_wish_t wish = wh_edge_wish_of(command);
     assert_true((size_t)scan->taken <= sizeof samples / sizeof *samples);
-    const wh_status_t status = wh_edge_scan_estimate(scan, signals.layout, samples, result);
+    const wh_status_t status = wh_edge_scan_estimate(scan, signals.layout, wish, samples, result);
     wh_edge_scan_words(scan, status, result, &words);
     return words;
+}
+
+static wh_scan_words_t words_of(const wh_edge_scan_t *scan, wh_align_result_t *result) {
+    return words_as(scan, NULL, result);
 }
 
 /* The layout has the wafer at (1.5, -0.8), turned by 37 degrees, of the radius 150.025. */
@@ -914,13 +924,32 @@ static void an_edge_scan(void **state) {
     assert_memory_equal(words.lines[2], "notch: towards 3", strlen("notch: towards 3"));
     size_t counting = 0;
     for (int32_t i = 0; i < scan->taken; ++i) {
-        const wh_edge_sample_t *sample = &samples[i];
+        const wh_edge_point_t *sample = &samples[i];
         const double rho =
             wh_circle_radius(&result.circle, 0, cos(sample->angle), sin(sample->angle)) + sample->residual;
         assert_near(sample->radius, rho, 1e-9);
         counting += sample->counts ? 1 : 0;
     }
     assert_int_equal(counting, result.circle.used);
+}
+
+/* A scan is told by what its ALIGN was told of the wafer: glass, and a mark that is not looked for. */
+static void a_scan_is_told_as_its_command_has_the_wafer(void **state) {
+    (void)state;
+    play("lua/examples/09_edge_scan.lua");
+    wh_align_result_t result;
+    const wh_edge_scan_t *scan = &signals.scans.list[0];
+    const wh_scan_words_t round = words_as(scan, "ALIGN P mark=none correct=false", &result);
+    assert_true(round.is_sure && result.mark == WH_ALIGN_MARK_NONE);
+    assert_string_equal(round.lines[2], "notch or flat: not looked for");
+    assert_true(words_as(scan, "ALIGN P 90 glass=0.25", &result).is_sure &&
+                result.mark == WH_ALIGN_MARK_NOTCH);
+    assert_near(wh_edge_wish_of("ALIGN P 90 glass=0.25").glass, 0.25, 0);
+    assert_near(wh_edge_wish_of("ALIGN P 90").glass, 0, 0);
+    char get[] = "GET A 1", align[] = "ALIGN P 0 mark=none";
+    wh_command_record_t commands[] = {{.text = get, .begin_s = 0}, {.text = align, .begin_s = 2}};
+    const wh_record_t record = {.commands = commands, .command_count = 2};
+    assert_true(!wh_edge_wish_at(&record, 1.9).without_mark && wh_edge_wish_at(&record, 2.5).without_mark);
 }
 
 /* Where the axis sees the notch, samples are deepest below the circle. */
@@ -1016,6 +1045,7 @@ int main(void) {
         cmocka_unit_test_teardown(plots_have_rows_of_the_curves, close_run),
         cmocka_unit_test_teardown(a_document_is_made, close_run),
         cmocka_unit_test_teardown(an_edge_scan, close_run),
+        cmocka_unit_test_teardown(a_scan_is_told_as_its_command_has_the_wafer, close_run),
         cmocka_unit_test_teardown(the_mark_is_where_the_notch_is_seen, close_run),
         cmocka_unit_test_teardown(samples_that_never_came_are_counted, close_run),
         cmocka_unit_test_teardown(what_is_not_sure_says_so, close_run),

@@ -234,7 +234,7 @@ static void each_kind_has_its_words(void **state) {
         {WH_EVENT_CONTESTED, "contested: wafer 2, gripper 1: ready, but gripper 3 holds it"},
         {WH_EVENT_BAD_INPUT, "bad input: wafer 2, gripper 1: a number is NaN or infinite"},
         {WH_EVENT_RELEASED_UNSUPPORTED, "released unsupported: wafer 2, gripper 1: in no slot, tilted by "
-                                        "42.972 deg, 3.250 mm above what is below"},
+                                        "42.972 deg, 3.250 mm above the nearest slot below or the floor"},
         {WH_EVENT_SLOT_OCCUPIED, "slot occupied: wafer 2, gripper 1: wafer 3 lies in that slot"},
         {WH_EVENT_PLACED_OFF_CENTRE,
          "placed off centre: wafer 2, gripper 1: 0.750 mm beside the centre (limit 0.5 mm)"},
@@ -255,7 +255,7 @@ static void each_kind_has_its_words(void **state) {
         event.status = WH_STATUS_NOT_FINITE;
         event.height = WH_REAL(3.25);
         event.value = WH_REAL(0.75);
-        event.limit = WH_REAL(0.5);
+        event.limit = event.kind == WH_EVENT_RELEASED_UNSUPPORTED ? 0 : WH_REAL(0.5);
         event.at = wh_vec3(1, -2, WH_REAL(0.125));
         assert_string_equal(text_of(&event, NULL), wanted[i].text);
     }

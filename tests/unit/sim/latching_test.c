@@ -21,6 +21,7 @@ static wh_rim_t rim;
 static const wh_rim_t *const rims[1] = {&rim};
 static wh_blade_outline_t blade;
 static wh_door_beam_t beams[2];
+static wh_faults_t faults; /* acting ones */
 static const wh_latch_order_t keep = {WH_LATCH_KEEP, 0, 0};
 static const wh_latch_order_t arm = {WH_LATCH_ARM, 0, 2};
 
@@ -52,7 +53,7 @@ static wh_latching_t set_up(const wh_pose_t *lies) {
 static void step(const wh_latching_t *latching, const wh_pose_t *from, const wh_pose_t *to, double slice_s,
                  const wh_latch_order_t *order, wh_latches_t *latches) {
     grippers[0].base_from_gripper = *to;
-    wh_latching_step(latching, from, &table, (wh_real_t)slice_s, order, latches);
+    wh_latching_step(latching, from, &table, &faults, (wh_real_t)slice_s, order, latches);
 }
 
 /* A drive along x from `from` on, `speed` mm/s: latches with their time since the begin, s, in `part`. */
@@ -527,6 +528,195 @@ static void what_is_no_beam_is_refused(void **state) {
     assert_int_equal(wh_latching_check(&latching, &wild), WH_STATUS_OUT_OF_RANGE);
 }
 
+/* ---------------------------------------------------------------------------------------------------- touches */
+
+/* The ball of a probe below the gripper, and a face at x = 0 that looks towards -x. */
+static wh_latching_t set_up_face(void) {
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    grippers[0].wafer = WH_NONE;
+    const wh_touch_face_t face = {{0, 0, 40}, {-1, 0, 0}, {0, 1, 0}, 20, 5, {3, 0, -12}, 1.5};
+    beams[0] = (wh_door_beam_t){.seed = 7, .kind = WH_DOOR_TOUCH, .touch = face};
+    beams[1] = beams[0];
+    return latching;
+}
+
+static const wh_latch_order_t arm_first = {WH_LATCH_ARM, 0, 1};
+
+/* Where along x the switch closes and opens again, the gripper `aside` along y: on a way there and back by slices
+ * of 0.3 mm; the count of its latches. */
+static size_t touch(const wh_latching_t *latching, double aside, uint32_t number, double at[2]) {
+    wh_latches_t latches = {.number = number};
+    size_t count = 0;
+    wh_pose_t before = at_x(-9.07);
+    before.r.y = (wh_real_t)aside;
+    step(latching, &before, &before, 0.001, &arm_first, &latches);
+    for (int i = 1; i <= 60; ++i) {
+        wh_pose_t after = before;
+        after.r.x += (wh_real_t)(i <= 30 ? 0.3 : -0.3);
+        step(latching, &before, &after, 0.001, &keep, &latches);
+        for (int32_t k = 0; k < latches.latch_count; ++k) {
+            const wh_latch_t *latch = &latches.latches[k];
+            assert_int_equal(latch->edge, count == 0 ? WH_CROSSING_IN : WH_CROSSING_OUT);
+            assert_true(count < 2 && latch->slice == i);
+            at[count] = (double)before.r.x + latch->part * ((double)after.r.x - (double)before.r.x);
+            ++count;
+        }
+        before = after;
+    }
+    return count;
+}
+
+/* Where the ball meets the face, there and back; by the noise sooner or later, the same for both, as wide as it
+ * says, and beside the face never. */
+static void a_probe_feels_a_face(void **state) {
+    (void)state;
+    const wh_latching_t latching = set_up_face();
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_OK);
+    double at[2];
+    assert_int_equal(touch(&latching, 0, 0, at), 2);
+    assert_true(fabs(at[0] + 4.5) < exact && fabs(at[1] + 4.5) < exact);
+    assert_int_equal(touch(&latching, 20.5, 0, at), 0);
+    assert_int_equal(touch(&latching, -19.5, 0, at), 2);
+    beams[0].noise = 0.005;
+    double squares = 0;
+    for (uint32_t number = 0; number < 400; ++number) {
+        assert_int_equal(touch(&latching, 0, number, at), 2);
+        assert_true(fabs(at[1] - at[0]) < exact);
+        squares += (at[0] + 4.5) * (at[0] + 4.5) / 400;
+    }
+    assert_true(fabs(sqrt(squares) / 0.005 - 1) < 0.12);
+    beams[0].stuck = WH_BEAM_DARK;
+    assert_int_equal(touch(&latching, 0, 0, at), 0);
+    wh_latches_t latches = {0};
+    const wh_pose_t far = at_x(-100);
+    step(&latching, &far, &far, 0.001, &arm_first, &latches);
+    assert_int_equal(latches.broken, 1);
+    beams[0].stuck = WH_BEAM_LIT;
+    step(&latching, &far, &far, 0.001, &arm_first, &latches);
+    assert_int_equal(latches.broken, 0);
+}
+
+/* ----------------------------------------------------------------------------------------- faults on purpose */
+
+static void act(wh_fault_kind_t kind, int32_t target, double value) {
+    memset(&faults, 0, sizeof faults);
+    faults.count = 1;
+    faults.slots[0].fault = wh_fault_make(kind, target, (wh_real_t)value, 1, WH_FAULT_FOREVER);
+    faults.slots[0].phase = WH_FAULT_ACTING;
+}
+
+static int heal(void **state) {
+    (void)state;
+    memset(&faults, 0, sizeof faults);
+    return 0;
+}
+
+static void latches_of_a_fault_are_late_by_as_much(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    beams[1].delay_on = 0.009;
+    wh_latch_t sound[WH_LATCHES];
+    wh_latch_t late[WH_LATCHES];
+    assert_int_equal(drive(&latching, -200, 1000, 0.001, 400, sound), 4);
+    act(WH_FAULT_BEAM_LATE, 1, 0.01);
+    assert_int_equal(drive(&latching, -200, 1000, 0.001, 400, late), 4);
+    for (size_t i = 0; i < 4; ++i) {
+        for (size_t k = 0; k < 4; ++k) {
+            if (sound[i].beam == late[k].beam && sound[i].edge == late[k].edge) {
+                assert_near(1000 * (late[k].part - sound[i].part), sound[i].beam == 1 ? 10 : 0, exact);
+            }
+        }
+    }
+}
+
+/* What it says changes as the fault begins and as it ends, and each change is latched; in between there is none, and what is armed
+ * meanwhile finds it as it says. */
+static void a_beam_that_a_fault_breaks_down_says_so(void **state) {
+    (void)state;
+    const wh_pose_t lies = wh_pose_identity();
+    const wh_latching_t latching = set_up(&lies);
+    beams[0].delay_on = 0.0004;
+    const wh_pose_t out = at_x(-200);
+    const wh_pose_t in = at_x(0);
+    wh_latches_t latches = {0};
+    step(&latching, &out, &out, 0.001, &arm, &latches);
+    act(WH_FAULT_BEAM_DARK, 0, 0);
+    step(&latching, &out, &out, 0.001, &keep, &latches);
+    assert_int_equal(latches.broken, 1);
+    assert_int_equal(latches.latch_count, 1);
+    assert_int_equal(latches.latches[0].edge, WH_CROSSING_IN);
+    assert_near(latches.latches[0].part, 0.4, sizeof(wh_real_t) == sizeof(double) ? 1e-9 : 1e-6);
+    step(&latching, &out, &in, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 1); /* of the other beam */
+    step(&latching, &in, &out, 0.001, &keep, &latches);
+    assert_int_equal(latches.broken, 1);
+    (void)heal(NULL);
+    step(&latching, &out, &out, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 1);
+    assert_int_equal(latches.latches[0].edge, WH_CROSSING_OUT);
+    assert_near(latches.latches[0].part, 0, 1e-9);
+    assert_int_equal(latches.broken, 0);
+    act(WH_FAULT_BEAM_LIT, 1, 0);
+    step(&latching, &in, &in, 0.001, &arm, &latches);
+    assert_int_equal(latches.broken, 1);
+    beams[0].stuck = WH_BEAM_LIT; /* its own breakdown goes before a fault's */
+    act(WH_FAULT_BEAM_DARK, 0, 0);
+    step(&latching, &in, &in, 0.001, &arm, &latches);
+    assert_int_equal(latches.broken, 2);
+}
+
+static void a_switch_that_a_fault_breaks_down_says_so(void **state) {
+    (void)state;
+    const wh_latching_t latching = set_up_face();
+    const wh_pose_t far = at_x(-100);
+    wh_latches_t latches = {0};
+    double at[2];
+    act(WH_FAULT_BEAM_DARK, 0, 0); /* of no switch */
+    assert_int_equal(touch(&latching, 0, 0, at), 2);
+    act(WH_FAULT_PROBE_OPEN, 0, 0);
+    assert_int_equal(touch(&latching, 0, 0, at), 0);
+    act(WH_FAULT_PROBE_CLOSED, 0, 0);
+    assert_int_equal(touch(&latching, 0, 0, at), 0);
+    step(&latching, &far, &far, 0.001, &arm_first, &latches);
+    assert_int_equal(latches.broken, 1);
+    (void)heal(NULL);
+    step(&latching, &far, &far, 0.001, &keep, &latches);
+    assert_int_equal(latches.latch_count, 1);
+    assert_int_equal(latches.latches[0].edge, WH_CROSSING_OUT);
+}
+
+static void what_is_no_face_is_refused(void **state) {
+    (void)state;
+    const wh_latching_t latching = set_up_face();
+    wh_touch_face_t *face = &beams[1].touch;
+    const struct {
+        double *number;
+        double wrong;
+    } cases[] = {{&face->middle[1], 1.1e5}, {&face->normal[0], -0.9}, {&face->edge[1], 0.9},
+                 {&face->edge[0], 0.1},     {&face->along, 0},        {&face->aside, 1001},
+                 {&face->ball[2], -1001},   {&face->radius, -0.1},    {&beams[1].noise, 0.11}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const double good = *cases[i].number;
+        *cases[i].number = cases[i].wrong;
+        assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+        *cases[i].number = (double)NAN;
+        assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_NOT_FINITE);
+        *cases[i].number = good;
+    }
+    assert_int_equal(wh_touch_validate(NULL), WH_STATUS_NULL_ARGUMENT);
+    beams[1].gripper = 1;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    beams[1].gripper = 0;
+    beams[1].kind = (wh_door_kind_t)2;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_STATUS_OUT_OF_RANGE);
+    beams[1].kind = WH_DOOR_TOUCH;
+    assert_int_equal(wh_latching_validate(&latching, 1, 1), WH_OK);
+    const wh_pose_t over = at_x(-4.5);
+    assert_true(fabs(wh_touch_gap(face, &over)) < exact);
+}
+
 /* --------------------------------------------------------------------------------------------- in a simulator */
 
 /* A simulator of one wafer that its gripper carries along x. */
@@ -548,7 +738,7 @@ static void begin(run_t *of, const wh_latching_t *latching) {
     station.base_from_station = wh_pose_identity();
     static wh_station_t stations[1];
     stations[0] = station;
-    const wh_cell_t cell = {stations, 1, wh_tolerance_paper(), 0, 0, false};
+    const wh_cell_t cell = {stations, 1, wh_tolerance_paper(), 0, 0, false, 0, 0};
     memset(of, 0, sizeof *of);
     of->wafers[0].base_from_wafer = at_x(-200);
     assert_int_equal(wh_simulator_init(&of->simulator, &config, &storage, &cell), WH_OK);
@@ -739,6 +929,11 @@ int main(void) {
         cmocka_unit_test(all_changes_are_where_dense_samples_find_them),
         cmocka_unit_test(latches_give_back_the_wafers_centre),
         cmocka_unit_test(what_is_no_beam_is_refused),
+        cmocka_unit_test(a_probe_feels_a_face),
+        cmocka_unit_test_teardown(latches_of_a_fault_are_late_by_as_much, heal),
+        cmocka_unit_test_teardown(a_beam_that_a_fault_breaks_down_says_so, heal),
+        cmocka_unit_test_teardown(a_switch_that_a_fault_breaks_down_says_so, heal),
+        cmocka_unit_test(what_is_no_face_is_refused),
         cmocka_unit_test(a_simulator_gives_the_latches_of_what_it_carries),
         cmocka_unit_test(a_stuck_beam_gives_no_latch),
         cmocka_unit_test(what_no_beam_can_take_is_refused),

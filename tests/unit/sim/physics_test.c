@@ -270,8 +270,9 @@ static void a_fault_from_the_beginning(void **state) {
 }
 
 /* An observer that leaves no room for what comes after it, and counts the wafers that faults move. */
-static void fill(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                 wh_event_list_t *list) {
+static void fill(void *user, const wh_command_t *order, const wh_gripper_input_t inputs[],
+                 const wh_grasp_t *table, wh_event_list_t *list) {
+    (void)order;
     (void)user;
     (void)inputs;
     (void)table;
@@ -308,6 +309,7 @@ static void what_does_not_fit_is_not_told(void **state) {
     command.fault_count = 0;
     assert_int_equal(answer.event_count, WH_SLICE_EVENTS);
     assert_int_equal(count(WH_EVENT_HIT), WH_SLICE_EVENTS);
+    assert_true(answer.has_lost_events);
     assert_int_equal(answer.sensors, 0); /* it was lost all the same */
     assert_int_equal(placed, 1);
     step(0, 0, OPEN);

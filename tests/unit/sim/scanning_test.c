@@ -154,7 +154,7 @@ static void an_order_that_cannot_be_taken_changes_nothing(void **state) {
     refuse(WH_SCAN_ARM, CHUCK, 100, 3600001);
     refuse(WH_SCAN_ARM, CHUCK, 100, INT64_MIN);
     refuse(3, 0, 0, 0);
-    run.simulator.scans = NULL;
+    run.simulator.given.scans = NULL;
     refuse(WH_SCAN_ARM, CHUCK, 100, 0);
     refuse(WH_SCAN_DISARM, 0, 0, 0);
 }
@@ -181,7 +181,7 @@ static void a_sensor_that_cannot_be_is_refused(void **state) {
     assert_int_equal(wh_scanning_validate(NULL, GRIPPERS, WAFERS), WH_STATUS_NULL_ARGUMENT);
     const wh_scanning_t none = {NULL, 0, NULL};
     assert_int_equal(wh_simulator_set_scanning(&run.simulator, &none), WH_OK);
-    assert_null(run.simulator.scans);
+    assert_null(run.simulator.given.scans);
     assert_int_equal(step(&twin, 0), WH_OK);
     assert_int_equal(wh_simulator_set_scanning(&twin.simulator, &none), WH_STATUS_OUT_OF_RANGE);
     twin.simulator.mark = 0;
@@ -270,11 +270,55 @@ static void without_a_wafer_there_is_nothing_and_face_down_it_is_mirrored(void *
     }
 }
 
+/* The fault's command comes with the arming. */
+static void bring(run_t *of, wh_fault_kind_t kind, double value) {
+    of->command.fault_count = 1;
+    of->command.faults[0].index = 0;
+    of->command.faults[0].fault =
+        wh_fault_make(kind, CHUCK, (wh_real_t)value, of->command.seq + 1, WH_FAULT_FOREVER);
+}
+
+static void a_sensor_that_a_fault_breaks_down_says_so(void **state) {
+    (void)state;
+    const double parts[] = {0, 0.5, 1};
+    for (size_t i = 0; i < 3; ++i) {
+        begin(&run, 0.001);
+        bring(&run, WH_FAULT_EDGE_SENSOR_STUCK, parts[i]);
+        arm(&run, 1, 100);
+        assert_int_equal(step(&run, 0), WH_OK);
+        run.command.fault_count = 0;
+        for (int k = 1; k <= 40; ++k) {
+            assert_int_equal(step(&run, 0.01 * k), WH_OK);
+        }
+        assert_int_equal(run.count, 100);
+        for (int32_t k = 0; k < 100; ++k) {
+            assert_int_equal(run.samples[k], (int32_t)(parts[i] * 4000));
+        }
+    }
+}
+
+/* As one whose latency is longer by as much. */
+static void a_sensor_that_a_fault_makes_late_reads_what_comes_later(void **state) {
+    (void)state;
+    begin(&run, 0.001);
+    scanner.sensor.noise = 0;
+    begin_turned(&run, 0.001, wh_test_rotation(0, 0, 1, 0.4));
+    bring(&run, WH_FAULT_EDGE_SENSOR_LATE, 0.0005);
+    (void)turn_by(&run, 1, 100, 1, 500);
+    scanner.sensor.error.latency = 0.0005;
+    begin_turned(&twin, 0.001, wh_test_rotation(0, 0, 1, 0.4));
+    (void)turn_by(&twin, 1, 100, 1, 500);
+    assert_true(run.count == 500 && twin.count == 500);
+    for (int32_t k = 0; k < 500; ++k) {
+        assert_in_range(run.samples[k] - twin.samples[k] + 1, 0, 2);
+    }
+}
+
 static void a_run_without_a_scan_hashes_as_if_there_were_no_sensor(void **state) {
     (void)state;
     begin(&run, 0.001);
     begin(&twin, 0.001);
-    twin.simulator.scans = NULL;
+    twin.simulator.given.scans = NULL;
     for (int i = 0; i < 100; ++i) {
         assert_int_equal(step(&run, 0.02 * i), WH_OK);
         assert_int_equal(step(&twin, 0.02 * i), WH_OK);
@@ -337,6 +381,8 @@ int main(void) {
         cmocka_unit_test(a_scan_that_waits_in_vain_ends),
         cmocka_unit_test(a_chuck_that_stands_or_turns_back_gives_no_sample_twice),
         cmocka_unit_test(without_a_wafer_there_is_nothing_and_face_down_it_is_mirrored),
+        cmocka_unit_test(a_sensor_that_a_fault_breaks_down_says_so),
+        cmocka_unit_test(a_sensor_that_a_fault_makes_late_reads_what_comes_later),
         cmocka_unit_test(a_run_without_a_scan_hashes_as_if_there_were_no_sensor),
         cmocka_unit_test(a_saved_scan_goes_on_bit_for_bit),
     };

@@ -192,8 +192,9 @@ static void a_fault_is_not_overlooked(void **state) {
 
 static wh_gripper_input_t seen[GRIPPERS];
 
-static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                 wh_event_list_t *list) {
+static void look(void *user, const wh_command_t *command, const wh_gripper_input_t inputs[],
+                 const wh_grasp_t *table, wh_event_list_t *list) {
+    (void)command;
     (void)user;
     (void)list;
     memcpy(seen, inputs, table->storage.gripper_count * sizeof inputs[0]);

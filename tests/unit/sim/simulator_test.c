@@ -54,6 +54,126 @@ static void step(double x, double z, int valve) {
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
 }
 
+/* Wafer 0 lies face down, and gripper 0 comes from above, turned over, its valve open. */
+static void hang(double force) {
+    static const wh_grip_t vacuum[GRIPPERS];
+    static wh_wafer_t seen[WAFERS];
+    const wh_grips_parts_t parts = {.thickness = WH_REAL(0.775), .dt = 0.001, .grips = vacuum, .seen = seen};
+    const wh_pose_t slot = wh_test_at(700, 0, 900);
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_here();
+    wh_cell_t cell = cell_here();
+    wh_physics_t physics = wh_physics_default();
+    cell.thickness = parts.thickness;
+    physics.pads = (wh_pads_t){1, WH_REAL(force), WH_REAL(0.1276), WH_REAL(9.81)};
+    wh_face_frame(&slot, parts.thickness, WH_FACE_FRONT, &wafers[0].base_from_wafer);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
+    assert_int_equal(wh_simulator_set_physics(&simulator, &physics), WH_OK);
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_OK);
+    for (int z = 2; z >= -6; --z) { /* down to 0.25 mm above the back face, and up by 1 mm */
+        ++command.seq;
+        command.grippers[0].base_from_gripper =
+            wh_test_at(700, 0, 900.775 + (z >= 0 ? 0.25 + z : 0.25 - z / 6.0));
+        command.grippers[0].base_from_gripper.R = wh_mat3_from_rpy_deg(180, 0, 0);
+        command.grippers[0].valve = z > 0 ? CLOSED : OPEN;
+        assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    }
+}
+
+static void a_wafer_hangs_on_pads_that_carry_its_weight(void **state) {
+    (void)state;
+    hang(1.26);
+    assert_int_equal(wafers[0].holder, 0);
+    assert_near(wafers[0].base_from_wafer.r.z, 901.775, 1e5 * WH_TEST_ROUNDING);
+    command.seq = 0;
+    hang(1.24); /* 0.1276 kg weigh 1.2518 N */
+    assert_int_equal(wafers[0].holder, WH_NONE);
+    assert_near(wafers[0].base_from_wafer.r.z, 900.775, 1e5 * WH_TEST_ROUNDING);
+}
+
+static void grips_are_refused_that_the_simulator_does_not_take(void **state) {
+    (void)state;
+    wh_grip_t grips[GRIPPERS] = {{.kind = WH_GRIP_VACUUM}};
+    wh_wafer_t seen[WAFERS];
+    wh_grips_parts_t parts = {.dt = 0.001, .grips = grips, .seen = seen};
+    assert_int_equal(wh_simulator_set_grips(&simulator, NULL), WH_STATUS_NULL_ARGUMENT);
+    parts.thickness = 1;
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_OUT_OF_RANGE);
+    parts.thickness = 0;
+    grips[1].kind = WH_GRIP_EDGE;
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_OUT_OF_RANGE);
+    grips[1].edge = wh_edge_default(150);
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_NULL_ARGUMENT);
+    grips[1].kind = WH_GRIP_VACUUM;
+    assert_null(simulator.given.gripping);
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_OK);
+    step(0, 0, CLOSED);
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_OUT_OF_RANGE);
+}
+
+/* Gripper 0 is passive, and the slot's plane takes wafers over from it. */
+static void give_passive_pads(void) {
+    static const wh_grip_t grips[GRIPPERS] = {{.kind = WH_GRIP_PASSIVE}};
+    static wh_wafer_t seen[WAFERS];
+    static wh_pose_t support;
+    support = wh_station_slot(&station, 1);
+    const wh_grips_parts_t parts = {
+        .dt = 0.001, .grips = grips, .supports = &support, .support_count = 1, .seen = seen};
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_OK);
+}
+
+static bool has_slipped(void) {
+    bool any = false;
+    for (size_t i = 0; i < answer.event_count; ++i) {
+        any = any || answer.events[i].kind == WH_EVENT_SLIPPED;
+    }
+    return any;
+}
+
+static void passive_pads_lift_a_wafer_whatever_their_valve_does(void **state) {
+    (void)state;
+    give_passive_pads();
+    for (int i = 0; i <= 20; ++i) {
+        step(700, 899 + 0.1 * i, i % 2);
+        assert_int_equal(wafers[0].holder, i < 11 ? WH_NONE : 0);
+        assert_int_equal(answer.sensors & 1U, i < 11 ? 0 : 1);
+        assert_true(answer.physics->vacuum[0].level == 0 && !has_slipped());
+    }
+    for (int i = 19; i >= 0; --i) {
+        step(700, 899 + 0.1 * i, OPEN);
+        assert_int_equal(wafers[0].holder, i > 10 ? 0 : WH_NONE);
+    }
+    assert_near(wafers[0].base_from_wafer.r.z, 900, 1e5 * WH_TEST_ROUNDING);
+}
+
+/* Friction of 0.2 holds 1962 mm/s^2: of a constant acceleration 0.001962 mm in the square of a slice. */
+/* Half the acceleration that friction of 0.2 holds is 0.000981 mm in the square of a slice; a float's places are
+ * good to 6e-5 mm. */
+#if defined(WH_FLOAT)
+#define TOO_FAST 0.0012
+#define SLOW 0.0008
+#else
+#define TOO_FAST 0.000983
+#define SLOW 0.000979
+#endif
+
+static void on_passive_pads_a_wafer_slips_beyond_friction_without_pads_in_the_cell(void **state) {
+    (void)state;
+    for (int over = 0; over < 2; ++over) {
+        bool slipped = false;
+        set_up(state);
+        give_passive_pads();
+        step(700, 899.5, OPEN);
+        for (int i = 0; i < 20; ++i) {
+            step(700 + (over ? TOO_FAST : SLOW) * i * i, 901, OPEN);
+            slipped = slipped || has_slipped();
+        }
+        assert_int_equal(wafers[0].holder, 0);
+        assert_int_equal(slipped, over);
+        command.seq = 0;
+    }
+}
+
 static void init_refuses_what_it_cannot_use(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
@@ -142,7 +262,7 @@ static void all_grippers_at_once(void **state) {
     assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
     assert_int_equal(answer.event_count, WH_GRIPPERS);
-    assert_int_equal(answer.sensors, 255);
+    assert_int_equal(answer.sensors, (1U << WH_GRIPPERS) - 1);
     for (int g = 0; g < WH_GRIPPERS; ++g) {
         command.grippers[g].valve = CLOSED;
     }
@@ -427,6 +547,11 @@ int main(void) {
         cmocka_unit_test_setup(entries_beyond_the_count_are_not_looked_at, set_up),
         cmocka_unit_test_setup(the_link_is_the_simulator, set_up),
         cmocka_unit_test_setup(a_player_without_a_run_plays_nothing, set_up),
+        cmocka_unit_test_setup(a_wafer_hangs_on_pads_that_carry_its_weight, set_up),
+        cmocka_unit_test_setup(grips_are_refused_that_the_simulator_does_not_take, set_up),
+        cmocka_unit_test_setup(passive_pads_lift_a_wafer_whatever_their_valve_does, set_up),
+        cmocka_unit_test_setup(on_passive_pads_a_wafer_slips_beyond_friction_without_pads_in_the_cell,
+                               set_up),
         cmocka_unit_test_setup(a_run_that_lacks_an_array_is_refused, set_up),
         cmocka_unit_test_setup(a_runs_two_slice_lengths_agree, set_up),
         cmocka_unit_test_setup(a_runs_faults_are_in_order, set_up),

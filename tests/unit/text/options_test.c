@@ -25,12 +25,9 @@ typedef struct {
 static const wh_option_t options[] = {
     {"json", 'j', NULL, "Print JSON", WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
     {"trust", 0, NULL, "Trust it", WH_OPTION_FLAG, .variable = offsetof(arguments_t, trust)},
-    {"rate", 0, "FACTOR", "How fast", WH_OPTION_REAL, .variable = offsetof(arguments_t, rate), 1e-3, 1e3,
-     "a number"},
-    {"trials", 0, "N", "How many", WH_OPTION_WHOLE, .variable = offsetof(arguments_t, trials), 1, 1e9,
-     "a number"},
-    {"seed", 0, "S", "Which", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed),
-     .expected = "a whole number"},
+    {"rate", 0, "FACTOR", "How fast", WH_OPTION_REAL, .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
+    {"trials", 0, "N", "How many", WH_OPTION_WHOLE, .variable = offsetof(arguments_t, trials), 1, 1e9},
+    {"seed", 0, "S", "Which", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed), .least = 2},
     {0}};
 
 static const wh_option_t others[] = {
@@ -104,6 +101,45 @@ static void without_memory_the_program_ends(void **state) {
     (void)close(ends[1]);
 }
 
+static void assert_refused(const char *option, const char *text, const char *expected) {
+    const char *words[] = {"a.lua", option, text};
+    int ends[2];
+    int status = 0;
+    char said[500] = "";
+    char wanted[300];
+    (void)snprintf(wanted, sizeof wanted, "test: %s: %s (expected %s)\n", option, text[0] ? text : "nothing",
+                   expected);
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        (void)dup2(ends[1], STDERR_FILENO);
+        (void)parse(words, 3);
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) != 0);
+    assert_true(read(ends[0], said, sizeof said - 1) > 0);
+    if (!strstr(said, wanted)) {
+        fail_msg("%s%s", said, wanted);
+    }
+    (void)close(ends[0]);
+    (void)close(ends[1]);
+}
+
+static void numbers_out_of_range_are_refused(void **state) {
+    (void)state;
+    assert_refused("--rate", "1001", "a number from 0.001 to 1000");
+    assert_refused("--rate", "0.0009", "a number from 0.001 to 1000");
+    assert_refused("--rate", "nan", "a number from 0.001 to 1000");
+    assert_refused("--rate", "2x", "a number from 0.001 to 1000");
+    assert_refused("--trials", "1.5", "a whole number from 1 to 1000000000");
+    assert_refused("--trials", "0", "a whole number from 1 to 1000000000");
+    assert_refused("--seed", "1", "a whole number from 2 to 18446744073709551615");
+    assert_refused("--seed", "18446744073709551616", "a whole number from 2 to 18446744073709551615");
+    assert_refused("--seed", "", "a whole number from 2 to 18446744073709551615");
+    assert_refused("--state", "", "FILE");
+}
+
 static void assert_nearest(const char *word, const char *expected) {
     static const char *const names[] = {"collision", "look_ahead", "settle", "seat",
                                         "slice",     "true",       "dx",     "dy"};
@@ -173,6 +209,7 @@ int main(void) {
                                        cmocka_unit_test(one_slip_of_the_keyboard_is_near),
                                        cmocka_unit_test(longer_words_may_have_more_slips),
                                        cmocka_unit_test(words_without_end_are_near_to_nothing),
-                                       cmocka_unit_test(without_memory_the_program_ends)};
+                                       cmocka_unit_test(without_memory_the_program_ends),
+                                       cmocka_unit_test(numbers_out_of_range_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

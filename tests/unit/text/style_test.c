@@ -6,10 +6,13 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <fcntl.h>
 #include <jansson.h>
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "text/style.h"
 #include "text/utf8.h"
@@ -40,6 +43,9 @@ static void cuts_are_between_characters(void **state) {
     assert_int_equal(wh_utf8_cut("aµ→𝄞", 2), 1);
     assert_int_equal(wh_utf8_cut("aµ→𝄞", 3), 3);
     assert_int_equal(wh_utf8_cut("\x80\x80", 1), 0);
+    memset(clipped, 'x', sizeof clipped);
+    wh_utf8_clip(clipped, sizeof clipped, "aµ");
+    assert_string_equal(clipped, "aµ");
     wh_utf8_clip(clipped, sizeof clipped, "aµ→𝄞");
     assert_string_equal(clipped, "aµ...");
     wh_utf8_clip(clipped, sizeof clipped, "aµ→b");
@@ -95,6 +101,82 @@ static void no_terminal(void **state) {
     free(text);
 }
 
+/* A terminal of 72 columns. Null where the system gives none. */
+static FILE *open_terminal(int *leader) {
+    const struct winsize size = {.ws_row = 24, .ws_col = 72};
+    *leader = posix_openpt(O_RDWR | O_NOCTTY);
+    if (*leader < 0 || grantpt(*leader) != 0 || unlockpt(*leader) != 0) {
+        return NULL;
+    }
+    const int follower = open(ptsname(*leader), O_RDWR | O_NOCTTY);
+    return follower >= 0 && ioctl(follower, TIOCSWINSZ, &size) == 0 ? fdopen(follower, "r+") : NULL;
+}
+
+static void expect_colour(FILE *terminal, const char *ranks, const char *forced, bool wanted) {
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    unsetenv("CLICOLOR_FORCE");
+    if (ranks) {
+        setenv("OMPI_COMM_WORLD_SIZE", ranks, 1);
+    }
+    if (forced) {
+        setenv("CLICOLOR_FORCE", forced, 1);
+    }
+    const wh_style_t style = wh_style_of(terminal);
+    assert_int_equal(style.colour, wanted);
+    assert_int_equal(style.width, ranks && !wanted ? 0 : 72);
+}
+
+/* mpirun gives the first rank a terminal that nobody sees: colours are to be asked for there. */
+static void a_terminal_under_mpirun(void **state) {
+    (void)state;
+    int leader = -1;
+    FILE *terminal = open_terminal(&leader);
+    assert_non_null(terminal);
+    unsetenv("NO_COLOR");
+    setenv("TERM", "xterm", 1);
+    expect_colour(terminal, NULL, NULL, true);
+    expect_colour(terminal, "4", NULL, false);
+    expect_colour(terminal, "4", "", false);
+    expect_colour(terminal, "4", "0", false);
+    expect_colour(terminal, "4", "1", true);
+    expect_colour(terminal, "4", "00", true);
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    unsetenv("CLICOLOR_FORCE");
+    setenv("NO_COLOR", "1", 1);
+    assert_false(wh_style_of(terminal).colour);
+    unsetenv("NO_COLOR");
+    assert_int_equal(fclose(terminal), 0);
+    close(leader);
+}
+
+static void inks_and_glyphs(void **state) {
+    (void)state;
+    static const char *const sequences[] = {"plain",    "\033[32m", "\033[31m",
+                                            "\033[33m", "\033[2m",  "\033[1m"};
+    static const char *const glyphs[][2] = {{"ok", "✓"}, {"x", "✗"}, {"->", "→"}, {" deg", "°"}};
+    static const wh_ink_t inks[] = {WH_INK_PLAIN, WH_INK_GOOD, WH_INK_BAD,
+                                    WH_INK_WARN,  WH_INK_DIM,  WH_INK_BOLD};
+    static const wh_glyph_t kinds[] = {WH_GLYPH_TICK, WH_GLYPH_CROSS, WH_GLYPH_ARROW, WH_GLYPH_DEGREE};
+    for (int on = 0; on < 2; ++on) {
+        const wh_style_t style = {on == 1, on == 1, 0};
+        for (size_t i = 0; i < sizeof inks / sizeof inks[0]; ++i) {
+            char wanted[40], *text = NULL;
+            size_t size = 0;
+            const bool has_ink = on == 1 && i > 0;
+            FILE *out = open_memstream(&text, &size);
+            wh_style_print(&style, out, inks[i], "%d %s", 7, "µm");
+            fclose(out);
+            snprintf(wanted, sizeof wanted, "%s7 µm%s", has_ink ? sequences[i] : "",
+                     has_ink ? "\033[0m" : "");
+            assert_string_equal(text, wanted);
+            free(text);
+        }
+        for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
+            assert_string_equal(wh_style_glyph(&style, kinds[i]), glyphs[i][on]);
+        }
+    }
+}
+
 static void assert_printable(const char *text, const char *wanted, size_t columns) {
     char *printable = wh_style_printable(text);
     assert_string_equal(printable, wanted);
@@ -128,6 +210,8 @@ int main(void) {
         cmocka_unit_test(control_characters_become_visible),
         cmocka_unit_test(colour_is_for_terminals),
         cmocka_unit_test(no_terminal),
+        cmocka_unit_test(a_terminal_under_mpirun),
+        cmocka_unit_test(inks_and_glyphs),
         cmocka_unit_test(text_is_made_printable),
         cmocka_unit_test(plain_locale),
     };

@@ -255,7 +255,7 @@ static void bodies_are_where_they_are(void **state) {
     wafers[1].base_from_wafer = grippers[0];
     wafers[1].base_from_wafer.r.z += 0.4;
     wafers[1].holder = 0;
-    const wh_view_look_t look = {1234567, grippers, wafers};
+    const wh_view_look_t look = {1234567, grippers, NULL, NULL, wafers};
     wh_view_cell_move(&cell, &look);
     assert_true(cell.bodies.draw.timestamp == 1234);
     assert_at(&cell, cell.grippers, &grippers[0].r);
@@ -361,7 +361,7 @@ static void a_red_wafer_is_not_covered(void **state) {
     wafers[1].holder = 0;
     wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
     const int32_t parts[2] = {WH_NONE, (int32_t)layout->world.part_count + 1};
-    const wh_view_look_t look = {1000, grippers, wafers};
+    const wh_view_look_t look = {1000, grippers, NULL, NULL, wafers};
     wh_view_cell_move(&cell, &look);
     assert_at(&cell, cell.covers, &wafers[1].base_from_wafer.r);
     assert_true(wh_view_cell_set_hit(&cell, parts));

@@ -20,7 +20,7 @@ from records import Results, Survivors
 
 LEAST_RATE = 0.9
 LIST = "tests/verify/mutants/survivors"
-LONGEST_S = 60  # a test that takes longer is not used
+LONGEST_S = 240  # a test that takes longer is not used
 TESTS_S = 240  # as long as tests are begun against one mutant
 COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
 # C alone is counted: C++ has to be optimised, which takes long.
@@ -121,6 +121,7 @@ class Lines:
         self.folder, self.sources, self.tests, self.tools = folder, sources, tests, tools
         self.digests = {source: digest_of(bytes_of(source)) for source in sources}
         self.found = {}
+        self.uncounted = []  # there was no time to
 
     def kept(self, test):
         return os.path.join(self.folder, "lines", test.replace("/", "_"))
@@ -142,9 +143,14 @@ class Lines:
             tree = Tree(os.path.join(self.folder, "counted"), jobs)
             tree.make_all(COUNTED, ["all", *self.tools, *(f"build/{test}" for test in missing if not is_end_to_end(test))])
             for test in (test for test in missing if time.monotonic() < end):
+                if is_end_to_end(test):  # the one before may have built the tree in its own way
+                    tree.make_all(COUNTED, ["all", *self.tools])
                 self.found[test] = self.count(tree, test)
+                if self.found[test]["status"] not in (0, 77):  # it may pass another time
+                    continue
                 with open(self.kept(test), "w", encoding="utf-8") as file:
                     json.dump(self.found[test], file)
+        self.uncounted = [test for test in self.tests if test not in self.found]
         for test in self.tests:
             status = self.found.get(test, {"status": "there was no time to count"})["status"]
             if status != 0:
@@ -173,14 +179,23 @@ class Lines:
                         found["run" if line["count"] > 0 else "not"].append(line["line_number"])
         return {"stamp": self.stamp(test), "status": status, "seconds": seconds, "lines": lines}
 
+    def has_code(self, source):
+        """Whether any test's counters know of its lines."""
+        return any(source in found["lines"] for found in self.found.values())
+
     def running(self, source, number):
-        """The tests that run this line, the end-to-end ones last, the shortest first. Of a line without code, as of a table,
-        those that run its file; of a file that is not counted those that are named after its room."""
+        """The tests that run this line, the end-to-end ones last, the shortest first. Of a line without code, as of a table, and
+        of one that no counter saw, as in a process that was killed, those that run its file; of a file without code those that
+        run its room; of a file that is not counted those that are named after its room."""
         of_file = {test: found["lines"][source] for test, found in self.found.items()
                    if found["lines"].get(source, {}).get("run")}
         same = [lines for lines in of_file.values() if lines["digest"] == self.digests[source]]
         is_code = len(same) == len(of_file) and any(number in lines["run"] + lines["not"] for lines in same)
-        tests = [test for test, lines in of_file.items() if not is_code or number in lines["run"]]
+        tests = [test for test, lines in of_file.items() if not is_code or number in lines["run"]] or list(of_file)
+        if not of_file and not self.has_code(source):
+            room = os.path.dirname(source) + "/"
+            tests = [test for test, found in self.found.items()
+                     if any(path.startswith(room) and lines["run"] for path, lines in found["lines"].items())]
         if source.endswith(".cpp"):
             tests = [test for test in self.found if f"/{source.split('/')[1]}" in test]
         return sorted(tests, key=lambda test: (is_end_to_end(test), self.found[test]["seconds"]))
@@ -197,6 +212,7 @@ class Lane:
         self.tree, self.lines = Tree(folder, jobs), lines
         self.program = ["all", *lines.tools]
         self.tree.make_all(PLAIN, self.program)
+        self.plain = {source: bytes_of(self.tree.place(source)) for source in lines.sources}  # whatever is edited meanwhile
         self.sound, self.originals = {}, {}
 
     def built(self, source):
@@ -208,46 +224,49 @@ class Lane:
         subprocess.run(["strip", "--strip-debug", "-o", bare, self.tree.place(target)], check=True)
         return bytes_of(bare)
 
-    def fails(self, test):
-        """With the source as it is now. An end-to-end test has to fail twice: some of them ask for time."""
-        limit = 20 + 5 * self.lines.found[test]["seconds"]
+    def status(self, test):
+        """What the test ends with, the source being as it is now: None if it does not end in time."""
         program = test if is_end_to_end(test) else f"build/sanitize/{test}"
         if not (self.tree.make(PLAIN, self.program) if is_end_to_end(test) else self.tree.make(CHECKED, [program])):
             raise NotBuilt
-        return self.tree.run(program, limit) != 0 and (not is_end_to_end(test) or self.tree.run(program, limit) != 0)
+        return self.tree.run(program, (20 + 5 * self.lines.found[test]["seconds"]) * patience())
+
+    def is_sound(self, source, text, test, status):
+        """Does the test pass without the change? Of one that takes too long, and of end-to-end tests, some of which ask for
+        time, that is asked each time: they may fail because the machine is slow. Of others the first time."""
+        if test not in self.sound or status is None or is_end_to_end(test):
+            self.tree.write(source, self.plain[source])
+            self.sound[test] = self.status(test) == 0
+            self.tree.write(source, text)
+        if not self.sound[test]:
+            print(f"does not count: {test}: it fails without a change, too", flush=True)
+        return self.sound[test]
 
     def killer_of(self, source, text, tests):
-        """The first of the tests that fails, or how many of them there was time for. A test that fails for the first time is
-        run without the change, too: one that fails then as well is not used."""
-        end, tried = time.monotonic() + TESTS_S * patience(), 0
+        """The first of the tests that fails, "" if none does, and which passed: fewer than all when its time was over."""
+        end, passed = time.monotonic() + TESTS_S * patience(), []
         for test in tests:
             if time.monotonic() > end:
                 break
-            if not self.sound.get(test, True):
-                continue
-            if self.fails(test):
-                if test not in self.sound:
-                    self.tree.write(source, bytes_of(source))
-                    self.sound[test] = not self.fails(test)
-                    self.tree.write(source, text)
-                if self.sound[test]:
-                    return test, tried
-                print(f"not used: {test}: it fails without a change, too", flush=True)
-            tried += 1
-        return "", tried
+            status = self.status(test) if self.sound.get(test, True) or is_end_to_end(test) else 0
+            if status != 0 and self.is_sound(source, text, test, status):
+                return test, passed
+            if status is not None:  # else the machine was too slow: it is asked another time
+                passed.append(test)
+        return "", passed
 
     def judge(self, source, text, tests):
-        """None if it makes no difference or cannot be built, else its killer or "", and how many tests passed."""
+        """None if it makes no difference or cannot be built, else its killer or "", and the tests that passed."""
         if source not in self.originals:
             self.originals[source] = self.built(source)
         self.tree.write(source, text)
         try:
             mutated = self.built(source)
-            return self.killer_of(source, text, tests) if mutated not in (None, self.originals[source]) else (None, 0)
+            return self.killer_of(source, text, tests) if mutated not in (None, self.originals[source]) else (None, [])
         except NotBuilt:
-            return None, 0
+            return None, []
         finally:
-            self.tree.write(source, bytes_of(source))
+            self.tree.write(source, self.plain[source])
 
 
 class Sample:
@@ -260,7 +279,7 @@ class Sample:
         self.drawn, self.lock = iter(drawn), threading.Lock()
         self.results, self.list = Results(os.path.join(folder, "results")), Survivors(LIST)
         self.tests = digest_of(*(bytes_of(path) for path in tracked() if path.startswith(("tests/", "lua/"))))
-        self.judged, self.killed = collections.Counter(), collections.Counter()
+        self.judged, self.killed, self.undecided = collections.Counter(), collections.Counter(), []
 
     def is_listed(self, mutant):
         return (mutant.line, mutant.text) in self.list.of(mutant.path) or self.list.part_of(mutant.line, mutant.text)
@@ -268,33 +287,43 @@ class Sample:
     def take(self):
         """The next one that is not listed, None when enough are judged."""
         with self.lock:
-            if sum(self.judged.values()) >= self.wanted or time.monotonic() > self.end:
+            if sum(self.judged.values()) + len(self.undecided) >= self.wanted or time.monotonic() > self.end:
                 return None
             return next((drawn for drawn in self.drawn if not self.is_listed(drawn[1])), None)
 
     def verdict(self, lane, source, mutant):
-        """As found before, as long as the same source is changed and, of a survivor, the tests are the same."""
+        """As found before, as long as the same source is changed and, of a survivor, the tests are the same. One whose time was
+        over goes on with the tests that are left. How many are left then comes with it."""
         key = source.digest("") + mutant.key
+        tests = self.lines.running(mutant.path, mutant.number)
         entry = self.results.get(key)
-        if "killer" not in entry or (entry["killer"] == "" and entry["tests"] != self.tests):
-            tests = self.lines.running(mutant.path, mutant.number)
-            killer, tried = lane.judge(mutant.path, source.changed(mutant).encode(), tests)
-            entry = {"killer": killer, "tests": self.tests, "told": f"{tried} of {len(tests)} tests that run it pass"}
+        known = entry if entry.get("tests") == self.tests else {}
+        left = [test for test in tests if test not in known.get("passed", [])]
+        if "killer" not in entry or (entry["killer"] == "" and (known is not entry or left)):
+            killer, passed = lane.judge(mutant.path, source.changed(mutant).encode(), left)
+            entry = {"killer": killer, "tests": self.tests, "passed": known.get("passed", []) + passed}
             self.results.put(key, entry)
-        return entry
+            left = [test for test in left if test not in passed]
+        return entry["killer"], len(left) + len(self.lines.uncounted), len(tests) + len(self.lines.uncounted)
+
+    def count(self, mutant, killer, left, of):
+        room = mutant.path.split("/")[1]
+        told = f"killed by {killer}" if killer else f"survives (all {of} tests that run it pass)"
+        if killer == "" and left > 0:
+            self.undecided.append(mutant)
+            told = f"undecided: its time was over ({left} of {of} tests that may run it are left)"
+        else:
+            self.judged[room] += 1
+            self.killed[room] += killer != ""
+        print(f"{told}: {mutant.show()}", flush=True)
 
     def work(self, lane):
         while drawn := self.take():
             source, mutant = drawn
-            entry = self.verdict(lane, source, mutant)
-            if entry["killer"] is None:
-                continue
-            with self.lock:
-                room = mutant.path.split("/")[1]
-                self.judged[room] += 1
-                self.killed[room] += entry["killer"] != ""
-                told = f"killed by {entry['killer']}" if entry["killer"] else f"survives ({entry['told']})"
-                print(f"{told}: {mutant.show()}", flush=True)
+            killer, left, of = self.verdict(lane, source, mutant)
+            if killer is not None:
+                with self.lock:
+                    self.count(mutant, killer, left, of)
 
 
 def interval(killed, judged):
@@ -302,6 +331,21 @@ def interval(killed, judged):
     z, rate = 1.96, killed / judged
     middle, half = rate + z * z / (2 * judged), z * math.sqrt(rate * (1 - rate) / judged + z * z / (4 * judged * judged))
     return [100 * (middle + side * half) / (1 + z * z / judged) for side in (-1, 1)]
+
+
+def conclude(sample):
+    """Those that are undecided are neither killed nor survivors; the rate is at least this if it is so with all of them."""
+    for room in sorted(sample.judged):
+        print(f"{room:10} {sample.killed[room]:4} of {sample.judged[room]}")
+    judged, killed, undecided = sum(sample.judged.values()), sum(sample.killed.values()), len(sample.undecided)
+    if judged == 0:
+        sys.exit("mutation: no mutant was judged")
+    low, high = interval(killed, judged)
+    print(f"{killed} of {judged} killed: {100 * killed / judged:.1f} % (95 %: {low:.1f} to {high:.1f} %); {undecided} undecided")
+    if killed < LEAST_RATE * judged:
+        sys.exit(f"mutation: less than {100 * LEAST_RATE:.0f} % are killed")
+    if killed < LEAST_RATE * (judged + undecided):
+        sys.exit("mutation: too many are undecided (the same command goes on with them)")
 
 
 def main():
@@ -323,15 +367,7 @@ def main():
         worker.start()
     for worker in workers:
         worker.join()
-    for room in sorted(sample.judged):
-        print(f"{room:10} {sample.killed[room]:4} of {sample.judged[room]}")
-    judged, killed = sum(sample.judged.values()), sum(sample.killed.values())
-    if judged == 0:
-        sys.exit("mutation: no mutant was judged")
-    low, high = interval(killed, judged)
-    print(f"{killed} of {judged} killed: {100 * killed / judged:.1f} % (95 %: {low:.1f} to {high:.1f} %)")
-    if killed < LEAST_RATE * judged:
-        sys.exit(f"mutation: less than {100 * LEAST_RATE:.0f} % are killed")
+    conclude(sample)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,157 @@
+/* waferhand converse TRANSCRIPT */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../host/host.h"
+#include "../text/array.h"
+#include "app.h"
+#include "connection.h"
+
+typedef struct {
+    const char *path;
+} arguments_t;
+
+static const wh_option_t options[] = {{0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "converse",
+    .synopsis = "TRANSCRIPT",
+    .about = "Plays the host's side of what `waferhand serve --transcript` has written, each frame at its "
+             "slice, and "
+             "shows the first frame of the controllers' that differs.\v" WH_HELP_EXIT,
+    .tables = tables,
+    .operand = "transcript",
+    .operand_variable = offsetof(arguments_t, path)};
+
+/* What the transcript's heads say of the run. */
+typedef struct {
+    const char *layout;
+    const char **parameters;
+    size_t count;
+    bool shows_one_run;
+} heads_t;
+
+static bool refuse(const wh_transcript_t *played, size_t line, const char *what) {
+    fprintf(stderr, "%s:%zu: %s\n", played->path, line, what);
+    return false;
+}
+
+static bool is_of_port(const wh_transcript_t *played, size_t i) {
+    return i > 0 && strcmp(played->heads[i].name, "mechanism") == 0 &&
+           strcmp(played->heads[i - 1].name, "port") == 0;
+}
+
+static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
+    heads->parameters = wh_array_new(played->head_count + 1, sizeof *heads->parameters);
+    for (size_t i = 0; i < played->head_count; ++i) {
+        const wh_transcript_head_t *head = &played->heads[i];
+        if (strcmp(head->name, "layout") == 0) {
+            heads->layout = head->text;
+        } else if (strcmp(head->name, "set") == 0) {
+            heads->parameters[heads->count++] = head->text;
+        } else if (strcmp(head->name, "shows") == 0 && strcmp(head->text, "one run") == 0) {
+            heads->shows_one_run = true;
+        } else if (strcmp(head->name, "port") != 0 && !is_of_port(played, i)) {
+            return refuse(
+                played, head->line,
+                "no such head (expected layout, set, shows \"one run\", port, or mechanism behind its port)");
+        }
+    }
+    return heads->layout || refuse(played, 1, "no layout (expected a head: layout \"FILE\")");
+}
+
+/* What the port of this head stands for, as a head `mechanism "NAME"` behind it says; null: there is none. */
+static const char *mechanism_of(const wh_transcript_t *played, size_t port) {
+    const bool is_named =
+        port + 1 < played->head_count && strcmp(played->heads[port + 1].name, "mechanism") == 0;
+    return is_named ? played->heads[port + 1].text : NULL;
+}
+
+/* Each port's dialect, as `port "NAME FILE"` says. */
+static bool add_ports(wh_host_t *host) {
+    const wh_transcript_t *played = host->played;
+    for (size_t i = 0; i < played->head_count; ++i) {
+        const wh_transcript_head_t *head = &played->heads[i];
+        const char *file = strchr(head->text, ' ');
+        if (strcmp(head->name, "port") != 0) {
+            continue;
+        }
+        if (!file || host->count == WH_HOST_PORTS) {
+            return refuse(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
+        }
+        const wh_host_port_t port = {.dialect = file + 1, .mechanism = mechanism_of(played, i)};
+        if (!wh_host_add(host, &port)) {
+            fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect.message);
+            return false;
+        }
+        const char *name = host->controllers[host->count - 1]->name;
+        if (strncmp(name, head->text, strlen(name)) != 0 || head->text[strlen(name)] != ' ') {
+            return refuse(played, head->line, "the dialect is of another mechanism than its port");
+        }
+    }
+    return true;
+}
+
+/* All entries are of ports that there are, and there is something to be compared. */
+static bool check_entries(const wh_host_t *host) {
+    const wh_transcript_t *played = host->played;
+    bool is_any_heard = false;
+    for (size_t i = 0; i < played->count; ++i) {
+        bool is_known = false;
+        is_any_heard = is_any_heard || played->entries[i].kind == WH_TRANSCRIPT_HEARD;
+        for (size_t c = 0; c < host->count; ++c) {
+            is_known = is_known || strcmp(host->controllers[c]->name, played->entries[i].port) == 0;
+        }
+        if (!is_known) {
+            return refuse(played, played->entries[i].line, "no such port (expected one of the heads)");
+        }
+    }
+    return is_any_heard ||
+           refuse(played, 1, "nothing to compare (expected a frame of a controller's, a line with <)");
+}
+
+static int converse(wh_transcript_t *played) {
+    static wh_session_t session;
+    heads_t heads = {0};
+    wh_host_t host = {.session = &session, .stop = &wh_stop_requested, .played = played};
+    int status = WH_EXIT_USAGE;
+    if (read_heads(played, &heads)) {
+        host.shows_one_run = heads.shows_one_run;
+        const wh_session_options_t wanted = {.layout = heads.layout,
+                                             .limits = {.print_to = stderr},
+                                             .parameters = heads.parameters,
+                                             .parameter_count = heads.count,
+                                             .listener = wh_host_listener(&host)};
+        const bool opened = wh_session_open(&session, &wanted);
+        if (!opened) {
+            fprintf(stderr, "%s\n", session.message);
+        } else if (add_ports(&host) && check_entries(&host)) {
+            const bool same = wh_host_converse(&host);
+            printf("%s%sslices: %" PRId64 ", hash %016" PRIx64 "\n", same ? "same; " : played->message,
+                   same ? "" : "\n", session.mcs.track.slice, session.mcs.link->hash(session.mcs.link));
+            status = !wh_app_is_printed(0) ? WH_EXIT_USAGE : same ? WH_EXIT_MET : WH_EXIT_FAILED;
+        }
+        wh_host_close(&host);
+        wh_session_close(&session);
+    }
+    free(heads.parameters);
+    return status;
+}
+
+int wh_app_converse(int argc, char **argv) {
+    arguments_t arguments = {0};
+    wh_transcript_t played;
+    int status = WH_EXIT_USAGE;
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    wh_catch_signals();
+    if (wh_transcript_open(&played, arguments.path)) {
+        status = converse(&played);
+    } else {
+        fprintf(stderr, "%s\n", played.message);
+    }
+    wh_transcript_close(&played);
+    return status;
+}

@@ -1,0 +1,143 @@
+/* waferhand dialect FILE */
+#include <stdio.h>
+
+#include "../host/host.h"
+#include "../record/record.h"
+#include "../text/options.h"
+#include "app.h"
+
+typedef struct {
+    const char *path;
+} arguments_t;
+
+static const wh_option_t options[] = {{0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "dialect",
+    .synopsis = "FILE",
+    .about =
+        "Checks a dialect of `waferhand serve` without a cell, and lists which of our commands, errors and "
+        "status words it does not speak.\v" WH_HELP_EXIT,
+    .tables = tables,
+    .operand = "dialect",
+    .operand_variable = offsetof(arguments_t, path)};
+
+/* True if a command of theirs does this word. */
+static bool does(const wh_dialect_t *dialect, const wh_word_t *word) {
+    for (size_t i = 0; i < dialect->command_count; ++i) {
+        for (size_t j = 0; j < dialect->commands[i].does_count; ++j) {
+            if (dialect->commands[i].does[j] == word) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* True if the controller could: an ACKN only where one is awaited. */
+static bool is_its_own(const wh_dialect_t *dialect, const wh_word_t *word) {
+    return word->kind != WH_WORD_LOCAL && (word->kind != WH_WORD_ACKN || dialect->ackn_s > 0) &&
+           wh_mechanism_does(dialect->mechanism, word);
+}
+
+/* A name of a list that may be empty. */
+static void list(int *count, const char *name) {
+    printf("%s%s", *count == 0 ? " " : ", ", name);
+    ++*count;
+}
+
+static void end_list(int count) {
+    puts(count == 0 ? " none" : "");
+}
+
+static void print_commands(const wh_dialect_t *dialect, bool of_simulation) {
+    int count = 0;
+    printf("commands that %sit does not speak:", of_simulation ? "no controller has, and " : "");
+    for (size_t i = 0; i < wh_word_count; ++i) {
+        if (wh_words[i].is_of_simulation == of_simulation && is_its_own(dialect, &wh_words[i]) &&
+            !does(dialect, &wh_words[i])) {
+            list(&count, wh_words[i].name);
+        }
+    }
+    end_list(count);
+}
+
+/* What a command can answer: of motion, of motion control and of its link, but for what only a script or
+ * firmware meets. */
+static bool is_answered(wh_status_t status) {
+    static const wh_status_t ranges[][2] = {{WH_STATUS_BAD_VALVE, WH_STATUS_BAD_VALVE},
+                                            {WH_STATUS_RUN_OVER, WH_STATUS_RUN_OVER},
+                                            {WH_STATUS_BAD_LIMITS, WH_STATUS_BAD_SCAN},
+                                            {WH_STATUS_NO_ANSWER, WH_STATUS_NOT_TOUCHED},
+                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_DOOR_TIMEOUT}};
+    bool is_answered = false;
+    for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; ++i) {
+        is_answered = is_answered || (status >= ranges[i][0] && status <= ranges[i][1]);
+    }
+    return is_answered && status != WH_STATUS_BAD_SEGMENT && status != WH_STATUS_NO_LAYOUT &&
+           strcmp(wh_status_name(status), "UNKNOWN") != 0;
+}
+
+static void print_errors(const wh_dialect_t *dialect) {
+    int count = 0;
+    printf("errors that it tells as %s:", dialect->other_code);
+    for (int number = 1; number < WH_HOST_NUMBERS; ++number) {
+        const wh_status_t status = (wh_status_t)number;
+        if (is_answered(status) && !wh_dialect_speaks(dialect, status)) {
+            list(&count, wh_status_name(status));
+        }
+    }
+    end_list(count);
+}
+
+/* A host cannot tell these apart, and raises but the first of them by the code. */
+static void print_shared(const wh_dialect_t *dialect) {
+    int count = 0;
+    fputs("codes of several errors:", stdout);
+    for (size_t i = 0; i < dialect->code_count; ++i) {
+        for (size_t other = i + 1; other < dialect->code_count; ++other) {
+            if (strcmp(dialect->codes[i].code, dialect->codes[other].code) == 0) {
+                char text[200];
+                (void)snprintf(text, sizeof text, "%.60s (%s and %s)", dialect->codes[i].code,
+                               wh_status_name(dialect->codes[i].number),
+                               wh_status_name(dialect->codes[other].number));
+                list(&count, text);
+            }
+        }
+    }
+    end_list(count);
+}
+
+static void print_states(const wh_dialect_t *dialect) {
+    static const char *const states[] = {"idle", "running", "held"};
+    int count = 0;
+    fputs("status words that it does not speak:", stdout);
+    for (size_t i = 0; i < sizeof states / sizeof states[0]; ++i) {
+        if (!dialect->states[i]) {
+            list(&count, states[i]);
+        }
+    }
+    end_list(count);
+}
+
+int wh_app_dialect(int argc, char **argv) {
+    arguments_t arguments = {0};
+    wh_dialect_t dialect;
+    int status = WH_EXIT_USAGE;
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    if (!wh_dialect_open(&dialect, arguments.path)) {
+        fprintf(stderr, "%s\n", dialect.message);
+    } else {
+        printf("%s, for the %s: %zu commands\n", dialect.name, wh_mechanism_names[dialect.mechanism],
+               dialect.command_count);
+        print_commands(&dialect, false);
+        print_commands(&dialect, true);
+        print_errors(&dialect);
+        print_shared(&dialect);
+        print_states(&dialect);
+        status = wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
+    }
+    wh_dialect_close(&dialect);
+    return status;
+}

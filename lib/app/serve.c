@@ -1,0 +1,430 @@
+/* waferhand serve LAYOUT --dialect FILE --tcp ADDRESS:PORT | --pty LINK */
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../host/host.h"
+#include "../text/array.h"
+#include "../text/output.h"
+#include "apart.h"
+#include "app.h"
+#include "layout_arguments.h"
+#include "run_arguments.h"
+#include "serve_cell.h"
+
+typedef struct {
+    wh_layout_arguments_t layout;
+    wh_run_arguments_t run; /* of which the files alone are taken from the command line */
+    wh_option_list_t dialects, mechanisms, tcp, pty;
+    double rate; /* 0: not given */
+    bool lockstep;
+    const char *transcript, *coverage;
+    wh_serve_cell_arguments_t cell;
+} arguments_t;
+
+static const wh_option_t options[] = {
+    {"dialect", 0, "FILE", "How the next port's controller talks: a Lua file, see lua/dialects/README.md",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, dialects)},
+    {"mechanism", 0, "NAME",
+     "What the port of the dialect before it stands for: a robot or a station of the layout, such as an "
+     "aligner (default: what its dialect says, else the whole cell)",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, mechanisms)},
+    {"tcp", 0, "ADDRESS:PORT",
+     "A dialect's port: listen there; without an address at 127.0.0.1, 0 is any port", WH_OPTION_LIST,
+     .variable = offsetof(arguments_t, tcp)},
+    {"pty", 0, "LINK", "A dialect's port: a serial line, to which this link leads", WH_OPTION_LIST,
+     .variable = offsetof(arguments_t, pty)},
+    {"rate", 0, "FACTOR", "Let simulated time pass so much faster than the wall clock (default 1)",
+     WH_OPTION_REAL, .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
+    {"lockstep", 0, NULL, "Wait for no clock: commands take as long as they take to compute", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, lockstep)},
+    {"transcript", 0, "FILE",
+     "Write down what was said, a line for each frame; JSON lines if its name ends in .jsonl", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, transcript)},
+    {"coverage", 0, "FILE",
+     "Count in this file which errors hosts were shown and which never; it goes on from what it says already",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, coverage)},
+    {0}};
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    const size_t ports = arguments->tcp.count + arguments->pty.count;
+    if (arguments->dialects.count == 0) {
+        argp_error(state, "which --dialect?");
+    }
+    if (ports != arguments->dialects.count || ports > WH_HOST_PORTS) {
+        argp_error(state,
+                   "%zu --dialect, %zu --tcp and --pty (expected one port for each dialect, at most %d)",
+                   arguments->dialects.count, ports, WH_HOST_PORTS);
+    }
+    if (arguments->lockstep && arguments->rate > 0) {
+        argp_error(state, "--lockstep waits for no clock: no --rate beside it");
+    }
+}
+
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, check},
+    {wh_serve_cell_options, offsetof(arguments_t, cell), NULL, wh_serve_cell_check},
+    {wh_record_options, offsetof(arguments_t, cell.record), NULL, wh_record_arguments_check},
+    {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
+    {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "serve",
+    .synopsis = "LAYOUT --dialect FILE --tcp ADDRESS:PORT|--pty LINK [...]",
+    .about = "Simulates the layout's cell for a tool's host software, which talks to each controller in its "
+             "own dialect, until SIGINT or SIGTERM.\v" WH_HELP_EXIT,
+    .tables = tables,
+    .operand = "layout",
+    .operand_variable = offsetof(arguments_t, layout.path)};
+
+/* -------------------------------------------------------------------------------------------------- ports */
+
+/* Which argument of the command line it is, or is a part of. */
+static int place_of(int argc, char **argv, const char *item) {
+    for (int i = 0; i < argc; ++i) {
+        for (const char *c = argv[i];; ++c) {
+            if (c == item) {
+                return i;
+            }
+            if (*c == '\0') {
+                break;
+            }
+        }
+    }
+    return argc;
+}
+
+static bool open_port(wh_host_t *host, const wh_host_port_t *port) {
+    if (!wh_host_add(host, port)) {
+        fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect.message);
+        return false;
+    }
+    const wh_controller_t *controller = host->controllers[host->count - 1];
+    fprintf(stderr, "serve: %s, %s, at %s%s\n", controller->name, controller->dialect.name,
+            controller->port.place,
+            port->is_pty || controller->port.is_local ? "" : ": whoever reaches this machine can command it");
+    return true;
+}
+
+/* The mechanism between this dialect and the next one: null if there is none. */
+static const char *mechanism_of(const arguments_t *arguments, size_t dialect, int argc, char **argv) {
+    const wh_option_list_t *dialects = &arguments->dialects;
+    const int begin = place_of(argc, argv, dialects->items[dialect]);
+    const int end = dialect + 1 < dialects->count ? place_of(argc, argv, dialects->items[dialect + 1]) : argc;
+    const char *found = NULL;
+    for (size_t i = 0; i < arguments->mechanisms.count && !found; ++i) {
+        const char *name = arguments->mechanisms.items[i];
+        const int place = place_of(argc, argv, name);
+        found = place > begin && place < end ? name : NULL;
+    }
+    return found;
+}
+
+/* Each dialect has the next port of the command line, of either kind. */
+static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
+    size_t t = 0;
+    size_t p = 0;
+    size_t named = 0;
+    for (size_t i = 0; i < arguments->dialects.count; ++i) {
+        const int tcp = t < arguments->tcp.count ? place_of(argc, argv, arguments->tcp.items[t]) : argc;
+        const int pty = p < arguments->pty.count ? place_of(argc, argv, arguments->pty.items[p]) : argc;
+        const bool is_pty = pty < tcp;
+        const wh_host_port_t port = {.dialect = arguments->dialects.items[i],
+                                     .mechanism = mechanism_of(arguments, i, argc, argv),
+                                     .address =
+                                         is_pty ? arguments->pty.items[p++] : arguments->tcp.items[t++],
+                                     .is_pty = is_pty};
+        named += port.mechanism ? 1 : 0;
+        if (!open_port(host, &port)) {
+            return false;
+        }
+    }
+    if (named < arguments->mechanisms.count) {
+        fprintf(stderr, "--mechanism: %zu of %zu (expected one behind each --dialect at most)\n", named,
+                arguments->mechanisms.count);
+    }
+    return named == arguments->mechanisms.count;
+}
+
+/* ------------------------------------------------------------------------------------------------ outputs */
+
+/* The first line, and what the run is: what `waferhand converse` plays it with. */
+static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
+    wh_transcript_head_t *heads =
+        wh_array_new(2 + arguments->layout.parameters.count + 2 * host->count, sizeof *heads);
+    char ports[WH_HOST_PORTS][PATH_MAX + 80];
+    size_t count = 0;
+    heads[count++] = (wh_transcript_head_t){"layout", arguments->layout.path, 0};
+    for (size_t i = 0; i < arguments->layout.parameters.count; ++i) {
+        heads[count++] = (wh_transcript_head_t){"set", arguments->layout.parameters.items[i], 0};
+    }
+    if (host->shows_one_run) {
+        heads[count++] = (wh_transcript_head_t){"shows", "one run", 0};
+    }
+    for (size_t i = 0; i < host->count; ++i) {
+        const wh_controller_t *controller = host->controllers[i];
+        snprintf(ports[i], sizeof ports[i], "%s %s", controller->name, controller->dialect.path);
+        heads[count++] = (wh_transcript_head_t){"port", ports[i], 0};
+        if (controller->mechanism.name) {
+            heads[count++] = (wh_transcript_head_t){"mechanism", controller->mechanism.name, 0};
+        }
+    }
+    const bool written = (host->writes_json ? wh_transcript_write_json_heads
+                                            : wh_transcript_write_heads)(host->transcript, heads, count);
+    free(heads);
+    return written;
+}
+
+static bool open_transcript(wh_host_t *host, const arguments_t *arguments) {
+    if (!arguments->transcript) {
+        return true;
+    }
+    if (wh_file_is_free("--transcript", arguments->transcript)) {
+        const size_t length = strlen(arguments->transcript);
+        host->writes_json = length >= 6 && strcmp(arguments->transcript + length - 6, ".jsonl") == 0;
+        host->transcript = fopen(arguments->transcript, "we");
+        /* Each line is there at once, for who watches. */
+        if (host->transcript && setvbuf(host->transcript, NULL, _IOLBF, BUFSIZ) == 0 &&
+            write_heads(host, arguments)) {
+            return true;
+        }
+        fprintf(stderr, "--transcript %s: %s (expected the path of a file)\n", arguments->transcript,
+                strerror(errno));
+    }
+    return false;
+}
+
+static bool close_transcript(wh_host_t *host, const arguments_t *arguments) {
+    if (!host->transcript) {
+        return true;
+    }
+    const bool is_bad = ferror(host->transcript) != 0;
+    if (fclose(host->transcript) != 0 || is_bad) {
+        fprintf(stderr, "--transcript %s: not written: %s\n", arguments->transcript, strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+static bool is_name(const char *name, const char *text, size_t size) {
+    return strlen(name) == size && memcmp(name, text, size) == 0;
+}
+
+/* The counts of an earlier run, which go on. False if the file is none of ours. */
+static bool read_coverage(const char *path, uint64_t shown[]) {
+    FILE *in = fopen(path, "re");
+    char line[200];
+    bool is_ours = true;
+    if (!in) {
+        return errno == ENOENT;
+    }
+    while (is_ours && fgets(line, sizeof line, in)) {
+        char *name = NULL;
+        const long number = strtol(line, &name, 10);
+        const char *count = *name == ' ' ? strchr(name + 1, ' ') : NULL;
+        is_ours = count && number > 0 && number < WH_HOST_NUMBERS &&
+                  is_name(wh_status_name((wh_status_t)number), name + 1, (size_t)(count - name - 1));
+        shown[is_ours ? number : 0] += is_ours ? strtoull(count + 1, NULL, 10) : 0;
+    }
+    (void)fclose(in);
+    return is_ours;
+}
+
+static bool write_coverage(void *user, FILE *out) {
+    const uint64_t *shown = user;
+    for (int number = 1; number < WH_HOST_NUMBERS; ++number) {
+        const char *name = wh_status_name((wh_status_t)number);
+        if (strcmp(name, "UNKNOWN") != 0) {
+            fprintf(out, "%d %s %" PRIu64 "\n", number, name, shown[number]);
+        }
+    }
+    return ferror(out) == 0;
+}
+
+/* Adds what stands there; false if it is no coverage. */
+static bool add_coverage(const char *path, uint64_t shown[]) {
+    if (!path || read_coverage(path, shown)) {
+        return true;
+    }
+    fprintf(stderr,
+            "--coverage %s: no coverage (expected a file of lines such as 42 WAFER_MISSING 3, or none)\n",
+            path);
+    return false;
+}
+
+/* Before the first client: at the end it would be too late. */
+static bool check_coverage(const char *path) {
+    uint64_t earlier[WH_HOST_NUMBERS] = {0};
+    return add_coverage(path, earlier);
+}
+
+static bool keep_coverage(const wh_host_t *host, const char *path) {
+    return !path || (add_coverage(path, host->shown) &&
+                     wh_file_write("--coverage", path, write_coverage, host->shown, NULL));
+}
+
+static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    if (state->status == WH_OK) {
+        wh_signals_slice(user, command->axes, command->axis_count, state);
+    }
+}
+
+static void on_boundary(void *user, const wh_layout_t *layout) {
+    wh_signals_t *signals = user;
+    if (!signals->layout) {
+        wh_signals_begin(signals, layout, true);
+    } else if (signals->last > 0) {
+        wh_signals_mark(signals);
+    }
+}
+
+static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signals_t *signals) {
+    char *command = NULL;
+    size_t size = 0;
+    if (!wh_run_files_wanted(&arguments->run.files)) {
+        return true;
+    }
+    if (!signals->layout) {
+        wh_signals_begin(signals, session->record.layout, true);
+    }
+    wh_signals_finish(signals);
+    FILE *out = wh_memory_need(open_memstream(&command, &size));
+    fputs("serve", out);
+    for (size_t i = 0; i < arguments->dialects.count; ++i) {
+        fputs(" --dialect ", out);
+        wh_output_word(out, arguments->dialects.items[i]);
+    }
+    (void)fclose(out);
+    arguments->run.command = command;
+    const wh_document_t document = {.source = "run", .record = &session->record, .signals = signals};
+    const bool written = wh_run_files_write(&arguments->run, &document);
+    free(command);
+    return written;
+}
+
+/* ------------------------------------------------------------------------------------------------ serving */
+
+static void say_counters(const wh_host_t *host) {
+    const wh_session_t *session = host->session;
+    for (size_t i = 0; i < host->count; ++i) {
+        const wh_controller_t *controller = host->controllers[i];
+        const wh_controller_counters_t *c = &controller->counters;
+        fprintf(stderr,
+                "serve: %s: %" PRIu64 " client%s, %" PRIu64 " frame%s, %" PRIu64 " bad, %" PRIu64
+                " repeated, %" PRIu64 " action%s, %" PRIu64 " busy, %" PRIu64 " without an ACKN, %" PRIu64
+                " mistake%s of the dialect\n",
+                controller->name, controller->port.counters.clients,
+                WH_PLURAL(controller->port.counters.clients), c->frames, WH_PLURAL(c->frames), c->bad,
+                c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
+                WH_PLURAL(c->mistakes));
+    }
+    const int64_t slices = session->mcs.track.slice;
+    if (session->complaints > 0) {
+        fprintf(stderr, "serve: the cell complained %" PRId64 " time%s, such as %s\n",
+                (int64_t)session->complaints, WH_PLURAL(session->complaints),
+                wh_event_name(host->last_complaint));
+    }
+    fprintf(stderr, "serve: %" PRId64 " slice%s, hash %016" PRIx64 "\n", slices, WH_PLURAL(slices),
+            session->mcs.link->hash(session->mcs.link));
+}
+
+/* What a run is kept of, and who watches it. */
+typedef struct {
+    wh_session_t session;
+    wh_host_t host;
+    wh_signals_t signals;
+    wh_serve_cell_t cell;
+} served_t;
+
+static bool open_session(served_t *served, const arguments_t *arguments) {
+    wh_session_options_t wanted = {
+        .layout = arguments->layout.path,
+        .limits = {.memory_bytes = (size_t)(arguments->layout.memory_mib * 1048576), .print_to = stderr},
+        .parameters = arguments->layout.parameters.items,
+        .parameter_count = arguments->layout.parameters.count,
+        .listener = wh_host_listener(&served->host),
+        .keeps_all = wh_run_files_wanted(&arguments->run.files)};
+    if (!wh_serve_cell_open(&served->cell, &arguments->cell, &served->host, &wanted.partners)) {
+        return false;
+    }
+    if (!wh_session_open(&served->session, &wanted)) {
+        fprintf(stderr, "%s\n", served->session.message);
+        return false;
+    }
+    return wh_serve_cell_open_view(&served->cell);
+}
+
+static bool close_served(served_t *served) {
+    wh_host_close(&served->host);
+    wh_serve_cell_close_view(&served->cell);
+    wh_signals_close(&served->signals);
+    wh_session_close(&served->session);
+    return wh_serve_cell_close(&served->cell);
+}
+
+static double rate_of(const arguments_t *arguments) {
+    const double rate = arguments->rate > 0 ? arguments->rate : 1;
+    return arguments->lockstep ? 0 : rate;
+}
+
+/* Until the host is stopped; false if what was asked for could not be written. */
+static bool run_host(served_t *served, arguments_t *arguments) {
+    wh_host_run(&served->host);
+    wh_mcs_finish(&served->session.mcs);
+    say_counters(&served->host);
+    const bool reported = write_report(arguments, &served->session, &served->signals);
+    const bool covered = keep_coverage(&served->host, arguments->coverage);
+    return close_transcript(&served->host, arguments) && reported && covered;
+}
+
+static int serve(arguments_t *arguments, int argc, char **argv) {
+    static served_t served; /* most of it is for LCM, and not touched without that */
+    wh_host_t *host = &served.host;
+    *host = (wh_host_t){.session = &served.session,
+                        .rate = rate_of(arguments),
+                        .shows_one_run = wh_run_files_wanted(&arguments->run.files),
+                        .stop = &wh_stop_requested};
+    if (wh_run_files_wanted(&arguments->run.files)) {
+        host->next = (wh_mcs_listener_t){on_slice, on_boundary, &served.signals};
+    }
+    const bool good = check_coverage(arguments->coverage) && open_session(&served, arguments) &&
+                      open_ports(host, arguments, argc, argv) && open_transcript(host, arguments) &&
+                      run_host(&served, arguments);
+    return close_served(&served) && good ? WH_EXIT_MET : WH_EXIT_USAGE;
+}
+
+static bool is_apart(const arguments_t *arguments) {
+    const wh_run_files_t *files = &arguments->run.files;
+    const char *option = NULL;
+    const char *record = wh_record_arguments_path(&arguments->cell.record, &option);
+    const wh_named_file_t named[] = {{"the layout", arguments->layout.path, false},
+                                     {"--report", files->page, true},
+                                     {"--gltf", files->scene, true},
+                                     {"--data", files->document, true},
+                                     {"--svg", files->plots, true},
+                                     {"--transcript", arguments->transcript, true},
+                                     {option, record, true},
+                                     {"--coverage", arguments->coverage, true}};
+    return wh_files_are_apart(named, sizeof named / sizeof named[0], false);
+}
+
+int wh_app_serve(int argc, char **argv) {
+    arguments_t arguments = {.run = {.quiet = true}};
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    arguments.run.run.script = arguments.layout.path;
+    arguments.run.run.parameters = arguments.layout.parameters.items;
+    arguments.run.run.parameter_count = arguments.layout.parameters.count;
+    wh_catch_signals();
+    const int status = is_apart(&arguments) ? serve(&arguments, argc, argv) : WH_EXIT_USAGE;
+    wh_layout_arguments_free(&arguments.layout);
+    wh_option_list_free(&arguments.dialects);
+    wh_option_list_free(&arguments.mechanisms);
+    wh_option_list_free(&arguments.tcp);
+    wh_option_list_free(&arguments.pty);
+    return status;
+}

@@ -1,0 +1,149 @@
+#include "serve_cell.h"
+
+#include <string.h>
+
+const wh_option_t wh_serve_cell_options[] = {
+    {"sim", 0, NULL, "The simulator is another process: `waferhand sim LAYOUT`, at --lcm-url", WH_OPTION_FLAG,
+     .variable = offsetof(wh_serve_cell_arguments_t, sim)},
+    {"timeout", 0, "S",
+     "Wait at most S seconds for that simulator when it falls silent: then the command fails (default: for "
+     "ever)",
+     WH_OPTION_REAL, .variable = offsetof(wh_serve_cell_arguments_t, timeout_s), 1e-3, 1e6},
+    {"lcm", 0, NULL, "Publish over LCM what motion control and simulator would say to each other",
+     WH_OPTION_FLAG, .variable = offsetof(wh_serve_cell_arguments_t, lcm)},
+    {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
+     .variable = offsetof(wh_serve_cell_arguments_t, view)},
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --sim, --lcm or --view",
+     WH_OPTION_TEXT, .variable = offsetof(wh_serve_cell_arguments_t, url)},
+    {0}};
+
+static bool is_live(const wh_serve_cell_arguments_t *arguments) {
+    return arguments->lcm || arguments->view;
+}
+
+void wh_serve_cell_check(const void *given, struct argp_state *state) {
+    const wh_serve_cell_arguments_t *arguments = given;
+    if (arguments->sim && is_live(arguments)) {
+        argp_error(state, "--%s: with --sim the simulator says it itself (expected `waferhand sim LAYOUT%s`)",
+                   arguments->lcm ? "lcm" : "view", arguments->lcm ? "" : " --view");
+    }
+    if (arguments->timeout_s > 0 && !arguments->sim) {
+        argp_error(state, "--timeout: %g (goes with --sim)", arguments->timeout_s);
+    }
+    if (arguments->url && !arguments->sim && !is_live(arguments)) {
+        argp_error(state, "--lcm-url: %s (goes with --sim, --lcm or --view)", arguments->url);
+    }
+}
+
+static bool is_published(const wh_serve_cell_arguments_t *arguments) {
+    return is_live(arguments) || arguments->record.slices || arguments->record.all;
+}
+
+/* ------------------------------------------------------------------------------ simulated in this process */
+
+static bool open_view(wh_serve_cell_t *cell) {
+    cell->view.command = cell->broadcast.simulation->command;
+    cell->shown = cell->broadcast.layouts;
+    return wh_app_open_view(&cell->view, &cell->broadcast.node, cell->host->session->mcs.layout);
+}
+
+/* Called at least every 100 ms. A RESET has read the layout anew. */
+static void tick_broadcast(void *user) {
+    wh_serve_cell_t *cell = user;
+    wh_broadcast_tick(&cell->broadcast);
+    if (cell->view.node && cell->shown != cell->broadcast.layouts) {
+        wh_viewer_close(&cell->view);
+        memset(&cell->view, 0, sizeof cell->view);
+        (void)open_view(cell);
+    }
+    if (cell->view.node) {
+        wh_viewer_tick(&cell->view, &cell->broadcast.simulation->server);
+    }
+}
+
+static bool open_broadcast(wh_serve_cell_t *cell, wh_mcs_partners_t *partners) {
+    const wh_serve_cell_arguments_t *arguments = cell->arguments;
+    cell->is_broadcast =
+        wh_broadcast_open(&cell->broadcast, "serve", &arguments->record, is_live(arguments), arguments->url);
+    if (!cell->is_broadcast) {
+        return false;
+    }
+    *partners = wh_broadcast_partners(&cell->broadcast);
+    cell->host->tick = tick_broadcast;
+    cell->host->tick_user = cell;
+    return true;
+}
+
+/* ---------------------------------------------------------------------------------------- over LCM */
+
+static void tick_link(void *user) {
+    wh_serve_cell_t *cell = user;
+    wh_mcs_process_idle(&cell->link.control);
+}
+
+/* A host's STOP, or a signal, ends the wait for a simulator that is silent. */
+static void wait_for_simulator(void *user) {
+    wh_serve_cell_t *cell = user;
+    wh_host_wait(cell->host);
+    if (*cell->host->stop != 0) {
+        wh_host_end(cell->host);
+    }
+    if (*cell->host->stop != 0 || wh_host_is_stopped(cell->host)) {
+        cell->link.node.interrupted = true;
+    }
+}
+
+static void stop_by_request(void *user) {
+    wh_serve_cell_t *cell = user;
+    wh_host_stop(cell->host);
+    cell->link.node.interrupted = true;
+}
+
+/* A stop by a signal comes between two slices, as in one process: the client is not told of it. */
+static bool open_link(wh_serve_cell_t *cell, wh_mcs_partners_t *partners) {
+    const wh_serve_cell_arguments_t *arguments = cell->arguments;
+    const wh_mcs_link_options_t options = {.url = arguments->url,
+                                           .program = "serve",
+                                           .record = arguments->record,
+                                           .client = {.timeout_us = (int64_t)(arguments->timeout_s * 1e6)}};
+    cell->is_linked = wh_mcs_link_open(&cell->link, &options);
+    if (!cell->is_linked) {
+        return false;
+    }
+    cell->link.control.owner = (wh_mcs_process_owner_t){
+        .busy = "another command is being executed; hosts at ports command this cell",
+        .stops = stop_by_request,
+        .waits = wait_for_simulator,
+        .user = cell};
+    *partners = wh_mcs_process_partners(&cell->link.control);
+    cell->host->tick = tick_link;
+    cell->host->tick_user = cell;
+    return true;
+}
+
+/* --------------------------------------------------------------------------------- opening and closing */
+
+bool wh_serve_cell_open(wh_serve_cell_t *cell, const wh_serve_cell_arguments_t *arguments, wh_host_t *host,
+                        wh_mcs_partners_t *partners) {
+    cell->arguments = arguments;
+    cell->host = host;
+    if (arguments->sim) {
+        return open_link(cell, partners);
+    }
+    return !is_published(arguments) || open_broadcast(cell, partners);
+}
+
+bool wh_serve_cell_open_view(wh_serve_cell_t *cell) {
+    return !cell->arguments->view || open_view(cell);
+}
+
+void wh_serve_cell_close_view(wh_serve_cell_t *cell) {
+    wh_viewer_close(&cell->view);
+}
+
+bool wh_serve_cell_close(wh_serve_cell_t *cell) {
+    if (cell->is_linked) {
+        return wh_mcs_link_close(&cell->link);
+    }
+    return !cell->is_broadcast || wh_broadcast_close(&cell->broadcast);
+}

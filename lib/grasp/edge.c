@@ -1,0 +1,384 @@
+#include "edge.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+#define DEGREE (PI / 180)
+/* Halvings of a way of a few mm: to less than a double's last place. */
+#define HALVINGS 60
+
+typedef struct {
+    double x, y;
+} spot_t;
+
+static spot_t point(double x, double y) {
+    const spot_t p = {x, y};
+    return p;
+}
+
+static double length(double x, double y) {
+    return sqrt(x * x + y * y);
+}
+
+/* Series up to x^23, for angles up to 60 degrees: to rounding. */
+static spot_t direction(double angle) {
+    const double square = angle * angle;
+    spot_t d = {1, 1};
+    for (int k = 22; k > 0; k -= 2) {
+        d.x = 1 - d.x * square / (k * (k - 1));
+        d.y = 1 - d.y * square / (k * (k + 1));
+    }
+    d.y *= angle;
+    return d;
+}
+
+wh_edge_t wh_edge_default(double radius) {
+    const wh_edge_t edge = {radius, 1.5, 1.5, 30 * DEGREE, 2.5, -8, -0.25, 1.3, 4, 40};
+    return edge;
+}
+
+wh_edge_wafer_t wh_edge_wafer_nominal(double radius) {
+    wh_edge_wafer_t wafer = {radius, 0, 0, 0, 0, 0, 0, 1};
+    if (radius >= 100) {
+        wafer.depth = 1;
+        wafer.opening = 90 * DEGREE;
+        wafer.bottom = 0.9;
+    }
+    return wafer;
+}
+
+static bool is_within(double value, double least, double most) {
+    return value >= least && value <= most;
+}
+
+static bool are_finite(const double numbers[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        if (!(numbers[i] - numbers[i] == 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool are_pins(const wh_edge_t *edge) {
+    return is_within(edge->radius, 10, 300) && is_within(edge->rest, 0.1, 20) &&
+           is_within(edge->plunger, 0.1, 20) &&
+           is_within(edge->alpha, 25 * DEGREE - 1e-12, 60 * DEGREE + 1e-12) &&
+           is_within(edge->clearance, 0, 10) && edge->clearance <= edge->radius / 10;
+}
+
+static bool is_stroke(const wh_edge_t *edge) {
+    const double least = -(edge->clearance + 1);
+    return is_within(edge->retracted, -50, least) && is_within(edge->gripped_from, -5, 5) &&
+           edge->gripped_from > edge->retracted && is_within(edge->gripped_to, edge->gripped_from, 5) &&
+           edge->end > edge->gripped_to && edge->end <= 10 && is_within(edge->speed, 0.01, 1e4);
+}
+
+wh_status_t wh_edge_validate(const wh_edge_t *edge) {
+    if (!edge) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const double numbers[] = {edge->radius,    edge->rest,      edge->plunger,      edge->alpha,
+                              edge->clearance, edge->retracted, edge->gripped_from, edge->gripped_to,
+                              edge->end,       edge->speed};
+    if (!are_finite(numbers, sizeof numbers / sizeof numbers[0])) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    return are_pins(edge) && is_stroke(edge) ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
+static bool is_notch(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    const double smaller = edge->rest < edge->plunger ? edge->rest : edge->plunger;
+    return wafer->depth == 0 || (is_within(wafer->depth, 0.2, edge->radius / 50) &&
+                                 is_within(wafer->opening, 85 * DEGREE - 1e-12, 120 * DEGREE + 1e-12) &&
+                                 is_within(wafer->bottom, 0, smaller) &&
+                                 is_within(length(wafer->notch_x, wafer->notch_y), 1 - 1e-6, 1 + 1e-6));
+}
+
+wh_status_t wh_edge_wafer_validate(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    if (!edge || !wafer) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const double numbers[] = {wafer->radius,  wafer->x,      wafer->y,       wafer->depth,
+                              wafer->opening, wafer->bottom, wafer->notch_x, wafer->notch_y};
+    if (!are_finite(numbers, sizeof numbers / sizeof numbers[0])) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    const double half = edge->radius / 2 < 50 ? edge->radius / 2 : 50;
+    const bool good = is_within(wafer->radius, edge->radius - 1, edge->radius + 1) &&
+                      is_within(wafer->x, -half, half) && is_within(wafer->y, -half, half) &&
+                      is_notch(edge, wafer);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
+/* The notch's outline, on one side of its axis: a flank through the apex (apex, 0) with the direction
+ * (cosine, sine), as far as the corner. */
+typedef struct {
+    double apex, cosine, sine;
+    double flank; /* from the apex to the corner */
+    spot_t corner;
+} dip_t;
+
+static dip_t outline_of(const wh_edge_wafer_t *wafer) {
+    const spot_t half = direction(wafer->opening / 2);
+    dip_t outline = {0, 0, 0, 0, {0, 0}};
+    if (wafer->depth > 0) {
+        outline.cosine = half.x;
+        outline.sine = half.y;
+        outline.apex = wafer->radius - wafer->depth - wafer->bottom * (1 / half.y - 1);
+        const double aside = outline.apex * half.y;
+        outline.flank = sqrt(wafer->radius * wafer->radius - aside * aside) - outline.apex * half.x;
+        outline.corner = point(outline.apex + outline.flank * half.x, outline.flank * half.y);
+    }
+    return outline;
+}
+
+/* A pin's place from the wafer's centre, along the notch's axis and aside of it. */
+static spot_t from_notch(const wh_edge_wafer_t *wafer, spot_t pin) {
+    return point(pin.x * wafer->notch_x + pin.y * wafer->notch_y,
+                 fabs(pin.y * wafer->notch_x - pin.x * wafer->notch_y));
+}
+
+/* Never without a notch, whose corner is at 0 then. */
+static bool is_over_notch(const dip_t *outline, spot_t p) {
+    return p.x > 0 && p.y * outline->corner.x < p.x * outline->corner.y;
+}
+
+bool wh_edge_meets_notch(const wh_edge_wafer_t *wafer, double pin_x, double pin_y) {
+    const dip_t outline = outline_of(wafer);
+    return is_over_notch(&outline, from_notch(wafer, point(pin_x - wafer->x, pin_y - wafer->y)));
+}
+
+/* What the path is worked out from. */
+typedef struct {
+    const wh_edge_t *edge;
+    const wh_edge_wafer_t *wafer;
+    dip_t outline;
+    spot_t rests[2];                  /* at +y and -y */
+    double rest_reach, plunger_reach; /* from a pin's centre to the centre of a round wafer that it touches */
+    double off;                       /* of centre, at the begin */
+    int first;                        /* the rest that is met first */
+    spot_t begin;                     /* the wafer's centre when the plunger meets the rim */
+    spot_t rolls;                     /* and when it meets the first rest */
+    spot_t plain;                     /* the seated centre of a round wafer */
+    spot_t seated;                    /* the wafer's */
+    int sunk;                         /* which rest is over the notch; -1: none */
+    double ahead;                     /* of the plunger, if the notch is there */
+    double s_begin, s_plain, s_seated; /* where the plunger is then */
+} path_t;
+
+static spot_t minus(spot_t a, spot_t b) {
+    return point(a.x - b.x, a.y - b.y);
+}
+
+/* How far a pin of this radius is from touching the wafer, with its centre at `pin` from the wafer's. Below
+ * 0: inside. */
+static double gap_of(const path_t *path, double radius, spot_t pin) {
+    const dip_t *o = &path->outline;
+    const spot_t p = from_notch(path->wafer, pin);
+    if (!is_over_notch(o, p)) {
+        return length(pin.x, pin.y) - path->wafer->radius - radius;
+    }
+    const double along = (p.x - o->apex) * o->cosine + p.y * o->sine;
+    if (along <= o->flank) {
+        return (p.x - o->apex) * o->sine - p.y * o->cosine - radius;
+    }
+    return length(p.x - o->corner.x, p.y - o->corner.y) - radius;
+}
+
+static spot_t plunger_at(const wh_edge_t *edge, double s) {
+    return point(s - edge->radius - edge->plunger, 0);
+}
+
+/* s at which the plunger touches a round wafer at `centre`. */
+static double meets(const path_t *path, spot_t centre) {
+    const double reach = path->plunger_reach;
+    return centre.x - sqrt(reach * reach - centre.y * centre.y) + path->edge->radius + path->edge->plunger;
+}
+
+/* How much later it touches this wafer, if the notch is there. */
+static double lag_at(const path_t *path, spot_t centre) {
+    const double least = meets(path, centre);
+    double from = least;
+    double to = least + 4 * path->wafer->depth;
+    if (!is_over_notch(&path->outline,
+                       from_notch(path->wafer, minus(plunger_at(path->edge, least), centre)))) {
+        return 0;
+    }
+    for (int i = 0; i < HALVINGS; ++i) {
+        const double middle = from + (to - from) / 2;
+        const spot_t pin = minus(plunger_at(path->edge, middle), centre);
+        *(gap_of(path, path->edge->plunger, pin) > 0 ? &from : &to) = middle;
+    }
+    return from - least;
+}
+
+/* The centre at the distance `reach` from `about`, `way` mm farther towards `to` than `from` is. */
+static spot_t roll(spot_t about, double reach, spot_t from, spot_t to, double way) {
+    const spot_t towards = minus(to, from);
+    const double part = way / length(towards.x, towards.y);
+    const spot_t moved = minus(point(from.x + part * towards.x, from.y + part * towards.y), about);
+    const double share = reach / length(moved.x, moved.y);
+    return point(about.x + share * moved.x, about.y + share * moved.y);
+}
+
+/* From the round wafer's place the centre rolls on the other rest, until this one touches the outline. With
+ * alpha and the notch's opening in their ranges the gap only shrinks on the way. */
+static spot_t sink(const path_t *path) {
+    const spot_t other = path->rests[path->sunk == 0 ? 1 : 0];
+    const spot_t rest = path->rests[path->sunk];
+    double from = 0;
+    double to = 8 * path->wafer->depth;
+    for (int i = 0; i < HALVINGS; ++i) {
+        const double way = from + (to - from) / 2;
+        const spot_t centre = roll(other, path->rest_reach, path->plain, rest, way);
+        *(gap_of(path, path->edge->rest, minus(rest, centre)) > 0 ? &from : &to) = way;
+    }
+    return roll(other, path->rest_reach, path->plain, rest, from);
+}
+
+/* Which rest stands over the notch of a wafer at `centre`; -1: none. */
+static int find_sunk(const path_t *path, spot_t centre) {
+    for (int rest = 0; rest < 2; ++rest) {
+        if (is_over_notch(&path->outline, from_notch(path->wafer, minus(path->rests[rest], centre)))) {
+            return rest;
+        }
+    }
+    return -1;
+}
+
+/* Where the way begins: as the wafer lies, or moved back along the blade if it lies on a rest. */
+static void find_begin(path_t *path) {
+    const spot_t start = {path->wafer->x, path->wafer->y};
+    path->first = 1;
+    if (start.y > 0) {
+        path->first = 0;
+    }
+    const spot_t rest = path->rests[path->first];
+    const double aside = rest.y - start.y;
+    path->off = length(start.x, start.y);
+    path->rolls = point(rest.x - sqrt(path->rest_reach * path->rest_reach - aside * aside), start.y);
+    path->begin = point(start.x < path->rolls.x ? start.x : path->rolls.x, start.y);
+}
+
+static path_t path_of(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    const spot_t alpha = direction(edge->alpha);
+    const double reach = edge->radius + edge->rest;
+    path_t path = {.edge = edge, .wafer = wafer, .outline = outline_of(wafer)};
+    path.rests[0] = point(reach * alpha.x, reach * alpha.y);
+    path.rests[1] = point(reach * alpha.x, -reach * alpha.y);
+    path.rest_reach = wafer->radius + edge->rest;
+    path.plunger_reach = wafer->radius + edge->plunger;
+    find_begin(&path);
+    const double aside = path.rests[0].y;
+    path.plain = point(path.rests[0].x - sqrt(path.rest_reach * path.rest_reach - aside * aside), 0);
+    path.sunk = find_sunk(&path, path.plain);
+    path.seated = path.sunk < 0 ? path.plain : sink(&path);
+    path.ahead = lag_at(&path, path.seated);
+    path.s_begin = meets(&path, path.begin) + path.ahead;
+    path.s_plain = meets(&path, path.plain) + path.ahead;
+    path.s_seated = meets(&path, path.seated) + path.ahead;
+    return path;
+}
+
+/* Where the circles about a rest and the plunger meet, on the side of the other rest. */
+static spot_t between(const path_t *path, int rest, double s) {
+    const spot_t plunger = plunger_at(path->edge, s - path->ahead);
+    const spot_t way = minus(path->rests[rest], plunger);
+    const double d = length(way.x, way.y);
+    const double r = path->plunger_reach;
+    const double along = (d * d + r * r - path->rest_reach * path->rest_reach) / (2 * d);
+    const double square = r * r - along * along;
+    const double aside = (rest == 0 ? -1 : 1) * sqrt(square > 0 ? square : 0);
+    return point(plunger.x + (along * way.x - aside * way.y) / d,
+                 plunger.y + (along * way.y + aside * way.x) / d);
+}
+
+static void put(wh_edge_place_t *place, wh_edge_phase_t phase, double s, spot_t centre) {
+    place->phase = phase;
+    place->s = s;
+    place->x = centre.x;
+    place->y = centre.y;
+}
+
+/* A wafer that is farther off than the pocket allows. */
+static void stop(const path_t *path, double s, wh_edge_place_t *place) {
+    const spot_t start = {path->wafer->x, path->wafer->y};
+    const double rim = meets(path, start) + lag_at(path, start);
+    const double met = rim > path->edge->retracted ? rim : path->edge->retracted;
+    if (met > path->edge->gripped_to) {
+        put(place, s < path->edge->end ? WH_EDGE_FREE : WH_EDGE_MISSED, s, start);
+    } else if (s < met) {
+        put(place, WH_EDGE_FREE, s, start);
+    } else {
+        put(place, WH_EDGE_JAMMED, met, start);
+        place->excess = path->off - path->edge->clearance;
+    }
+}
+
+/* Before the plunger meets the rim. A wafer that lies on a rest slides off it meanwhile, evenly. */
+static void wait(const path_t *path, double s, wh_edge_place_t *place) {
+    const double retracted = path->edge->retracted;
+    const double part = s > retracted ? (s - retracted) / (path->s_begin - retracted) : 0;
+    const double x = path->wafer->x;
+    put(place, WH_EDGE_FREE, s, point(x + part * (path->begin.x - x), path->begin.y));
+}
+
+static void follow(const path_t *path, double s, wh_edge_place_t *place) {
+    const double pushed = path->begin.x + (s - path->s_begin);
+    if (s >= path->s_seated) {
+        put(place, WH_EDGE_SEATED, path->s_seated, path->seated);
+    } else if (s >= path->s_plain) {
+        put(place, WH_EDGE_SINKING, s, between(path, path->sunk == 0 ? 1 : 0, s));
+    } else if (s < path->s_begin) {
+        wait(path, s, place);
+    } else if (pushed < path->rolls.x) {
+        put(place, WH_EDGE_PUSHED, s, point(pushed, path->begin.y));
+    } else {
+        put(place, WH_EDGE_ROLLING, s, between(path, path->first, s));
+    }
+}
+
+static wh_edge_window_t window_of(const wh_edge_t *edge, double s) {
+    if (s <= edge->retracted) {
+        return WH_EDGE_RETRACTED;
+    }
+    if (s > edge->gripped_to) {
+        return WH_EDGE_OVERTRAVEL;
+    }
+    return s >= edge->gripped_from ? WH_EDGE_GRIPPED : WH_EDGE_SHORT;
+}
+
+static void find(const wh_edge_t *edge, const wh_edge_wafer_t *wafer, double s, wh_edge_place_t *place) {
+    place->excess = 0;
+    if (!wafer) {
+        put(place, s < edge->end ? WH_EDGE_FREE : WH_EDGE_MISSED, s, point(0, 0));
+    } else {
+        const path_t path = path_of(edge, wafer);
+        if (path.off <= edge->clearance) {
+            follow(&path, s, place);
+        } else {
+            stop(&path, s, place);
+        }
+    }
+    place->window = window_of(edge, place->s);
+    place->held = place->phase == WH_EDGE_SEATED && place->window == WH_EDGE_GRIPPED;
+}
+
+wh_status_t wh_edge_at(const wh_edge_t *edge, const wh_edge_wafer_t *wafer, double s,
+                       wh_edge_place_t *place) {
+    if (!place) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    wh_status_t status = wh_edge_validate(edge);
+    if (status == WH_OK && wafer) {
+        status = wh_edge_wafer_validate(edge, wafer);
+    }
+    if (status == WH_OK && !(s - s == 0)) {
+        status = WH_STATUS_NOT_FINITE;
+    }
+    if (status == WH_OK) {
+        find(edge, wafer, s < edge->end ? s : edge->end, place);
+    }
+    return status;
+}

@@ -1,0 +1,466 @@
+/* A dialect's file, read strictly. What it says once is read here; its functions stay in Lua. */
+#include "dialect.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "../record/record.h"
+#include "../script/reader.h"
+#include "../script/wh_module.h"
+#include "../text/array.h"
+#include "mechanism.h"
+#include "pace.h"
+
+char wh_dialect_key;
+
+static const wh_reader_field_t dialect_fields[] = {
+    {"name", "string", "what it is", true},
+    {"mechanism", "string", "what it stands for", false},
+    {"framing", "table", "from bytes to frames", true},
+    {"units", "table", "what one of their units is", false},
+    {"signs", "table", "-1 where their axis turns the other way", false},
+    {"stations", "table", "their names of stations, and ours", false},
+    {"arms", "table", "their names of grippers, and ours", false},
+    {"doors", "table", "their names of doors, and ours", false},
+    {"first_slot", "number", "how they count the first slot", false},
+    {"decode", "function", "from a frame to a request", true},
+    {"commands", "table", "theirs, by name", true},
+    {"encode", "table", "from a request and what came of it to frames", true},
+    {"errors", "table", "our names of errors, and their codes", false},
+    {"other_error", "string", "their code of all other errors", true},
+    {"states", "table", "our words of a state, and theirs", false},
+    {"timing", "table", "of answers", false},
+    {"baud", "number", "the pace of the line", false},
+    {"second_client", "string", "what becomes of it", false},
+    {"completes_to", "string", "who hears of a command's end", false},
+    {"chaos", "table", "what befalls frames on the line", false},
+    {0}};
+
+static const wh_reader_field_t framing_fields[] = {{"start", "string", "", false},
+                                                   {"replies", "table", "", false},
+                                                   {"ends", "table", "", true},
+                                                   {"sum", "string", "", false},
+                                                   {"separator", "string", "", false},
+                                                   {"sums_start", "boolean", "", false},
+                                                   {"sums_separator", "boolean", "", false},
+                                                   {"skips_empty", "boolean", "", false},
+                                                   {"shortest", "number", "", false},
+                                                   {"longest", "number", "", false},
+                                                   {"timeout", "number", "", false},
+                                                   {0}};
+
+static const wh_reader_field_t command_fields[] = {
+    {"does", "string", "", true}, {"run", "function", "", false}, {"answer", "function", "", false}, {0}};
+
+/* In the order of wh_encoder_t. */
+static const wh_reader_field_t encode_fields[] = {{"acknowledge", "function", "", false},
+                                                  {"answer", "function", "", true},
+                                                  {"complete", "function", "", true},
+                                                  {"refuse", "function", "", true},
+                                                  {"bad", "function", "", true},
+                                                  {"event", "function", "", false},
+                                                  {"unacknowledged", "function", "", false},
+                                                  {0}};
+
+static const wh_reader_field_t state_fields[] = {
+    {"idle", "string", "", false}, {"running", "string", "", false}, {"held", "string", "", false}, {0}};
+static const wh_reader_field_t unit_fields[] = {
+    {"length", "number", "", false}, {"angle", "number", "", false}, {0}};
+static const wh_reader_field_t sign_fields[] = {{"theta", "number", "", false},
+                                                {"r", "number", "", false},
+                                                {"z", "number", "", false},
+                                                {"yaw", "number", "", false},
+                                                {0}};
+static const wh_reader_field_t timing_fields[] = {
+    {"ack", "number", "", false}, {"busy", "number", "", false}, {"ackn", "number", "", false}, {0}};
+
+static const wh_reader_field_t chaos_fields[] = {{"seed", "number", "", false},
+                                                 {"drop", "number", "", false},
+                                                 {"double", "number", "", false},
+                                                 {"garble", "number", "", false},
+                                                 {"delay", "number", "", false},
+                                                 {"late_ack", "number", "", false},
+                                                 {0}};
+
+/* True if the field is there and a function. */
+static bool has_function(wh_reader_t *reader, const wh_reader_field_t *field) {
+    const int type = wh_reader_push(reader, field->name);
+    if (type != LUA_TFUNCTION && (type != LUA_TNIL || field->required)) {
+        wh_reader_fail(reader, field->name, "a function");
+    }
+    lua_pop(reader->L, 1);
+    return type == LUA_TFUNCTION;
+}
+
+/* ------------------------------------------------------------------------------------------------ framing */
+
+/* The text on top of the stack, which is popped. */
+static wh_framing_mark_t take_mark(wh_reader_t *reader, const char *field) {
+    wh_framing_mark_t mark = {.size = 0};
+    size_t size = 0;
+    const char *bytes = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tolstring(reader->L, -1, &size) : NULL;
+    if (!bytes || size < 1 || size > WH_FRAMING_MARK) {
+        wh_reader_fail(reader, field, "a text of 1 to %d bytes", WH_FRAMING_MARK);
+    }
+    memcpy(mark.bytes, bytes, size);
+    mark.size = size;
+    lua_pop(reader->L, 1);
+    return mark;
+}
+
+static wh_framing_mark_t read_mark(wh_reader_t *reader, const char *field) {
+    if (wh_reader_push(reader, field) == LUA_TNIL) {
+        lua_pop(reader->L, 1);
+        return (wh_framing_mark_t){.size = 0};
+    }
+    return take_mark(reader, field);
+}
+
+/* A list of marks. Returns how many there are. */
+static size_t read_marks(wh_reader_t *reader, const char *field, wh_framing_mark_t marks[]) {
+    if (!wh_reader_enter(reader, field)) {
+        return 0;
+    }
+    const size_t count = wh_reader_list(reader);
+    if (count < 1 || count > WH_FRAMING_MARKS) {
+        wh_reader_fail(reader, NULL, "1 to %d texts", WH_FRAMING_MARKS);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        char name[8];
+        (void)snprintf(name, sizeof name, "[%zu]", i + 1);
+        lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
+        marks[i] = take_mark(reader, name);
+    }
+    wh_reader_leave(reader);
+    return count;
+}
+
+static void validate_framing(const wh_reader_t *reader, const wh_framing_t *framing) {
+    char problem[WH_FRAMING_PROBLEM_BYTES];
+    if (!wh_framing_validate(framing, problem)) {
+        luaL_error(reader->L, "%s: framing.%s", reader->file, problem);
+    }
+}
+
+static void read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
+    static const char *const sums[] = {"none", "add", "xor", "complement", NULL};
+    wh_framing_t *framing = &dialect->framing;
+    if (!wh_reader_open(reader, "framing", framing_fields)) {
+        wh_reader_fail(reader, "framing", "a table");
+    }
+    *framing = wh_framing_default();
+    framing->starts[0] = read_mark(reader, "start");
+    framing->start_count = framing->starts[0].size > 0 ? 1 : 0;
+    framing->end_count = read_marks(reader, "ends", framing->ends);
+    framing->sum = (wh_sum_kind_t)wh_reader_choice(reader, "sum", WH_SUM_NONE, sums);
+    framing->separator = read_mark(reader, "separator");
+    framing->sums_start = wh_reader_boolean(reader, "sums_start", false);
+    framing->sums_separator = wh_reader_boolean(reader, "sums_separator", false);
+    framing->skips_empty = wh_reader_boolean(reader, "skips_empty", true);
+    framing->shortest = (size_t)wh_reader_whole(reader, "shortest", 0, 0, WH_FRAMING_LINE);
+    framing->longest = (size_t)wh_reader_whole(reader, "longest", WH_FRAMING_LINE, 16, WH_FRAMING_LINE);
+    framing->timeout_us = (int64_t)(wh_reader_number(reader, "timeout", 0, 0, 3600) * 1e6);
+    dialect->replies = *framing;
+    const size_t replies = read_marks(reader, "replies", dialect->replies.starts);
+    dialect->replies.start_count = replies > 0 ? replies : framing->start_count;
+    dialect->replies.shortest = 0;
+    validate_framing(reader, framing);
+    validate_framing(reader, &dialect->replies);
+    wh_reader_leave(reader);
+}
+
+/* ------------------------------------------------------------------------------------------------- tables */
+
+/* Refuses a table that has anything but texts by texts. */
+static void check_names(wh_reader_t *reader, const char *field) {
+    if (!wh_reader_enter(reader, field)) {
+        return;
+    }
+    lua_State *L = reader->L;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING || lua_type(L, -1) != LUA_TSTRING) {
+            wh_reader_fail(reader, lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : NULL,
+                           "our name as a text, by their name as a text: [\"1\"] = \"A\"");
+        }
+    }
+    wh_reader_leave(reader);
+}
+
+static wh_status_t find_error(const char *name) {
+    for (int number = 1; number < 1000; ++number) {
+        if (strcmp(wh_status_name((wh_status_t)number), name) == 0) {
+            return (wh_status_t)number;
+        }
+    }
+    return WH_OK;
+}
+
+/* A code, a text or a whole number, on top of the stack. */
+static void take_code(const wh_reader_t *reader, const char *field, char code[WH_DIALECT_NAME_BYTES]) {
+    size_t size = 0;
+    const bool is_code = lua_type(reader->L, -1) == LUA_TSTRING || lua_isinteger(reader->L, -1);
+    lua_pushvalue(reader->L, -1);
+    const char *text = is_code ? lua_tolstring(reader->L, -1, &size) : NULL;
+    if (!text || size >= WH_DIALECT_NAME_BYTES || !wh_reader_is_plain(text, size)) {
+        lua_pop(reader->L, 1);
+        wh_reader_fail(reader, field, "their code, a text of at most %d bytes or a whole number",
+                       WH_DIALECT_NAME_BYTES - 1);
+    }
+    memcpy(code, text, size + 1);
+    lua_pop(reader->L, 1);
+}
+
+static void read_errors(wh_reader_t *reader, wh_dialect_t *dialect) {
+    (void)wh_reader_push(reader, "other_error");
+    take_code(reader, "other_error", dialect->other_code);
+    lua_pop(reader->L, 1);
+    if (!wh_reader_enter(reader, "errors")) {
+        return;
+    }
+    lua_State *L = reader->L;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : NULL;
+        const wh_status_t number = name ? find_error(name) : WH_OK;
+        if (number == WH_OK) {
+            wh_reader_fail(reader, name, "a name of our errors, as `man waferhand` lists them");
+        }
+        dialect->codes = wh_array_grow(dialect->codes, dialect->code_count, &dialect->code_capacity,
+                                       sizeof *dialect->codes);
+        wh_dialect_code_t *code = &dialect->codes[dialect->code_count++];
+        code->number = number;
+        take_code(reader, name, code->code);
+    }
+    wh_reader_leave(reader);
+}
+
+/* ----------------------------------------------------------------------------------------------- commands */
+
+static void read_does(wh_reader_t *reader, wh_dialect_command_t *command) {
+    char does[200];
+    wh_reader_text(reader, "does", NULL, does, sizeof does);
+    for (const char *at = does + strspn(does, " "); *at; at += strcspn(at, " "), at += strspn(at, " ")) {
+        const wh_word_t *word = wh_word_of(at);
+        if (!word || command->does_count == WH_DIALECT_DOES) {
+            wh_reader_refuse(reader, "does", does,
+                             "at most %d words of the prompt, or HOLD, RESUME, ACKN, LOCAL", WH_DIALECT_DOES);
+        }
+        if (command->does_count > 0 && word->kind != command->kind) {
+            wh_reader_refuse(reader, "does", does, "words that are all actions, or all queries");
+        }
+        command->kind = word->kind;
+        command->does[command->does_count++] = word;
+    }
+}
+
+/* What the controller does not stand for it does not do. */
+static void check_mechanism(const wh_reader_t *reader, const wh_dialect_t *dialect,
+                            const wh_dialect_command_t *command) {
+    for (size_t i = 0; i < command->does_count; ++i) {
+        const wh_word_t *word = command->does[i];
+        if (!wh_mechanism_does(dialect->mechanism, word)) {
+            wh_reader_refuse(reader, "does", word->name, "no word of another mechanism than %s",
+                             wh_mechanism_names[dialect->mechanism]);
+        }
+    }
+}
+
+static void read_command(wh_reader_t *reader, wh_dialect_t *dialect, const char *name) {
+    dialect->commands = wh_array_grow(dialect->commands, dialect->command_count, &dialect->command_capacity,
+                                      sizeof *dialect->commands);
+    wh_dialect_command_t *command = &dialect->commands[dialect->command_count++];
+    memset(command, 0, sizeof *command);
+    (void)snprintf(command->name, sizeof command->name, "%s", name);
+    wh_reader_refuse_unknown(reader, command_fields);
+    read_does(reader, command);
+    check_mechanism(reader, dialect, command);
+    wh_reader_field_t run = command_fields[1];
+    run.required = command->kind == WH_WORD_LOCAL;
+    (void)has_function(reader, &run);
+    (void)has_function(reader, &command_fields[2]);
+}
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(((const wh_dialect_command_t *)a)->name, ((const wh_dialect_command_t *)b)->name);
+}
+
+static void read_commands(wh_reader_t *reader, wh_dialect_t *dialect) {
+    lua_State *L = reader->L;
+    if (!wh_reader_enter(reader, "commands")) {
+        wh_reader_fail(reader, "commands", "a table of their commands");
+    }
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : NULL;
+        if (!name || name[0] == '\0' || strlen(name) >= WH_DIALECT_NAME_BYTES) {
+            wh_reader_fail(reader, name, "a command by its name, a text of at most %d bytes",
+                           WH_DIALECT_NAME_BYTES - 1);
+        }
+        lua_pushvalue(L, -3);
+        if (wh_reader_enter(reader, name)) {
+            read_command(reader, dialect, name);
+            wh_reader_leave(reader);
+        }
+        lua_pop(L, 1);
+    }
+    qsort(dialect->commands, dialect->command_count, sizeof *dialect->commands, by_name);
+    wh_reader_leave(reader);
+}
+
+static void read_encoders(wh_reader_t *reader, wh_dialect_t *dialect) {
+    if (!wh_reader_open(reader, "encode", encode_fields)) {
+        wh_reader_fail(reader, "encode", "a table of functions");
+    }
+    for (size_t i = 0; i < WH_ENCODERS; ++i) {
+        dialect->encodes[i] = has_function(reader, &encode_fields[i]);
+    }
+    wh_reader_leave(reader);
+}
+
+/* ---------------------------------------------------------------------------------------------- the whole */
+
+static void read_units(wh_reader_t *reader, wh_dialect_t *dialect) {
+    wh_reader_open_section(reader, "units", unit_fields);
+    dialect->length = wh_reader_number(reader, "length", 1, 1e-6, 1e6);
+    dialect->angle = wh_reader_number(reader, "angle", 1, 1e-6, 1e6);
+    wh_reader_leave(reader);
+    wh_reader_open_section(reader, "signs", sign_fields);
+    for (size_t axis = 0; axis < 4; ++axis) {
+        const char *name = sign_fields[axis].name;
+        dialect->signs[axis] = wh_reader_number(reader, name, 1, -1, 1);
+        if (fabs(dialect->signs[axis]) != 1) {
+            (void)wh_reader_push(reader, name);
+            wh_reader_fail(reader, name, "1 or -1");
+        }
+    }
+    wh_reader_leave(reader);
+}
+
+static void read_states(wh_reader_t *reader, wh_dialect_t *dialect) {
+    wh_reader_open_section(reader, "states", state_fields);
+    for (size_t i = 0; i < 3; ++i) {
+        char word[WH_DIALECT_NAME_BYTES];
+        wh_reader_text(reader, state_fields[i].name, "", word, sizeof word);
+        dialect->states[i] = word[0] != '\0';
+    }
+    wh_reader_leave(reader);
+}
+
+static void read_timing(wh_reader_t *reader, wh_dialect_t *dialect) {
+    static const char *const clients[] = {"refuse", "take_over", NULL};
+    static const char *const hearers[] = {"asker", "next", NULL};
+    wh_reader_open_section(reader, "timing", timing_fields);
+    dialect->ack_s = wh_reader_number(reader, "ack", 0, 0, 3600);
+    dialect->busy_s = wh_reader_number(reader, "busy", 0, 0, 3600);
+    dialect->ackn_s = wh_reader_number(reader, "ackn", 0, 0, 3600);
+    wh_reader_leave(reader);
+    dialect->takes_over = wh_reader_choice(reader, "second_client", 0, clients) == 1;
+    dialect->completes_to_next = wh_reader_choice(reader, "completes_to", 0, hearers) == 1;
+    dialect->baud = wh_reader_whole(reader, "baud", 0, 0, WH_PACE_MOST);
+    if (!wh_pace_validate(dialect->baud)) {
+        (void)wh_reader_push(reader, "baud");
+        wh_reader_fail(reader, "baud", "0 or %d to %d", WH_PACE_LEAST, WH_PACE_MOST);
+    }
+}
+
+static void read_chaos(wh_reader_t *reader, wh_dialect_t *dialect) {
+    const double most_s = WH_CHAOS_DELAY_US / 1e6;
+    wh_reader_open_section(reader, "chaos", chaos_fields);
+    dialect->chaos.seed = (uint64_t)wh_reader_whole(reader, "seed", 0, 0, INT32_MAX);
+    dialect->chaos.drop = wh_reader_number(reader, "drop", 0, 0, 1);
+    dialect->chaos.twice = wh_reader_number(reader, "double", 0, 0, 1);
+    dialect->chaos.garble = wh_reader_number(reader, "garble", 0, 0, 1);
+    dialect->chaos.delay_us = (int64_t)(wh_reader_number(reader, "delay", 0, 0, most_s) * 1e6);
+    dialect->chaos.late_ack_us = (int64_t)(wh_reader_number(reader, "late_ack", 0, 0, most_s) * 1e6);
+    wh_reader_leave(reader);
+}
+
+/* Runs protected. What the file returned is on top of the stack below the argument. */
+static int read_dialect(lua_State *L) {
+    wh_dialect_t *dialect = lua_touserdata(L, 1);
+    wh_reader_t reader;
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    wh_reader_start(&reader, L, dialect->path);
+    if (!lua_istable(L, -1)) {
+        wh_reader_fail(&reader, NULL, "a dialect's table, which the file returns");
+    }
+    wh_reader_refuse_unknown(&reader, dialect_fields);
+    wh_reader_text(&reader, "name", NULL, dialect->name, sizeof dialect->name);
+    dialect->mechanism = (wh_mechanism_t)wh_reader_choice(&reader, "mechanism", 0, wh_mechanism_names);
+    read_framing(&reader, dialect);
+    read_units(&reader, dialect);
+    check_names(&reader, "stations");
+    check_names(&reader, "arms");
+    check_names(&reader, "doors");
+    dialect->first_slot = wh_reader_whole(&reader, "first_slot", 1, 0, 1);
+    (void)has_function(&reader, &dialect_fields[9]);
+    read_commands(&reader, dialect);
+    read_encoders(&reader, dialect);
+    read_errors(&reader, dialect);
+    read_states(&reader, dialect);
+    read_timing(&reader, dialect);
+    read_chaos(&reader, dialect);
+    return 0;
+}
+
+/* Runs protected: the modules and `host`. */
+static int open_libraries(lua_State *L) {
+    luaopen_wh(L);
+    lua_setglobal(L, "wh");
+    return wh_dialect_open_host(L);
+}
+
+/* Runs protected. */
+static int run_file(lua_State *L) {
+    wh_sandbox_result_t result;
+    const wh_dialect_t *dialect = lua_touserdata(L, 1);
+    if (!wh_sandbox_evaluate(L, dialect->path, &result)) {
+        return luaL_error(L, "%s", result.message);
+    }
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    return 0;
+}
+
+bool wh_dialect_open(wh_dialect_t *dialect, const char *path) {
+    const wh_sandbox_limits_t limits = {
+        .memory_bytes = WH_DIALECT_MEMORY_BYTES, .instructions = WH_DIALECT_INSTRUCTIONS, .print_to = stderr};
+    wh_sandbox_result_t result = {.status = WH_SANDBOX_OK};
+    memset(dialect, 0, sizeof *dialect);
+    dialect->path = path;
+    dialect->sandbox = wh_sandbox_new(&limits);
+    lua_State *L = dialect->sandbox ? wh_sandbox_state(dialect->sandbox) : NULL;
+    const bool opened = L && wh_sandbox_protect(L, open_libraries, dialect, &result) &&
+                        wh_sandbox_protect(L, run_file, dialect, &result);
+    if (opened) {
+        wh_sandbox_renew(dialect->sandbox);
+    }
+    if (opened && wh_sandbox_protect(L, read_dialect, dialect, &result)) {
+        return true;
+    }
+    (void)snprintf(dialect->message, sizeof dialect->message, "%s",
+                   L ? result.message : "no memory for a sandbox");
+    return false;
+}
+
+void wh_dialect_close(wh_dialect_t *dialect) {
+    wh_sandbox_free(dialect->sandbox);
+    free(dialect->commands);
+    free(dialect->codes);
+    free(dialect->text);
+    memset(dialect, 0, sizeof *dialect);
+}
+
+const char *wh_dialect_code(const wh_dialect_t *dialect, wh_status_t number) {
+    for (size_t i = 0; i < dialect->code_count; ++i) {
+        if (dialect->codes[i].number == number) {
+            return dialect->codes[i].code;
+        }
+    }
+    return dialect->other_code;
+}
+
+bool wh_dialect_speaks(const wh_dialect_t *dialect, wh_status_t number) {
+    return wh_dialect_code(dialect, number) != dialect->other_code;
+}

@@ -1,0 +1,186 @@
+/* A dialect: how one controller talks to its host, as a Lua file says it.
+ *
+ * lua/dialects/README.md says what the file may say. It runs in a sandbox of its own, with 16 MB and 1e5
+ * instructions for each call. It never runs a command: it turns a frame into lines as they are typed at the
+ * prompt, and what came of them into a frame. A mistake in it is a message that names its file and line.
+ *
+ * One thread at a time for each dialect. All texts are the dialect's own and live until the next call.
+ */
+#ifndef WH_HOST_DIALECT_H
+#define WH_HOST_DIALECT_H
+
+#include "../layout/layout.h"
+#include "../math/status.h"
+#include "../script/sandbox.h"
+#include "chaos.h"
+#include "framing.h"
+#include "mechanism.h"
+#include "words.h"
+
+/* What a dialect may use up. */
+#define WH_DIALECT_MEMORY_BYTES ((size_t)16 << 20)
+#define WH_DIALECT_INSTRUCTIONS 100000
+
+/* Room for a name, a code of theirs, a sequence number, and for one of our lines. */
+#define WH_DIALECT_NAME_BYTES 64
+#define WH_DIALECT_LINE_BYTES 1001
+/* So many lines may be one command of theirs, and so many of our words stand in one `does`. */
+#define WH_DIALECT_LINES 16
+#define WH_DIALECT_DOES 8
+
+/* A command of theirs. */
+typedef struct {
+    char name[WH_DIALECT_NAME_BYTES];
+    wh_word_kind_t kind;
+    const wh_word_t *does[WH_DIALECT_DOES]; /* all of that kind */
+    size_t does_count;
+} wh_dialect_command_t;
+
+/* What their host is told for one of our errors. */
+typedef struct {
+    wh_status_t number;
+    char code[WH_DIALECT_NAME_BYTES];
+} wh_dialect_code_t;
+
+typedef enum {
+    WH_ENCODE_ACKNOWLEDGE,    /* (request): an action has been taken on */
+    WH_ENCODE_ANSWER,         /* (request, result): of what is answered at once */
+    WH_ENCODE_COMPLETE,       /* (request, result): an action has ended, well or not */
+    WH_ENCODE_REFUSE,         /* (request, failure): nothing was begun; the request may be empty */
+    WH_ENCODE_BAD,            /* (reason): a frame is none, by wh_frame_kind_name */
+    WH_ENCODE_EVENT,          /* (event): something befell a wafer */
+    WH_ENCODE_UNACKNOWLEDGED, /* (): no ACKN has come in time */
+    WH_ENCODERS
+} wh_encoder_t;
+
+/* As they stand in a dialect's `encode`. */
+extern const char *const wh_encoder_names[WH_ENCODERS];
+
+/* Read-only for others. Must not be moved while it is open. */
+typedef struct {
+    wh_sandbox_t *sandbox;
+    const char *path; /* the caller's */
+    char name[WH_DIALECT_NAME_BYTES];
+    wh_mechanism_t mechanism;
+    wh_framing_t framing; /* of what the host sends */
+    wh_framing_t replies; /* of what it is sent: the same, but for the starts */
+    double length, angle; /* what one of their units is, mm and degrees */
+    double signs[4];      /* of theta, r, z, yaw: 1 or -1 */
+    int first_slot;       /* how they count the first one */
+    double ack_s, busy_s; /* an acknowledgement comes that late; so long an action waits for another port's */
+    double ackn_s;        /* so long a completion waits for its ACKN; 0: none is awaited */
+    int64_t baud;         /* 0: as fast as it goes */
+    wh_chaos_t chaos;
+    bool takes_over;        /* a second client takes the place of the first; else it is refused */
+    bool completes_to_next; /* the end of a command is told whoever is there; else only to who asked */
+    bool encodes[WH_ENCODERS];
+    wh_dialect_command_t *commands;
+    size_t command_count, command_capacity;
+    wh_dialect_code_t *codes;
+    size_t code_count, code_capacity;
+    char other_code[WH_DIALECT_NAME_BYTES]; /* of errors that are not in the table */
+    bool states[3];                         /* if it has a word of its own for idle, running, held */
+    char message[WH_SANDBOX_MESSAGE_BYTES]; /* of the last call that failed */
+    char *text; /* of the last frames that were encoded, with a byte 0 between two; null: none */
+    size_t text_size;
+    size_t text_start; /* the one of `replies` before it */
+} wh_dialect_t;
+
+/* Reads the file. False, with the reason in `message`, if it cannot be read or says something wrong: file,
+ * field, value, and what was expected. To be closed either way. */
+bool wh_dialect_open(wh_dialect_t *dialect, const char *path);
+void wh_dialect_close(wh_dialect_t *dialect);
+
+/* True if the layout has all that `stations`, `arms` and `doors` name. Else `message` tells file, field,
+ * value, and the names that there are. */
+bool wh_dialect_fits(wh_dialect_t *dialect, const wh_layout_t *layout);
+
+/* ------------------------------------------------------------------------------------------------ a frame */
+
+typedef enum {
+    WH_DECODED_REQUEST,
+    WH_DECODED_NOTHING, /* not to be answered */
+    WH_DECODED_REFUSED, /* by the dialect: see the failure */
+    WH_DECODED_MISTAKE  /* in the dialect: see `message` */
+} wh_decoded_t;
+
+/* Why nothing was begun. */
+typedef struct {
+    wh_status_t number;               /* ours; BAD_ARGUMENT where only theirs was given */
+    char code[WH_DIALECT_NAME_BYTES]; /* theirs */
+    char detail[WH_SANDBOX_MESSAGE_BYTES];
+} wh_failure_t;
+
+/* What a frame asks for. */
+typedef struct {
+    int reference; /* of the dialect's table; LUA_NOREF: none */
+    const wh_dialect_command_t *command;
+    char sequence[WH_DIALECT_NAME_BYTES]; /* empty: it has none */
+} wh_request_t;
+
+/* Calls decode(frame). The request, which is made in any case, is to be given to wh_dialect_forget. */
+wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const char *frame, size_t size, wh_request_t *request,
+                               wh_failure_t *failure);
+void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
+
+/* Our lines for a request, or, of a LOCAL one, its answer as the only one. */
+typedef struct {
+    char lines[WH_DIALECT_LINES][WH_DIALECT_LINE_BYTES];
+    size_t count;
+} wh_lines_t;
+
+/* Calls the command's run(request). A line that begins with none of the words that its `does` names is a
+ * mistake. */
+wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_lines_t *lines,
+                            wh_failure_t *failure);
+
+/* ------------------------------------------------------------------------------------------------ a reply */
+
+/* What came of a request. */
+typedef struct {
+    wh_status_t number;                   /* 0: it went well */
+    const char *answer;                   /* as at the prompt, of the last line */
+    const char *status;                   /* as STATUS tells it, without its OK */
+    double seconds;                       /* simulated, that it took */
+    bool is_held;                         /* a HOLD stands */
+    const wh_layout_t *layout;            /* whose robots and grippers these are; null: none */
+    const wh_port_mechanism_t *mechanism; /* what the port stands for; null with no layout */
+    uint32_t sensors; /* what the vacuum sensors of its grippers say: bit g of gripper g */
+} wh_result_t;
+
+/* What befell a wafer. */
+typedef struct {
+    const char *kind;  /* wh_event_name */
+    bool is_complaint; /* of the cell: such as slot_occupied */
+    const char *wafer, *gripper;
+    double seconds; /* simulated, since the run's beginning */
+} wh_host_event_t;
+
+/* What an encoder is told besides its kind; what it is not told is null. */
+typedef struct {
+    const wh_request_t *request;
+    const wh_result_t *result;
+    const wh_failure_t *failure;
+    const wh_host_event_t *event;
+    const char *reason;
+} wh_told_t;
+
+/* Makes text, text_size and text_start: bodies, without start, sum and end. False: a mistake, see `message`.
+ * Without text (null) nothing is sent. An encoder that the dialect does not have makes none. */
+bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_told_t *told);
+
+/* True if the last call failed because the dialect refused by host.refuse: then `failure` says why. An
+ * `answer` may refuse so, too. */
+bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure);
+
+/* Their code for an error of ours. */
+const char *wh_dialect_code(const wh_dialect_t *dialect, wh_status_t number);
+
+/* True if the table of errors has it. */
+bool wh_dialect_speaks(const wh_dialect_t *dialect, wh_status_t number);
+
+/* Registry keys of the dialect's table and of what its functions find as `host`: of lib/host alone. */
+extern char wh_dialect_key;
+int wh_dialect_open_host(lua_State *L);
+
+#endif

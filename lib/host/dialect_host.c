@@ -1,0 +1,323 @@
+/* What a dialect's functions find as `host`: names and units by the dialect's own tables, and refusals. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "../record/record.h"
+#include "../script/wh_module_values.h"
+#include "dialect.h"
+#include "values.h"
+
+/* Above all numbers of errors. */
+#define NUMBERS 128
+
+/* Raises a refusal by one of our errors. */
+static int refuse_by(lua_State *L, wh_status_t number, const char *detail) {
+    lua_createtable(L, 0, 2);
+    wh_lua_set_integer(L, "refused", number);
+    wh_lua_set_text(L, "detail", detail);
+    return lua_error(L);
+}
+
+/* host.refuse(name [, detail [, code]]): the request is refused by our error of this name; the host is told
+ * the code of the dialect's table, or this one. */
+static int refuse(lua_State *L) {
+    const char *name = luaL_checkstring(L, 1);
+    int number = 1;
+    while (number < NUMBERS && strcmp(wh_status_name((wh_status_t)number), name) != 0) {
+        ++number;
+    }
+    luaL_argcheck(L, number < NUMBERS, 1, "no name of our errors");
+    const char *detail = luaL_optstring(L, 2, "");
+    const char *code = luaL_optstring(L, 3, "");
+    lua_createtable(L, 0, 3);
+    wh_lua_set_integer(L, "refused", number);
+    wh_lua_set_text(L, "detail", detail);
+    wh_lua_set_text(L, "code", code);
+    return lua_error(L);
+}
+
+/* Pushes what the dialect's table of that name has for the word at index 1; the word itself without such a
+ * table. */
+static void push_ours(lua_State *L, const char *table, wh_status_t number) {
+    const char *theirs = luaL_tolstring(L, 1, NULL);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    if (lua_isnil(L, -1) || lua_getfield(L, -1, table) == LUA_TNIL) {
+        lua_pushstring(L, theirs);
+    } else if (lua_getfield(L, -1, theirs) == LUA_TNIL) {
+        (void)refuse_by(L, number, theirs);
+    }
+}
+
+/* Pushes the name on top of the stack as it is typed at the prompt. */
+static int push_spelt(lua_State *L, wh_status_t number) {
+    char spelt[WH_DIALECT_LINE_BYTES];
+    const char *name = lua_tostring(L, -1);
+    if (!wh_value_spell(name, spelt, sizeof spelt)) {
+        return refuse_by(L, number, name);
+    }
+    lua_pushstring(L, spelt);
+    return 1;
+}
+
+/* host.station(theirs), host.arm(theirs), host.door(theirs): our name as it is typed. Refuses one that is not
+ * in the table. */
+static int station(lua_State *L) {
+    push_ours(L, "stations", WH_STATUS_NO_SUCH_STATION);
+    return push_spelt(L, WH_STATUS_NO_SUCH_STATION);
+}
+
+static int arm(lua_State *L) {
+    push_ours(L, "arms", WH_STATUS_NO_SUCH_GRIPPER);
+    return push_spelt(L, WH_STATUS_NO_SUCH_GRIPPER);
+}
+
+static int door(lua_State *L) {
+    push_ours(L, "doors", WH_STATUS_BAD_ARGUMENT);
+    return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
+}
+
+/* host.typed(name): a name of a wafer or of what was saved, as it is typed. */
+static int typed(lua_State *L) {
+    (void)luaL_tolstring(L, 1, NULL);
+    return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
+}
+
+/* The number at index 1, which may be a text: digits, a sign and a point, for hosts write no others. */
+static double take_number(lua_State *L) {
+    int is_number = 0;
+    const double value = lua_tonumberx(L, 1, &is_number);
+    const char *text = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : "";
+    if (!is_number || !isfinite(value) || text[strspn(text, " +-.0123456789")] != '\0') {
+        (void)refuse_by(L, WH_STATUS_BAD_ARGUMENT, luaL_tolstring(L, 1, NULL));
+    }
+    return value;
+}
+
+/* The field of a table of the dialect's, or `otherwise`. */
+static double number_of(lua_State *L, const char *table, const char *field, double otherwise) {
+    double value = otherwise;
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    if (lua_istable(L, -1) && lua_getfield(L, -1, table) == LUA_TTABLE) {
+        lua_getfield(L, -1, field);
+        value = lua_isnumber(L, -1) ? lua_tonumber(L, -1) : otherwise;
+    }
+    lua_settop(L, 1);
+    return value;
+}
+
+/* host.slot(theirs): the slot as we count it, from 1. */
+static int slot(lua_State *L) {
+    const double theirs = take_number(L);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    lua_getfield(L, -1, "first_slot");
+    const double first = lua_isnumber(L, -1) ? lua_tonumber(L, -1) : 1;
+    if (theirs != floor(theirs) || fabs(theirs) > 1e6) {
+        return refuse_by(L, WH_STATUS_NO_SUCH_SLOT, luaL_tolstring(L, 1, NULL));
+    }
+    lua_pushinteger(L, (lua_Integer)(theirs - first) + 1);
+    return 1;
+}
+
+/* 1 or -1: the dialect's `signs` of the axis that is named at index 2; 1 if none is. */
+static double sign_of(lua_State *L) {
+    static const char *const axes[] = {"theta", "r", "z", "yaw", "", NULL};
+    const char *axis = axes[luaL_checkoption(L, 2, "", axes)];
+    return number_of(L, "signs", axis, 1);
+}
+
+/* host.mm(theirs, axis), host.degrees(theirs, axis): ours; host.length(mm, axis), host.angle(degrees, axis):
+ * theirs. With an axis its sign counts. */
+static int mm(lua_State *L) {
+    const double sign = sign_of(L);
+    lua_pushnumber(L, sign * take_number(L) * number_of(L, "units", "length", 1) + 0.0);
+    return 1;
+}
+
+static int degrees(lua_State *L) {
+    const double sign = sign_of(L);
+    lua_pushnumber(L, sign * take_number(L) * number_of(L, "units", "angle", 1) + 0.0);
+    return 1;
+}
+
+static int length(lua_State *L) {
+    const double sign = sign_of(L);
+    lua_pushnumber(L, sign * take_number(L) / number_of(L, "units", "length", 1) + 0.0);
+    return 1;
+}
+
+static int angle(lua_State *L) {
+    const double sign = sign_of(L);
+    lua_pushnumber(L, sign * take_number(L) / number_of(L, "units", "angle", 1) + 0.0);
+    return 1;
+}
+
+/* host.code(number): theirs of one of our errors; nil of none. */
+static int code(lua_State *L) {
+    const lua_Integer number = luaL_checkinteger(L, 1);
+    if (number == WH_OK) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    if (lua_getfield(L, -1, "errors") != LUA_TTABLE ||
+        lua_getfield(L, -1, wh_status_name((wh_status_t)number)) == LUA_TNIL) {
+        lua_getfield(L, 2, "other_error");
+    }
+    return 1;
+}
+
+/* Pushes "alarm 9 (expected one of 0101, 0102, ...)"; the table of errors is at index 2. */
+static int refuse_alarm(lua_State *L, const char *theirs) {
+    luaL_Buffer text;
+    lua_Integer count = 0;
+    lua_newtable(L);
+    for (int number = 1; number < NUMBERS; ++number) {
+        if (lua_getfield(L, 2, wh_status_name((wh_status_t)number)) != LUA_TNIL) {
+            (void)luaL_tolstring(L, -1, NULL);
+            lua_rawseti(L, 3, ++count);
+        }
+        lua_settop(L, 3);
+    }
+    luaL_buffinit(L, &text);
+    luaL_addstring(&text, "alarm ");
+    luaL_addstring(&text, theirs);
+    luaL_addstring(&text, " (expected one of ");
+    for (lua_Integer i = 1; i <= count; ++i) {
+        luaL_addstring(&text, i > 1 ? ", " : "");
+        lua_rawgeti(L, 3, i);
+        luaL_addvalue(&text);
+    }
+    luaL_addstring(&text, ")");
+    luaL_pushresult(&text);
+    return refuse_by(L, WH_STATUS_BAD_ARGUMENT, lua_tostring(L, -1));
+}
+
+/* host.alarm(theirs): the number of our error that has this code; the first one, if several have. Refuses a
+ * code that is not in the table. */
+static int alarm(lua_State *L) {
+    char theirs[WH_DIALECT_NAME_BYTES];
+    (void)snprintf(theirs, sizeof theirs, "%s", luaL_tolstring(L, 1, NULL));
+    lua_settop(L, 0);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    if (lua_isnil(L, 1) || lua_getfield(L, 1, "errors") != LUA_TTABLE) {
+        lua_settop(L, 1);
+        lua_newtable(L);
+    }
+    for (int number = 1; number < NUMBERS; ++number) {
+        const bool is_there = lua_getfield(L, 2, wh_status_name((wh_status_t)number)) != LUA_TNIL;
+        if (is_there && strcmp(luaL_tolstring(L, -1, NULL), theirs) == 0) {
+            lua_pushinteger(L, number);
+            return 1;
+        }
+        lua_settop(L, 2);
+    }
+    return refuse_alarm(L, theirs);
+}
+
+/* host.name(table, ours): their name of one of our "stations", "arms" or "doors"; ours where
+ * there is no such table; nil where it has none. */
+static int name(lua_State *L) {
+    const char *table = luaL_checkstring(L, 1);
+    const char *ours = luaL_checkstring(L, 2);
+    lua_settop(L, 2);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    if (lua_getfield(L, -1, table) != LUA_TTABLE) {
+        lua_pushstring(L, ours);
+        return 1;
+    }
+    lua_pushnil(L); /* the first of their names, if there are several */
+    for (lua_pushnil(L); lua_next(L, 4) != 0; lua_pop(L, 1)) {
+        const bool is_it = lua_type(L, -2) == LUA_TSTRING && lua_type(L, -1) == LUA_TSTRING &&
+                           strcmp(lua_tostring(L, -1), ours) == 0;
+        if (is_it && (lua_isnil(L, 5) || strcmp(lua_tostring(L, -2), lua_tostring(L, 5)) < 0)) {
+            lua_pushvalue(L, -2);
+            lua_replace(L, 5);
+        }
+    }
+    return 1;
+}
+
+/* ------------------------------------------------------------------------------------- the layout's names */
+
+/* The layout's name of this number; null: no more. */
+typedef const char *(*name_at_t)(const wh_layout_t *layout, size_t i);
+
+static const char *station_at(const wh_layout_t *layout, size_t i) {
+    return i < layout->station_count ? layout->stations[i].name : NULL;
+}
+
+static const char *gripper_at(const wh_layout_t *layout, size_t i) {
+    return i < layout->machine.gripper_count ? layout->grippers[i].name : NULL;
+}
+
+static const char *door_at(const wh_layout_t *layout, size_t i) {
+    return i < layout->machine.door_count ? layout->door_list[i].name : NULL;
+}
+
+/* A table of the dialect's and what it names: the layout's. */
+typedef struct {
+    wh_dialect_t *dialect;
+    const wh_layout_t *layout;
+    const char *table;
+    name_at_t name_at;
+} naming_t;
+
+static bool has_name(const naming_t *naming, const char *wanted) {
+    const char *found = naming->name_at(naming->layout, 0);
+    for (size_t i = 1; found && strcmp(found, wanted) != 0; ++i) {
+        found = naming->name_at(naming->layout, i);
+    }
+    return found;
+}
+
+static bool refuse_name(const naming_t *naming, const char *theirs, const char *ours) {
+    char *message = naming->dialect->message;
+    const size_t size = sizeof naming->dialect->message;
+    (void)snprintf(message, size,
+                   "%.300s: %s.%.63s: \"%.63s\" (expected a name of the layout's: ", naming->dialect->path,
+                   naming->table, theirs, ours);
+    const char *name = naming->name_at(naming->layout, 0);
+    for (size_t i = 1; name; name = naming->name_at(naming->layout, i++)) {
+        const size_t length = strlen(message);
+        (void)snprintf(message + length, size - length, "%s%.63s", i > 1 ? ", " : "", name);
+    }
+    const size_t length = strlen(message);
+    (void)snprintf(message + length, size - length, ")");
+    return false;
+}
+
+static bool check_names(lua_State *L, const naming_t *naming) {
+    bool is_good = true;
+    lua_settop(L, 0);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
+    lua_pushstring(L, naming->table);
+    if (lua_rawget(L, 1) == LUA_TTABLE) {
+        for (lua_pushnil(L); is_good && lua_next(L, 2) != 0; lua_settop(L, 3)) {
+            const char *ours = lua_tostring(L, -1);
+            is_good = has_name(naming, ours) || refuse_name(naming, lua_tostring(L, -2), ours);
+        }
+    }
+    lua_settop(L, 0);
+    return is_good;
+}
+
+bool wh_dialect_fits(wh_dialect_t *dialect, const wh_layout_t *layout) {
+    lua_State *L = wh_sandbox_state(dialect->sandbox);
+    return check_names(L, &(naming_t){dialect, layout, "stations", station_at}) &&
+           check_names(L, &(naming_t){dialect, layout, "arms", gripper_at}) &&
+           check_names(L, &(naming_t){dialect, layout, "doors", door_at});
+}
+
+/* Runs protected. */
+int wh_dialect_open_host(lua_State *L) {
+    static const luaL_Reg functions[] = {
+        {"refuse", refuse}, {"station", station}, {"arm", arm},         {"door", door},     {"typed", typed},
+        {"slot", slot},     {"mm", mm},           {"degrees", degrees}, {"length", length}, {"angle", angle},
+        {"name", name},     {"code", code},       {"alarm", alarm},     {NULL, NULL}};
+    luaL_newlib(L, functions);
+    lua_setglobal(L, "host");
+    return 0;
+}

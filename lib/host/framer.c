@@ -1,0 +1,260 @@
+#include <string.h>
+
+#include "framing.h"
+#include "framing_internal.h"
+
+/* ---------------------------------------------------------------------------------------- what a line is */
+
+const char *wh_frame_kind_name(wh_frame_kind_t kind) {
+    static const char *const names[WH_FRAME_KINDS] = {"none",    "good",  "too long", "no end",
+                                                      "timeout", "short", "bad sum",  "garbage"};
+    return (unsigned)kind < WH_FRAME_KINDS ? names[kind] : "unknown";
+}
+
+/* The longest of the marks that the line ends with, behind its first `from` bytes; `count`: none. */
+static size_t mark_at_end(const wh_framer_t *framer, const wh_framing_mark_t *marks, size_t count,
+                          size_t from) {
+    size_t found = count;
+    for (size_t i = 0; i < count; ++i) {
+        const size_t size = marks[i].size;
+        if (size + from <= framer->size && (found == count || size > marks[found].size) &&
+            memcmp(framer->line + framer->size - size, marks[i].bytes, size) == 0) {
+            found = i;
+        }
+    }
+    return found;
+}
+
+static bool is_garbage(const wh_framer_t *framer) {
+    return framer->framing.start_count > 0 && framer->start == framer->framing.start_count;
+}
+
+static size_t start_size(const wh_framer_t *framer) {
+    return framer->start < framer->framing.start_count ? framer->framing.starts[framer->start].size : 0;
+}
+
+/* Fills in the frame. The line leaves with the next call, but for its last `keeps` bytes, which are start
+ * `next`. */
+static void tell(wh_framer_t *framer, wh_frame_kind_t kind, size_t size, size_t keeps, size_t next,
+                 wh_frame_t *frame) {
+    *frame = (wh_frame_t){
+        .kind = kind,
+        .first_us = framer->first_us,
+        .last_us = framer->last_us,
+        .bytes = framer->line,
+        .size = size,
+        .body = framer->line,
+        .body_size = size,
+        .start = is_garbage(framer) ? 0 : framer->start,
+    };
+    framer->counters.frames[kind] += 1;
+    framer->told = true;
+    framer->keeps = keeps;
+    framer->next = next;
+}
+
+/* What was told of leaves. */
+static void settle(wh_framer_t *framer) {
+    if (framer->told) {
+        memmove(framer->line, framer->line + framer->size - framer->keeps, framer->keeps);
+        framer->size = framer->keeps;
+        framer->start = framer->next;
+        framer->first_us = framer->last_us;
+        framer->told = false;
+    }
+}
+
+/* What stands behind a body of `size` bytes: its sum? */
+static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *body, size_t size) {
+    const wh_framing_t *framing = &framer->framing;
+    const uint8_t *sum = body + size;
+    const unsigned high = wh_framing_digit(sum[framing->separator.size]);
+    const unsigned low = wh_framing_digit(sum[framing->separator.size + 1]);
+    const bool is_good = memcmp(sum, framing->separator.bytes, framing->separator.size) == 0 && high < 16 &&
+                         low < 16 && 16 * high + low == wh_framing_sum(framing, framer->start, body, size);
+    return is_good ? WH_FRAME_GOOD : WH_FRAME_BAD_SUM;
+}
+
+/* The line has come to an end of `end_size` bytes. */
+static void judge(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    const size_t from = start_size(framer);
+    const size_t around = framing->sum != WH_SUM_NONE ? framing->separator.size + 2 : 0;
+    const size_t content = framer->size - from - end_size;
+    wh_frame_kind_t kind = WH_FRAME_GOOD;
+    if (is_garbage(framer)) {
+        kind = WH_FRAME_GARBAGE;
+    } else if (content < around || content - around < framing->shortest) {
+        kind = WH_FRAME_SHORT;
+    } else if (around > 0) {
+        kind = judge_sum(framer, framer->line + from, content - around);
+    }
+    tell(framer, kind, framer->size, 0, framing->start_count, frame);
+    if (kind == WH_FRAME_GOOD) {
+        frame->body = framer->line + from;
+        frame->body_size = content - around;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------- the framer */
+
+static void note_last_bytes(wh_framer_t *framer, const wh_framing_mark_t *marks, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        framer->may_mark[marks[i].bytes[marks[i].size - 1]] = true;
+    }
+}
+
+bool wh_framer_init(wh_framer_t *framer, const wh_framing_t *framing) {
+    char problem[WH_FRAMING_PROBLEM_BYTES];
+    if (!wh_framing_validate(framing, problem)) {
+        return false;
+    }
+    memset(framer, 0, sizeof *framer);
+    framer->framing = *framing;
+    framer->start = framing->start_count;
+    framer->passes = -1;
+    note_last_bytes(framer, framing->starts, framing->start_count);
+    note_last_bytes(framer, framing->ends, framing->end_count);
+    return true;
+}
+
+/* Ends what was passed over behind a line that was too long. The last `keeps` bytes begin a line. */
+static void end_drop(wh_framer_t *framer, size_t keeps, size_t start) {
+    framer->counters.passed += framer->dropped > keeps ? framer->dropped - keeps : 0;
+    framer->dropped = 0;
+    memmove(framer->line, framer->line + framer->size - keeps, keeps);
+    framer->size = keeps;
+    framer->start = start;
+    framer->first_us = framer->last_us;
+}
+
+/* A start has come: the line before it, if there is one, is without its end. */
+static void begin_line(wh_framer_t *framer, size_t start, wh_frame_t *frame) {
+    const size_t mark = framer->framing.starts[start].size;
+    if (framer->dropped > 0) {
+        end_drop(framer, mark, start);
+    } else if (framer->size == mark) {
+        framer->start = start;
+    } else {
+        tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_NO_END, framer->size - mark, mark,
+             start, frame);
+    }
+}
+
+/* An end has come. */
+static void end_line(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    const size_t size = framing->ends[end].size;
+    if (framer->dropped > 0) {
+        end_drop(framer, 0, framing->start_count);
+    } else if (framing->skips_empty && framer->size == size) {
+        framer->counters.passed += size;
+        framer->size = 0;
+    } else {
+        judge(framer, size, frame);
+    }
+}
+
+/* One byte over the longest line: told of at once. The last bytes stay, for a mark may lie across. */
+static void overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
+    const size_t keeps = WH_FRAMING_MARK - 1;
+    tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_TOO_LONG, framer->framing.longest, keeps,
+         framer->framing.start_count, frame);
+    frame->is_over = true;
+    framer->dropped = 1;
+    if (end < framer->framing.end_count) {
+        framer->keeps = 0;
+        framer->dropped = 0;
+        framer->counters.passed += 1;
+    }
+}
+
+/* A byte behind all that the line has. */
+static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
+    const wh_framing_t *framing = &framer->framing;
+    if (framer->dropped > 0) {
+        framer->dropped += 1;
+        if (framer->size == WH_FRAMING_MARK) {
+            memmove(framer->line, framer->line + 1, --framer->size);
+        }
+    }
+    framer->line[framer->size++] = byte;
+    size_t start = framing->start_count;
+    size_t end = framing->end_count;
+    if (framer->may_mark[byte]) {
+        start = mark_at_end(framer, framing->starts, framing->start_count, start_size(framer));
+        end = mark_at_end(framer, framing->ends, framing->end_count, start_size(framer));
+    }
+    for (size_t i = 0; end < framing->end_count && i < framing->end_count && framer->passes < 0; ++i) {
+        framer->passes = wh_framing_byte_behind(&framing->ends[i], &framing->ends[end]);
+    }
+    if (start < framing->start_count) {
+        begin_line(framer, start, frame);
+    } else if (framer->size > framing->longest) {
+        overflow(framer, end, frame);
+    } else if (end < framing->end_count) {
+        end_line(framer, end, frame);
+    }
+}
+
+/* True if the last byte was so long ago that the line is given up. */
+static bool is_late(const wh_framer_t *framer, int64_t time_us) {
+    return framer->framing.timeout_us > 0 && framer->size > 0 &&
+           time_us - framer->last_us >= framer->framing.timeout_us;
+}
+
+/* Gives up the line that was begun, if there is one. */
+static void give_up(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
+    if (framer->dropped > 0) {
+        end_drop(framer, 0, framer->framing.start_count);
+    } else if (framer->size > 0) {
+        tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : kind, framer->size, 0,
+             framer->framing.start_count, frame);
+    }
+}
+
+size_t wh_framer_feed(wh_framer_t *framer, const uint8_t *bytes, size_t size, int64_t time_us,
+                      wh_frame_t *frame) {
+    *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
+    settle(framer);
+    size_t taken = 0;
+    if (size > 0 && is_late(framer, time_us)) {
+        give_up(framer, WH_FRAME_TIMEOUT, frame);
+    }
+    for (; taken < size && frame->kind == WH_FRAME_NONE; ++taken) {
+        framer->counters.bytes += 1;
+        framer->last_us = time_us;
+        const bool passes = framer->passes == bytes[taken];
+        framer->passes = -1;
+        if (passes) {
+            framer->counters.passed += 1;
+            continue;
+        }
+        framer->first_us = framer->size == 0 ? time_us : framer->first_us;
+        take_byte(framer, bytes[taken], frame);
+    }
+    return taken;
+}
+
+bool wh_framer_wait(wh_framer_t *framer, int64_t time_us, wh_frame_t *frame) {
+    *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
+    settle(framer);
+    if (is_late(framer, time_us)) {
+        give_up(framer, WH_FRAME_TIMEOUT, frame);
+    }
+    return frame->kind != WH_FRAME_NONE;
+}
+
+int64_t wh_framer_due(const wh_framer_t *framer) {
+    const size_t size = framer->told ? framer->keeps : framer->size;
+    const bool is_open = framer->framing.timeout_us > 0 && size > 0 && framer->dropped == 0;
+    return is_open ? framer->last_us + framer->framing.timeout_us : INT64_MAX;
+}
+
+bool wh_framer_finish(wh_framer_t *framer, wh_frame_t *frame) {
+    *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
+    settle(framer);
+    give_up(framer, WH_FRAME_NO_END, frame);
+    framer->passes = -1;
+    return frame->kind != WH_FRAME_NONE;
+}

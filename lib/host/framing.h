@@ -1,0 +1,163 @@
+/* From the bytes of a line to frames, and from a frame's body to bytes.
+ *
+ * A frame is, in this order: a start (or none), a body, a separator and two hex digits of a check sum (or
+ * neither), an end. With starts, what comes before one is garbage. A start within a frame means that the
+ * frame before it lost its end, so a body holds none. Each bad frame is handed on as such: whoever answers
+ * knows which mistake it was. What is looked at first: length, end, check sum.
+ *
+ * What a framer says depends on the bytes and their times alone, never on how they were cut into pieces.
+ * Nothing is allocated. Not for two threads at once. */
+#ifndef WH_HOST_FRAMING_H
+#define WH_HOST_FRAMING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The longest frame that can be asked for, with start, sum and end, and the shortest such; the most starts,
+ * and ends; the longest mark. */
+#define WH_FRAMING_LINE 4096
+#define WH_FRAMING_LEAST 32
+#define WH_FRAMING_MARKS 4
+#define WH_FRAMING_MARK 8
+
+/* The longest time between two bytes of a frame that can be asked for: an hour. */
+#define WH_FRAMING_TIMEOUT_US 3600000000
+
+/* Room for what is wrong with a description. */
+#define WH_FRAMING_PROBLEM_BYTES 200
+
+/* Bytes that begin or end a frame. Size 0: none. */
+typedef struct {
+    uint8_t bytes[WH_FRAMING_MARK];
+    size_t size;
+} wh_framing_mark_t;
+
+/* What the two hex digits are, of the bytes that count. Their names in a dialect: none, add, xor, complement.
+ */
+typedef enum {
+    WH_SUM_NONE,
+    WH_SUM_ADD,       /* the bytes added up, modulo 256 */
+    WH_SUM_XOR,       /* the bytes, exclusive or */
+    WH_SUM_COMPLEMENT /* what is lacking to the next multiple of 256 */
+} wh_sum_kind_t;
+
+/* How one direction of a line is framed. The body counts into the sum, and what is said below. Digits are
+ * written in capitals and read in either case. */
+typedef struct {
+    wh_framing_mark_t starts[WH_FRAMING_MARKS]; /* any of them begins a frame; no two begin alike */
+    size_t start_count;                         /* 0: a frame begins where the one before it ended */
+    wh_framing_mark_t ends[WH_FRAMING_MARKS];   /* any of them ends a frame, the first is written; an end may
+                                                   begin as another does if that has one byte more, which is
+                                                   passed over if it comes next: "\r" and "\r\n" */
+    size_t end_count;                           /* at least 1 */
+    wh_sum_kind_t sum;
+    wh_framing_mark_t separator; /* before the digits, such as ","; no part of the body */
+    bool sums_start;             /* the start counts into the sum */
+    bool sums_separator;         /* the separator does */
+    bool skips_empty;            /* an end alone is no frame: blank lines */
+    size_t shortest;             /* the fewest bytes of a body */
+    size_t longest;     /* the most bytes of a frame, all told: WH_FRAMING_LEAST to WH_FRAMING_LINE */
+    int64_t timeout_us; /* the time after a byte at which a frame without an end is given up; 0: never */
+} wh_framing_t;
+
+/* No starts, end "\n" and "\r\n", no sum, blank lines skipped, the longest line, no time-out. */
+wh_framing_t wh_framing_default(void);
+
+/* True if the description makes sense. If not, `problem` tells field, value and what was expected, such as
+ * "longest: 5000 (expected 32 to 4096)". Starts and ends share no byte, and none with the separator; with a
+ * sum, none is a hex digit. */
+bool wh_framing_validate(const wh_framing_t *framing, char problem[WH_FRAMING_PROBLEM_BYTES]);
+
+/* The two digits' value over what counts of a frame: the start's bytes, the body and the separator. */
+uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size);
+
+/* Writes a whole frame with start number `start` (ignored if there are none) around a body. Returns its size.
+ * 0, and nothing is written, if there is no such start, the frame would be longer than `longest`, the body is
+ * shorter than `shortest`, or a framer would not read this body back: it holds a start or an end, or is empty
+ * and `skips_empty`. Cost: linear in size, about 20 ns a byte. */
+size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
+                         uint8_t frame[WH_FRAMING_LINE]);
+
+/* What a frame is. What follows one that is too long, up to an end, a start or a time-out, is passed over. */
+typedef enum {
+    WH_FRAME_NONE,     /* no frame yet */
+    WH_FRAME_GOOD,     /* whole */
+    WH_FRAME_TOO_LONG, /* over `longest`: told at once */
+    WH_FRAME_NO_END,   /* a start, or the line's end, came before the frame's end */
+    WH_FRAME_TIMEOUT,  /* nothing came for `timeout_us` before the frame's end */
+    WH_FRAME_SHORT,    /* the body, or what should be the sum, has too few bytes */
+    WH_FRAME_BAD_SUM,  /* the sum is another one, or is none */
+    WH_FRAME_GARBAGE,  /* bytes without a start, up to an end, a start, a time-out, or too many of them */
+    WH_FRAME_KINDS     /* how many there are */
+} wh_frame_kind_t;
+
+/* The name of a kind, as in "too long". Never null. */
+const char *wh_frame_kind_name(wh_frame_kind_t kind);
+
+/* A frame. Pointers lead into the framer, true until its next call. */
+typedef struct {
+    wh_frame_kind_t kind;
+    /* When its first byte came, or, behind another frame that lost its end, all of its start. */
+    int64_t first_us;
+    int64_t last_us;      /* when its last byte came */
+    const uint8_t *bytes; /* as they came, with start, sum and end; of what is too long the first `longest` */
+    size_t size;
+    bool is_over; /* too long, or garbage of that length: the byte that was too many stands behind them */
+    const uint8_t *body; /* of a good frame, without start, separator, sum and end; else as `bytes` */
+    size_t body_size;
+    size_t start; /* of frames with a start, which one; else 0 */
+} wh_frame_t;
+
+/* What happened on a line. */
+typedef struct {
+    uint64_t bytes;                  /* taken */
+    uint64_t frames[WH_FRAME_KINDS]; /* by their kind */
+    uint64_t passed;                 /* bytes passed over: behind what was too long, and blank lines */
+} wh_framer_counters_t;
+
+/* One direction of a line, as it is read. `counters` are to be read, the rest is its own. */
+typedef struct {
+    wh_framer_counters_t counters;
+    wh_framing_t framing;
+    bool may_mark[256]; /* a start or an end has this byte as its last one */
+    uint8_t line[WH_FRAMING_LINE + 1];
+    size_t size;      /* bytes in line */
+    size_t start;     /* the start that it begins with; start_count: none */
+    bool told;        /* the line was told of: with the next call it leaves, */
+    size_t keeps;     /* but for so many of its last bytes, */
+    size_t next;      /* which are this start */
+    size_t dropped;   /* bytes behind what was too long; `line` then has the last bytes alone */
+    int passes;       /* a byte that is passed over if it comes next; -1: none */
+    int64_t first_us; /* of the line */
+    int64_t last_us;  /* of the last byte */
+} wh_framer_t;
+
+/* Begins at an empty line; the counters are zero. False, and nothing has changed, if wh_framing_validate
+ * refuses the description. */
+bool wh_framer_init(wh_framer_t *framer, const wh_framing_t *framing);
+
+/* Takes bytes that came at `time_us`, which never goes back, until there is a frame or all are taken. Returns
+ * how many were taken, perhaps none with a frame; `frame->kind` is WH_FRAME_NONE without one. Called until
+ * all are taken and there is no frame:
+ *
+ *     for (size_t at = 0;;) {
+ *         at += wh_framer_feed(&framer, bytes + at, size - at, now_us, &frame);
+ *         if (frame.kind == WH_FRAME_NONE) break;
+ *         ...
+ *     }
+ *
+ * Cost: linear in what is taken, about 10 ns a byte. */
+size_t wh_framer_feed(wh_framer_t *framer, const uint8_t *bytes, size_t size, int64_t time_us,
+                      wh_frame_t *frame);
+
+/* True if time alone, up to `time_us`, gives a frame: a time-out. */
+bool wh_framer_wait(wh_framer_t *framer, int64_t time_us, wh_frame_t *frame);
+
+/* When wh_framer_wait gives a frame if no byte comes; INT64_MAX: never. */
+int64_t wh_framer_due(const wh_framer_t *framer);
+
+/* The line's end: the client has gone. True if that leaves a bad frame. The next byte begins a line anew. */
+bool wh_framer_finish(wh_framer_t *framer, wh_frame_t *frame);
+
+#endif

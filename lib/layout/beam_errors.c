@@ -1,0 +1,99 @@
+#include "beam_errors.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "layout_internal.h"
+
+/* What each is drawn for: never renumber, the same seeds would give other trials. */
+static const struct {
+    const char *name, *unit;
+    double most;
+    uint32_t field;
+    bool is_size;
+} draws[WH_BEAM_DRAWS] = {[WH_BEAM_DX] = {"dx", "mm", 5, 0x500, false},
+                          [WH_BEAM_DY] = {"dy", "mm", 5, 0x501, false},
+                          [WH_BEAM_LATE] = {"late", "s", 0.001, 0x502, true}};
+
+const char *wh_beam_draw_name(wh_beam_draw_t draw) {
+    return draws[draw].name;
+}
+
+const char *wh_beam_draw_unit(wh_beam_draw_t draw) {
+    return draws[draw].unit;
+}
+
+double wh_beam_draw_most(wh_beam_draw_t draw) {
+    return draws[draw].most;
+}
+
+bool wh_beam_draw_is_size(wh_beam_draw_t draw) {
+    return draws[draw].is_size;
+}
+
+static double own_of(wh_beam_draw_t draw, const wh_layout_beam_t *beam) {
+    return draw == WH_BEAM_DX ? beam->dx : draw == WH_BEAM_DY ? beam->dy : beam->late;
+}
+
+bool wh_beam_draw_fits(wh_beam_draw_t draw, const wh_layout_beam_t *beam, double error) {
+    return fabs(own_of(draw, beam) + error) <= draws[draw].most;
+}
+
+void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, size_t beam,
+                         double drawn[WH_BEAM_DRAWS]) {
+    if (errors->given) {
+        memcpy(drawn, errors->given->beams[beam], WH_BEAM_DRAWS * sizeof *drawn);
+        return;
+    }
+    for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
+        const double value = (double)wh_spread_draw(&errors->beams[beam].of[i], trial, draws[i].field, beam);
+        drawn[i] = draws[i].is_size ? fabs(value) : value;
+    }
+}
+
+void wh_beam_draw_apply(const double drawn[WH_BEAM_DRAWS], wh_layout_t *layout, size_t b) {
+    layout->beams[b].dx += drawn[WH_BEAM_DX];
+    layout->beams[b].dy += drawn[WH_BEAM_DY];
+    layout->beams[b].late += drawn[WH_BEAM_LATE];
+    layout->doors[b].delay_on += drawn[WH_BEAM_LATE];
+    layout->doors[b].delay_off += drawn[WH_BEAM_LATE];
+}
+
+/* --------------------------------------------------------------------------------------------------- read */
+
+/* Refuses a width of which a draw could take a beam out of what beams can be. */
+static void check_width(const wh_reader_t *reader, const wh_layout_t *layout, size_t b, wh_beam_draw_t draw,
+                        const wh_spread_t *spread) {
+    const double reach = wh_spread_reach(spread);
+    const bool down = draws[draw].is_size || wh_beam_draw_fits(draw, &layout->beams[b], -reach);
+    if (spread->width > 0 && !(down && wh_beam_draw_fits(draw, &layout->beams[b], reach))) {
+        lua_pushnumber(reader->L, spread->width);
+        wh_reader_fail(reader, draws[draw].name,
+                       "a width that leaves %s with at most %.6g %s, whatever is drawn: %s of it",
+                       layout->beams[b].name, draws[draw].most, draws[draw].unit,
+                       spread->shape == WH_SHAPE_NORMAL ? "8.6 standard deviations" : "all");
+    }
+}
+
+void wh_layout_read_beam_widths(wh_reader_t *reader, const wh_layout_t *layout, int32_t station,
+                                wh_beam_spreads_t *spreads) {
+    size_t count = 0;
+    for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
+        wh_spread_t *spread = &spreads->of[i];
+        spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
+        spread->width = wh_reader_number(reader, draws[i].name, spread->width, 0, (wh_real_t)draws[i].most);
+    }
+    for (size_t b = 0; b < layout->beam_count; ++b) {
+        const bool is_its = station == WH_NONE || layout->beams[b].station == station;
+        if (!is_its || layout->doors[b].kind != WH_DOOR_LIGHT) {
+            continue;
+        }
+        ++count;
+        for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
+            check_width(reader, layout, b, (wh_beam_draw_t)i, &spreads->of[i]);
+        }
+    }
+    if (count == 0) {
+        wh_reader_fail(reader, NULL, "nothing: there are no `beams` that would be off");
+    }
+}

@@ -1,0 +1,28 @@
+/* The errors of beams in a study: how wide each is, and what a trial draws of it.
+ *
+ * A width is of what motion control does not know of a beam: how far in and to the left it truly stands
+ * beside where the layout has it, and by how much its latches come later, of which the size of the draw
+ * counts. What is drawn is added to the beam's own dx, dy and late.
+ */
+#ifndef WH_LAYOUT_BEAM_ERRORS_H
+#define WH_LAYOUT_BEAM_ERRORS_H
+
+#include "layout.h"
+
+/* Its field's name, its unit, "mm" or "s", and the largest width, or the largest error that is given: with
+ * the beam's own no more than that either way. Names are constant texts. */
+const char *wh_beam_draw_name(wh_beam_draw_t draw);
+const char *wh_beam_draw_unit(wh_beam_draw_t draw);
+double wh_beam_draw_most(wh_beam_draw_t draw);
+
+/* True for one whose size counts alone: it is never below 0. */
+bool wh_beam_draw_is_size(wh_beam_draw_t draw);
+
+/* True if the beam may truly be off by `error` more than the layout has it. */
+bool wh_beam_draw_fits(wh_beam_draw_t draw, const wh_layout_beam_t *beam, double error);
+
+/* Changes beam b of a trial's layout, not a face, by what was drawn. It is to be placed anew:
+ * wh_layout_place_beam. */
+void wh_beam_draw_apply(const double drawn[WH_BEAM_DRAWS], wh_layout_t *layout, size_t b);
+
+#endif

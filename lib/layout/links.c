@@ -1,0 +1,129 @@
+#include "links.h"
+
+#include <string.h>
+
+#include "arms.h"
+
+/* Of what a point 1 mm from the end-effector's origin is aside, for each mm of slack. */
+#define SLACK_PER_MM WH_REAL(0.01)
+
+/* The end-effector of the arm, by its first gripper. False, and nothing written, if there is none on it. */
+static bool find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t base_from_grippers[],
+                          wh_pose_t *base_from_effector) {
+    const wh_machine_t *machine = &layout->machine;
+    const bool is_in_list = arm > 0 && arm < WH_WORLD_ARMS;
+    const int32_t robot = is_in_list ? layout->arms[arm].robot : 0;
+    const bool is_second = is_in_list && layout->arms[arm].own != WH_ARM_BASE;
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const wh_mount_t *mount = &machine->mounts[g];
+        if (mount->axis != WH_NONE || mount->robot != robot || (mount->arm > 0) != is_second) {
+            continue;
+        }
+        *base_from_effector = base_from_grippers[g];
+        if (mount->is_shifted) {
+            const wh_pose_t identity = wh_pose_identity();
+            const wh_pose_t gripper_from_effector =
+                wh_pose_relative(&mount->effector_from_gripper, &identity);
+            *base_from_effector = wh_pose_compose(&base_from_grippers[g], &gripper_from_effector);
+        }
+        return true;
+    }
+    return false;
+}
+
+static void place(wh_links_t *links, const wh_layout_t *layout, size_t arm) {
+    const wh_carrier_t *carrier = wh_layout_arm(layout, arm, NULL);
+    const wh_arm_t *lengths = wh_layout_arm_lengths(layout, arm == 0 ? 0 : (size_t)layout->arms[arm].robot);
+    wh_pose_t *bodies = &links->bodies[arm * WH_ARM_BODIES];
+    if (carrier) {
+        wh_arm_place_carrier(lengths, carrier, links->arms[arm].axes, bodies);
+    } else {
+        wh_arm_place(lengths, &links->arms[arm].base_from_effector, bodies);
+    }
+}
+
+void wh_links_at(wh_links_t *links, const wh_layout_t *layout, const wh_real_t axes[]) {
+    memset(links, 0, sizeof *links);
+    for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
+        size_t first;
+        const wh_carrier_t *carrier = wh_layout_arm(layout, arm, &first);
+        wh_links_arm_t *at = &links->arms[arm];
+        if (carrier) {
+            memcpy(at->axes, &axes[first], carrier->axis_count * sizeof axes[0]);
+            carrier->forward(carrier, at->axes, &at->base_from_effector);
+        } else {
+            wh_machine_effector(&layout->machine, 0, axes, &at->base_from_effector);
+        }
+        place(links, layout, arm);
+    }
+}
+
+void wh_links_home(wh_links_t *links, const wh_layout_t *layout) {
+    wh_real_t home[WH_AXES];
+    wh_machine_home(&layout->machine, home);
+    wh_links_at(links, layout, home);
+}
+
+static bool is_at(const wh_pose_t *a, const wh_pose_t *b, wh_real_t slack) {
+    const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
+    bool same = wh_vec3_norm(&way) <= slack;
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) <= SLACK_PER_MM * slack;
+    }
+    return same;
+}
+
+/* Sets the arm's axes. `own` are its robot's; null: not known. */
+static void find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t own[],
+                      wh_real_t slack) {
+    const wh_pose_t *effector = &arm->base_from_effector;
+    if (own) {
+        wh_pose_t there;
+        carrier->forward(carrier, own, &there);
+        if (is_at(&there, effector, slack)) {
+            memcpy(arm->axes, own, carrier->axis_count * sizeof own[0]);
+            return;
+        }
+    }
+    const wh_chain_choice_t choice = wh_carrier_choice(carrier, arm->axes);
+    (void)carrier->inverse(carrier, effector, &choice, arm->axes, arm->axes);
+}
+
+static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
+    const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);
+    wh_real_t apart = wh_real_abs(off.x) + wh_real_abs(off.y) + wh_real_abs(off.z);
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            apart += wh_real_abs(a->R.m[row][column] - b->R.m[row][column]);
+        }
+    }
+    return apart <= 0;
+}
+
+/* True if the arm stands at these axes already, and its end-effector with it: nothing need be placed. */
+static bool stands(const wh_links_arm_t *arm, const wh_pose_t *effector, const wh_real_t own[],
+                   size_t count) {
+    return own && memcmp(own, arm->axes, count * sizeof own[0]) == 0 &&
+           is_same_pose(effector, &arm->base_from_effector);
+}
+
+void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
+                     const wh_real_t axes[], wh_real_t slack) {
+    const size_t count = wh_layout_arms(layout);
+    for (size_t i = 0; i < count; ++i) {
+        wh_links_arm_t *arm = &links->arms[i];
+        size_t first;
+        const wh_carrier_t *carrier = wh_layout_arm(layout, i, &first);
+        const wh_real_t *own = axes ? &axes[first] : NULL;
+        wh_pose_t effector = arm->base_from_effector;
+        const bool is_told = find_effector(layout, i, base_from_grippers, &effector);
+        if (count > 1 && stands(arm, &effector, own, carrier->axis_count)) {
+            continue;
+        }
+        arm->base_from_effector = effector;
+        if (is_told && carrier) {
+            find_axes(arm, carrier, own, slack);
+        }
+        place(links, layout, i);
+    }
+}

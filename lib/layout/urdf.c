@@ -1,0 +1,294 @@
+#include "urdf.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "axes.h"
+
+/* ---------------------------------------------------------------------------------------------- the links */
+
+wh_real_t wh_urdf_joint(const wh_urdf_map_t *map, int32_t link, const wh_real_t sources[]) {
+    const wh_urdf_link_t *at = &map->file->links[link];
+    wh_real_t factor = 1;
+    wh_real_t offset = 0;
+    while (at->mimics >= 0) {
+        offset += factor * at->offset;
+        factor *= at->factor;
+        link = at->mimics;
+        at = &map->file->links[link];
+    }
+    const wh_urdf_drive_t *drive = &map->drives[link];
+    const wh_real_t source = drive->source < 0 ? 0 : sources[drive->source];
+    return factor * (drive->offset + drive->factor * source) + offset;
+}
+
+/* The turn by an angle about an axis of length 1. */
+static wh_mat3_t turn_about(const wh_vec3_t *axis, wh_real_t angle) {
+    const wh_vec3_t *a = axis;
+    wh_real_t s;
+    wh_real_t c;
+    wh_sin_cos(angle, &s, &c);
+    const wh_real_t v = 1 - c;
+    const wh_mat3_t R = {{{c + v * a->x * a->x, v * a->x * a->y - s * a->z, v * a->x * a->z + s * a->y},
+                          {v * a->y * a->x + s * a->z, c + v * a->y * a->y, v * a->y * a->z - s * a->x},
+                          {v * a->z * a->x - s * a->y, v * a->z * a->y + s * a->x, c + v * a->z * a->z}}};
+    return R;
+}
+
+/* Writes root_from_link of all links. */
+static void place_links(const wh_urdf_map_t *map, const wh_real_t sources[], wh_pose_t poses[]) {
+    poses[0] = wh_pose_identity();
+    for (size_t i = 1; i < map->file->link_count; ++i) {
+        const wh_urdf_link_t *link = &map->file->links[i];
+        wh_pose_t moved = wh_pose_identity();
+        if (link->motion != WH_URDF_FIXED) {
+            const wh_real_t value = wh_urdf_joint(map, (int32_t)i, sources);
+            if (link->motion == WH_URDF_TURNS) {
+                moved.R = turn_about(&link->axis, value);
+            } else {
+                moved.r = wh_vec3_scale(value, &link->axis);
+            }
+        }
+        const wh_pose_t joint = wh_pose_compose(&poses[link->parent], &link->parent_from_joint);
+        poses[i] = wh_pose_compose(&joint, &moved);
+    }
+}
+
+/* To whole multiples of 1 / per_one, so that decimal numbers of a file come back as they are written. */
+static wh_real_t rounded(wh_real_t value, wh_real_t per_one) {
+    const wh_real_t whole = rint(value * per_one);
+    return whole == 0 ? 0 : whole / per_one;
+}
+
+static const wh_real_t per_mm = 1e9;
+static const wh_real_t per_cosine = 1e12;
+
+static wh_pose_t rounded_pose(const wh_pose_t *pose) {
+    wh_pose_t made;
+    for (size_t i = 0; i < 9; ++i) {
+        made.R.m[i / 3][i % 3] = rounded(pose->R.m[i / 3][i % 3], per_cosine);
+    }
+    made.r = wh_vec3(rounded(pose->r.x, per_mm), rounded(pose->r.y, per_mm), rounded(pose->r.z, per_mm));
+    return made;
+}
+
+/* How far out the end-effector is with the arm folded by `quarters` of 90 degrees; 0: stretched. */
+static wh_real_t outwards(const wh_urdf_map_t *map, wh_real_t quarters) {
+    const wh_real_t fold = quarters * wh_rad_from_deg(90);
+    wh_real_t sources[WH_URDF_SOURCES] = {0};
+    wh_pose_t poses[WH_URDF_LINKS];
+    sources[WH_URDF_FOLD] = sources[WH_URDF_SHOULDER] = sources[WH_URDF_WRIST] = fold;
+    sources[WH_URDF_ELBOW] = -2 * fold;
+    place_links(map, sources, poses);
+    return poses[map->tool].r.x;
+}
+
+void wh_urdf_arm(const wh_urdf_map_t *map, wh_arm_t *arm) {
+    const wh_real_t folded = outwards(map, arm->right_handed ? -1 : 1);
+    arm->reach = rounded(folded, per_mm);
+    arm->link = rounded((outwards(map, 0) - folded) / 2, per_mm);
+}
+
+/* -------------------------------------------------------------------------------------------- the sources */
+
+/* How far a body's x is turned from another's, in that one's plane. */
+static wh_real_t turn_between(const wh_pose_t *from, const wh_pose_t *to) {
+    const wh_pose_t turned = wh_pose_relative(from, to);
+    return wh_atan2(turned.R.m[1][0], turned.R.m[0][0]);
+}
+
+/* Only theta, R and yaw tell how the links lie: the others are left at 0. */
+static void find_angles(const wh_layout_t *layout, const wh_real_t axes[], wh_links_t *links) {
+    static const char *const names[] = {"theta", "r", "yaw"};
+    const wh_machine_t *machine = &layout->machine;
+    wh_real_t own[WH_AXES] = {0};
+    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t k = 0; k < sizeof names / sizeof names[0]; ++k) {
+            own[i] = strcmp(wh_axis_name(machine, i), names[k]) == 0 ? axes[i] : own[i];
+        }
+    }
+    wh_links_at(links, layout, own);
+}
+
+/* How much of the arm's length is between shoulder and wrist; above 1 the links do not reach, near 0 and 1
+ * rounding turns them. */
+static wh_real_t find_sources(const wh_layout_t *layout, const wh_real_t axes[], wh_real_t sources[]) {
+    const wh_arm_t *arm = &layout->shapes.arm;
+    wh_links_t links;
+    memcpy(sources, axes, WH_AXES * sizeof axes[0]);
+    if (wh_layout_is_scara(layout)) {
+        return WH_REAL(0.5);
+    }
+    find_angles(layout, axes, &links);
+    const wh_pose_t *bodies = links.bodies;
+    const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
+    const wh_real_t fold = wh_acos((axes[WH_AXIS_R] - arm->reach) / (2 * arm->link));
+    sources[WH_URDF_FOLD] = arm->right_handed ? -fold : fold;
+    sources[WH_URDF_SHOULDER] = turn_between(&bodies[WH_ARM_BASE], &bodies[WH_ARM_UPPER]);
+    sources[WH_URDF_ELBOW] = turn_between(&bodies[WH_ARM_UPPER], &bodies[WH_ARM_FOREARM]);
+    sources[WH_URDF_WRIST] = turn_between(&bodies[WH_ARM_FOREARM], &bodies[WH_ARM_HAND]);
+    return wh_vec3_norm(&out) / (2 * arm->link);
+}
+
+/* ------------------------------------------------------------------------------------- the configurations */
+
+/* Home, then the ends of each axis with the others at home, then multiples of square roots of primes, whose
+ * fractions lie evenly. */
+static void configure(const wh_machine_t *machine, size_t number, wh_real_t axes[]) {
+    static const wh_real_t primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
+    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
+    memset(axes, 0, WH_AXES * sizeof axes[0]);
+    wh_machine_home(machine, axes);
+    for (size_t i = 0; i < count; ++i) {
+        const wh_travel_t *travel = wh_machine_travel(machine, i);
+        if (number == 2 * i + 1) {
+            axes[i] = travel->min;
+        } else if (number == 2 * i + 2) {
+            axes[i] = travel->max;
+        } else if (number > 2 * count) {
+            const wh_real_t along = (wh_real_t)number * wh_real_sqrt(primes[i]);
+            axes[i] = travel->min + (along - floor(along)) * (travel->max - travel->min);
+        }
+    }
+}
+
+static void compare_effectors(const wh_layout_t *layout, const wh_real_t axes[],
+                              const wh_pose_t *base_from_tool, wh_urdf_findings_t *findings) {
+    wh_pose_t effector;
+    wh_real_t squares = 0;
+    wh_machine_effector(&layout->machine, 0, axes, &effector);
+    const wh_vec3_t off = wh_vec3_subtract(&base_from_tool->r, &effector.r);
+    for (size_t i = 0; i < 9; ++i) {
+        const wh_real_t entry = base_from_tool->R.m[i / 3][i % 3] - effector.R.m[i / 3][i % 3];
+        squares += entry * entry;
+    }
+    const wh_real_t mm = wh_vec3_norm(&off);
+    const wh_real_t rad = wh_real_sqrt(squares / 2);
+    const wh_real_t before = wh_real_max(findings->mm / WH_URDF_SAME_MM, findings->rad / WH_URDF_SAME_RAD);
+    if (!(wh_real_max(mm / WH_URDF_SAME_MM, rad / WH_URDF_SAME_RAD) <= before)) {
+        findings->mm = mm;
+        findings->rad = rad;
+        findings->is = base_from_tool->r;
+        findings->should = effector.r;
+        memcpy(findings->axes, axes, sizeof findings->axes);
+    }
+}
+
+/* An angle of the links counts modulo full turns. */
+static bool is_beyond(const wh_urdf_map_t *map, int32_t link, wh_real_t *value) {
+    const wh_urdf_link_t *joint = &map->file->links[link];
+    const wh_real_t slack = WH_REAL(1e-6);
+    int32_t driver = link;
+    while (map->file->links[driver].mimics >= 0) {
+        driver = map->file->links[driver].mimics;
+    }
+    if (map->drives[driver].source > WH_URDF_FOLD) {
+        const wh_real_t turn = wh_rad_from_deg(360);
+        *value -= turn * rint((*value - (joint->least + joint->most) / 2) / turn);
+    }
+    return joint->is_limited && !(*value >= joint->least - slack && *value <= joint->most + slack);
+}
+
+static void check_joints(const wh_urdf_map_t *map, const wh_real_t axes[], const wh_real_t sources[],
+                         wh_urdf_findings_t *findings) {
+    for (int32_t i = 1; findings->beyond < 0 && i < (int32_t)map->file->link_count; ++i) {
+        wh_real_t value = wh_urdf_joint(map, i, sources);
+        if (map->file->links[i].motion != WH_URDF_FIXED && is_beyond(map, i, &value)) {
+            findings->beyond = i;
+            findings->beyond_value = value;
+            memcpy(findings->beyond_axes, axes, sizeof findings->beyond_axes);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- the bodies */
+
+/* By link and body: where the link was first seen from there; it may still stand still there. */
+typedef struct {
+    bool is_first;
+    bool rests[WH_URDF_LINKS][WH_ARM_BODIES];
+    wh_pose_t body_from_link[WH_URDF_LINKS][WH_ARM_BODIES];
+} rests_t;
+
+static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
+    const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);
+    bool same = wh_vec3_norm(&off) <= WH_URDF_SAME_MM;
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) <= WH_URDF_SAME_RAD;
+    }
+    return same;
+}
+
+static void watch(rests_t *rests, const wh_pose_t base_from_link[], size_t link_count,
+                  const wh_pose_t bodies[]) {
+    for (size_t i = 0; i < link_count; ++i) {
+        for (size_t body = 0; body < WH_ARM_BODIES; ++body) {
+            const wh_pose_t now = wh_pose_relative(&bodies[body], &base_from_link[i]);
+            if (rests->is_first) {
+                rests->rests[i][body] = true;
+                rests->body_from_link[i][body] = now;
+            } else if (rests->rests[i][body]) {
+                rests->rests[i][body] = is_same(&rests->body_from_link[i][body], &now);
+            }
+        }
+    }
+    rests->is_first = false;
+}
+
+static void choose_bodies(const rests_t *rests, size_t link_count, wh_urdf_findings_t *findings) {
+    for (size_t i = 0; i < link_count; ++i) {
+        findings->body[i] = -1;
+        for (size_t body = WH_ARM_BODIES; !rests->is_first && body-- > 0;) {
+            if (rests->rests[i][body]) {
+                findings->body[i] = (int32_t)body;
+                findings->body_from_link[i] = rounded_pose(&rests->body_from_link[i][body]);
+            }
+        }
+    }
+}
+
+void wh_urdf_shape_place(const wh_pose_t *body_from_link, wh_convex_t *convex) {
+    const wh_pose_t body_from_shape = wh_pose_compose(body_from_link, &convex->body_from_shape);
+    convex->body_from_shape = rounded_pose(&body_from_shape);
+    convex->half.x = rounded(convex->half.x, per_mm);
+    convex->half.y = rounded(convex->half.y, per_mm);
+    convex->half.z = rounded(convex->half.z, per_mm);
+}
+
+static bool is_clear(wh_real_t stretched) {
+    return stretched > WH_REAL(1e-3) && stretched < WH_REAL(0.999);
+}
+
+void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urdf_findings_t *findings) {
+    const wh_carrier_t *carrier = layout->machine.carrier;
+    const wh_pose_t root =
+        carrier && carrier->chain.is_placed ? carrier->chain.base_from_robot : wh_pose_identity();
+    rests_t rests = {.is_first = true};
+    memset(findings, 0, sizeof *findings);
+    findings->beyond = -1;
+    for (size_t number = 0; number < WH_URDF_CONFIGURATIONS; ++number) {
+        wh_real_t axes[WH_AXES];
+        wh_real_t sources[WH_URDF_SOURCES];
+        wh_pose_t poses[WH_URDF_LINKS];
+        wh_links_t links;
+        configure(&layout->machine, number, axes);
+        const wh_real_t stretched = find_sources(layout, axes, sources);
+        if (map->folds && stretched > 1) {
+            continue;
+        }
+        ++findings->reached;
+        place_links(map, sources, poses);
+        for (size_t i = 0; i < map->file->link_count; ++i) {
+            poses[i] = wh_pose_compose(&root, &poses[i]);
+        }
+        compare_effectors(layout, axes, &poses[map->tool], findings);
+        check_joints(map, axes, sources, findings);
+        if (is_clear(stretched)) {
+            wh_links_at(&links, layout, axes);
+            watch(&rests, poses, map->file->link_count, links.bodies);
+        }
+    }
+    choose_bodies(&rests, map->file->link_count, findings);
+}

@@ -1,0 +1,339 @@
+#include "urdf_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+extern "C" {
+#include "../text/output.h"
+#include "../text/utf8.h"
+}
+
+namespace {
+
+const double mm_per_m = 1000;
+
+/* What is read into, and where it says why not. */
+struct reading_t {
+    const char *path;
+    wh_urdf_file_t *file;
+    char *message;
+    size_t size;
+    std::vector<const urdf::Link *> links; /* in the order of file->links */
+};
+
+/* Writes the path and the formatted text into the message, and returns false. */
+bool refuse(const reading_t &reading, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+bool refuse(const reading_t &reading, const char *format, ...) {
+    char said[512];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)std::vsnprintf(said, sizeof said, format, arguments);
+    va_end(arguments);
+    const std::string all = std::string(reading.path) + ": " + said;
+    wh_utf8_visible(reading.message, reading.size, all.c_str());
+    return false;
+}
+
+/* ----------------------------------------------------------------------------------------------- the text */
+
+bool read_text(const reading_t &reading, std::string &text) {
+    struct stat status;
+    wh_output_note_input(reading.path);
+    const int fd = open(reading.path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) {
+        return refuse(reading, "%s", std::strerror(errno));
+    }
+    const bool is_file = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+    text.resize(WH_URDF_BYTES + 1);
+    size_t length = 0;
+    for (ssize_t got = 1; is_file && got > 0 && length<text.size(); length += got> 0 ? size_t(got) : 0) {
+        got = read(fd, &text[length], text.size() - length);
+    }
+    (void)close(fd);
+    text.resize(length);
+    if (!is_file) {
+        return refuse(reading, "it is no regular file");
+    }
+    wh_output_keep(reading.path);
+    return length <= WH_URDF_BYTES || refuse(reading, "more than %zu bytes", WH_URDF_BYTES);
+}
+
+/* liburdfdom's reader of XML takes text alone, and goes down one call for each element within another. */
+bool check_text(const reading_t &reading, const std::string &text) {
+    const size_t tags = size_t(std::count(text.begin(), text.end(), '<'));
+    if (text.find('\0') != std::string::npos) {
+        return refuse(reading, "byte %zu is 0 (expected text)", text.find('\0'));
+    }
+    return tags <= WH_URDF_TAGS || refuse(reading, "%zu tags (expected at most %d)", tags, WH_URDF_TAGS);
+}
+
+/* ------------------------------------------------------------------------------------------- liburdfdom */
+
+/* Keeps the first error. */
+class listener_t : public console_bridge::OutputHandler {
+  public:
+    void log(const std::string &text, console_bridge::LogLevel level, const char *, int) override;
+    std::string first;
+};
+
+void listener_t::log(const std::string &text, console_bridge::LogLevel level, const char *, int) {
+    if (level == console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first.empty()) {
+        first = text;
+    }
+}
+
+/* The library's messages go to one listener of the whole process. */
+pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+
+urdf::ModelInterfaceSharedPtr parse(const std::string &text, std::string &error) {
+    listener_t listener;
+    (void)pthread_mutex_lock(&one_at_a_time);
+    console_bridge::OutputHandler *before = console_bridge::getOutputHandler();
+    console_bridge::useOutputHandler(&listener);
+    urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+    console_bridge::useOutputHandler(before);
+    (void)pthread_mutex_unlock(&one_at_a_time);
+    error = listener.first.empty() ? "it is no URDF" : listener.first;
+    return model;
+}
+
+/* ----------------------------------------------------------------------------------------------- geometry */
+
+wh_vec3_t vector_of(const urdf::Vector3 &v, double factor) {
+    return wh_vec3(factor * v.x, factor * v.y, factor * v.z);
+}
+
+wh_pose_t pose_of(const urdf::Pose &pose) {
+    const urdf::Rotation &q = pose.rotation;
+    const wh_pose_t made = {
+        {{{1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y - q.z * q.w), 2 * (q.x * q.z + q.y * q.w)},
+          {2 * (q.x * q.y + q.z * q.w), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z - q.x * q.w)},
+          {2 * (q.x * q.z - q.y * q.w), 2 * (q.y * q.z + q.x * q.w), 1 - 2 * (q.x * q.x + q.y * q.y)}}},
+        vector_of(pose.position, mm_per_m)};
+    return made;
+}
+
+bool copy_name(const reading_t &reading, const char *what, const std::string &name, char *to, size_t size) {
+    if (name.empty() || name.size() >= size) {
+        return refuse(reading, "%s \"%s\" (expected 1 to %zu bytes)", what, name.c_str(), size - 1);
+    }
+    std::memcpy(to, name.c_str(), name.size() + 1);
+    return true;
+}
+
+bool take_mesh(const reading_t &reading, const urdf::Mesh &mesh, const char *link, wh_urdf_shape_t *shape) {
+    shape->convex.kind = WH_CONVEX_MESH;
+    shape->scale = vector_of(mesh.scale, 1);
+    const wh_vec3_t &s = shape->scale;
+    if (!(std::fabs(s.x) > 0 && std::fabs(s.y) > 0 && std::fabs(s.z) > 0 && wh_vec3_is_finite(&s))) {
+        return refuse(reading,
+                      "link \"%s\": scale %g %g %g of mesh \"%s\" (expected three numbers other than 0)",
+                      link, s.x, s.y, s.z, mesh.filename.c_str());
+    }
+    return copy_name(reading, "mesh", mesh.filename, shape->mesh, sizeof shape->mesh);
+}
+
+bool take_shape(reading_t &reading, size_t link, const urdf::Geometry *geometry, const urdf::Pose &origin) {
+    const char *name = reading.file->links[link].name;
+    if (reading.file->shape_count == WH_URDF_SHAPES) {
+        return refuse(reading, "link \"%s\": more than %d shapes in the file", name, WH_URDF_SHAPES);
+    }
+    if (geometry == nullptr) {
+        return refuse(reading, "link \"%s\": a shape without geometry", name);
+    }
+    wh_urdf_shape_t *shape = &reading.file->shapes[reading.file->shape_count++];
+    *shape = wh_urdf_shape_t{};
+    shape->link = int32_t(link);
+    shape->convex.body_from_shape = pose_of(origin);
+    if (geometry->type == urdf::Geometry::BOX) {
+        shape->convex.kind = WH_CONVEX_BOX;
+        shape->convex.half = vector_of(static_cast<const urdf::Box *>(geometry)->dim, mm_per_m / 2);
+    } else if (geometry->type == urdf::Geometry::CYLINDER) {
+        const auto *cylinder = static_cast<const urdf::Cylinder *>(geometry);
+        shape->convex.kind = WH_CONVEX_CYLINDER;
+        shape->convex.half = wh_vec3(mm_per_m * cylinder->radius, 0, mm_per_m / 2 * cylinder->length);
+    } else if (geometry->type == urdf::Geometry::SPHERE) {
+        shape->convex.kind = WH_CONVEX_CAPSULE;
+        shape->convex.half = wh_vec3(mm_per_m * static_cast<const urdf::Sphere *>(geometry)->radius, 0, 0);
+    } else {
+        return take_mesh(reading, *static_cast<const urdf::Mesh *>(geometry), name, shape);
+    }
+    return true;
+}
+
+bool take_shapes(reading_t &reading, size_t link) {
+    const urdf::Link &from = *reading.links[link];
+    bool good = true;
+    for (const auto &collision : from.collision_array) {
+        good = good && take_shape(reading, link, collision->geometry.get(), collision->origin);
+    }
+    for (size_t i = 0; from.collision_array.empty() && i < from.visual_array.size(); ++i) {
+        const urdf::Visual &visual = *from.visual_array[i];
+        good = good && take_shape(reading, link, visual.geometry.get(), visual.origin);
+    }
+    return good;
+}
+
+/* ------------------------------------------------------------------------------------------------- joints */
+
+/* The names of liburdfdom's types, by their numbers. */
+const char *type_of(const urdf::Joint &joint) {
+    static const char *const names[] = {"unknown",  "revolute", "continuous", "prismatic",
+                                        "floating", "planar",   "fixed"};
+    return names[joint.type];
+}
+
+/* Limits of 0 and 0 are those of a joint of which the file says none. */
+void take_limits(const urdf::Joint &joint, wh_urdf_link_t *link) {
+    const double unit = link->motion == WH_URDF_SLIDES ? mm_per_m : 1;
+    const bool can_be = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::PRISMATIC;
+    link->is_limited =
+        can_be && joint.limits && (std::fabs(joint.limits->lower) > 0 || std::fabs(joint.limits->upper) > 0);
+    link->least = link->is_limited ? unit * joint.limits->lower : 0;
+    link->most = link->is_limited ? unit * joint.limits->upper : 0;
+}
+
+bool take_axis(const reading_t &reading, const urdf::Joint &joint, wh_urdf_link_t *link) {
+    const wh_vec3_t axis = vector_of(joint.axis, 1);
+    const double length = wh_vec3_norm(&axis);
+    if (!(length > 0 && std::isfinite(length))) {
+        return refuse(reading, "joint \"%s\": axis %g %g %g (expected a direction)", link->joint, axis.x,
+                      axis.y, axis.z);
+    }
+    link->axis = wh_vec3_scale(1 / length, &axis);
+    return true;
+}
+
+bool take_joint(const reading_t &reading, const urdf::Joint &joint, wh_urdf_link_t *link) {
+    if (!copy_name(reading, "joint", joint.name, link->joint, sizeof link->joint)) {
+        return false;
+    }
+    link->parent_from_joint = pose_of(joint.parent_to_joint_origin_transform);
+    const wh_vec3_t &r = link->parent_from_joint.r;
+    if (!(wh_vec3_norm(&r) <= WH_CONVEX_LARGEST)) {
+        return refuse(reading, "joint \"%s\": origin %g %g %g m (expected within %g m)", link->joint,
+                      r.x / mm_per_m, r.y / mm_per_m, r.z / mm_per_m, WH_CONVEX_LARGEST / mm_per_m);
+    }
+    if (joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS) {
+        link->motion = WH_URDF_TURNS;
+    } else if (joint.type == urdf::Joint::PRISMATIC) {
+        link->motion = WH_URDF_SLIDES;
+    } else if (joint.type != urdf::Joint::FIXED) {
+        return refuse(reading, "joint \"%s\": type %s (expected revolute, continuous, prismatic or fixed)",
+                      link->joint, type_of(joint));
+    }
+    take_limits(joint, link);
+    return link->motion == WH_URDF_FIXED || take_axis(reading, joint, link);
+}
+
+int32_t find_joint(const wh_urdf_file_t &file, const std::string &name) {
+    for (size_t i = 1; i < file.link_count; ++i) {
+        if (name == file.links[i].joint) {
+            return int32_t(i);
+        }
+    }
+    return -1;
+}
+
+bool take_mimic(const reading_t &reading, size_t i) {
+    wh_urdf_link_t *link = &reading.file->links[i];
+    const urdf::JointMimicSharedPtr &mimic = reading.links[i]->parent_joint->mimic;
+    if (!mimic || link->motion == WH_URDF_FIXED) {
+        return true;
+    }
+    const int32_t other = find_joint(*reading.file, mimic->joint_name);
+    if (other < 0 || reading.file->links[other].motion != link->motion) {
+        return refuse(reading, "joint \"%s\" mimics \"%s\" (expected a joint that %s, too)", link->joint,
+                      mimic->joint_name.c_str(), link->motion == WH_URDF_TURNS ? "turns" : "slides");
+    }
+    link->mimics = other;
+    link->factor = mimic->multiplier;
+    link->offset = (link->motion == WH_URDF_SLIDES ? mm_per_m : 1) * mimic->offset;
+    return true;
+}
+
+/* Each joint that mimics another leads to one that does not. */
+bool check_mimics(const reading_t &reading) {
+    const wh_urdf_file_t &file = *reading.file;
+    for (size_t i = 1; i < file.link_count; ++i) {
+        size_t steps = 0;
+        for (int32_t at = int32_t(i); at >= 0 && steps <= file.link_count; ++steps) {
+            at = file.links[at].mimics;
+        }
+        if (steps > file.link_count) {
+            return refuse(reading, "joint \"%s\" mimics itself, by way of others", file.links[i].joint);
+        }
+    }
+    return true;
+}
+
+/* -------------------------------------------------------------------------------------------------- links */
+
+/* Lists the links from the root on, each behind its parent. */
+bool list_links(reading_t &reading, const urdf::ModelInterface &model) {
+    wh_urdf_file_t &file = *reading.file;
+    if (model.links_.size() > WH_URDF_LINKS) {
+        return refuse(reading, "%zu links (expected at most %d)", model.links_.size(), WH_URDF_LINKS);
+    }
+    reading.links.push_back(model.getRoot().get());
+    file.links[0] = wh_urdf_link_t{};
+    file.links[0].parent = file.links[0].mimics = -1;
+    for (size_t i = 0; i < reading.links.size(); ++i) {
+        for (const auto &child : reading.links[i]->child_links) {
+            if (std::find(reading.links.begin(), reading.links.end(), child.get()) != reading.links.end()) {
+                return refuse(reading, "link \"%s\" is the child of several joints (expected a tree)",
+                              child->name.c_str());
+            }
+            file.links[reading.links.size()] = wh_urdf_link_t{};
+            file.links[reading.links.size()].parent = int32_t(i);
+            file.links[reading.links.size()].mimics = -1;
+            reading.links.push_back(child.get());
+        }
+    }
+    file.link_count = reading.links.size();
+    return file.link_count == model.links_.size() ||
+           refuse(reading, "%zu of %zu links hang on the root \"%s\" (expected a tree)", file.link_count,
+                  model.links_.size(), reading.links[0]->name.c_str());
+}
+
+bool take_model(reading_t &reading, const urdf::ModelInterface &model) {
+    wh_urdf_file_t &file = *reading.file;
+    bool good = list_links(reading, model);
+    for (size_t i = 0; good && i < file.link_count; ++i) {
+        good = copy_name(reading, "link", reading.links[i]->name, file.links[i].name, WH_URDF_NAME) &&
+               (i == 0 || take_joint(reading, *reading.links[i]->parent_joint, &file.links[i]));
+    }
+    for (size_t i = 0; good && i < file.link_count; ++i) {
+        good = take_shapes(reading, i) && (i == 0 || take_mimic(reading, i));
+    }
+    return good && check_mimics(reading);
+}
+
+} // namespace
+
+bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t size) {
+    reading_t reading = {path, file, message, size, {}};
+    std::string text;
+    std::string error;
+    file->link_count = file->shape_count = 0;
+    if (!read_text(reading, text) || !check_text(reading, text)) {
+        return false;
+    }
+    const urdf::ModelInterfaceSharedPtr model = parse(text, error);
+    return model ? take_model(reading, *model) : refuse(reading, "%s", error.c_str());
+}

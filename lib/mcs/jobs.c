@@ -1,0 +1,128 @@
+/* Jobs: lines that come while others are played, each of a task of its own. */
+#include "../script/wh_module_values.h"
+#include "playing.h"
+
+static wh_lane_t *lane_of(const wh_mcs_t *mcs, int32_t job) {
+    for (size_t i = 0; mcs->lanes && i < WH_MCS_LANES; ++i) {
+        if (mcs->lanes->of[i].job == job) {
+            return &mcs->lanes->of[i];
+        }
+    }
+    return NULL;
+}
+
+void wh_mcs_call(wh_mcs_t *mcs) {
+    mcs->is_called = true;
+}
+
+bool wh_mcs_job_waits(const wh_mcs_t *mcs, int32_t job) {
+    const wh_lane_t *lane = lane_of(mcs, job);
+    return lane && lane->waits && !lane->is_patient;
+}
+
+void wh_mcs_end_job(wh_mcs_t *mcs, int32_t job, wh_status_t status, const char *why) {
+    wh_lane_t *lane = lane_of(mcs, job);
+    if (lane) {
+        lane->told = status;
+        lane->told_why = why;
+        lane->is_busy = lane->is_drawn = false;
+        mcs->is_called = true;
+    }
+}
+
+void wh_mcs_end_waits(wh_mcs_t *mcs, wh_status_t status, const char *why) {
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        wh_lane_t *lane = &mcs->lanes->of[i];
+        if (lane->waits) {
+            lane->told = status;
+            lane->told_why = why;
+        }
+    }
+}
+
+/* native.next_job(): a job that has come: { number = , line = , may_wait = , robot = from 1, station = };
+ * nil: none has. */
+static int next_job(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_mcs_job_t job;
+    if (!mcs->jobs.take(mcs->jobs.user, &job)) {
+        return 0;
+    }
+    lua_createtable(L, 0, 5);
+    wh_lua_set_integer(L, "number", job.number);
+    wh_lua_set_text(L, "line", job.line);
+    wh_lua_set_boolean(L, "may_wait", job.may_wait);
+    if (job.robot != WH_NONE) {
+        wh_lua_set_integer(L, "robot", job.robot + 1);
+    }
+    if (job.station) {
+        wh_lua_set_text(L, "station", job.station);
+    }
+    return 1;
+}
+
+/* native.begin_job(job): this task is the job's. */
+static int begin_job(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    mcs->lanes->of[mcs->lanes->current].job = (int32_t)luaL_checkinteger(L, 1);
+    return 0;
+}
+
+/* native.end_line(job, number, answer): a line of it was carried out. Returns the next one; nil: the job
+ * is over. */
+static int end_line(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const char *next = mcs->jobs.ended(mcs->jobs.user, (int32_t)luaL_checkinteger(L, 1),
+                                       (wh_status_t)luaL_checkinteger(L, 2), wh_lua_whole_text(L, 3));
+    lua_pushstring(L, next);
+    return 1;
+}
+
+/* native.has_jobs(): jobs are played, among which nothing can be undone. */
+static int has_jobs(lua_State *L) {
+    lua_pushboolean(L, wh_mcs_of(L)->jobs.take != NULL);
+    return 1;
+}
+
+/* native.is_told(lane): its job, or its command that waits, is to end where it is. */
+static int is_told(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_pushboolean(L, mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)].told != WH_OK);
+    return 1;
+}
+
+/* native.heed(): raises what this task was told to end with. */
+static int heed(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
+    const wh_status_t told = lane->told;
+    lane->told = WH_OK;
+    if (told != WH_OK) {
+        wh_mcs_raise(L, mcs, told, lane->told_why);
+    }
+    return 0;
+}
+
+/* native.command_waits(waits, is_patient): this task's command does, or no longer does, for what another one
+ * has; however long that takes. */
+static int note_wait(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
+    lane->waits = lua_toboolean(L, 1) != 0;
+    lane->is_patient = lua_toboolean(L, 2) != 0;
+    return 0;
+}
+
+/* native.refuse_wait(lane): nothing runs that could give back what this job waits for. */
+static int refuse_wait(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_lane_t *lane = &mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)];
+    lane->told = WH_STATUS_BUSY;
+    lane->told_why = "the robot stands in the station";
+    return 0;
+}
+
+const luaL_Reg wh_mcs_job_functions[] = {
+    {"next_job", next_job},       {"begin_job", begin_job},     {"end_line", end_line},
+    {"has_jobs", has_jobs},       {"is_told", is_told},         {"heed", heed},
+    {"command_waits", note_wait}, {"refuse_wait", refuse_wait}, {NULL, NULL}};

@@ -1,0 +1,353 @@
+/* Several segments at once: each task of a script has a lane, and all advance in the same slice. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../script/wh_module_values.h"
+#include "../text/array.h"
+#include "../text/clock.h"
+#include "native.h"
+#include "playing.h"
+
+/* ------------------------------------------------------------------------------------------------- slices */
+
+static void take_axes(wh_mcs_t *mcs, const wh_lane_t *lane) {
+    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
+        if ((lane->axes >> axis & 1U) != 0) {
+            mcs->track.axes[axis] = lane->track.axes[axis];
+        }
+    }
+}
+
+static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
+    const wh_segment_t *segment = &lane->track.segment;
+    for (size_t g = 0; segment->kind == WH_SEGMENT_VALVES && g < mcs->layout->machine.gripper_count; ++g) {
+        if (segment->valves[g] != WH_NONE) {
+            mcs->track.valves[g] = segment->valves[g];
+        }
+    }
+}
+
+/* Each running segment is asked for the slice that comes. One that is over takes none: its end has exactly
+ * its target's bits. True if any is over. */
+static bool draw(wh_mcs_t *mcs) {
+    bool is_any_over = false;
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        wh_lane_t *lane = &mcs->lanes->of[i];
+        if (!lane->is_busy || lane->is_drawn) {
+            continue;
+        }
+        lane->state = wh_track_next(&lane->track, wh_mcs_sensors(mcs, &lane->awaited));
+        lane->is_drawn = lane->state == WH_TRACK_MOVING;
+        if (!lane->is_drawn) {
+            lane->is_busy = false;
+            lane->status = WH_OK;
+            take_axes(mcs, lane);
+            is_any_over = true;
+        }
+    }
+    return is_any_over;
+}
+
+static void tell_recorder(wh_mcs_t *mcs) {
+    wh_recorder_t *recorder = &mcs->recorder;
+    recorder->part_count = 0;
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        const int32_t command = (int32_t)i == mcs->lanes->current ? recorder->running : lane->running;
+        if (lane->is_busy || command != WH_NONE) {
+            static const wh_task_t waiting = {.share = WH_SHARE_WAITING};
+            wh_task_t task = lane->is_busy ? lane->task : waiting;
+            wh_activity_narrow(&task, &mcs->layout->machine, lane->axes);
+            recorder->parts[recorder->part_count++] = (wh_recorder_part_t){command, task, lane->grippers};
+        }
+    }
+}
+
+/* What comes next is decided by the state of a slice that ends a segment. */
+static void await_ends(const wh_mcs_t *mcs) {
+    bool is_any_last = false;
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        is_any_last =
+            is_any_last || (lane->is_busy && lane->track.segment_slice == lane->track.segment_slices);
+    }
+    if (is_any_last && mcs->partners.await) {
+        mcs->partners.await(mcs->partners.user);
+    }
+}
+
+/* One slice of all that run. What was refused has not taken place, and its segments are given up where they
+ * were. */
+static wh_status_t play_slice(wh_mcs_t *mcs) {
+    wh_real_t before[WH_AXES];
+    memcpy(before, mcs->track.axes, sizeof before);
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        wh_lane_t *lane = &mcs->lanes->of[i];
+        if (lane->is_busy) {
+            take_axes(mcs, lane);
+            take_valves(mcs, lane);
+            lane->is_drawn = false;
+        }
+    }
+    tell_recorder(mcs);
+    ++mcs->track.slice;
+    await_ends(mcs);
+    const wh_status_t status = wh_mcs_play_slice(mcs, before);
+    mcs->recorder.part_count = 0;
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        wh_vacuum_watch_slice(&mcs->lanes->of[i].watch, mcs->state.sensors);
+    }
+    return status;
+}
+
+/* What moves one of these axes goes on no more; WH_MCS_ALL: nothing does. */
+static void give_up(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
+    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+        wh_lane_t *lane = &mcs->lanes->of[i];
+        if (lane->is_busy && (axes == WH_MCS_ALL || (lane->axes & axes) != 0)) {
+            lane->status = status;
+            lane->is_busy = lane->is_drawn = false;
+        }
+    }
+}
+
+/* Once slices have gone out: a STOP that has come, and what the last one was answered with. A slice that was
+ * given up because of a STOP is no other reason. */
+static void take_end(wh_mcs_t *mcs, wh_status_t status) {
+    uint32_t axes = 0;
+    if (wh_mcs_stop_has_come(mcs)) {
+        mcs->lanes->stopped_by = wh_mcs_take_stop(mcs, &axes);
+        give_up(mcs, axes, WH_STATUS_STOPPED);
+        if (axes == WH_MCS_ALL) {
+            wh_mcs_end_waits(mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
+        }
+    }
+    if (status != WH_OK && axes != WH_MCS_ALL) {
+        give_up(mcs, WH_MCS_ALL, status);
+        wh_mcs_note_refused(mcs, status);
+        mcs->lanes->stopped_by = NULL;
+    }
+}
+
+/* At most as many slices as are charged for at once. True once no more are to go out. */
+static bool play_charge(wh_mcs_t *mcs, wh_status_t *status) {
+    bool is_over = false;
+    for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && !is_over; ++i) {
+        is_over = draw(mcs);
+        *status = is_over ? WH_OK : play_slice(mcs);
+        is_over = is_over || *status != WH_OK || wh_mcs_stop_has_come(mcs) || mcs->is_called;
+        if (wh_sandbox_stopping(mcs->sandbox)) {
+            break;
+        }
+    }
+    return is_over;
+}
+
+/* native.advance(): slices go out until a segment is over, or all were given up, or a job has come. At
+ * least one must run. */
+static int advance(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    mcs->is_called = false;
+    wh_status_t status = mcs->stop_requested ? WH_OK : wh_mcs_resume(mcs);
+    bool is_over = status != WH_OK || mcs->stop_requested;
+    while (!is_over) {
+        const int64_t first = mcs->track.slice;
+        const double begin = wh_clock_seconds();
+        is_over = play_charge(mcs, &status);
+        mcs->recorder.record->wall_s += wh_clock_seconds() - begin;
+        wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - first));
+    }
+    take_end(mcs, status);
+    return 0;
+}
+
+/* -------------------------------------------------------------------------------------------------- lanes */
+
+void wh_mcs_free_lanes(wh_mcs_t *mcs) {
+    for (int32_t i = 0; mcs->lanes && i < WH_MCS_LANES; ++i) {
+        if (i != mcs->lanes->current) { /* whose plans the rehearsal has */
+            free(mcs->lanes->of[i].planned.segments);
+        }
+    }
+    free(mcs->lanes);
+    mcs->lanes = NULL;
+}
+
+static wh_lane_t *current(const wh_mcs_t *mcs) {
+    return &mcs->lanes->of[mcs->lanes->current];
+}
+
+static void tell_turn(const wh_mcs_t *mcs, const char *what) {
+    if (mcs->partners.turn) {
+        mcs->partners.turn(mcs->partners.user, mcs, what);
+    }
+}
+
+/* native.waits(text): the task waits from now on for what the text says; nil: no more. */
+static int wait_for(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const char *what = lua_isnil(L, 1) ? NULL : wh_lua_whole_text(L, 1);
+    if (!mcs->lanes) {
+        return 0;
+    }
+    if (what) {
+        wh_recorder_wait(&mcs->recorder, what);
+    } else {
+        wh_recorder_go_on(&mcs->recorder);
+    }
+    tell_turn(mcs, what);
+    return 0;
+}
+
+/* native.open_lanes(): from now on there are tasks. */
+static int open_lanes(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    if (!mcs->lanes) {
+        wh_decisions_measured(mcs->decisions, "tasks");
+        mcs->unplayed = "tasks";
+        mcs->keep_segments = false;
+        mcs->lanes = wh_array_new(1, sizeof *mcs->lanes);
+        for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+            mcs->lanes->of[i].running = WH_NONE;
+        }
+        mcs->recorder.record->has_tasks = true;
+        tell_turn(mcs, NULL);
+    }
+    return 0;
+}
+
+/* native.switch(lane, number): from 1; the script's is 1, and its number 0. What is kept of a command is its
+ * task's. */
+static int switch_lane(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    const int32_t to = wh_mcs_index(L, 1, WH_MCS_LANES);
+    wh_lane_t *lane = current(mcs);
+    lane->running = mcs->recorder.running;
+    lane->planned = mcs->rehearsal.planned;
+    memcpy(lane->callers, mcs->callers, sizeof lane->callers);
+    memcpy(lane->word, mcs->word, sizeof lane->word);
+    mcs->lanes->current = to;
+    lane = current(mcs);
+    lane->number = (int32_t)luaL_checkinteger(L, 2);
+    mcs->recorder.number = lane->number;
+    mcs->recorder.running = lane->running;
+    mcs->rehearsal.planned = lane->planned;
+    memcpy(mcs->callers, lane->callers, sizeof mcs->callers);
+    memcpy(mcs->word, lane->word, sizeof mcs->word);
+    return 0;
+}
+
+static uint32_t own_grippers(const wh_machine_t *machine, int32_t robot) {
+    uint32_t grippers = 0;
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const bool is_its = machine->mounts[g].axis == WH_NONE && machine->mounts[g].robot == robot;
+        grippers |= is_its ? 1U << g : 0;
+    }
+    return grippers;
+}
+
+/* native.hold_mechanisms(robot, chucks, pins and doors...): the running command has these, the robot from 1,
+ * false: none; doors count on from the grippers. They are what its segments move. Then it no longer waits. */
+static int hold_mechanisms(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_machine_t *machine = &mcs->layout->machine;
+    wh_lane_t alone = {0};
+    wh_lane_t *lane = mcs->lanes ? current(mcs) : &alone;
+    const int32_t robot = lua_toboolean(L, 1) ? wh_mcs_index(L, 1, wh_machine_robots(machine)) : WH_NONE;
+    lane->axes = robot != WH_NONE ? wh_mcs_robot_axes(machine, (size_t)robot) : 0;
+    lane->grippers = own_grippers(machine, robot);
+    for (int i = 2; i <= lua_gettop(L); ++i) {
+        const int32_t g = wh_mcs_index(L, i, machine->gripper_count + machine->door_count);
+        const bool is_door = (size_t)g >= machine->gripper_count;
+        lane->axes |= is_door ? 1U << wh_machine_door_axis(machine, (size_t)g - machine->gripper_count)
+                              : wh_mount_moved_by(&machine->mounts[g]);
+        lane->grippers |= is_door ? 0 : 1U << g;
+    }
+    mcs->held_axes = lane->axes;
+    if (mcs->lanes) {
+        wh_recorder_go_on(&mcs->recorder);
+    }
+    if (mcs->lanes && lane->axes != 0) {
+        tell_turn(mcs, NULL);
+    }
+    return 0;
+}
+
+/* native.start(segment or the number of a planned one): it runs from the next slice on, in this task's
+ * lane. */
+static int start(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_lane_t *lane = current(mcs);
+    const wh_track_t stands = mcs->track;
+    wh_planned_t planned;
+    wh_mcs_begin_segment(L, mcs, &planned);
+    lane->track = mcs->track;
+    mcs->track = stands;
+    lane->task = planned.task;
+    lane->awaited = planned.awaited;
+    lane->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & lane->grippers & mcs->state.sensors};
+    lane->is_busy = true;
+    lane->is_drawn = false;
+    return 0;
+}
+
+/* native.runs(lane): true while its segment does. Without a lane: true while any does. */
+static int runs(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    bool is_any = false;
+    if (!lua_isnoneornil(L, 1)) {
+        lua_pushboolean(L, mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)].is_busy);
+        return 1;
+    }
+    for (size_t i = 0; mcs->lanes && i < WH_MCS_LANES; ++i) {
+        is_any = is_any || mcs->lanes->of[i].is_busy;
+    }
+    lua_pushboolean(L, is_any);
+    return 1;
+}
+
+/* native.outcome(): of this task's segment, what native.play returns; raises if it was given up. */
+static int outcome(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_lane_t *lane = current(mcs);
+    if (lane->status == WH_STATUS_STOPPED && mcs->lanes->stopped_by) {
+        wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
+    } else if (lane->status != WH_OK) {
+        wh_mcs_raise_refused(L, mcs, lane->status);
+    }
+    const int32_t lost = wh_vacuum_watch_lost(&lane->watch, mcs->track.valves, mcs->state.gripper_count);
+    lua_pushboolean(L, lane->state == WH_TRACK_DONE);
+    if (lost == WH_NONE) {
+        return 1;
+    }
+    lua_pushinteger(L, lost + 1);
+    return 2;
+}
+
+/* native.drop_segment(): this task's segment goes on no more. */
+static int drop_segment(lua_State *L) {
+    wh_lane_t *lane = current(wh_mcs_with_layout(L));
+    lane->is_busy = lane->is_drawn = false;
+    return 0;
+}
+
+/* native.free_lane(lane): a task has ended. */
+static int free_lane(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_lane_t *lane = &mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)];
+    free(lane->planned.segments);
+    *lane = (wh_lane_t){.running = WH_NONE};
+    return 0;
+}
+
+const luaL_Reg wh_mcs_lane_functions[] = {{"open_lanes", open_lanes},
+                                          {"switch", switch_lane},
+                                          {"hold_mechanisms", hold_mechanisms},
+                                          {"waits", wait_for},
+                                          {"start", start},
+                                          {"advance", advance},
+                                          {"runs", runs},
+                                          {"outcome", outcome},
+                                          {"drop_segment", drop_segment},
+                                          {"free_lane", free_lane},
+                                          {NULL, NULL}};

@@ -1,0 +1,61 @@
+/* A way by via points: the axes go from point to point, and cut the corners as far as each point's blend and
+ * the axes' limits allow.
+ *
+ * From one point to the next all axes go at once, each leg as a synchronised move (motion/move.h). A leg
+ * begins before the one before it is over. While both run their positions add up, so that the arm need not
+ * stand still at the point between them. Where the first of the two is left, and where the second is joined,
+ * R's end is at most `blend` mm from the point: so near does the arm pass it. Speeds, accelerations and jerks
+ * of both together keep each axis's limits: that is looked at phase by phase, not sampled. Of 64 overlaps, up
+ * to half of either leg, the longest that keeps all this is taken; if none does, the arm stops at the point.
+ *
+ * For theta, R, Z and yaw of a polar arm. A way is a plain struct without pointers: copy it freely. All
+ * functions are reentrant.
+ */
+#ifndef WH_MOTION_VIA_H
+#define WH_MOTION_VIA_H
+
+#include "robot.h"
+
+WH_HEADER_BEGIN
+WH_REFUSE_PACKING(via);
+
+/* The most points between the ends. */
+#define WH_VIA_POINTS 4
+#define WH_VIA_LEGS (WH_VIA_POINTS + 1)
+
+typedef struct {
+    wh_real_t q[WH_ROBOT_AXES]; /* rad, mm */
+    wh_real_t blend;            /* mm; 0: the arm stops there */
+} wh_via_point_t;
+
+/* A planned way. Written by wh_via_plan only; reading its fields is fine. Times are s after the start. */
+typedef struct {
+    size_t legs;
+    wh_real_t begin[WH_VIA_LEGS], end[WH_VIA_LEGS];
+    wh_real_t at[WH_VIA_LEGS + 1][WH_ROBOT_AXES];   /* where legs begin and end */
+    wh_real_t times[WH_VIA_LEGS][WH_ROBOT_AXES][3]; /* of each profile alone: jerk, rise and duration */
+} wh_via_t;
+
+/* Plans the way from axes `from` by these points to axes `to`, at rest at both ends. The robot must pass
+ * wh_robot_validate, all points wh_robot_check_travel. Errors, *via then unchanged:
+ *   WH_STATUS_NULL_ARGUMENT
+ *   WH_STATUS_OUT_OF_RANGE  no point, more than WH_VIA_POINTS, or a blend below 0
+ *   WH_STATUS_NOT_FINITE
+ *   WH_STATUS_BAD_LIMITS    see wh_profile_plan
+ * Cost: up to 100 us a point. */
+wh_status_t wh_via_plan(wh_via_t *via, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
+                        const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES])
+    WH_SYMBOL(wh_via_plan);
+
+/* s, never negative. */
+static inline wh_real_t wh_via_duration(const wh_via_t *via) {
+    return via->end[via->legs - 1];
+}
+
+/* Writes the axes at `t` seconds after the start: exactly `from` for t <= 0 (and NaN), exactly `to` from the
+ * duration on. No pointer may be null. Cost: about 200 ns. */
+void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_via_at);
+
+WH_HEADER_END
+
+#endif

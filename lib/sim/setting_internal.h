@@ -1,0 +1,17 @@
+/* What may be set on a simulator before its first slice: within the room. */
+#ifndef WH_SIM_SETTING_INTERNAL_H
+#define WH_SIM_SETTING_INTERNAL_H
+
+#include "simulator.h"
+
+static inline wh_status_t wh_simulator_check_setting(const wh_simulator_t *simulator, const void *setting) {
+    if (!simulator || !setting) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
+    return simulator->table.slice > 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
+}
+
+#endif

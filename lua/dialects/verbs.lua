@@ -1,0 +1,251 @@
+-- Frames as object.verb(arguments), each ended by a carriage return: `oROB1.GETW(A,1)`. The controller answers at once,
+-- `aROB1.GETW:` and values, or `nROB1.GETW:` and a code; the end of an action is an event, `eROB1.GETW(0000,1.965)`,
+-- and what befalls a wafer, too: `eROB1.WAFR(picked,1.123,Wafer 1,EE)`. Lengths in mm, angles in degrees, times in s.
+
+local OBJECT = "ROB1"
+
+local last_verb = "----" -- of the last frame: a refusal is answered under it
+local maps = {}
+local found = {} -- what the last command of each verb has found
+
+local function number(value)
+  return ("%.3f"):format(value)
+end
+
+-- A name as one argument: marks of the frames would take it apart.
+local function field(name)
+  return (name:gsub("[(),%c]", ";"))
+end
+
+-- How many arguments a verb has; of the others each goes to motion control, which looks at all.
+local MOST = {
+  ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
+  TECH = 1, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 4, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
+  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 0, GAXS = 0, GLOC = 1,
+  GVER = 0,
+}
+
+local function decode(frame)
+  local object, verb, inside = frame:match("^o(%w+)%.(%w+)%((.*)%)$")
+  last_verb = verb or "----"
+  if not verb then
+    host.refuse("BAD_ARGUMENT", "no oOBJECT.VERB(ARGUMENTS)", "0011")
+  end
+  if object ~= OBJECT then
+    host.refuse("BAD_ARGUMENT", "object " .. object, "0012")
+  end
+  local arguments = {}
+  for field in (inside ~= "" and inside .. "," or ""):gmatch("([^,]*),") do
+    arguments[#arguments + 1] = field:match("^%s*(.-)%s*$")
+  end
+  if #arguments > (MOST[verb] or #arguments) then
+    host.refuse("BAD_ARGUMENT", arguments[#arguments], "0011")
+  end
+  return { command = verb, arguments = arguments }
+end
+
+-- (station, slot, arm, phase, dx, dy, dz): all behind the slot may be left out, or empty.
+local function transfer(word, prefix)
+  return function(request)
+    local fields, list = request.arguments, {}
+    if (fields[3] or "") ~= "" then
+      list[1] = "gripper=" .. host.arm(fields[3])
+    end
+    local phases = { [""] = "", all = "", extended = "extended", up = "up" }
+    local phase = phases[fields[4] or ""] or host.refuse("BAD_ARGUMENT", "phase " .. fields[4])
+    if phase ~= "" then
+      list[#list + 1] = ("%sstop=%s"):format(prefix, phase)
+    end
+    for place, name in ipairs({ "dx", "dy", "dz" }) do
+      local field = fields[4 + place] or ""
+      if field ~= "" then
+        list[#list + 1] = ("%s%s=%.17g"):format(prefix, name, host.mm(field))
+      end
+    end
+    return ("%s %s %d %s"):format(word, host.station(fields[1] or ""), host.slot(fields[2] or ""),
+      table.concat(list, " "))
+  end
+end
+
+local function at_station(word)
+  return function(request)
+    return word .. " " .. host.station(request.arguments[1] or "")
+  end
+end
+
+local function at_door(word)
+  return function(request)
+    return word .. " " .. host.door(request.arguments[1] or "")
+  end
+end
+
+-- (station, angle): which is 0 if there is one by itself.
+local function turn(word, by_itself)
+  return function(request)
+    local theirs = request.arguments[2] or by_itself or host.refuse("BAD_ARGUMENT", word)
+    return ("%s %s %.17g"):format(word, host.station(request.arguments[1] or ""), host.degrees(theirs))
+  end
+end
+
+-- (theta, r, z, yaw), (dx, dy, dz, speed): each may be empty; `turns` by name, what is an angle.
+local function values(word, names, turns, axes)
+  return function(request)
+    local list = { word }
+    for place, name in ipairs(names) do
+      local field, unit = request.arguments[place] or "", turns[name] and host.degrees or host.mm
+      if field ~= "" then
+        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name))
+      end
+    end
+    return table.concat(list, " ")
+  end
+end
+
+-- A name, which may have blanks; `may_lack`: or none.
+local function with_name(word, may_lack)
+  return function(request)
+    local name = request.arguments[1] or ""
+    return may_lack and name == "" and word or word .. " " .. host.typed(name)
+  end
+end
+
+local function as_typed(word)
+  return function(request)
+    return word .. " " .. table.concat(request.arguments, " ")
+  end
+end
+
+local function told(_, result)
+  return field((result.answer:gsub("^OK ?", "")))
+end
+
+-- For GFND.
+local function keep(request, result)
+  found[request.command] = told(request, result)
+end
+
+-- What the sensor of each arm says: EE:1,PA:0.
+local function arms(result)
+  local list = {}
+  for name, is_on in pairs(result.sensors) do
+    list[#list + 1] = field(host.name("arms", name) or name) .. (is_on and ":1" or ":0")
+  end
+  table.sort(list)
+  return table.concat(list, ",")
+end
+
+local function position(_, result)
+  local at = result.position
+  return table.concat({ number(at.theta), number(at.r), number(at.z), number(at.yaw) }, ",")
+end
+
+return {
+  name = "frames as object.verb(arguments)",
+  framing = { ends = { "\r", "\r\n" }, longest = 512, timeout = 5 },
+  decode = decode,
+
+  commands = {
+    ORGN = { does = "HOME" },
+    GETW = { does = "GET", run = transfer("GET", "") },
+    PUTW = { does = "PUT", run = transfer("PUT", "") },
+    EXCH = { does = "SWAP", run = transfer("SWAP", "put_") },
+    CONT = { does = "CONTINUE" },
+    WAIT = { does = "WAIT", run = as_typed("WAIT") },
+    GOTO = { does = "READY", run = transfer("READY", "") },
+    RETR = { does = "RECOVER" },
+    WMAP = { does = "MAP", run = at_station("MAP"), answer = function(request, result)
+      maps[request.arguments[1] or ""] = tostring(result.values.codes)
+    end },
+    ALGN = { does = "ALIGN", run = turn("ALIGN", 0), answer = keep },
+    TURN = { does = "ROTATE", run = turn("ROTATE") },
+    SCAN = { does = "EDGE_SCAN", run = at_station("EDGE_SCAN"), answer = keep },
+    CALB = { does = "CALIBRATE", run = at_station("CALIBRATE"), answer = keep },
+    TECH = { does = "TEACH", run = at_station("TEACH"), answer = keep },
+    LIFT = { does = "LIFT", run = function(request)
+      return ("LIFT %s %s"):format(host.station(request.arguments[1] or ""), request.arguments[2] or "")
+    end },
+    FLIP = { does = "FLIP", run = function(request) return "FLIP " .. host.arm(request.arguments[1] or "") end },
+    OPEN = { does = "OPEN", run = at_door("OPEN") },
+    CLOS = { does = "CLOSE", run = at_door("CLOSE") },
+    MOVE = { does = "MOVE", run = values("MOVE", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true) },
+    LINE = { does = "LINE", run = values("LINE", { "dx", "dy", "dz", "speed" }, {}) },
+    VALV = { does = "VALVE", run = function(request)
+      local levels, switch = { on = 0, off = 1 }, request.arguments[2] or ""
+      local level = levels[switch] or host.refuse("BAD_ARGUMENT", switch)
+      return ("VALVE %s %d"):format(host.arm(request.arguments[1] or ""), level)
+    end },
+    RSET = { does = "RESET", answer = function()
+      maps, found = {}, {}
+    end },
+    SAVE = { does = "SAVE", run = with_name("SAVE") },
+    REST = { does = "RESTORE", run = with_name("RESTORE") },
+    UNDO = { does = "UNDO" },
+    FALT = { does = "FAULT", run = as_typed("FAULT") },
+    ALRM = { does = "ALARM", run = function(request) return "ALARM " .. host.alarm(request.arguments[1] or "") end },
+    CLER = { does = "CLEAR", run = as_typed("CLEAR") },
+    STOP = { does = "STOP" },
+    PAUS = { does = "HOLD" },
+    RESM = { does = "RESUME" },
+    GMAP = { does = "LOCAL", run = function(request)
+      return maps[request.arguments[1] or ""] or host.refuse("NOT_MAPPED", request.arguments[1])
+    end, answer = told },
+    GFND = { does = "LOCAL", run = function(request)
+      return found[request.arguments[1] or ""] or host.refuse("BAD_ARGUMENT", request.arguments[1])
+    end, answer = function(_, result) return result.answer end },
+    GPOS = { does = "STATUS", answer = position },
+    STAT = { does = "STATUS", answer = function(_, result)
+      return ("%s,%s,%s"):format(result.state, host.code(result.status.error) or "0000", arms(result))
+    end },
+    GWAF = { does = "STATUS", answer = function(request, result)
+      local arm = host.arm(request.arguments[1] or "")
+      local sensor = result.sensors[arm]
+      return sensor == nil and host.refuse("NO_SUCH_GRIPPER", arm) or sensor and "1" or "0"
+    end },
+    GSTN = { does = "STATIONS", answer = told },
+    GAXS = { does = "AXES", answer = told },
+    GLOC = { does = "WHERE", run = with_name("WHERE", true), answer = told },
+    GVER = { does = "VERSION", answer = function(_, result) return result.values.version end },
+  },
+
+  encode = {
+    acknowledge = function(request) return ("a%s.%s:"):format(OBJECT, request.command) end,
+    answer = function(request, result)
+      local text = result.ok and result.reply or result.code or ""
+      return ("%s%s.%s:%s"):format(result.ok and "a" or "n", OBJECT, request.command, text)
+    end,
+    complete = function(request, result)
+      local code = result.ok and "0000" or result.code
+      return ("e%s.%s(%s,%s)"):format(OBJECT, request.command, code, number(result.seconds))
+    end,
+    -- Of a verb that is none, so much as a line has room for beside the code.
+    refuse = function(request, failure)
+      return ("n%s.%s:%s"):format(OBJECT, (request.command or last_verb):sub(1, 60), failure.code)
+    end,
+    bad = function() return ("n%s.----:0010"):format(OBJECT) end,
+    event = function(event)
+      return ("e%s.WAFR(%s,%s,%s,%s)"):format(OBJECT, event.kind, number(event.seconds), field(event.wafer),
+        field(event.gripper))
+    end,
+  },
+
+  errors = {
+    NO_SUCH_COMMAND = "0021", BAD_ARGUMENT = "0022", BUSY = "0023", STOPPED = "0024", OUT_OF_BUDGET = "0025",
+    NOT_IN_PHASE = "0026", IN_PHASE = "0027", BAD_VALVE = "0028", NO_SUCH_SAVE = "0029", NOTHING_TO_UNDO = "0030",
+    NOT_RESTORED = "0031", RUN_OVER = "0032", NO_ANSWER = "0033", DEADLOCK = "0034",
+    NO_SUCH_STATION = "0041", NO_SUCH_SLOT = "0042", NO_SUCH_GRIPPER = "0043", NOT_TAUGHT = "0044",
+    NOT_A_PREALIGNER = "0045", NOT_MAPPED = "0046", BAD_SLOT = "0047", CORRECTION_TOO_LARGE = "0048",
+    NO_SUCH_WAFER = "0049", NO_SUCH_ROBOT = "0050", AMBIGUOUS_ROBOT = "0051",
+    BAD_LIMITS = "0061", OUT_OF_REACH = "0062", LIMIT_EXCEEDED = "0063", NOT_LEVEL = "0064", NOT_HOMED = "0065",
+    COLLISION_AHEAD = "0066", NOT_ALONG_ARM = "0067", SLIP_AHEAD = "0068",
+    WAFER_MISSING = "0081", NO_WAFER_ON_GRIPPER = "0082", WAFER_ON_GRIPPER = "0083", WAFER_LOST = "0084",
+    WAFER_ALREADY_THERE = "0085", VACUUM_TIMEOUT = "0086", VACUUM_BEFORE_PICK = "0087", WAFER_LOST_ON_WAY = "0088",
+    WAFER_JAMMED = "0089", PLUNGER_STUCK = "0090", GRIP_TIMEOUT = "0091", UNGRIP_TIMEOUT = "0092",
+    SENSORS_DISAGREE = "0093", WRONG_FACE = "0094",
+    TOO_FEW_SAMPLES = "0101", NO_NOTCH = "0102", TWO_NOTCHES = "0103", OFF_SENSOR = "0104", TOO_ECCENTRIC = "0105",
+    CENTRE_NOT_SURE = "0106", NOTCH_NOT_SURE = "0107", BAD_SCAN = "0108", NOT_TOUCHED = "0109",
+    PINS_UP = "0121", DOOR_SHUT = "0122", DOOR_BLOCKED = "0123", DOOR_TIMEOUT = "0124", FLIP_TIMEOUT = "0125",
+    FLIP_NOT_CLAMPED = "0126",
+  },
+  other_error = "0999",
+  states = { idle = "idle", running = "moving", held = "paused" },
+}

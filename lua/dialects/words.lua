@@ -1,0 +1,279 @@
+-- Frames as words with blanks between them, each line ended by a carriage return. An action is answered when it has
+-- ended, `_RDY` or `_ERR n`; in background mode `_RDY` when it begins, and `_BKGRDY` or `_BKGERR n` when it has ended.
+-- What the cell complains of is told at once, `_EVT SLOT_OCCUPIED Wafer 1`.
+-- Lengths are whole um, angles whole 0.001 degrees.
+
+local background = false
+local found = {} -- what the last command of each name has found
+
+-- A value of theirs as that field of our line: in mm, or in degrees. The axes of RQ POS have a sign of their own.
+local function mm(field, axis)
+  return function(word) return ("%s=%.17g"):format(field, host.mm(word, axis)) end
+end
+
+local function degrees(field, axis)
+  return function(word) return ("%s=%.17g"):format(field, host.degrees(word, axis)) end
+end
+
+-- What may follow a command's first words: theirs, and what becomes of it in our line.
+local OPTIONS = {
+  SLOT = function() end,
+  ARM = function(word) return "gripper=" .. host.arm(word) end,
+  RO = mm("dx"), TO = mm("dy"), ZO = mm("dz"),
+  STOP = function(word)
+    local phases = { EXTENDED = "extended", UP = "up" }
+    return "stop=" .. (phases[word:upper()] or host.refuse("BAD_ARGUMENT", "STOP " .. word))
+  end,
+}
+
+local AXES = { T = degrees("theta", "theta"), R = mm("r", "r"), Z = mm("z", "z"), W = degrees("yaw", "yaw") }
+local WAYS = { X = mm("dx"), Y = mm("dy"), Z = mm("dz"), SPEED = mm("speed") }
+
+-- The pairs of words from `first` on, each a name of `known` and its value: as they stand in our line, and their values
+-- by name.
+local function options(words, first, known)
+  local list, values = {}, {}
+  for place = first, #words, 2 do
+    local name, value = words[place]:upper(), words[place + 1]
+    if not known[name] or not value then
+      host.refuse("BAD_ARGUMENT", words[place])
+    end
+    values[name] = value
+    list[#list + 1] = known[name](value)
+  end
+  return table.concat(list, " "), values
+end
+
+-- "PICK 1 SLOT 3 ARM A" as "GET A 3 gripper=EE".
+local function with_slot(word)
+  return function(request)
+    local station = host.station(request.words[2] or "")
+    local text, values = options(request.words, 3, OPTIONS)
+    return ("%s %s %d %s"):format(word, station, values.SLOT and host.slot(values.SLOT) or 1, text)
+  end
+end
+
+-- A command with a station alone.
+local function with_station(word)
+  return function(request)
+    return word .. " " .. host.station(request.words[2] or "")
+  end
+end
+
+-- A command with a station and an angle, which may be left out if there is one `by_itself`.
+local function with_angle(word, by_itself)
+  return function(request)
+    local theirs = request.words[3] or by_itself or host.refuse("BAD_ARGUMENT", word)
+    return ("%s %s %.17g"):format(word, host.station(request.words[2] or ""), host.degrees(theirs))
+  end
+end
+
+-- A command with a door alone.
+local function with_door(word)
+  return function(request)
+    return word .. " " .. host.door(request.words[2] or "")
+  end
+end
+
+-- A command whose words are ours.
+local function as_said(word)
+  return function(request)
+    return word .. " " .. table.concat(request.words, " ", 2)
+  end
+end
+
+-- A command with a name, which may have blanks: the words from `first` on. `may_lack`: or without one.
+local function with_name(word, first, may_lack)
+  return function(request)
+    local name = table.concat(request.words, " ", first)
+    return may_lack and name == "" and word or word .. " " .. host.typed(name)
+  end
+end
+
+-- VAC EE ON: an open valve.
+local function valve(request)
+  local levels = { ON = 0, OFF = 1 }
+  local switch = (request.words[3] or ""):upper()
+  return ("VALVE %s %d"):format(host.arm(request.words[2] or ""), levels[switch] or host.refuse("BAD_ARGUMENT", switch))
+end
+
+local function whole(number)
+  return ("%d"):format(math.floor(number + 0.5))
+end
+
+local function position(_, result)
+  local at = result.position
+  return ("POS ABS T %s R %s Z %s W %s"):format(whole(at.theta), whole(at.r), whole(at.z), whole(at.yaw))
+end
+
+local function held(request, result)
+  local arm = host.arm(request.words[4] or request.words[3] or "")
+  local sensor = result.sensors[arm]
+  return "LOAD " .. (sensor == nil and host.refuse("NO_SUCH_GRIPPER", arm) or sensor and "ON" or "OFF")
+end
+
+-- What the sensor of each arm says: EE ON PA OFF.
+local function arms(result)
+  local list = {}
+  for name, is_on in pairs(result.sensors) do
+    list[#list + 1] = (host.name("arms", name) or name) .. (is_on and " ON" or " OFF")
+  end
+  table.sort(list)
+  return table.concat(list, " ")
+end
+
+local function map(_, result)
+  return "MAP " .. tostring(result.values.codes):gsub(".", "%0 "):sub(1, -2)
+end
+
+-- What a query tells, behind this word.
+local function told(word)
+  return function(_, result)
+    return word .. " " .. result.answer:gsub("^OK ?", "")
+  end
+end
+
+-- For RQ FOUND.
+local function keep(request, result)
+  found[request.command] = result.answer:gsub("^OK ", "")
+end
+
+-- How many words may follow a command's; of others their options tell.
+local MOST = {
+  HOME = 0, GO = 0, MAP = 1, TEACH = 1, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
+  OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
+  ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 0,
+  ["RQ AXES"] = 0, ["RQ FOUND"] = 1,
+}
+
+-- Without RQ, the first word names a command; with it, the second.
+local function decode(frame)
+  local words = {}
+  for word in frame:gmatch("%S+") do
+    words[#words + 1] = word
+  end
+  local name = (words[1] or ""):upper()
+  if name == "RQ" or name == "SET" then
+    name = name .. " " .. (words[2] or ""):upper()
+  end
+  local extra = MOST[name] and words[MOST[name] + (name:find(" ", 1, true) and 3 or 2)]
+  if extra then
+    host.refuse("BAD_ARGUMENT", extra)
+  end
+  return words[1] and { command = name, words = words }
+end
+
+local function ended(result)
+  local prefix = background and "_BKG" or "_"
+  return prefix .. (result.ok and "RDY" or "ERR " .. result.code)
+end
+
+return {
+  name = "frames as words, _RDY and _ERR",
+  framing = { ends = { "\r", "\r\n" }, longest = 512 },
+  units = { length = 0.001, angle = 0.001 },
+  decode = decode,
+
+  commands = {
+    HOME = { does = "HOME", run = function() return "HOME" end },
+    PICK = { does = "GET", run = with_slot("GET") },
+    PLACE = { does = "PUT", run = with_slot("PUT") },
+    SWAP = { does = "SWAP", run = with_slot("SWAP") },
+    GOTO = { does = "READY", run = with_slot("READY") },
+    GO = { does = "CONTINUE" },
+    MAP = { does = "MAP", run = with_station("MAP"), answer = map },
+    TEACH = { does = "TEACH", run = with_station("TEACH"), answer = keep },
+    RETRACT = { does = "RECOVER" },
+    ALIGN = { does = "ALIGN", run = with_angle("ALIGN", 0), answer = keep },
+    ROTATE = { does = "ROTATE", run = with_angle("ROTATE") },
+    SCAN = { does = "EDGE_SCAN", run = with_station("EDGE_SCAN"), answer = keep },
+    CALIB = { does = "CALIBRATE", run = with_station("CALIBRATE"), answer = keep },
+    LIFT = { does = "LIFT", run = function(request)
+      return ("LIFT %s %s"):format(host.station(request.words[2] or ""), request.words[3] or "")
+    end },
+    FLIP = { does = "FLIP", run = function(request) return "FLIP " .. host.arm(request.words[2] or "") end },
+    OPEN = { does = "OPEN", run = with_door("OPEN") },
+    CLOSE = { does = "CLOSE", run = with_door("CLOSE") },
+    VAC = { does = "VALVE", run = valve },
+    MOVE = { does = "MOVE", run = function(request) return "MOVE " .. options(request.words, 2, AXES) end },
+    LINE = { does = "LINE", run = function(request) return "LINE " .. options(request.words, 2, WAYS) end },
+    WAIT = { does = "WAIT", run = function(request)
+      return "WAIT " .. ((request.words[2] or ""):match("^%d+%.?%d*$") or host.refuse("BAD_ARGUMENT", "WAIT"))
+    end },
+    RESET = { does = "RESET", answer = function()
+      found = {}
+    end },
+    SAVE = { does = "SAVE", run = with_name("SAVE", 2) },
+    RESTORE = { does = "RESTORE", run = with_name("RESTORE", 2) },
+    UNDO = { does = "UNDO" },
+    HALT = { does = "STOP" },
+    HOLD = { does = "HOLD" },
+    RESUME = { does = "RESUME" },
+    CLEAR = { does = "CLEAR", run = as_said("CLEAR") },
+    FAULT = { does = "FAULT", run = as_said("FAULT") },
+    ALARM = { does = "ALARM", run = function(request) return "ALARM " .. host.alarm(request.words[2] or "") end },
+    ["SET BKG"] = { does = "LOCAL", run = function(request)
+      local switch = (request.words[3] or ""):upper()
+      if switch ~= "ON" and switch ~= "OFF" then
+        host.refuse("BAD_ARGUMENT", switch)
+      end
+      background = switch == "ON"
+      return ""
+    end },
+    ["RQ POS"] = { does = "STATUS", answer = position },
+    ["RQ LOAD"] = { does = "STATUS", answer = held },
+    ["RQ STATUS"] = { does = "STATUS", answer = function(_, result) 
+      return "STATUS " .. result.state .. " " .. arms(result)
+    end },
+    ["RQ VERSION"] = { does = "VERSION", answer = function(_, result)
+      return "VERSION " .. result.values.version
+    end },
+    ["RQ STN"] = { does = "STATIONS", answer = told("STN") },
+    ["RQ AXES"] = { does = "AXES", answer = told("AXES") },
+    ["RQ WAFERS"] = { does = "WHERE", run = with_name("WHERE", 3, true), answer = told("WAFERS") },
+    ["RQ FOUND"] = { does = "LOCAL", run = function(request)
+      local name = (request.words[3] or ""):upper()
+      return "FOUND " .. (found[name] or host.refuse("BAD_ARGUMENT", "no " .. name .. " has found anything"))
+    end, answer = function(_, result) return result.answer end },
+  },
+
+  encode = {
+    -- In background mode the host hears at once that it began.
+    acknowledge = function() return background and "_RDY" or nil end,
+    answer = function(_, result)
+      if not result.ok then
+        return "_ERR " .. result.code
+      end
+      return result.reply and { result.reply, "_RDY" } or "_RDY"
+    end,
+    complete = function(_, result)
+      return result.reply and { result.reply, ended(result) } or ended(result)
+    end,
+    refuse = function(_, failure) return "_ERR " .. failure.code end,
+    bad = function() return "_ERR 0100" end,
+    event = function(event)
+      return event.is_complaint and "_EVT " .. event.kind:upper() .. " " .. event.wafer or nil
+    end,
+  },
+
+  errors = {
+    NO_SUCH_COMMAND = "0101", BAD_ARGUMENT = "0102", BUSY = "0103", STOPPED = "0104", OUT_OF_BUDGET = "0105",
+    NOT_IN_PHASE = "0106", IN_PHASE = "0107", BAD_VALVE = "0108", NO_SUCH_SAVE = "0109", NOTHING_TO_UNDO = "0110",
+    NOT_RESTORED = "0111", RUN_OVER = "0112", NO_ANSWER = "0113", DEADLOCK = "0114",
+    NO_SUCH_STATION = "0201", NO_SUCH_SLOT = "0202", NO_SUCH_GRIPPER = "0203", NOT_TAUGHT = "0204",
+    NOT_A_PREALIGNER = "0205", NOT_MAPPED = "0206", BAD_SLOT = "0207", CORRECTION_TOO_LARGE = "0208",
+    NO_SUCH_WAFER = "0209", NO_SUCH_ROBOT = "0210", AMBIGUOUS_ROBOT = "0211",
+    BAD_LIMITS = "0301", OUT_OF_REACH = "0302", LIMIT_EXCEEDED = "0303", NOT_LEVEL = "0304", NOT_HOMED = "0305",
+    COLLISION_AHEAD = "0306", NOT_ALONG_ARM = "0307", SLIP_AHEAD = "0308",
+    WAFER_MISSING = "0401", NO_WAFER_ON_GRIPPER = "0402", WAFER_ON_GRIPPER = "0403", WAFER_LOST = "0404",
+    WAFER_ALREADY_THERE = "0405", VACUUM_TIMEOUT = "0406", VACUUM_BEFORE_PICK = "0407", WAFER_LOST_ON_WAY = "0408",
+    WAFER_JAMMED = "0409", PLUNGER_STUCK = "0410", GRIP_TIMEOUT = "0411", UNGRIP_TIMEOUT = "0412",
+    SENSORS_DISAGREE = "0413", WRONG_FACE = "0414",
+    TOO_FEW_SAMPLES = "0501", NO_NOTCH = "0502", TWO_NOTCHES = "0503", OFF_SENSOR = "0504", TOO_ECCENTRIC = "0505",
+    CENTRE_NOT_SURE = "0506", NOTCH_NOT_SURE = "0507", BAD_SCAN = "0508", NOT_TOUCHED = "0509",
+    PINS_UP = "0601", DOOR_SHUT = "0602", DOOR_BLOCKED = "0603", DOOR_TIMEOUT = "0604", FLIP_TIMEOUT = "0605",
+    FLIP_NOT_CLAMPED = "0606",
+  },
+  other_error = "0999",
+  states = { idle = "IDLE", running = "BUSY", held = "HELD" },
+}

@@ -1,0 +1,322 @@
+-- Errors on purpose: fault { error = N } arms one, and the next command of a kind that can answer it does, once.
+--
+-- How each one is raised:
+--   cause   something breaks, so that the command finds what it would find in such a cell
+--   check   the command is refused before anything moves, though nothing is wrong
+--   line    likewise, and nothing in motion control or the cell ever leads to it, or it comes before a command is
+--           read: a host is shown it all the same
+
+-- Kept, for a script may set globals of these names.
+local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
+
+return function(native, lookup)
+  local alarms = {}
+
+  local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
+  local PLANNED = STATION .. " LINE"
+  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN VALVE MOVE FLIP LINE OPEN CLOSE"
+  local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
+
+  -- By the error's name: how, and which commands answer it.
+  local HOW = {
+    BAD_VALVE = { "check", "VALVE" },
+    BAD_LIMITS = { "line", MOVING },
+    OUT_OF_REACH = { "check", PLANNED },
+    LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE" },
+    NOT_LEVEL = { "check", STATION },
+    NOT_ALONG_ARM = { "check", STATION },
+    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN OFFSET" },
+    NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
+    WAFER_MISSING = { "cause", "GET SWAP" },
+    NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
+    WAFER_ON_GRIPPER = { "cause", "GET SWAP" },
+    NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" },
+    AMBIGUOUS_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" },
+    NO_SUCH_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" },
+    NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
+    NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
+    BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES },
+    NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN" },
+    WAFER_LOST = { "cause", "PUT" },
+    DEADLOCK = { "check", STATION },
+    FLIP_TIMEOUT = { "cause", "FLIP" },
+    FLIP_NOT_CLAMPED = { "check", "FLIP" },
+    WRONG_FACE = { "check", "PUT SWAP" },
+    STOPPED = { "cause", STATION .. " HOME ROTATE EDGE_SCAN ALIGN MOVE FLIP LINE" },
+    OUT_OF_BUDGET = { "check", MOVING },
+    BUSY = { "line", MOVING },
+    NOT_TAUGHT = { "check", STATION },
+    WAFER_ALREADY_THERE = { "check", "PUT" },
+    VACUUM_TIMEOUT = { "cause", "GET PUT SWAP" },
+    VACUUM_BEFORE_PICK = { "cause", "GET SWAP" },
+    NOT_HOMED = { "cause", STATION .. " MOVE FLIP LINE" },
+    WAFER_LOST_ON_WAY = { "cause", "PUT" },
+    WAFER_JAMMED = { "check", "GET SWAP" },
+    PLUNGER_STUCK = { "cause", "GET PUT SWAP" },
+    GRIP_TIMEOUT = { "cause", "GET SWAP" },
+    UNGRIP_TIMEOUT = { "cause", "PUT" },
+    SENSORS_DISAGREE = { "cause", "GET SWAP" },
+    COLLISION_AHEAD = { "check", PLANNED .. " MOVE FLIP" },
+    SLIP_AHEAD = { "check", PLANNED .. " MOVE FLIP HOME" },
+    BAD_SLOT = { "check", "GET PUT SWAP" },
+    NOT_MAPPED = { "check", "GET SWAP" },
+    CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP ALIGN" },
+    IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN VALVE MOVE FLIP LINE" },
+    PINS_UP = { "check", "GET PUT SWAP READY ROTATE EDGE_SCAN ALIGN TEACH" },
+    DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH" },
+    DOOR_BLOCKED = { "check", "CLOSE" },
+    DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
+    NOT_IN_PHASE = { "check", "CONTINUE" },
+    NO_SUCH_SAVE = { "check", "RESTORE" },
+    NOTHING_TO_UNDO = { "check", "UNDO" },
+    NOT_RESTORED = { "line", "RESTORE UNDO" },
+    TOO_FEW_SAMPLES = { "check", "ALIGN TEACH" },
+    NO_NOTCH = { "check", "ALIGN TEACH" },
+    NOT_TOUCHED = { "check", "TEACH" },
+    TWO_NOTCHES = { "check", "ALIGN" },
+    OFF_SENSOR = { "check", "ALIGN" },
+    TOO_ECCENTRIC = { "check", "ALIGN" },
+    CENTRE_NOT_SURE = { "check", "ALIGN TEACH" },
+    NOTCH_NOT_SURE = { "check", "ALIGN" },
+    BAD_SCAN = { "line", "ALIGN" },
+    RUN_OVER = { "line", MOVING },
+    NO_ANSWER = { "line", MOVING },
+  }
+
+  -- What raises it, by the error's number: its name, how, and the set of commands.
+  local by_number, numbers = {}, {}
+  for name, how in pairs(HOW) do
+    local number, words = lookup.errors[name].number, {}
+    for word in how[2]:gmatch("%S+") do
+      words[word] = true
+    end
+    by_number[number] = { name = name, how = how[1], words = words }
+    numbers[#numbers + 1] = number
+  end
+  table.sort(numbers)
+
+  -- By robot: what is broken for its running command, or for the one that it holds: { alarm = , fault = , opened = }.
+  -- By task, if a door or a flipper alone is at work.
+  local broken = {}
+
+  -- alarms.play(segment) plays one by itself; alarms.robot() is that of the running command, or nil; alarms.bearer()
+  -- is that robot, or the task. All are set by lua/mcs/commands.lua.
+
+  function alarms.arm(error)
+    if not by_number[error] then
+      local text = "error: %s (expected the number of one that a command can answer: %s)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(error), table.concat(numbers, ", ")))
+    end
+    return native.arm_alarm(error)
+  end
+
+  -- The first one armed that this command answers, and that is raised so, or nil.
+  local function find(word, how)
+    for _, alarm in ipairs(native.alarms() or {}) do
+      local raised = by_number[alarm.error]
+      if raised.words[word] and raised.how == how then
+        return alarm, raised
+      end
+    end
+  end
+
+  local function take(error_name)
+    for _, alarm in ipairs(native.alarms() or {}) do
+      if by_number[alarm.error].name == error_name then
+        native.disarm(alarm.number)
+        return true
+      end
+    end
+    return false
+  end
+  alarms.take = take
+
+  local function raise(alarm, raised)
+    native.disarm(alarm.number)
+    native.fail(raised.name, ("on purpose, by fault %d"):format(alarm.number))
+  end
+
+  -- Before a command has begun: for it does not, and has no record.
+  function alarms.refuse(word)
+    local alarm, raised = find(word, "line")
+    if alarm and raised.name ~= "NO_SUCH_COMMAND" then
+      raise(alarm, raised)
+    end
+  end
+
+  -- Before a typed line is read.
+  function alarms.refuse_line(word)
+    local alarm, raised = find(word, "line")
+    if alarm and raised.name == "NO_SUCH_COMMAND" then
+      raise(alarm, raised)
+    end
+  end
+
+  -- Within a command, or before a question is answered.
+  function alarms.check(word)
+    local alarm, raised = find(word, "check")
+    if alarm then
+      raise(alarm, raised)
+    end
+  end
+
+  -- How long the command that a STOP comes to has moved by then, s.
+  local BEFORE_STOP = 0.1
+
+  -- The command of this word, with what is armed for it.
+  function alarms.meet(word, action, ...)
+    alarms.check(word)
+    return action(...)
+  end
+
+  -- The running command is about to move.
+  function alarms.begin_motion(text)
+    local stopped = by_number[lookup.errors.STOPPED.number]
+    if native.alarms() and stopped.words[text:match("^[%u_]+")] and take("STOPPED") then
+      native.stop_in(BEFORE_STOP)
+    end
+  end
+
+  -------------------------------------------------------------------------------------------------- causes
+
+  -- What breaks at a target of `word`, "get" or "put": a fault's kind and its gripper; nil: that leads to no such
+  -- error there. `at_once` false: not before the arm moves.
+  local causes = {}
+
+  local function by_vacuum(target)
+    return not target.edge and not target.is_passive
+  end
+
+  -- So slowly a plunger goes for a timeout, mm/s: it moves, and is never there.
+  local CREEP = 1e-3
+
+  function causes.PLUNGER_STUCK(_, target)
+    return target.edge and { "plunger_stuck", target.gripper }
+  end
+
+  function causes.GRIP_TIMEOUT(word, target)
+    return word == "get" and target.edge and { "plunger_slow", target.gripper, value = CREEP }
+  end
+
+  function causes.UNGRIP_TIMEOUT(word, target)
+    return word == "put" and target.edge and { "plunger_slow", target.gripper, value = CREEP }
+  end
+
+  function causes.SENSORS_DISAGREE(word, target)
+    return word == "get" and target.edge and { "sensor_off", target.gripper }
+  end
+
+  function causes.WAFER_MISSING(word, target)
+    return word == "get" and by_vacuum(target) and not native.is_open(target.gripper)
+      and { "valve_stuck", target.gripper }
+  end
+
+  function causes.NO_WAFER_ON_GRIPPER(word, target)
+    return word == "put" and target.asks and { "sensor_off", target.gripper }
+  end
+
+  function causes.WAFER_ON_GRIPPER(word, target)
+    return word == "get" and target.asks and { "sensor_on", target.gripper, opens = not target.is_passive }
+  end
+
+  function causes.VACUUM_BEFORE_PICK(word, target)
+    return word == "get" and target.asks and by_vacuum(target) and not native.is_open(target.gripper)
+      and { "sensor_on", target.gripper }
+  end
+
+  function causes.VACUUM_TIMEOUT(word, target)
+    if word == "get" then
+      return target.asks and not target.edge and { "sensor_off", target.gripper }
+    end
+    return target.chuck and { "sensor_off", target.chuck }
+  end
+
+  function causes.WAFER_LOST(_, target)
+    if target.chuck then
+      return not native.is_open(target.chuck) and { "valve_stuck", target.chuck }
+    end
+    return target.asks and not target.edge and { "sensor_on", target.gripper }
+  end
+
+  function causes.WAFER_LOST_ON_WAY(_, target)
+    return target.watched and by_vacuum(target) and { "no_vacuum", target.gripper, later = true }
+  end
+
+  local function stand_still()
+    alarms.play { dwell = native.layout.slice }
+  end
+
+  -- Before a GET, PUT or SWAP looks at its sensors. `half` is "get" or "put".
+  function alarms.break_at(word, half, target)
+    local robot = alarms.robot()
+    for _, alarm in ipairs(not broken[robot] and native.alarms() or {}) do
+      local raised = by_number[alarm.error]
+      local cause = raised.words[word] and causes[raised.name] and causes[raised.name](half, target)
+      if cause then
+        local kind, gripper = cause[1], native.layout.grippers[cause[2]].name
+        broken[robot] = { alarm = alarm, fault = native.fault { kind = kind, gripper = gripper, value = cause.value } }
+        if cause.opens and not native.is_open(cause[2]) then
+          broken[robot].opened = cause[2]
+          alarms.play { valves = { [cause[2]] = 0 } }
+        end
+        if not cause.later then
+          stand_still()
+        end
+        return
+      end
+    end
+  end
+
+  -- What is to move by this word is broken for an armed error of that name.
+  local function break_mechanism(error_name, word, fault)
+    local bearer = alarms.bearer()
+    for _, alarm in ipairs(not broken[bearer] and native.alarms() or {}) do
+      local raised = by_number[alarm.error]
+      if raised.name == error_name and raised.words[word] then
+        broken[bearer] = { alarm = alarm, fault = native.fault(fault) }
+        stand_still()
+        return
+      end
+    end
+  end
+
+  function alarms.break_door(word, door)
+    break_mechanism("DOOR_TIMEOUT", word, { kind = "door_stuck", door = door })
+  end
+
+  function alarms.break_flip(gripper)
+    break_mechanism("FLIP_TIMEOUT", "FLIP", { kind = "axis_stopped", gripper = gripper })
+  end
+
+  -- A command has ended, with the error of this number or none: what was broken for it is whole again, and if it was
+  -- that error, it no longer waits. A slice passes, so that this has come to the cell.
+  function alarms.mend(number)
+    local bearer, robot = alarms.bearer(), alarms.robot()
+    local was = broken[bearer]
+    if not was or robot and native.is_held(robot) then
+      return
+    end
+    broken[bearer] = nil
+    pcall(native.clear_fault, was.fault)
+    if number == was.alarm.error then
+      native.disarm(was.alarm.number)
+      if was.opened then
+        pcall(alarms.play, { valves = { [was.opened] = 1 } })
+      end
+      pcall(stand_still)
+    end
+  end
+
+  -- A function that makes broken again what is broken now.
+  function alarms.keep()
+    local was = {}
+    for bearer, what in pairs(broken) do
+      was[bearer] = what
+    end
+    return function()
+      broken = was
+    end
+  end
+
+  return alarms
+end

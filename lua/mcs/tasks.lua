@@ -1,0 +1,625 @@
+-- Tasks: what runs beside the rest, in simulated time. Each is a coroutine; the script itself is the first of
+-- them, and drives the others where it waits. Order within a slice: the step; segments that are over; then tasks
+-- go on in the order of their creation until none can.
+--
+-- A command gets all mechanisms and stations that it needs at once, first come first served, and never holds one
+-- while it waits for another. What the robot stands in stays its own.
+
+-- Kept, for a script may set globals of these names.
+local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
+local print, select, setmetatable, table, tostring, type = print, select, setmetatable, table, tostring, type
+
+-- At most so many besides the script.
+local MOST = 64
+-- Of all stations one at a time: a state brings one scan. Who needs that always waits for it.
+local SENSORS = "the edge sensors"
+
+return function(native, lookup)
+  local resume, yield = coroutine.resume, coroutine.yield
+  -- What a task's coroutine yields with, and no script has.
+  local WAITS = setmetatable({}, { __metatable = false })
+
+  local script = { lane = 1, number = 0, name = "the script" }
+  local current = script
+  local tasks = {}     -- that are alive, in the order of their creation
+  local failed = {}    -- that ended with an error which nobody has heard
+  local lanes = {}     -- that are free, the next one last
+  local created = 0    -- so many
+  local is_open = false   -- false: there are no tasks yet, and nothing here is in a command's way
+  local held = {}      -- resource: the task whose command has it
+  local keepers = {}      -- robot: the task whose command it carried out last
+  local requests = {}  -- of commands that wait for resources, in order
+  local signals = {}   -- name: how many nobody has taken
+  local waiters = {}   -- name: who awaits it, in order
+
+  local handles = {}
+  local handle_metatable = {
+    __name = "task",
+    __metatable = false,
+    __tostring = function(handle)
+      return handles[handle].name
+    end,
+  }
+
+  local function switch(task)
+    current = task
+    native.switch(task.lane, task.number)
+  end
+
+  ------------------------------------------------------------------------------------------------- going on
+
+  -- The first error that any task waits with is that of the script's own task.
+  local function conclude(task, good, ...)
+    switch(script)
+    if good and coroutine.status(task.thread) ~= "dead" then
+      return
+    end
+    task.is_over, task.thread = true, nil
+    if good then
+      task.results = table.pack(...)
+    else
+      task.problem, failed[#failed + 1] = (...), task
+    end
+    for place, alive in ipairs(tasks) do
+      if alive == task then
+        table.remove(tasks, place)
+        break
+      end
+    end
+    native.free_lane(task.lane)
+    lanes[#lanes + 1] = task.lane
+  end
+
+  -- Lets this task go on until it waits or is over.
+  local function go_on(task)
+    switch(task)
+    task.can_go_on = nil
+    conclude(task, resume(task.thread))
+  end
+
+  -- Who waits for what, and who has it.
+  local function complaint()
+    local parts = {}
+    local function add(task)
+      if task.waits_for then
+        parts[#parts + 1] = ("%s waits for %s"):format(task.name, task.waits_for())
+      end
+    end
+    add(script)
+    for _, task in ipairs(tasks) do
+      add(task)
+    end
+    return table.concat(parts, "; ")
+  end
+
+  -- Nothing moves: jobs that wait end as busy. True if there is one.
+  local function refuse_waits()
+    local is_any = false
+    for _, task in ipairs(tasks) do
+      if task.job and task.request then
+        native.refuse_wait(task.lane)
+        is_any = true
+      end
+    end
+    return is_any
+  end
+
+  -- Where the script waits: others go on, and slices go out, until it can.
+  local function drive(can_go_on)
+    while not can_go_on() do
+      local place = 1
+      local went = false
+      while place <= #tasks and not can_go_on() do
+        local task = tasks[place]
+        if task.can_go_on() then
+          go_on(task)
+          went = true
+        end
+        place = place + (tasks[place] == task and 1 or 0)
+      end
+      if not went and not can_go_on() then
+        if native.runs() then
+          native.advance()
+        elseif not refuse_waits() then
+          native.fail("DEADLOCK", complaint())
+        end
+      end
+    end
+  end
+
+  -- The running task waits. `waits_for` says for what.
+  local function wait_until(can_go_on, waits_for)
+    if can_go_on() then
+      return
+    end
+    current.waits_for = waits_for
+    if current == script then
+      local good, problem = pcall(drive, can_go_on)
+      current.waits_for = nil
+      return good or error(problem, 0)
+    end
+    if not coroutine.isyieldable() then
+      current.waits_for = nil
+      native.fail("BUSY", "a command of a task within a function that C calls, such as table.sort's or string.gsub's")
+    end
+    local task = current
+    task.can_go_on = task.job and function()
+      return native.is_told(task.lane) or can_go_on()
+    end or can_go_on
+    yield(WAITS)
+    task.waits_for = nil
+    if task.job then
+      native.heed()
+    end
+  end
+
+  -- The same, of what is not played, and told.
+  local function wait_idle(can_go_on, waits_for)
+    if not can_go_on() then
+      native.waits(waits_for())
+      local good, problem = pcall(wait_until, can_go_on, waits_for)
+      native.waits(nil)
+      return good or error(problem, 0)
+    end
+  end
+
+  -- A coroutine of a task's own: what waits within it, waits through it.
+  local function through(thread, good, first, ...)
+    if good and first == WAITS then
+      yield(WAITS)
+      return through(thread, resume(thread))
+    end
+    return good, first, ...
+  end
+
+  local function through_resume(thread, ...)
+    return through(thread, resume(thread, ...))
+  end
+
+  local function or_raise(thread, good, first, ...)
+    if not good then
+      if coroutine.status(thread) == "dead" then
+        coroutine.close(thread)
+      end
+      error(first, 0)
+    end
+    return first, ...
+  end
+
+  local function open()
+    if not is_open then
+      is_open = true
+      native.open_lanes()
+      for lane = MOST + 1, 2, -1 do
+        lanes[#lanes + 1] = lane
+      end
+      coroutine.resume = through_resume
+      coroutine.wrap = function(body)
+        local thread = coroutine.create(body)
+        return function(...)
+          return or_raise(thread, through_resume(thread, ...))
+        end
+      end
+    end
+  end
+
+  ------------------------------------------------------------------------------------------------- segments
+
+  local module, words = { open = open }, {}
+
+  -- Plays a segment, as native.play does, while others go on.
+  function module.play(segment)
+    if not is_open then
+      return native.play(segment)
+    end
+    local lane = current.lane
+    native.start(segment)
+    wait_until(function()
+      return not native.runs(lane)
+    end, function()
+      return "what it plays"
+    end)
+    return native.outcome()
+  end
+
+  ------------------------------------------------------------------------------------------------ resources
+
+  local function holder(resource, needs)
+    local robot = not held[resource] and module.stands_in(resource, needs.robot)
+    return held[resource] or robot and (keepers[robot] or script) or nil
+  end
+
+  -- A resource that the request wants and somebody else has, or an earlier request wants; and who. Where its robot
+  -- stands it comes first: nobody else gets that before.
+  local function obstacle(request)
+    for _, resource in ipairs(request.needs) do
+      local owner = holder(resource, request.needs)
+      if owner then
+        return resource, owner
+      end
+    end
+    for _, earlier in ipairs(requests) do
+      if earlier == request then
+        return nil
+      end
+      for _, resource in ipairs(earlier.needs) do
+        if request.wants[resource] and not module.is_inside(resource, request.needs.robot) then
+          return resource, earlier.task
+        end
+      end
+    end
+  end
+
+  local function is_free(request)
+    return obstacle(request) == nil
+  end
+
+  local function withdraw(request)
+    for place, waiting in ipairs(requests) do
+      if waiting == request then
+        table.remove(requests, place)
+        return
+      end
+    end
+  end
+
+  -- Whom a task waits for: those that it joins, or who has what its command wants.
+  local function waited_for(task)
+    if task.joins then
+      return task.joins
+    elseif task.request then
+      local _, owner = obstacle(task.request)
+      return { owner }
+    end
+    return {}
+  end
+
+  -- The chain of those who wait for each other, beginning and ending with this task; or nil.
+  local function find_cycle(task, from, seen)
+    for _, other in ipairs(waited_for(from)) do
+      if other == task then
+        return from.name
+      elseif not seen[other] and not other.is_over then
+        seen[other] = true
+        local rest = find_cycle(task, other, seen)
+        if rest then
+          return from.name .. ", " .. rest
+        end
+      end
+    end
+  end
+
+  local function refuse_cycle()
+    if find_cycle(current, current, {}) then
+      native.fail("DEADLOCK", complaint())
+    end
+  end
+
+  -- Without tasks nobody would ever leave.
+  local function refuse_occupied(needs)
+    for _, station in ipairs(needs) do
+      local robot = lookup.has_several() and module.stands_in(station, needs.robot)
+      if robot then
+        native.fail("DEADLOCK", ("%s stands in %s: RECOVER or HOME of that one comes first"):format(
+          lookup.robot_text(robot), station))
+      end
+    end
+  end
+
+  -- True if this task's last command has waited for what it needs in vain.
+  function module.has_waited()
+    return current.has_waited
+  end
+
+  -- A command begins that needs this: { robot = index, station = NAME, chucks = list, scan = true }, each if it does.
+  function module.take(needs)
+    current.has_waited = false
+    if not is_open or not needs then
+      if needs then
+        refuse_occupied(needs)
+      end
+      return native.hold_mechanisms(needs and needs.robot or false, table.unpack(needs and needs.chucks or {}))
+    end
+    local task = current
+    local request = { task = current, needs = { robot = needs.robot }, wants = {} }
+    if needs.robot then
+      request.needs[1] = lookup.robot_text(needs.robot)
+    end
+    if needs.scan then
+      request.needs[#request.needs + 1] = SENSORS
+    end
+    for _, station in ipairs(needs) do
+      request.needs[#request.needs + 1] = station
+    end
+    for _, resource in ipairs(request.needs) do
+      request.wants[resource] = true
+    end
+    requests[#requests + 1] = request
+    current.request = request
+    local waits_for = function()
+      local resource, owner = obstacle(request)
+      return ("%s, which %s has"):format(tostring(resource), owner and owner.name or "nobody")
+    end
+    local good, problem = pcall(function()
+      if not is_free(request) then
+        current.waits_for = waits_for
+        local is_sure = obstacle(request) == SENSORS
+        if current.job and not current.may_wait and not is_sure then
+          native.fail("BUSY", waits_for())
+        end
+        refuse_cycle()
+        native.command_waits(true, is_sure)
+        native.waits(waits_for())
+      end
+      wait_until(function()
+        return native.is_told(task.lane) or is_free(request)
+      end, waits_for)
+      native.heed()
+    end)
+    current.request, current.waits_for = nil, nil
+    withdraw(request)
+    native.command_waits(false)
+    current.has_waited = not good
+    if not good then
+      native.waits(nil)
+      error(problem, 0)
+    end
+    for _, resource in ipairs(request.needs) do
+      held[resource] = current
+    end
+    request.needs.robot = needs.robot
+    current.holds = request.needs
+    native.hold_mechanisms(needs.robot or false, table.unpack(needs.chucks or {}))
+  end
+
+  -- module.stands_in(resource, but): which robot stands in it, but for this one, or nil; and
+  -- module.is_inside(resource, robot): if that one does. Both are set by lua/mcs/arm.lua.
+
+  -- The command has ended.
+  function module.give_back()
+    if not is_open or not current.holds then
+      return
+    end
+    for _, resource in ipairs(current.holds) do
+      held[resource] = nil
+    end
+    if current.holds.robot then
+      keepers[current.holds.robot] = current
+    end
+    current.holds = nil
+    native.hold_mechanisms(false)
+  end
+
+  -- What a command of one task keeps, by task.
+  function module.current()
+    return current
+  end
+
+  ---------------------------------------------------------------------------------------------------- words
+
+  local function task_of(value, place)
+    local task = type(value) == "table" and handles[value]
+    if not task then
+      local text = "task %d: %s (expected what task() has returned)"
+      native.fail("BAD_ARGUMENT", text:format(place, lookup.quote(value)))
+    end
+    return task
+  end
+
+  local function begin(body)
+    open()
+    created = created + 1
+    local task = { thread = coroutine.create(body), name = "task " .. created, number = created,
+      lane = table.remove(lanes) }
+    task.can_go_on = function()
+      return true
+    end
+    tasks[#tasks + 1] = task
+    return task
+  end
+
+  -- Begins what `body` does, beside the rest: it goes on where its creator next waits.
+  function words.task(body)
+    if type(body) ~= "function" then
+      native.fail("BAD_ARGUMENT", ("body: %s (expected a function)"):format(lookup.quote(body)))
+    elseif #tasks == MOST then
+      native.fail("BAD_ARGUMENT", ("%d tasks are alive (expected no more)"):format(MOST))
+    end
+    local handle = setmetatable({}, handle_metatable)
+    handles[handle] = begin(body)
+    return handle
+  end
+
+  local function forget_failed(task)
+    for place, other in ipairs(failed) do
+      if other == task then
+        table.remove(failed, place)
+        return
+      end
+    end
+  end
+
+  local function all_over(list)
+    for _, task in ipairs(list) do
+      if not task.is_over then
+        return false
+      end
+    end
+    return true
+  end
+
+  -- Waits until these tasks are over; returns what they returned, one after another, or raises the first's error.
+  function words.join(...)
+    local list, names, results = {}, {}, {}
+    for place = 1, select("#", ...) do
+      list[place] = task_of((select(place, ...)), place)
+      names[place] = list[place].name
+      if list[place] == current then
+        native.fail("BAD_ARGUMENT", ("%s joins itself (expected another task)"):format(current.name))
+      end
+    end
+    current.joins = list
+    current.waits_for = function()
+      return "the end of " .. table.concat(names, ", ")
+    end
+    local good, problem = pcall(function()
+      refuse_cycle()
+      wait_idle(function()
+        return all_over(list)
+      end, current.waits_for)
+    end)
+    current.joins, current.waits_for = nil, nil
+    if not good then
+      error(problem, 0)
+    end
+    for _, task in ipairs(list) do
+      if not task.results then
+        forget_failed(task)
+        error(task.problem, 0)
+      end
+      table.move(task.results, 1, task.results.n, (results.n or 0) + 1, results)
+      results.n = (results.n or 0) + task.results.n
+    end
+    return table.unpack(results, 1, results.n or 0)
+  end
+
+  local function check_name(name)
+    if type(name) ~= "string" then
+      native.fail("BAD_ARGUMENT", ("name: %s (expected a text)"):format(lookup.quote(name)))
+    end
+    return name
+  end
+
+  local function hand_out(name)
+    local queue = waiters[name] or {}
+    while #queue > 0 and (signals[name] or 0) > 0 do
+      table.remove(queue, 1).is_taken = true
+      signals[name] = signals[name] - 1
+    end
+  end
+
+  -- Adds n signals of that name, for those who await them.
+  function words.signal(name, n)
+    n = n == nil and 1 or n
+    if math.type(n) ~= "integer" or n < 1 or n > 1000000 then
+      native.fail("BAD_ARGUMENT", ("n: %s (expected a whole number from 1 to 1000000)"):format(lookup.quote(n)))
+    end
+    signals[check_name(name)] = (signals[name] or 0) + n
+    hand_out(name)
+  end
+
+  local function leave(name, waiter)
+    for place, other in ipairs(waiters[name]) do
+      if other == waiter then
+        table.remove(waiters[name], place)
+        return
+      end
+    end
+  end
+
+  -- Takes one signal of that name, and waits for it if there is none: at most so many simulated seconds. False: none came.
+  function words.await(name, timeout)
+    local waiter = {}
+    waiters[check_name(name)] = waiters[name] or {}
+    local queue, limit = waiters[name], timeout ~= nil and lookup.number("timeout", timeout, lookup.ranges.seconds)
+    queue[#queue + 1] = waiter
+    hand_out(name)
+    if not waiter.is_taken and limit then
+      open()
+      native.hold_mechanisms(false)
+      native.start { dwell = limit }
+    end
+    local lane = current.lane
+    local good, problem = pcall(wait_idle, function()
+      return waiter.is_taken or limit and not native.runs(lane)
+    end, function()
+      return "a signal " .. lookup.quote(name)
+    end)
+    if not waiter.is_taken then
+      leave(name, waiter)
+    elseif limit then
+      native.drop_segment()
+    end
+    if not good then
+      error(problem, 0)
+    elseif limit and not waiter.is_taken then
+      native.outcome()
+    end
+    return waiter.is_taken == true
+  end
+
+  -- The script has come to its end: the run's comes when all tasks are over. One that failed unheard fails the run.
+  function module.finish()
+    if is_open then
+      wait_idle(function()
+        return #tasks == 0
+      end, function()
+        return "the end of all tasks"
+      end)
+      local names = {}
+      for name, count in pairs(signals) do
+        names[#names + 1] = count > 0 and name or nil
+      end
+      table.sort(names)
+      for _, name in ipairs(names) do
+        print(("signal %s: %d left that nobody awaited"):format(lookup.quote(name), signals[name]))
+      end
+      if failed[1] then
+        error(failed[1].problem, 0)
+      end
+    end
+  end
+
+  ----------------------------------------------------------------------------------------------------- jobs
+
+  -- What was given up past all Lua.
+  local function abandon()
+    for place = #tasks, 1, -1 do
+      local task = table.remove(tasks, place)
+      coroutine.close(task.thread)
+      native.free_lane(task.lane)
+      lanes[#lanes + 1] = task.lane
+    end
+    held, requests, failed = {}, {}, {}
+    switch(script)
+  end
+
+  -- Without a handle, which would be kept: a host's actions are many.
+  local function begin_job(execute, job)
+    local task = begin(function()
+      local line = job.line
+      native.begin_job(job.number)
+      while line do
+        line = native.end_line(job.number, execute(line))
+      end
+    end)
+    task.job, task.may_wait, task.name = job.number, job.may_wait, "another port"
+    task.bound, task.station = job.robot, job.station
+  end
+
+  -- Plays the lines of jobs side by side, each job's one after another, until none is left: those of hosts at several
+  -- ports. execute(line) returns the number of the error and the answer.
+  function module.serve(execute)
+    if created > 0 then
+      abandon()
+    end
+    drive(function()
+      local job = native.next_job()
+      while job do
+        begin_job(execute, job)
+        job = native.next_job()
+      end
+      return #tasks == 0
+    end)
+    if failed[1] then
+      error(failed[1].problem, 0)
+    end
+  end
+
+  function module.is_any_alive()
+    return #tasks > 0
+  end
+
+  module.words = words
+  return module
+end
