@@ -186,7 +186,7 @@ static int open_words(lua_State *L) {
         wh_mcs_survey_functions,  wh_mcs_definition_functions, wh_mcs_saved_functions,
         wh_mcs_edge_functions,    wh_mcs_align_functions,      wh_mcs_calibration_functions,
         wh_mcs_arrival_functions, wh_mcs_centring_functions,   wh_mcs_teaching_functions,
-        wh_mcs_lane_functions,    wh_mcs_job_functions};
+        wh_mcs_lane_functions,    wh_mcs_job_functions,        wh_mcs_believed_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);

@@ -82,6 +82,7 @@ void wh_mcs_push_sensor_error(lua_State *L, const wh_sensor_error_t *error);
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_align_functions[];
 extern const luaL_Reg wh_mcs_arrival_functions[];
+extern const luaL_Reg wh_mcs_believed_functions[];
 extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];

@@ -1,4 +1,4 @@
-/* Planning: where slots are and where the axes must go, segments as Lua asks for them, and rehearsals. */
+/* Planning: where the axes must go, segments as Lua asks for them, and rehearsals. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -60,15 +60,29 @@ static bool read_pose(lua_State *L, const wh_travel_goal_t *goal, const wh_carri
     return true;
 }
 
-/* native.inverse(request): the axes with the gripper of request.to there, from where they stand. */
+/* The list of all axes at the top of the stack, if it is one. */
+static void read_axes_list(lua_State *L, size_t count, wh_real_t axes[]) {
+    for (size_t axis = 0; lua_istable(L, -1) && axis < count; ++axis) {
+        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
+        axes[axis] = luaL_checknumber(L, -1);
+        lua_pop(L, 1);
+    }
+}
+
+/* native.inverse(request): the axes with the gripper of request.to there, from request.from, or from where
+ * they stand. */
 static int find_axes(lua_State *L) {
     static const char *const fields[] = {"x", "y", "z", "heading"};
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_machine_t *machine = &mcs->layout->machine;
-    wh_real_t to[4], axes[WH_AXES];
+    wh_real_t to[4], from[WH_AXES], axes[WH_AXES];
     wh_pose_t pose;
     wh_chain_choice_t choice;
     luaL_checktype(L, 1, LUA_TTABLE);
+    lua_settop(L, 1);
+    memcpy(from, mcs->track.axes, sizeof from);
+    lua_getfield(L, 1, "from");
+    read_axes_list(L, machine->axis_count, from);
     lua_settop(L, 1);
     lua_getfield(L, 1, "to");
     for (size_t i = 0; i < 4; ++i) {
@@ -80,104 +94,18 @@ static int find_axes(lua_State *L) {
                              wh_vec3(to[0], to[1], to[2]), to[3], NULL, NULL};
     size_t first;
     const wh_carrier_t *carrier = wh_machine_carrier(machine, machine->mounts[goal.gripper].robot, &first);
-    if (carrier && read_pose(L, &goal, carrier, &mcs->track.axes[first], &pose, &choice)) {
+    if (carrier && read_pose(L, &goal, carrier, &from[first], &pose, &choice)) {
         goal.pose = &pose;
         goal.choice = &choice;
     }
-    memcpy(axes, mcs->track.axes, sizeof axes);
-    const wh_status_t status = wh_travel_find(mcs->layout, &goal, mcs->track.axes, axes);
+    memcpy(axes, from, sizeof axes);
+    const wh_status_t status = wh_travel_find(mcs->layout, &goal, from, axes);
     if (status != WH_OK) {
         char reason[WH_TRAVEL_BYTES];
-        wh_travel_say_point(mcs->layout, &goal, mcs->track.axes, reason);
+        wh_travel_say_point(mcs->layout, &goal, from, reason);
         refuse(L, mcs, status, reason);
     }
     wh_lua_push_numbers(L, axes, machine->axis_count);
-    return 1;
-}
-
-/* The slot's frame, displaced in its own axes by the numbers from stack index 3 on: dx, dy, dz. */
-static wh_pose_t corrected_slot(lua_State *L, const wh_station_t *place, int32_t slot) {
-    wh_pose_t base_from_slot = wh_station_slot(place, slot);
-    const wh_vec3_t d = wh_vec3(luaL_checknumber(L, 3), luaL_checknumber(L, 4), luaL_checknumber(L, 5));
-    if (wh_vec3_norm(&d) > 0) { /* else the very bits of the slot, zeros of either sign, too */
-        const wh_vec3_t by = wh_mat3_transform(&base_from_slot.R, &d);
-        base_from_slot.r = wh_vec3_add(&base_from_slot.r, &by);
-    }
-    return base_from_slot;
-}
-
-/* The heading of the slot's x axis, turned about its z. */
-static wh_real_t corrected_heading(const wh_mat3_t *R, wh_real_t turn_deg) {
-    wh_real_t sine, cosine;
-    if (!(wh_real_abs(turn_deg) > 0)) {
-        return wh_atan2(R->m[1][0], R->m[0][0]);
-    }
-    wh_sin_cos_deg(turn_deg, &sine, &cosine);
-    return wh_atan2(cosine * R->m[1][0] + sine * R->m[1][1], cosine * R->m[0][0] + sine * R->m[0][1]);
-}
-
-/* A robot that tilts comes along the slot's own axes: `up` is its z, `rotation` the gripper's. */
-static void push_tilted(lua_State *L, const wh_mat3_t *R, wh_real_t turn_deg) {
-    const wh_vec3_t up = wh_mat3_column(R, 2);
-    const wh_mat3_t turn = wh_mat3_from_rpy_deg(0, 0, turn_deg);
-    const wh_mat3_t turned = wh_mat3_multiply(R, &turn);
-    wh_lua_set_number(L, "dir_x", R->m[0][0]);
-    wh_lua_set_number(L, "dir_y", R->m[1][0]);
-    wh_lua_set_number(L, "dir_z", R->m[2][0]);
-    wh_lua_push_numbers(L, &up.x, 3);
-    lua_setfield(L, -2, "up");
-    wh_lua_push_numbers(L, turned.m[0], 9);
-    lua_setfield(L, -2, "rotation");
-}
-
-/* With several robots the one at stack index 7 comes its own way, to where it was taught the station. */
-static void take_approach(lua_State *L, const wh_mcs_t *mcs, size_t index, wh_pose_t *base_from_slot,
-                          double *rail, wh_elbow_t *elbow) {
-    const wh_layout_station_t *station = &mcs->layout->stations[index];
-    *rail = station->rail;
-    *elbow = station->elbow;
-    if (station->by) {
-        const int32_t robot = wh_mcs_index(L, 7, mcs->layout->robot_count);
-        const wh_layout_approach_t *by = &station->by[robot];
-        base_from_slot->R = by->is_turned ? by->R : base_from_slot->R;
-        *rail = by->rail;
-        *elbow = by->elbow;
-        if (mcs->local.trial) {
-            wh_trial_cell_teach(mcs->local.trial, index, (size_t)robot, *rail, base_from_slot);
-        }
-    }
-}
-
-/* native.slot(station, slot, dx, dy, dz, turn, robot): { x, y, z, dir_x, dir_y, heading } of the gripper
- * there, displaced in the slot's axes (mm) and turned about its z (degrees). The way in, projected to
- * horizontal, is beside the taught one and goes the same way: it is not turned. */
-static int find_slot(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
-    const wh_station_t *place = &mcs->layout->places[station];
-    const int32_t slot = wh_mcs_index(L, 2, (size_t)place->slots) + 1;
-    wh_pose_t base_from_slot = corrected_slot(L, place, slot);
-    double rail;
-    wh_elbow_t elbow;
-    take_approach(L, mcs, (size_t)station, &base_from_slot, &rail, &elbow);
-    const wh_real_t x = base_from_slot.R.m[0][0];
-    const wh_real_t y = base_from_slot.R.m[1][0];
-    const wh_real_t length = wh_real_sqrt(x * x + y * y);
-    lua_createtable(L, 0, 6);
-    wh_lua_set_number(L, "x", base_from_slot.r.x);
-    wh_lua_set_number(L, "y", base_from_slot.r.y);
-    wh_lua_set_number(L, "z", base_from_slot.r.z);
-    wh_lua_set_number(L, "dir_x", x / length);
-    wh_lua_set_number(L, "dir_y", y / length);
-    wh_lua_set_number(L, "heading", corrected_heading(&base_from_slot.R, luaL_checknumber(L, 6)));
-    if (mcs->layout->machine.carrier) {
-        wh_lua_set_number(L, "rail", rail);
-        wh_lua_set_integer(L, "elbow", (lua_Integer)elbow);
-        const size_t robot = (size_t)luaL_optinteger(L, 7, 1) - 1;
-        if (wh_machine_carrier(&mcs->layout->machine, robot, NULL)->chain.has_tilt) {
-            push_tilted(L, &base_from_slot.R, luaL_checknumber(L, 6));
-        }
-    }
     return 1;
 }
 
@@ -185,11 +113,7 @@ static int find_slot(lua_State *L) {
 
 static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
     segment->kind = WH_SEGMENT_AXES;
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
-        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
-        segment->target[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
+    read_axes_list(L, mcs->layout->machine.axis_count, segment->target);
 }
 
 /* True if an arm that turns from these axes to those leaves the layout's transit. */
@@ -520,6 +444,5 @@ static int set_reach(lua_State *L) {
 }
 
 const luaL_Reg wh_mcs_plan_functions[] = {
-    {"axes", read_axes},          {"inverse", find_axes}, {"slot", find_slot},
-    {"rehearse", rehearse},       {"look_on", look_on},   {"plan", plan},
-    {"try_segment", try_segment}, {"reach", set_reach},   {NULL, NULL}};
+    {"axes", read_axes}, {"inverse", find_axes},       {"rehearse", rehearse}, {"look_on", look_on},
+    {"plan", plan},      {"try_segment", try_segment}, {"reach", set_reach},   {NULL, NULL}};

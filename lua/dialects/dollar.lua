@@ -31,9 +31,9 @@ local BY_ARGUMENT = { CSTP = true, MTRS = true }
 -- How many arguments a command has; of the others all go to motion control, which looks at each.
 local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
-  MSCN = 1, MCAL = 1, MTCH = 1, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 4, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
+  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 4, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
-  RSTS = 0, RWFR = 1, RSTN = 0, RAXS = 0, RLOC = 1, RVER = 0,
+  RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 6, RAXS = 0, RLOC = 1, RVER = 0,
 }
 
 local function decode(frame)
@@ -104,12 +104,12 @@ local function turn(word, by_itself)
   end
 end
 
--- Fields that may be empty, as `NAME=VALUE ...`; `turns` by name, what is an angle. The axes have signs of their own.
-local function values(word, names, turns, axes)
+-- Fields from `first` on that may be empty, as `NAME=VALUE ...`; `turns` by name, what is an angle. The axes have signs of their own.
+local function values(word, names, turns, axes, first)
   return function(request)
     local list = { word }
     for place, name in ipairs(names) do
-      local field, unit = request.arguments[place] or "", turns[name] and host.degrees or host.mm
+      local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
         list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name))
       end
@@ -129,6 +129,14 @@ end
 local function as_said(word)
   return function(request)
     return word .. " " .. table.concat(request.arguments, " ")
+  end
+end
+
+-- A station, and an arm, which may lack.
+local function at_station_with(word)
+  return function(request)
+    local arm = request.arguments[2] or ""
+    return ("%s %s%s"):format(word, host.station(request.arguments[1] or ""), arm ~= "" and " gripper=" .. host.arm(arm) or "")
   end
 end
 
@@ -178,6 +186,16 @@ local function told(_, result)
   return field(result.answer:gsub("^OK ?", ""))
 end
 
+-- Where the axes stand in a station; of one that the robot has not the field is empty.
+local function standing(axes)
+  local list = {}
+  for place, name in ipairs({ "theta", "r", "z", "yaw" }) do
+    local unit = (name == "theta" or name == "yaw") and host.angle or host.length
+    list[place] = axes[name] and whole(unit(axes[name], name)) or ""
+  end
+  return table.concat(list, ",")
+end
+
 -- For RFND.
 local function keep(request, result)
   found[request.command] = told(request, result)
@@ -205,7 +223,10 @@ return {
     MROT = { does = "ROTATE", run = turn("ROTATE") },
     MSCN = { does = "EDGE_SCAN", run = at_station("EDGE_SCAN"), answer = keep },
     MCAL = { does = "CALIBRATE", run = at_station("CALIBRATE"), answer = keep },
-    MTCH = { does = "TEACH", run = at_station("TEACH"), answer = keep },
+    MTCH = { does = "TEACH", run = function(request)
+      local keep = choose(request.arguments[2] or "0", { ["0"] = "", ["1"] = " keep=true" })
+      return at_station("TEACH")(request) .. keep
+    end, answer = keep },
     MLFT = { does = "LIFT", run = function(request)
       local where = choose(request.arguments[2], { U = "UP", D = "DOWN" })
       return ("LIFT %s %s"):format(host.station(request.arguments[1] or ""), where)
@@ -252,7 +273,15 @@ return {
       local sensor = result.sensors[arm]
       return sensor == nil and host.refuse("NO_SUCH_GRIPPER", arm) or sensor and "1" or "0"
     end },
-    RSTN = { does = "STATIONS", answer = told },
+    RSTN = { does = "STATIONS STATION", run = function(request)
+      return request.arguments[1] and at_station_with("STATION")(request) or "STATIONS"
+    end, answer = function(request, result)
+      return request.arguments[1] and standing(result.values) or told(request, result)
+    end },
+    CSTN = { does = "SET_STATION", run = function(request)
+      local axes = values("", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true, 3)
+      return at_station_with("SET_STATION")(request) .. axes(request)
+    end },
     RAXS = { does = "AXES", answer = told },
     RLOC = { does = "WHERE", run = with_name("WHERE", true), answer = told },
     RVER = { does = "VERSION", answer = function(_, result) return result.values.version end },

@@ -20,8 +20,8 @@ end
 -- How many arguments a verb has; of the others each goes to motion control, which looks at all.
 local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
-  TECH = 1, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 4, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
-  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 0, GAXS = 0, GLOC = 1,
+  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 4, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
+  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 6, GAXS = 0, GLOC = 1,
   GVER = 0,
 }
 
@@ -87,12 +87,12 @@ local function turn(word, by_itself)
   end
 end
 
--- (theta, r, z, yaw), (dx, dy, dz, speed): each may be empty; `turns` by name, what is an angle.
-local function values(word, names, turns, axes)
+-- (theta, r, z, yaw), (dx, dy, dz, speed), from the first on: each may be empty; `turns` by name, what is an angle.
+local function values(word, names, turns, axes, first)
   return function(request)
     local list = { word }
     for place, name in ipairs(names) do
-      local field, unit = request.arguments[place] or "", turns[name] and host.degrees or host.mm
+      local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
         list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name))
       end
@@ -107,6 +107,24 @@ local function with_name(word, may_lack)
     local name = request.arguments[1] or ""
     return may_lack and name == "" and word or word .. " " .. host.typed(name)
   end
+end
+
+-- (station, arm), of which the arm may lack.
+local function at_station_with(word)
+  return function(request)
+    local arm = request.arguments[2] or ""
+    return ("%s %s%s"):format(word, host.station(request.arguments[1] or ""), arm ~= "" and " gripper=" .. host.arm(arm) or "")
+  end
+end
+
+-- Where the axes stand in a station; one that the robot has not is empty.
+local function standing(axes)
+  local list = {}
+  for place, name in ipairs({ "theta", "r", "z", "yaw" }) do
+    local unit = (name == "theta" or name == "yaw") and host.angle or host.length
+    list[place] = axes[name] and number(unit(axes[name], name)) or ""
+  end
+  return table.concat(list, ",")
 end
 
 local function as_typed(word)
@@ -160,7 +178,10 @@ return {
     TURN = { does = "ROTATE", run = turn("ROTATE") },
     SCAN = { does = "EDGE_SCAN", run = at_station("EDGE_SCAN"), answer = keep },
     CALB = { does = "CALIBRATE", run = at_station("CALIBRATE"), answer = keep },
-    TECH = { does = "TEACH", run = at_station("TEACH"), answer = keep },
+    TECH = { does = "TEACH", run = function(request)
+      local keeps, switch = { [""] = "", keep = " keep=true" }, request.arguments[2] or ""
+      return at_station("TEACH")(request) .. (keeps[switch] or host.refuse("BAD_ARGUMENT", switch))
+    end, answer = keep },
     LIFT = { does = "LIFT", run = function(request)
       return ("LIFT %s %s"):format(host.station(request.arguments[1] or ""), request.arguments[2] or "")
     end },
@@ -201,7 +222,15 @@ return {
       local sensor = result.sensors[arm]
       return sensor == nil and host.refuse("NO_SUCH_GRIPPER", arm) or sensor and "1" or "0"
     end },
-    GSTN = { does = "STATIONS", answer = told },
+    GSTN = { does = "STATIONS STATION", run = function(request)
+      return request.arguments[1] and at_station_with("STATION")(request) or "STATIONS"
+    end, answer = function(request, result)
+      return request.arguments[1] and standing(result.values) or told(request, result)
+    end },
+    SSTN = { does = "SET_STATION", run = function(request)
+      local axes = values("", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true, 3)
+      return at_station_with("SET_STATION")(request) .. axes(request)
+    end },
     GAXS = { does = "AXES", answer = told },
     GLOC = { does = "WHERE", run = with_name("WHERE", true), answer = told },
     GVER = { does = "VERSION", answer = function(_, result) return result.values.version end },

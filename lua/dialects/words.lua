@@ -29,6 +29,9 @@ local OPTIONS = {
 local AXES = { T = degrees("theta", "theta"), R = mm("r", "r"), Z = mm("z", "z"), W = degrees("yaw", "yaw") }
 local WAYS = { X = mm("dx"), Y = mm("dy"), Z = mm("dz"), SPEED = mm("speed") }
 
+-- With which axes the arm stands in a station, and which arm.
+local STANDING = { ARM = OPTIONS.ARM, T = AXES.T, R = AXES.R, Z = AXES.Z, W = AXES.W }
+
 -- The pairs of words from `first` on, each a name of `known` and its value: as they stand in our line, and their values
 -- by name.
 local function options(words, first, known)
@@ -58,6 +61,15 @@ local function with_station(word)
   return function(request)
     return word .. " " .. host.station(request.words[2] or "")
   end
+end
+
+-- TEACH A, or TEACH A KEEP: from then on the arm goes there.
+local function teach(request)
+  local keep = request.words[3]
+  if keep and keep:upper() ~= "KEEP" then
+    host.refuse("BAD_ARGUMENT", keep)
+  end
+  return with_station("TEACH")(request) .. (keep and " keep=true" or "")
 end
 
 -- A command with a station and an angle, which may be left out if there is one `by_itself`.
@@ -133,6 +145,26 @@ local function told(word)
   end
 end
 
+-- RQ STN: all of them; RQ STN A ARM EE: where its axes stand in that one.
+local function station(request)
+  local words = request.words
+  return words[3] and ("STATION %s %s"):format(host.station(words[3]), options(words, 4, { ARM = OPTIONS.ARM })) or "STATIONS"
+end
+
+local function place(request, result)
+  if not request.words[3] then
+    return told("STN")(request, result)
+  end
+  local list = { "STN", request.words[3] }
+  for _, axis in ipairs({ "theta T", "r R", "z Z", "yaw W" }) do
+    local ours, theirs = axis:match("(%S+) (%S+)")
+    local value = result.values[ours]
+    list[#list + 1] = value and theirs .. " " .. whole((theirs == "R" or theirs == "Z") and host.length(value, ours)
+      or host.angle(value, ours))
+  end
+  return table.concat(list, " ")
+end
+
 -- For RQ FOUND.
 local function keep(request, result)
   found[request.command] = result.answer:gsub("^OK ", "")
@@ -140,9 +172,9 @@ end
 
 -- How many words may follow a command's; of others their options tell.
 local MOST = {
-  HOME = 0, GO = 0, MAP = 1, TEACH = 1, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
+  HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
   OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
-  ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 0,
+  ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
   ["RQ AXES"] = 0, ["RQ FOUND"] = 1,
 }
 
@@ -182,7 +214,7 @@ return {
     GOTO = { does = "READY", run = with_slot("READY") },
     GO = { does = "CONTINUE" },
     MAP = { does = "MAP", run = with_station("MAP"), answer = map },
-    TEACH = { does = "TEACH", run = with_station("TEACH"), answer = keep },
+    TEACH = { does = "TEACH", run = teach, answer = keep },
     RETRACT = { does = "RECOVER" },
     ALIGN = { does = "ALIGN", run = with_angle("ALIGN", 0), answer = keep },
     ROTATE = { does = "ROTATE", run = with_angle("ROTATE") },
@@ -212,6 +244,9 @@ return {
     CLEAR = { does = "CLEAR", run = as_said("CLEAR") },
     FAULT = { does = "FAULT", run = as_said("FAULT") },
     ALARM = { does = "ALARM", run = function(request) return "ALARM " .. host.alarm(request.words[2] or "") end },
+    ["SET STN"] = { does = "SET_STATION", run = function(request)
+      return ("SET_STATION %s %s"):format(host.station(request.words[3] or ""), options(request.words, 4, STANDING))
+    end },
     ["SET BKG"] = { does = "LOCAL", run = function(request)
       local switch = (request.words[3] or ""):upper()
       if switch ~= "ON" and switch ~= "OFF" then
@@ -228,7 +263,7 @@ return {
     ["RQ VERSION"] = { does = "VERSION", answer = function(_, result)
       return "VERSION " .. result.values.version
     end },
-    ["RQ STN"] = { does = "STATIONS", answer = told("STN") },
+    ["RQ STN"] = { does = "STATIONS STATION", run = station, answer = place },
     ["RQ AXES"] = { does = "AXES", answer = told("AXES") },
     ["RQ WAFERS"] = { does = "WHERE", run = with_name("WHERE", 3, true), answer = told("WAFERS") },
     ["RQ FOUND"] = { does = "LOCAL", run = function(request)

@@ -15,27 +15,28 @@ return function(native, lookup)
   local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
   local PLANNED = STATION .. " LINE"
   local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN VALVE MOVE FLIP LINE OPEN CLOSE"
+  local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
   -- By the error's name: how, and which commands answer it.
   local HOW = {
     BAD_VALVE = { "check", "VALVE" },
     BAD_LIMITS = { "line", MOVING },
-    OUT_OF_REACH = { "check", PLANNED },
-    LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE" },
+    OUT_OF_REACH = { "check", PLANNED .. " SET_STATION" },
+    LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE SET_STATION" },
     NOT_LEVEL = { "check", STATION },
     NOT_ALONG_ARM = { "check", STATION },
-    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN OFFSET" },
+    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN OFFSET" .. SETTING },
     NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
     WAFER_MISSING = { "cause", "GET SWAP" },
     NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
     WAFER_ON_GRIPPER = { "cause", "GET SWAP" },
-    NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" },
-    AMBIGUOUS_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" },
-    NO_SUCH_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" },
+    NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" .. SETTING },
+    AMBIGUOUS_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
+    NO_SUCH_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
     NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
     NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
-    BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES },
+    BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES .. SETTING },
     NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN" },
     WAFER_LOST = { "cause", "PUT" },
     DEADLOCK = { "check", STATION },
@@ -45,7 +46,7 @@ return function(native, lookup)
     STOPPED = { "cause", STATION .. " HOME ROTATE EDGE_SCAN ALIGN MOVE FLIP LINE" },
     OUT_OF_BUDGET = { "check", MOVING },
     BUSY = { "line", MOVING },
-    NOT_TAUGHT = { "check", STATION },
+    NOT_TAUGHT = { "check", STATION .. " STATION" },
     WAFER_ALREADY_THERE = { "check", "PUT" },
     VACUUM_TIMEOUT = { "cause", "GET PUT SWAP" },
     VACUUM_BEFORE_PICK = { "cause", "GET SWAP" },

@@ -9,7 +9,8 @@ return function(native, patterns, lookup, alarms)
   local arm = native.module("mcs/arm.lua")(native, lookup, centring, tasks, alarms)
   local mechanisms = native.module("mcs/mechanisms.lua")(native, patterns, lookup, arm)
   local align = native.module("mcs/align.lua")(native, patterns, lookup, arm, mechanisms)
-  local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms)
+  local stations = native.module("mcs/stations.lua")(native, lookup)
+  local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms, stations)
 
   function lookup.bound()
     return tasks.current().bound
@@ -69,7 +70,17 @@ return function(native, patterns, lookup, alarms)
   commands.calibrate = native.module("mcs/calibration.lua")(native, patterns, lookup, arm, targets, align,
     commands.carry)
   commands.carry = nil
-  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets)
+  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets, stations)
+
+  -- station("A"): where the axes stand in its slot 1, degrees and mm.
+  function commands.station(name, options)
+    return stations.read(name, options)
+  end
+
+  -- set_station("A", { theta = , r = , z = , yaw = }): it lies where the gripper would be then.
+  function commands.set_station(name, axes)
+    arm.run(nil, lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.axes)), stations.set, name, axes)
+  end
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then
@@ -261,13 +272,17 @@ return function(native, patterns, lookup, alarms)
   -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
   function commands.keep()
     local put_slots_back, put_found_back, put_broken_back = keep_slots(), align.keep(), alarms.keep()
-    local put_arm_back, is_as_was = arm.keep()
+    local put_arm_back, is_arm_as_was = arm.keep()
+    local put_stations_back, are_stations_as_were = stations.keep()
     return function()
       put_slots_back()
       put_found_back()
       put_broken_back()
       put_arm_back()
-    end, is_as_was
+      put_stations_back()
+    end, function()
+      return is_arm_as_was() and are_stations_as_were()
+    end
   end
 
   -- Of what moves nothing.

@@ -116,6 +116,10 @@ return function(native, lookup, targets, words)
 
   local function add_all_options()
     local own, common = targets.fields, { lookup.options, lookup.parameters }
+    local axes, served = {}, { gripper = lookup.options.gripper, robot = lookup.options.robot }
+    for _, name in ipairs(lookup.axes) do
+      axes[name] = lookup.ranges[name]
+    end
     add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])
     add_options("get_options", "What GET may say for itself.", own.get, common[1], common[2])
     add_options("put_options", "What PUT may say for itself.", own.put, common[1], common[2])
@@ -124,6 +128,8 @@ return function(native, lookup, targets, words)
     add_options("calibrate_options", "What CALIBRATE may say for itself.", lookup.calibrate_fields,
       { robot = lookup.options.robot })
     add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
+    add_options("served_by", "Whose way into a station.", served)
+    add_options("standing", "Where axes stand with a gripper in slot 1: degrees and mm.", axes, served)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
     add("")
     add('---@alias waferhand.clearance_kind "%s"', table.concat(native.clearance_kinds(), '"|"'))

@@ -40,6 +40,7 @@ return function(native)
   commands.try_out, commands.try_carrying, commands.rehearse_centring = nil, nil, nil
   commands.rehearse_aside = nil
   native.module("mcs/faults.lua")(native, commands, run, lookup, alarms)
+  queries.station, commands.station = commands.station, nil
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
 
@@ -105,7 +106,8 @@ return function(native)
   end
 
   -- The words that robot() binds.
-  local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop" }
+  local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop", "station",
+    "set_station" }
 
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)

@@ -93,8 +93,8 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
 
   local align_options = { mode = "mode", mark = "mark", glass = "number", turns = "number", correct = "switch" }
 
-  local function fields(list)
-    local options = {}
+  local function fields(list, options)
+    options = options or {}
     for _, name in ipairs(list) do
       options[name] = "number"
     end
@@ -340,11 +340,24 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return table.concat(list, "; ")
   end
 
-  -- A command's options; of MOVE the axes that the robot has.
+  local function station(arguments, options)
+    local found, list = queries.station(arguments[1], options), { { "station", arguments[1] } }
+    for _, name in ipairs(lookup.axes) do
+      list[#list + 1] = found[name] and { name, found[name] }
+    end
+    return tokens.pairs(list)
+  end
+
+  local function set_station(arguments, options)
+    commands.set_station(arguments[1], options)
+    return station(arguments, { robot = options.robot, gripper = options.gripper })
+  end
+
+  -- A command's options; where they are axes, those that the robots have.
   function prompt_commands.options(command)
     local options = command.options or {}
     if command.of_axes then
-      local own = {}
+      local own = { robot = options.robot, gripper = options.gripper }
       for _, robot in ipairs(native.layout.robots) do
         for _, axis in ipairs(robot.axes) do
           own[axis.name] = options[axis.name]
@@ -495,7 +508,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
-    TEACH = { takes = { "station" }, options = { by = "teaching" }, run = teach,
+    TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch" }, run = teach,
               does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
     HOME = { takes = {}, run = moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },
@@ -553,6 +566,11 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     ALARM = { takes = { "error" }, run = alarm,
               does = "lets the next command that can answer the error of this number do so; tells the fault's number" },
     CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
+    SET_STATION = { takes = { "station" }, options = fields(lookup.axes, { robot = "robot", gripper = "gripper" }),
+                    of_axes = true, needs_option = true, run = set_station,
+                    does = "from now on the station lies where the gripper is with these axes" },
+    STATION = { takes = { "station" }, options = { robot = "robot", gripper = "gripper" }, run = station, asks = true,
+                keeps = true, does = "where the axes stand with the gripper in its slot 1, degrees and mm" },
     OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, asks = true, keeps = true,
                does = "where the wafer is in that slot's frame" },
     HOLDER = { takes = { "wafer" }, run = holder, asks = true, keeps = true, does = "the gripper that holds the wafer" },

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, lookup, align, mechanisms)
+return function(native, lookup, align, mechanisms, stations)
   local targets = {}
 
   local parameters = lookup.parameters
@@ -121,19 +121,16 @@ return function(native, lookup, align, mechanisms)
     local station = lookup.station(station_name)
     local number = lookup.slot(station, slot)
     options = check_options(options, own_fields(word, prefix))
-    if not station.taught then
-      native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
-    end
+    local robot = gripper and native.layout.grippers[gripper].robot or lookup.robot_for(station.name, options)
+    stations.check_taught(station, robot)
     mechanisms.check_pins(station)
     mechanisms.check_flipper(station)
-    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
+    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force, robot = robot }
     target.stage_home = word == "put" and mechanisms.way_home(station) or nil
-    target.robot = gripper and native.layout.grippers[gripper].robot or lookup.robot_for(station.name, options)
     target.gripper = gripper or lookup.effector(options.gripper, station.by[target.robot] or nil, target.robot)
     local found = word == "get" and prefix and align.correction(station.name, options, prefix)
     read_corrections(target, prefix and options or {}, prefix or "", found or {})
-    target.place = native.slot(station.index, number, target.dx, target.dy, target.dz, target.turn,
-      target.robot)
+    target.place = stations.place(station, number, robot, target)
     for name in pairs(parameters) do
       target[name] = options[name]
       if target[name] == nil then

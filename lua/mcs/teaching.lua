@@ -7,7 +7,7 @@
 -- Kept, for a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm, targets)
+return function(native, patterns, lookup, arm, targets, stations)
   -- How far from where the wafer is expected the blade looks for it, mm, and in what steps.
   local SEARCH, STEP = 0.35, 0.01
   -- Through the beam: how fast, and how far before and behind a rim, mm.
@@ -197,9 +197,11 @@ return function(native, patterns, lookup, arm, targets)
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
     for field, value in pairs(options or {}) do
-      if field ~= "by" or value ~= "beam" and value ~= "touch" then
-        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\" or \"touch\")"):format(lookup.quote(field),
-          lookup.quote(value)))
+      if field == "keep" then
+        lookup.value(field, value, lookup.correct)
+      elseif field ~= "by" or value ~= "beam" and value ~= "touch" then
+        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\" or \"touch\", keep = true or false)"):format(
+          lookup.quote(field), lookup.quote(value)))
       end
     end
     local by = options and options.by or station.beams == 0 and station.block and "touch" or "beam"
@@ -259,11 +261,7 @@ return function(native, patterns, lookup, arm, targets)
     arm.drive(arm.rehearse(patterns.put, target, true))
   end
 
-  local function teach(name, options)
-    local station, by = check(name, options)
-    if by == "touch" then
-      return by_touch(name, station)
-    end
+  local function with_wafer(name, station)
     local target = targets.at("get", name, 1)
     if target.is_passive then
       local text = "gripper: %s (expected one with vacuum, whose sensor feels the wafer)"
@@ -283,6 +281,15 @@ return function(native, patterns, lookup, arm, targets)
     end
     if not good then
       error(result, 0)
+    end
+    return result
+  end
+
+  local function teach(name, options)
+    local station, by = check(name, options)
+    local result = by == "touch" and by_touch(name, station) or with_wafer(name, station)
+    if options and options.keep then
+      stations.learn(station, result.at, math.rad(result.rpy[3]))
     end
     return result
   end

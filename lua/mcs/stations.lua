@@ -1,0 +1,163 @@
+-- Where motion control believes stations to be: where the layout says, until a host sets one by the axes with which
+-- a gripper stands in its slot 1.
+
+-- Kept, for a script may set globals of these names.
+local error, ipairs, math, next, pairs, pcall = error, ipairs, math, next, pairs, pcall
+
+return function(native, lookup)
+  local stations = {}
+
+  -- By station and robot: how far that was set from where the layout has it, see native.shift. A table that was handed
+  -- out is never changed.
+  local shifts = {}
+
+  -- Axes that do not tell where a slot is: a blade is turned over, or tilted, as the station asks for.
+  local LEFT_OUT = { flip = true, tilt_x = true, tilt_y = true }
+
+  local function key(station, robot)
+    return station.name .. "\0" .. robot
+  end
+
+  function stations.is_taught(station, robot)
+    return station.taught or shifts[key(station, robot)] ~= nil
+  end
+
+  -- native.slot, of the station as it was set; `undrawn`: not as a trial draws it.
+  function stations.place(station, slot, robot, by, undrawn)
+    return native.slot(station.index, slot, by.dx or 0, by.dy or 0, by.dz or 0, by.turn or 0, robot,
+      shifts[key(station, robot)], undrawn)
+  end
+
+  local function check_taught(station, robot)
+    if not stations.is_taught(station, robot) then
+      native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
+    end
+  end
+  stations.check_taught = check_taught
+
+  -- The station, and the robot and the gripper that a command means.
+  local function find(name, options)
+    options = options == nil and {} or lookup.table("options", options)
+    local station = lookup.station(name)
+    local robot = lookup.robot_for(station.name, options)
+    return station, robot, lookup.effector(options.gripper, station.by[robot] or nil, robot)
+  end
+
+  -- All axes with the gripper in that slot, so far along the way in, from where the robot is at home.
+  local function axes_at(station, slot, robot, gripper, along, up)
+    local place = stations.place(station, slot, robot, {}, true)
+    local from, own = native.axes(), native.layout.robots[robot]
+    for axis, position in ipairs(own.home) do
+      from[own.first + axis - 1] = position
+    end
+    return native.inverse { from = from, where = "to stand in", target = { station = station.name, slot = slot }, to = {
+      x = place.x + along * place.dir_x, y = place.y + along * place.dir_y, z = place.z + up,
+      heading = place.heading, gripper = gripper, place = place } }
+  end
+
+  -- Of the robot's axes those that move this gripper and tell where a slot is.
+  local function telling(station, robot, gripper)
+    local axes, list = native.axes(), {}
+    local before = native.shift(station.index, robot, gripper, axes)
+    for _, axis in ipairs(native.layout.robots[robot].axes) do
+      local at = axes[axis.index]
+      axes[axis.index] = at + 0.1
+      local after, moves = native.shift(station.index, robot, gripper, axes), false
+      for part = 1, 4 do
+        moves = moves or math.abs(after[part] - before[part]) > 1e-6
+      end
+      axes[axis.index] = at
+      list[#list + 1] = moves and not LEFT_OUT[axis.name] and axis or nil
+    end
+    return list
+  end
+
+  -- Where the axes stand with the gripper in slot 1, as motion control believes: degrees and mm by name.
+  local function read(name, options)
+    local station, robot, gripper = find(name, options)
+    check_taught(station, robot)
+    local axes, found = axes_at(station, 1, robot, gripper, 0, 0), {}
+    for _, axis in ipairs(telling(station, robot, gripper)) do
+      local value = axes[axis.index]
+      found[axis.name] = axis.turns and math.deg(value) or value
+    end
+    return found
+  end
+
+  -- In front of each slot and in it, at the heights of the stroke.
+  local function check_reach(station, robot, gripper)
+    for slot = 1, station.slots, station.upright and math.max(1, station.slots - 1) or 1 do
+      for _, up in ipairs({ station.offset - station.stroke, station.offset }) do
+        axes_at(station, slot, robot, gripper, -station.retract, up)
+        axes_at(station, slot, robot, gripper, 0, up)
+      end
+    end
+  end
+
+  -- The axes as the host has them: those that it names in place of where they would stand.
+  local function set_axes(fields, station, robot, gripper)
+    local known, values, names = telling(station, robot, gripper), {}, { "gripper", "robot" }
+    local axes = stations.is_taught(station, robot) and axes_at(station, 1, robot, gripper, 0, 0) or native.axes()
+    for _, axis in ipairs(known) do
+      names[#names + 1] = axis.name
+      local value = fields[axis.name]
+      if value ~= nil then
+        values[axis.name] = lookup.number(axis.name, value)
+        axes[axis.index] = axis.turns and math.rad(value) or value
+      elseif not stations.is_taught(station, robot) then
+        native.fail("BAD_ARGUMENT", ("%s: nil (expected a number: %s was never taught)"):format(axis.name, station.name))
+      end
+    end
+    for field, value in pairs(fields) do
+      if values[field] == nil and field ~= "gripper" and field ~= "robot" then
+        lookup.refuse_field(field, value, names)
+      end
+    end
+    if next(values) == nil then
+      native.fail("BAD_ARGUMENT", ("no axis (expected one or more of %s)"):format(lookup.listed(names)))
+    end
+    return axes
+  end
+
+  -- The station is moved so far for a robot, unless a slot of it would be out of reach.
+  local function move(station, robot, gripper, shift)
+    local before = shifts
+    shifts = {}
+    for other, moved in pairs(before) do
+      shifts[other] = moved
+    end
+    shifts[key(station, robot)] = shift
+    local good, problem = pcall(check_reach, station, robot, gripper)
+    if not good then
+      shifts = before
+      error(problem, 0)
+    end
+  end
+
+  local function set(name, fields)
+    local station, robot, gripper = find(name, fields)
+    local axes = set_axes(lookup.table("axes", fields), station, robot, gripper)
+    move(station, robot, gripper, native.shift(station.index, robot, gripper, axes))
+  end
+
+  stations.read, stations.set = read, set
+
+  -- What TEACH found, of the only robot: slot 1 is there in base, mm, and its x axis points in that direction, rad.
+  function stations.learn(station, at, heading)
+    local place = native.slot(station.index, 1, 0, 0, 0, 0, 1, nil, true)
+    move(station, 1, station.effector,
+      { at[1] - place.x, at[2] - place.y, at[3] - place.z, heading - place.heading })
+  end
+
+  -- A function that makes all as it is now, and one that says if it still is.
+  function stations.keep()
+    local kept = shifts
+    return function()
+      shifts = kept
+    end, function()
+      return shifts == kept
+    end
+  end
+
+  return stations
+end
