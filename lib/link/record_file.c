@@ -141,6 +141,24 @@ static const char *find_owner(const char *path) {
     return is_locked(path) ? "another process records into it (expected another name)" : NULL;
 }
 
+bool wh_record_file_can_replace(wh_record_file_t *file, const char *path) {
+    struct stat status;
+    wh_output_t output = {0};
+    const char *owner = find_owner(path);
+    if (owner) {
+        wh_record_file_fail(file, path, owner);
+        return false;
+    }
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
+        return true;
+    }
+    if (!wh_output_open(&output, path)) {
+        return refuse(file, path, errno);
+    }
+    wh_output_drop(&output);
+    return true;
+}
+
 bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
     wh_output_t output = {0};
     const char *owner = find_owner(path);

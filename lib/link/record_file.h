@@ -46,6 +46,10 @@ bool wh_record_file_create(wh_record_file_t *file, const char *path);
  * another recording has locked, and one that the process keeps (wh_output_keep): its inputs. */
 bool wh_record_file_replace(wh_record_file_t *file, const char *path);
 
+/* False, and standard error says why, if a file could not be replaced here now. Nothing of it is changed; of
+ * what is no plain file nothing is asked. */
+bool wh_record_file_can_replace(wh_record_file_t *file, const char *path);
+
 /* The name with "." and a tag put before its ending: run.log becomes run.TAG.log, run.log.zst
  * run.TAG.log.zst. False if that is too long. */
 bool wh_record_file_name(const char *path, const char *tag, char name[PATH_MAX]);

@@ -371,7 +371,8 @@ bool wh_recording_open(wh_recording_t *recording) {
     arc4random_buf(&recording->id, sizeof recording->id);
     recording->id &= INT64_MAX;
     wh_recording_begin_part(recording);
-    if (!recording->options.replaces && !wh_recording_open_file(recording)) {
+    if (recording->options.replaces ? !wh_record_file_can_replace(&recording->file, recording->options.path)
+                                    : !wh_recording_open_file(recording)) {
         return false;
     }
     recording->is_open = start_flusher(recording);
@@ -404,7 +405,7 @@ bool wh_recording_close(wh_recording_t *recording) {
         if (!file->failed) {
             fprintf(stderr, "%s: %s: not written: no slice came\n", file->speaker, recording->options.path);
         }
-        return !file->failed;
+        return false;
     }
     give_up(recording, recording->command_count);
     wh_recording_flush_block(recording);
