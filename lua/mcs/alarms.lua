@@ -243,6 +243,18 @@ return function(native, lookup)
     return target.watched and by_vacuum(target) and { "no_vacuum", target.gripper, later = true }
   end
 
+  -- Refused to a PUT, too, if that goes by what beams say.
+  local OF_CENTRING = { TOO_FEW_SAMPLES = true, CENTRE_NOT_SURE = true }
+
+  local function check_centring(target)
+    for _, alarm in ipairs(target.centre and native.alarms() or {}) do
+      local raised = by_number[alarm.error]
+      if OF_CENTRING[raised.name] then
+        raise(alarm, raised)
+      end
+    end
+  end
+
   local function stand_still()
     alarms.play { dwell = native.layout.slice }
   end
@@ -250,6 +262,7 @@ return function(native, lookup)
   -- Before a GET, PUT or SWAP looks at its sensors. `half` is "get" or "put".
   function alarms.break_at(word, half, target)
     local robot = alarms.robot()
+    check_centring(target)
     for _, alarm in ipairs(not broken[robot] and native.alarms() or {}) do
       local raised = by_number[alarm.error]
       local cause = raised.words[word] and causes[raised.name] and causes[raised.name](half, target)
