@@ -172,6 +172,11 @@ return function(native, lookup, centring, tasks, alarms)
     return tasks.current().last_robot
   end
 
+  -- Of several robots none is marked by what has none. A robot alone is: somebody pressed STOP beside it.
+  local function marks(task)
+    return not task.is_lone and (task.robot or not lookup.has_several())
+  end
+
   -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
   -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
   -- `needs`: what of the cell it must have for itself, see arm.needs; nil: nothing.
@@ -181,7 +186,7 @@ return function(native, lookup, centring, tasks, alarms)
     alarms.refuse(word)
     native.begin(text)
     local state = arm.state()
-    state.stopped = state.stopped or not task.is_lone and running[task] or nil
+    state.stopped = state.stopped or marks(task) and running[task] or nil
     running[task], task.robot, task.last_robot = text, needs and needs.robot, needs and needs.robot
     task.is_lone = needs and needs.is_lone
     state = arm.state()
@@ -204,7 +209,7 @@ return function(native, lookup, centring, tasks, alarms)
       for _, robot in ipairs(task.robot and { task.robot } or find_holding()) do
         give_up(robot)
       end
-      state.stopped = state.stopped or not task.is_lone and text or nil
+      state.stopped = state.stopped or marks(task) and text or nil
     end
     task.robot = nil
     native.finish(number, numbered and result.text or native.outside(tostring(result)))

@@ -142,7 +142,7 @@ function cases.stopped()
   stop_in(0.3)
   fails("STOPPED", wait, 1)
   fails("STOPPED", join, putting)
-  ATM:recover()
+  -- A WAIT has no robot, and ATM has only waited: neither leaves it where RECOVER would have to come first.
   putting = task(function() ATM:put("IN", 1) end)
   wait(0.2)
   expect(holder("W1") == "ATM blade", "it waits again")
