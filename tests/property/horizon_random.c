@@ -5,7 +5,7 @@
 #include "support/pose.h"
 
 #ifndef RUNS
-#define RUNS 5000
+#define RUNS (5000 / WH_TEST_SHARE)
 #endif
 
 /* Random cells and motions for the horizon: where a wafer that is not looked at would be missed. */

@@ -135,7 +135,7 @@ static void without_pressure_friction_carries_nothing(void **state) {
 
 static void the_formula_in_any_frame(void **state) {
     (void)state;
-    for (int run = 0; run < 2000; ++run) {
+    for (int run = 0; run < 2000 / WH_TEST_SHARE; ++run) {
         const wh_mat3_t turn = wh_test_random_turn(1);
         const double a[3] = {wh_test_uniform(-2e4, 2e4), wh_test_uniform(-2e4, 2e4),
                              wh_test_uniform(-1e3, 2e4)};
@@ -279,7 +279,7 @@ static double shift_with_notch_at(double degrees) {
 /* Over diameters, offsets and angles: the exact form, wherever the wafer began. */
 static void an_edge_grip_seats_a_round_wafer_by_the_exact_form(void **state) {
     (void)state;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 / WH_TEST_SHARE; ++i) {
         wh_edge_t edge = wh_edge_default(wh_test_uniform(25, 225));
         edge.rest = wh_test_uniform(0.5, 5);
         edge.alpha = wh_test_uniform(25, 60) * WH_TEST_PI / 180;
@@ -351,7 +351,7 @@ static double nearest_of_outline(const wh_edge_wafer_t *wafer, double x, double 
 /* Random notches at a rest: the other rest touches the circle, this one the outline. */
 static void a_sunk_rest_touches_the_notchs_outline(void **state) {
     (void)state;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 300 / WH_TEST_SHARE; ++i) {
         wh_edge_t edge = wh_edge_default(150);
         edge.alpha = wh_test_uniform(25, 60) * WH_TEST_PI / 180;
         edge.gripped_to = 3;
@@ -393,7 +393,7 @@ static void a_notch_at_the_plunger_moves_the_plunger_alone(void **state) {
 static void on_its_path_the_wafer_never_jumps(void **state) {
     (void)state;
     int seen = 0;
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 1500 / WH_TEST_SHARE; ++i) {
         const wh_edge_t edge = wh_edge_default(150);
         wh_edge_wafer_t wafer =
             notch_at(i % 3 == 0 ? wh_test_uniform(29.4, 30.6) : wh_test_uniform(-180, 180));

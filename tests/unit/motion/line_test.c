@@ -12,7 +12,7 @@
 #include "motion/line.h"
 #include "support/pose.h"
 
-#define LINES 5000
+#define LINES (5000 / WH_TEST_SHARE)
 #define INSTANTS 20
 
 #if defined(WH_FLOAT)

@@ -13,7 +13,7 @@
 #include "motion/way.h"
 #include "support/support.h"
 
-#define MOVES 100000
+#define MOVES (100000 / WH_TEST_SHARE)
 
 #if defined(WH_FLOAT)
 #define TOLERANCE 5e-6
@@ -382,7 +382,7 @@ static double by_way_of(const transit_t *t, double inner, double turn) {
 static void no_inner_position_is_faster(void **state) {
     (void)state;
     double worst = 0;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 60 / WH_TEST_SHARE; ++i) {
         transit_t t = random_transit(i);
         t.to[WH_AXIS_Z] = t.from[WH_AXIS_Z];
         if (t.from[WH_AXIS_R] <= t.reach && t.to[WH_AXIS_R] <= t.reach) {

@@ -12,7 +12,7 @@
 #include "motion/track.h"
 #include "support/support.h"
 
-#define WAYS 300
+#define WAYS (120 / WH_TEST_SHARE)
 #define LONGEST 20000
 
 #if defined(WH_FLOAT)
