@@ -145,9 +145,11 @@ static void hold(wh_controller_t *controller, const wh_request_t *request, bool 
 static void execute_query(wh_controller_t *controller, const wh_request_t *request, const char *line) {
     static char answer[WH_SESSION_ANSWER_BYTES];
     wh_session_t *session = controller->host->session;
+    const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
     session->mcs.asking = wh_host_plays_jobs(controller->host) ? (int32_t)controller->number + 1 : 0;
+    session->mcs.asking_robot = is_robot ? controller->mechanism.index + 1 : 0;
     const wh_status_t status = wh_session_execute(session, line, answer, sizeof answer);
-    session->mcs.asking = 0;
+    session->mcs.asking = session->mcs.asking_robot = 0;
     tell_result(controller, WH_ENCODE_ANSWER, request, status, answer, 0);
 }
 

@@ -1,5 +1,6 @@
 /* Where motion control believes slots to be, and goes: where the layout has them, or a host has told
  * since. */
+#include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
 #include "native.h"
@@ -86,10 +87,30 @@ static void move_station(lua_State *L, int shift, const wh_station_t *place, boo
     base_from_slot->r = wh_vec3_add(&to, &aside);
 }
 
-/* native.shift(station, robot, gripper, axes): { x, y, z, yaw }, mm and rad, by which the station lies
- * elsewhere than the layout says if the gripper stands in its slot 1 at these axes. */
+wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, size_t station,
+                                  size_t robot) {
+    const wh_station_t *place = &mcs->layout->places[station];
+    wh_pose_t believed = place->base_from_station;
+    if (lua_istable(L, shift)) {
+        move_station(L, shift, place, turns_in_slot(mcs->layout, robot), &believed);
+    }
+    return believed;
+}
+
+static void check_travel(lua_State *L, wh_mcs_t *mcs, const wh_real_t axes[]) {
+    char reason[WH_TRAVEL_BYTES];
+    const wh_status_t status = wh_machine_check_travel(&mcs->layout->machine, axes);
+    if (status != WH_OK) {
+        wh_travel_say_axes(mcs->layout, axes, reason);
+        wh_mcs_raise(L, mcs, status, reason);
+    }
+}
+
+/* native.shift(station, robot, gripper, axes, checked): { x, y, z, yaw }, mm and rad, by which the station lies
+ * elsewhere than the layout says if the gripper stands in its slot 1 at these axes; if they are to be `checked`,
+ * refuses what leaves their travel. */
 static int find_shift(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_layout_t *layout = mcs->layout;
     const size_t station = (size_t)wh_mcs_index(L, 1, layout->station_count);
     const size_t robot = (size_t)wh_mcs_index(L, 2, wh_machine_robots(&layout->machine));
@@ -100,6 +121,9 @@ static int find_shift(lua_State *L) {
         lua_rawgeti(L, 4, (lua_Integer)axis + 1);
         axes[axis] = luaL_checknumber(L, -1);
         lua_pop(L, 1);
+    }
+    if (lua_toboolean(L, 5)) {
+        check_travel(L, mcs, axes);
     }
     wh_pose_t slot = wh_station_slot(&layout->places[station], 1);
     (void)take_approach(layout, station, robot, &slot);

@@ -262,11 +262,9 @@ static int push_beam(lua_State *L) {
     const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
     luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
     const wh_beam_t beam = believed(mcs->layout, order.first);
-    lua_createtable(L, 0, 3);
+    lua_createtable(L, 0, 2);
     wh_lua_set_number(L, "x", beam.x);
     wh_lua_set_number(L, "y", beam.y);
-    wh_lua_push_pose(L, &mcs->layout->places[station].base_from_station);
-    lua_setfield(L, -2, "station");
     return 1;
 }
 

@@ -122,7 +122,23 @@ static int refuse_wait(lua_State *L) {
     return 0;
 }
 
-const luaL_Reg wh_mcs_job_functions[] = {
-    {"next_job", next_job},       {"begin_job", begin_job},     {"end_line", end_line},
-    {"has_jobs", has_jobs},       {"is_told", is_told},         {"heed", heed},
-    {"command_waits", note_wait}, {"refuse_wait", refuse_wait}, {NULL, NULL}};
+/* native.asked_robot(): that of the robot's own controller whose question is answered; nil: of another. */
+static int push_asked_robot(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_of(L);
+    if (mcs->asking_robot == 0) {
+        return 0;
+    }
+    lua_pushinteger(L, mcs->asking_robot);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_job_functions[] = {{"asked_robot", push_asked_robot},
+                                         {"next_job", next_job},
+                                         {"begin_job", begin_job},
+                                         {"end_line", end_line},
+                                         {"has_jobs", has_jobs},
+                                         {"is_told", is_told},
+                                         {"heed", heed},
+                                         {"command_waits", note_wait},
+                                         {"refuse_wait", refuse_wait},
+                                         {NULL, NULL}};

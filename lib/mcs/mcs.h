@@ -188,6 +188,7 @@ typedef struct {
 typedef struct {
     wh_teach_measurement_t lessons[WH_MCS_LESSONS];
     size_t count;
+    wh_pose_t base_from_station; /* as it is believed to be when the teaching begins */
 } wh_mcs_teaching_t;
 
 /* How many tasks of a script may be alive, besides the script itself. */
@@ -301,6 +302,7 @@ struct wh_mcs {
     size_t fault_count;
     wh_status_t alarms[WH_MCS_ALARMS]; /* the errors that wait for a command; WH_OK: a free place */
     int32_t alarm_jobs[WH_MCS_ALARMS]; /* of the job of this number; 0: of any */
+    int32_t asking_robot;              /* that of a robot's own controller, from 1, while it asks; 0: none */
     int32_t asking;                    /* whose question is answered, likewise: set by who asks */
 
     /* Who is told. */

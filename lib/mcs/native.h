@@ -70,6 +70,10 @@ void wh_mcs_follow_pass(wh_mcs_pass_t *pass, const wh_command_t *command);
 
 void wh_mcs_free_pass(wh_mcs_pass_t *pass);
 
+/* The station's frame as motion control believes: as the layout has it, or moved by the table at this stack
+ * index, if that is one: see native.shift in believed.c. */
+wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, size_t station, size_t robot);
+
 /* Pushes what motion control knows of an edge sensor of the layout: { samples: in a turn, pixels: of the
  * line, pixel, middle and length, mm, run_up: how far the chuck turns from rest to its full speed,
  * believed: its errors as the layout says that they are known }. The true ones are for a calibration to

@@ -1,6 +1,6 @@
 /* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
- *   The beams stand upright in the station's frame, at x = -0.6 and y = +-0.6 of a wafer's radius, near
+ *   The beams stand upright in the station's frame as motion control believes it, for the arm goes there, at x = -0.6 and y = +-0.6 of a wafer's radius, near
  *   the edge that the arm comes to. Sweeping along z, each notes the heights of the faces that it passes: of
  *   a wafer the back, or where wafers lie face down the face that looks at the slots. A wafer belongs to the
  *   slots nearest to its two heights.
@@ -91,10 +91,15 @@ static void mark_wafer(const wh_station_t *place, const sight_t *sight, int code
     }
 }
 
-/* native.scan(station): a list of codes by slot, of the wafers as they lie now. */
+/* native.scan(station, robot, shift): a list of codes by slot, of the wafers as they lie now; of a station that
+ * a host has moved by `shift`, see native.shift. */
 static int scan(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_station_t *place = &mcs->layout->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const size_t station = (size_t)wh_mcs_index(L, 1, mcs->layout->station_count);
+    const size_t robot = (size_t)luaL_checkinteger(L, 2) - 1;
+    wh_station_t believed = mcs->layout->places[station];
+    const wh_station_t *place = &believed;
+    believed.base_from_station = wh_mcs_believed_station(L, 3, mcs, station, robot);
     int codes[WH_LAYOUT_SLOTS] = {CODE_EMPTY};
     wh_decisions_measured(mcs->decisions, "MAP");
     wh_sandbox_charge(L, mcs->state.wafer_count);

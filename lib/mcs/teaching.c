@@ -30,10 +30,15 @@ static bool find_place(const wh_mcs_t *mcs, const wh_mcs_crossing_t *crossing, w
     return true;
 }
 
-/* native.begin_teaching(): nothing is measured yet. */
+/* native.begin_teaching(station, shift): nothing is measured yet. Returns the pose that is the guess: the
+ * station's as the layout has it, or moved by what a host has set, see native.shift. */
 static int begin_teaching(lua_State *L) {
-    wh_mcs_with_layout(L)->teaching.count = 0;
-    return 0;
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const size_t station = (size_t)wh_mcs_index(L, 1, mcs->layout->station_count);
+    mcs->teaching.count = 0;
+    mcs->teaching.base_from_station = wh_mcs_believed_station(L, 2, mcs, station, 0);
+    wh_lua_push_pose(L, &mcs->teaching.base_from_station);
+    return 1;
 }
 
 /* native.add_teaching(x, y): the crossings of the last centring were of the rim of the wafer that the gripper
@@ -41,7 +46,6 @@ static int begin_teaching(lua_State *L) {
 static int add_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_centring_t *passed = &mcs->centring;
-    const wh_pose_t *station = &mcs->layout->places[passed->station].base_from_station;
     wh_mcs_teaching_t *teaching = &mcs->teaching;
     for (size_t i = 0; i < passed->count && teaching->count < WH_MCS_LESSONS; ++i) {
         const wh_crossing_t *crossing = &passed->crossings[i].crossing;
@@ -52,7 +56,7 @@ static int add_teaching(lua_State *L) {
         lesson->kind = WH_TEACH_CARRIED;
         lesson->sd = sd > LEAST_SD ? sd : LEAST_SD;
         lesson->radius = mcs->layout->wafer_diameter / 2;
-        lesson->base_from_pick = *station;
+        lesson->base_from_pick = teaching->base_from_station;
         lesson->base_from_pick.r.x = luaL_checknumber(L, 1);
         lesson->base_from_pick.r.y = luaL_checknumber(L, 2);
         teaching->count += find_place(mcs, &passed->crossings[i], &lesson->base_from_gripper) ? 1 : 0;
@@ -79,21 +83,19 @@ static void set_triple(lua_State *L, const char *name, const double values[3]) {
     lua_setfield(L, -2, name);
 }
 
-/* native.block(station): what a probe touches there: { at, size = in the station's frame, mm, station = its
- * pose in base, gripper = with the probe, ball = its centre in that gripper's frame, radius = its own }. */
+/* native.block(station): what a probe touches there: { at, size = in the station's frame, mm, gripper = with
+ * the probe, ball = its centre in that gripper's frame, radius = its own }. */
 static int push_block(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
     const wh_layout_block_t *block = block_of(L, mcs, &station);
     const wh_layout_probe_t *probe = &mcs->layout->probe;
-    lua_createtable(L, 0, 6);
+    lua_createtable(L, 0, 5);
     set_triple(L, "at", block->at);
     set_triple(L, "size", block->size);
     set_triple(L, "ball", probe->at);
     wh_lua_set_number(L, "radius", probe->radius);
     wh_lua_set_index(L, "gripper", probe->gripper);
-    wh_lua_push_pose(L, &mcs->layout->places[station].base_from_station);
-    lua_setfield(L, -2, "station");
     return 1;
 }
 
@@ -156,11 +158,11 @@ static int arm_touch(lua_State *L) {
 
 /* -------------------------------------------------------------------------------------------- the whole */
 
-/* What is believed of the station, and of the beam if there was one. */
-static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first) {
+/* What is believed of the station, and of the beam if there was one: it stands where the layout says. */
+static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first, const wh_pose_t *believed) {
     const wh_layout_beam_t *beam = &layout->beams[first];
     const wh_pose_t *station = &layout->places[beam->station].base_from_station;
-    wh_teach_guess_t guess = wh_teach_guess_at(station, beam->x, beam->y);
+    wh_teach_guess_t guess = wh_teach_guess_at(believed, beam->x, beam->y);
     if (layout->doors[first].kind == WH_DOOR_LIGHT) {
         guess.beam = wh_beam_at(station, beam->x, beam->y, beam->low, beam->high);
     }
@@ -176,7 +178,7 @@ static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first) {
 static int solve_teaching(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_teaching_t *teaching = &mcs->teaching;
-    const wh_teach_guess_t guess = guess_of(mcs->layout, mcs->pass.order.first);
+    const wh_teach_guess_t guess = guess_of(mcs->layout, mcs->pass.order.first, &teaching->base_from_station);
     wh_taught_t taught;
     wh_decisions_measured(mcs->decisions, "teaching");
     const wh_status_t status = wh_teach_solve(&guess, teaching->lessons, teaching->count, &taught, NULL);

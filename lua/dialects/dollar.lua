@@ -33,7 +33,7 @@ local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
   MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 4, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
-  RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 6, RAXS = 0, RLOC = 1, RVER = 0,
+  RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 7, RAXS = 0, RLOC = 1, RVER = 0,
 }
 
 local function decode(frame)
@@ -111,7 +111,7 @@ local function values(word, names, turns, axes, first)
     for place, name in ipairs(names) do
       local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
-        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name))
+        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name ~= "forearm" and name))
       end
     end
     return table.concat(list, " ")
@@ -186,13 +186,12 @@ local function told(_, result)
   return field(result.answer:gsub("^OK ?", ""))
 end
 
--- Where the axes stand in a station; of one that the robot has not the field is empty.
+-- Where the axes stand in a station: theta, r, z, yaw, of which one that the robot has not is empty; and the forearm of
+-- an arm that folds.
 local function standing(axes)
-  local list = {}
-  for place, name in ipairs({ "theta", "r", "z", "yaw" }) do
-    local unit = (name == "theta" or name == "yaw") and host.angle or host.length
-    list[place] = axes[name] and whole(unit(axes[name], name)) or ""
-  end
+  local list = { axes.theta and whole(host.angle(axes.theta, "theta")) or "", axes.r and whole(host.length(axes.r, "r")) or "",
+                 axes.z and whole(host.length(axes.z, "z")) or "", axes.yaw and whole(host.angle(axes.yaw, "yaw")) or "",
+                 axes.forearm and whole(host.angle(axes.forearm)) }
   return table.concat(list, ",")
 end
 
@@ -279,7 +278,8 @@ return {
       return request.arguments[1] and standing(result.values) or told(request, result)
     end },
     CSTN = { does = "SET_STATION", run = function(request)
-      local axes = values("", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true, 3)
+      local axes = values("", { "theta", "r", "z", "yaw", "forearm" },
+        { theta = true, yaw = true, forearm = true }, true, 3)
       return at_station_with("SET_STATION")(request) .. axes(request)
     end },
     RAXS = { does = "AXES", answer = told },

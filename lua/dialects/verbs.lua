@@ -21,7 +21,7 @@ end
 local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
   TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 4, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
-  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 6, GAXS = 0, GLOC = 1,
+  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 7, GAXS = 0, GLOC = 1,
   GVER = 0,
 }
 
@@ -94,7 +94,7 @@ local function values(word, names, turns, axes, first)
     for place, name in ipairs(names) do
       local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
-        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name))
+        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name ~= "forearm" and name))
       end
     end
     return table.concat(list, " ")
@@ -117,13 +117,12 @@ local function at_station_with(word)
   end
 end
 
--- Where the axes stand in a station; one that the robot has not is empty.
+-- Where the axes stand in a station: theta, r, z, yaw, of which one that the robot has not is empty; and the forearm of
+-- an arm that folds.
 local function standing(axes)
-  local list = {}
-  for place, name in ipairs({ "theta", "r", "z", "yaw" }) do
-    local unit = (name == "theta" or name == "yaw") and host.angle or host.length
-    list[place] = axes[name] and number(unit(axes[name], name)) or ""
-  end
+  local list = { axes.theta and number(host.angle(axes.theta, "theta")) or "", axes.r and number(host.length(axes.r, "r")) or "",
+                 axes.z and number(host.length(axes.z, "z")) or "", axes.yaw and number(host.angle(axes.yaw, "yaw")) or "",
+                 axes.forearm and number(host.angle(axes.forearm)) }
   return table.concat(list, ",")
 end
 
@@ -228,7 +227,8 @@ return {
       return request.arguments[1] and standing(result.values) or told(request, result)
     end },
     SSTN = { does = "SET_STATION", run = function(request)
-      local axes = values("", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true, 3)
+      local axes = values("", { "theta", "r", "z", "yaw", "forearm" },
+        { theta = true, yaw = true, forearm = true }, true, 3)
       return at_station_with("SET_STATION")(request) .. axes(request)
     end },
     GAXS = { does = "AXES", answer = told },

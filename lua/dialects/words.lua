@@ -29,8 +29,8 @@ local OPTIONS = {
 local AXES = { T = degrees("theta", "theta"), R = mm("r", "r"), Z = mm("z", "z"), W = degrees("yaw", "yaw") }
 local WAYS = { X = mm("dx"), Y = mm("dy"), Z = mm("dz"), SPEED = mm("speed") }
 
--- With which axes the arm stands in a station, and which arm.
-local STANDING = { ARM = OPTIONS.ARM, T = AXES.T, R = AXES.R, Z = AXES.Z, W = AXES.W }
+-- With which axes the arm stands in a station, and which arm: F is the forearm of one that folds.
+local STANDING = { ARM = OPTIONS.ARM, T = AXES.T, R = AXES.R, Z = AXES.Z, W = AXES.W, F = degrees("forearm") }
 
 -- The pairs of words from `first` on, each a name of `known` and its value: as they stand in our line, and their values
 -- by name.
@@ -156,11 +156,12 @@ local function place(request, result)
     return told("STN")(request, result)
   end
   local list = { "STN", request.words[3] }
-  for _, axis in ipairs({ "theta T", "r R", "z Z", "yaw W" }) do
-    local ours, theirs = axis:match("(%S+) (%S+)")
-    local value = result.values[ours]
-    list[#list + 1] = value and theirs .. " " .. whole((theirs == "R" or theirs == "Z") and host.length(value, ours)
-      or host.angle(value, ours))
+  local axes = result.values
+  local theirs = { T = axes.theta and host.angle(axes.theta, "theta"), R = axes.r and host.length(axes.r, "r"),
+                   Z = axes.z and host.length(axes.z, "z"), W = axes.yaw and host.angle(axes.yaw, "yaw"),
+                   F = axes.forearm and host.angle(axes.forearm) }
+  for _, name in ipairs({ "T", "R", "Z", "W", "F" }) do
+    list[#list + 1] = theirs[name] and name .. " " .. whole(theirs[name])
   end
   return table.concat(list, " ")
 end

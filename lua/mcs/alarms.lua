@@ -25,7 +25,7 @@ return function(native, lookup)
     OUT_OF_REACH = { "check", PLANNED .. " SET_STATION" },
     LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE SET_STATION" },
     NOT_LEVEL = { "check", STATION },
-    NOT_ALONG_ARM = { "check", STATION },
+    NOT_ALONG_ARM = { "check", STATION .. SETTING },
     NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN OFFSET" .. SETTING },
     NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
     WAFER_MISSING = { "cause", "GET SWAP" },

@@ -13,7 +13,7 @@ return function(native, patterns, lookup, alarms)
   local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms, stations)
 
   function lookup.bound()
-    return tasks.current().bound
+    return tasks.current().bound or native.asked_robot()
   end
 
   function lookup.bound_station()
@@ -79,7 +79,7 @@ return function(native, patterns, lookup, alarms)
 
   -- set_station("A", { theta = , r = , z = , yaw = }): it lies where the gripper would be then.
   function commands.set_station(name, axes)
-    arm.run(nil, lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.axes)), stations.set, name, axes)
+    arm.run(nil, lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.standing)), stations.set, name, axes)
   end
 
   local function valve(gripper, level)

@@ -117,7 +117,7 @@ return function(native, lookup, targets, words)
   local function add_all_options()
     local own, common = targets.fields, { lookup.options, lookup.parameters }
     local axes, served = {}, { gripper = lookup.options.gripper, robot = lookup.options.robot }
-    for _, name in ipairs(lookup.axes) do
+    for _, name in ipairs(lookup.standing) do
       axes[name] = lookup.ranges[name]
     end
     add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])

@@ -39,6 +39,8 @@ return function(native, errors)
 
   -- The fields of MOVE, of any robot, and of LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw", "forearm", "rail", "tilt_x", "tilt_y", "flip", "r2", "yaw2" }
+  -- Those that tell where a station is, r and yaw being those of the gripper's own arm or wrist.
+  lookup.standing = { "theta", "r", "z", "yaw", "forearm" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
   local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
   lookup.ranges = {

@@ -5,6 +5,7 @@
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
+-- of_robot  true: one that asks, at a robot's own port of that robot alone
 -- asks      true: it has no record, so an error on purpose is looked for here
 -- keeps     true: it changes nothing that UNDO could take back, or sees to that itself
 -- alone     true: not while a task is alive
@@ -342,7 +343,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
 
   local function station(arguments, options)
     local found, list = queries.station(arguments[1], options), { { "station", arguments[1] } }
-    for _, name in ipairs(lookup.axes) do
+    for _, name in ipairs(lookup.standing) do
       list[#list + 1] = found[name] and { name, found[name] }
     end
     return tokens.pairs(list)
@@ -566,11 +567,11 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     ALARM = { takes = { "error" }, run = alarm,
               does = "lets the next command that can answer the error of this number do so; tells the fault's number" },
     CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
-    SET_STATION = { takes = { "station" }, options = fields(lookup.axes, { robot = "robot", gripper = "gripper" }),
+    SET_STATION = { takes = { "station" }, options = fields(lookup.standing, { robot = "robot", gripper = "gripper" }),
                     of_axes = true, needs_option = true, run = set_station,
                     does = "from now on the station lies where the gripper is with these axes" },
     STATION = { takes = { "station" }, options = { robot = "robot", gripper = "gripper" }, run = station, asks = true,
-                keeps = true, does = "where the axes stand with the gripper in its slot 1, degrees and mm" },
+                of_robot = true, keeps = true, does = "where the axes stand with the gripper in its slot 1, degrees and mm" },
     OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, asks = true, keeps = true,
                does = "where the wafer is in that slot's frame" },
     HOLDER = { takes = { "wafer" }, run = holder, asks = true, keeps = true, does = "the gripper that holds the wafer" },

@@ -11,8 +11,16 @@ return function(native, lookup)
   -- out is never changed.
   local shifts = {}
 
-  -- Axes that do not tell where a slot is: a blade is turned over, or tilted, as the station asks for.
-  local LEFT_OUT = { flip = true, tilt_x = true, tilt_y = true }
+  -- An axis as SET_STATION has it, the second arm's r2 and wrist's yaw2 as the gripper's r and yaw; nil: one that stands as
+  -- the station asks for.
+  local function role_of(axis)
+    local name = axis.name:gsub("2$", "")
+    for _, known in ipairs(lookup.standing) do
+      if name == known then
+        return name
+      end
+    end
+  end
 
   local function key(station, robot)
     return station.name .. "\0" .. robot
@@ -20,6 +28,11 @@ return function(native, lookup)
 
   function stations.is_taught(station, robot)
     return station.taught or shifts[key(station, robot)] ~= nil
+  end
+
+  -- How far it was set from where the layout has it: see native.shift; nil: it was not.
+  function stations.shift(station, robot)
+    return shifts[key(station, robot)]
   end
 
   -- native.slot, of the station as it was set; `undrawn`: not as a trial draws it.
@@ -67,7 +80,8 @@ return function(native, lookup)
         moves = moves or math.abs(after[part] - before[part]) > 1e-6
       end
       axes[axis.index] = at
-      list[#list + 1] = moves and not LEFT_OUT[axis.name] and axis or nil
+      local name = role_of(axis)
+      list[#list + 1] = moves and name and { name = name, index = axis.index, turns = axis.turns } or nil
     end
     return list
   end
@@ -137,7 +151,7 @@ return function(native, lookup)
   local function set(name, fields)
     local station, robot, gripper = find(name, fields)
     local axes = set_axes(lookup.table("axes", fields), station, robot, gripper)
-    move(station, robot, gripper, native.shift(station.index, robot, gripper, axes))
+    move(station, robot, gripper, native.shift(station.index, robot, gripper, axes, true))
   end
 
   stations.read, stations.set = read, set

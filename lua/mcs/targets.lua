@@ -9,6 +9,8 @@ return function(native, lookup, align, mechanisms, stations)
 
   local parameters = lookup.parameters
 
+  targets.shift = stations and stations.shift
+
   -- What else GET and PUT may say, and SWAP for its GET and its PUT: the fields' kinds by name. The unit of a
   -- length or an angle is at the same place as in lookup.parameters.
   local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },

@@ -231,19 +231,19 @@ return function(native, patterns, lookup, arm, targets, stations)
   end
 
   local function by_touch(name, station)
-    local guess, solved = touching(name, station)
+    local guess, solved = touching(name, station, stations.shift(station, 1))
     local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, guess.r[3] + solved.z }
     local result = result_of(station, guess, at, solved.yaw)
     result.sd, result.sd_yaw = { solved.sd_x, solved.sd_y, solved.sd_z }, math.deg(solved.sd_yaw)
     return result
   end
 
-  local function by_beam(station, target, beam, z)
+  local function by_beam(station, target, beam, guess, z)
     for _, turn in ipairs(TURNS) do
       cross(station, target, beam, turn, -1)
       cross(station, target, beam, turn, 1)
     end
-    local solved, guess = native.solve_teaching(), beam.station
+    local solved = native.solve_teaching()
     if solved.error ~= 0 then
       native.fail("CENTRE_NOT_SURE", "the crossings contradict each other")
     end
@@ -274,8 +274,8 @@ return function(native, patterns, lookup, arm, targets, stations)
     local z, felt = feel(target)
     carry_out(target)
     local beam = native.beam(station.index)
-    native.begin_teaching()
-    local good, result = pcall(by_beam, station, target, beam, z)
+    local guess = native.begin_teaching(station.index, stations.shift(station, 1))
+    local good, result = pcall(by_beam, station, target, beam, guess, z)
     if native.sensor(target.gripper) then
       put_back(name, target, z, felt)
     end

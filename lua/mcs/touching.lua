@@ -136,15 +136,15 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   -- What all touches tell: see native.solve_teaching. `target` is slot 1 as the blade with the probe takes it.
-  return function(name, station)
+  return function(name, station, shift)
     local block = native.block(station.index)
+    block.station = native.begin_teaching(station.index, shift)
     local target = targets.at("get", name, 1, nil, block.gripper)
     arm.check_free()
     if native.sensor(block.gripper) then
       native.fail("WAFER_ON_GRIPPER", "TEACH by touch goes without a wafer")
     end
     enter(block, target)
-    native.begin_teaching()
     local good, why = pcall(function()
       for _, place in ipairs(places_of(block)) do
         touch(station, block, place)

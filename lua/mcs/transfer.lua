@@ -344,7 +344,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
     local target, station = map_target(name, options)
     arm.check_free()
     arm.play(patterns.map, target)
-    local codes = native.scan(station.index)
+    local codes = native.scan(station.index, target.robot, targets.shift(station, target.robot))
     slot_map.map(name, codes)
     return codes
   end

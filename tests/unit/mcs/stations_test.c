@@ -125,6 +125,10 @@ static void what_cannot_be_changes_nothing(void **state) {
     static const char *const lines[][2] = {
         {"SET_STATION A r=4000", "ERROR 21 OUT_OF_REACH: "},
         {"SET_STATION A theta=5 z=-5000", "ERROR 22 LIMIT_EXCEEDED: "},
+        {"SET_STATION A theta=1000",
+         "ERROR 22 LIMIT_EXCEEDED: an axis would leave its travel; theta: 1000 (expected"},
+        {"SET_STATION A theta=1e12", "ERROR 22 LIMIT_EXCEEDED: "},
+        {"SET_STATION A theta=180 r=-700", "ERROR 21 OUT_OF_REACH: "},
         {"SET_STATION A", "ERROR 48 BAD_ARGUMENT: "},
         {"SET_STATION A flip=0", "ERROR 48 BAD_ARGUMENT: "},
         {"SET_STATION A dx=1", "ERROR 48 BAD_ARGUMENT: "},
@@ -196,6 +200,58 @@ static void a_station_that_was_never_taught(void **state) {
     wh_session_close(&session);
 }
 
+/* What TEACH finds does not depend on what was set before, and setting that again changes nothing. */
+static void teaching_goes_on_from_what_was_set(void **state) {
+    (void)state;
+    open_cell("lua/layouts/teach.lua");
+    assert_begins("SET_STATION A r=700.15 yaw=0.12", "OK station=A");
+    for (int i = 0; i < 3; ++i) {
+        double r, yaw, theta;
+        assert_begins("TEACH A keep=true", "OK x=");
+        assert_begins("STATION A", "OK station=A");
+        assert_true(number_of("r", &r) && number_of("yaw", &yaw) && number_of("theta", &theta));
+        assert_near(r, 700, 0.005);
+        assert_near(theta + yaw, 0, 0.005);
+    }
+    assert_begins("TEACH A keep=3", "ERROR 48 BAD_ARGUMENT");
+    wh_session_close(&session);
+}
+
+/* The arm sweeps where the station was set to be, and sees what is there. */
+static void a_map_sees_what_is_where_it_sweeps(void **state) {
+    (void)state;
+    static const char *const lines[][2] = {
+        {"MAP A", "OK codes=1000000000000000000000000 "},
+        {"SET_STATION A z=890", "OK station=A"},
+        {"MAP A", "OK codes=0100000000000000000000000 "},
+        {"GET A 2", "OK wafer=\"Wafer 1\""},
+        {"PUT A 2", "OK wafer=\"Wafer 1\""},
+        {"SET_STATION A z=910", "OK station=A"},
+        {"MAP A", "OK codes=0000000000000000000000000 "},
+        {"SET_STATION A theta=40 z=900", "OK station=A"},
+        {"MAP A", "OK codes=0000000000000000000000000 "},
+    };
+    open_cell("lua/layouts/paper.lua");
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        assert_begins(lines[i][0], lines[i][1]);
+    }
+    wh_session_close(&session);
+}
+
+/* At the port of a robot's own controller a question is of that robot, as a command is. */
+static void a_robots_own_controller_knows_no_other(void **state) {
+    (void)state;
+    open_cell("lua/layouts/two_robots.lua");
+    session.mcs.asking_robot = 1;
+    assert_begins("STATION IN", "OK station=IN");
+    assert_begins("STATION IN robot=VAC", "ERROR 92 NO_SUCH_ROBOT");
+    assert_begins("STATION IN gripper=\"VAC blade\"", "ERROR 45 NO_SUCH_GRIPPER");
+    assert_begins("STATION PM", "ERROR 48 BAD_ARGUMENT");
+    session.mcs.asking_robot = 0;
+    assert_begins("STATION PM", "OK station=PM");
+    wh_session_close(&session);
+}
+
 /* Two robots are taught a station that both serve each by itself. */
 static void each_robot_by_itself(void **state) {
     (void)state;
@@ -218,6 +274,9 @@ int main(void) {
         cmocka_unit_test(what_cannot_be_changes_nothing),
         cmocka_unit_test(it_is_kept_and_forgotten),
         cmocka_unit_test(a_station_that_was_never_taught),
+        cmocka_unit_test(teaching_goes_on_from_what_was_set),
+        cmocka_unit_test(a_map_sees_what_is_where_it_sweeps),
+        cmocka_unit_test(a_robots_own_controller_knows_no_other),
         cmocka_unit_test(each_robot_by_itself),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
