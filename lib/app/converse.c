@@ -130,6 +130,10 @@ static int converse(wh_transcript_t *played) {
             fprintf(stderr, "%s\n", session.message);
         } else if (add_ports(&host) && check_entries(&host)) {
             const bool same = wh_host_converse(&host);
+            if (wh_stop_requested && !same && !host.is_different) {
+                (void)snprintf(played->message, sizeof played->message,
+                               "interrupted: no difference up to here");
+            }
             printf("%s%sslices: %" PRId64 ", hash %016" PRIx64 "\n", same ? "same; " : played->message,
                    same ? "" : "\n", session.mcs.track.slice, session.mcs.link->hash(session.mcs.link));
             status = !wh_app_is_printed(0) ? WH_EXIT_USAGE : same ? WH_EXIT_MET : WH_EXIT_FAILED;

@@ -27,7 +27,6 @@ void wh_host_note(wh_host_t *host, const wh_controller_t *controller, wh_transcr
         .bytes = bytes,
         .size = size < WH_TRANSCRIPT_BYTES ? size : WH_TRANSCRIPT_BYTES,
     };
-    ++host->entries;
     if (host->transcript) {
         (void)(host->writes_json ? wh_transcript_write_json : wh_transcript_write)(host->transcript, &entry);
     }
@@ -77,16 +76,20 @@ static void enqueue_in_chaos(wh_controller_t *controller, bool is_to_host, const
     uint64_t *number = is_to_host ? &controller->frames_out : &controller->frames_in;
     const wh_chaos_place_t place = {controller->number, is_to_host, (*number)++};
     const wh_chaos_fate_t fate = wh_chaos_fate(chaos, place, is_acknowledgement);
+    bool is_whole = false;
     for (size_t copy = 0; copy < fate.copies; ++copy) {
         uint8_t garbled[WH_CHAOS_BYTES];
         const size_t length = wh_chaos_garble(chaos, place, copy, bytes, size, garbled);
+        is_whole = is_whole || (length == size && memcmp(garbled, bytes, size) == 0);
         if (is_to_host) {
             note(controller, WH_TRANSCRIPT_HEARD, garbled, length);
+            ++controller->told;
         }
         if (!is_to_host || !controller->host->played) {
             enqueue(sent, garbled, length, due_us + fate.later_us[copy]);
         }
     }
+    controller->broken += is_to_host && !is_whole ? 1 : 0;
 }
 
 static void drop_frames(wh_sent_t *sent) {
@@ -110,12 +113,20 @@ void wh_controller_forget_client(wh_controller_t *controller) {
     controller->is_left = controller->has_action;
 }
 
+/* What a client has left is told before that it went. */
+static void note_going(wh_controller_t *controller) {
+    if (controller->has_gone) {
+        controller->has_gone = false;
+        note(controller, WH_TRANSCRIPT_WENT, NULL, 0);
+    }
+}
+
 static void note_port(wh_controller_t *controller, unsigned what) {
     if ((what & (WH_PORT_WENT | WH_PORT_CLOSED | WH_PORT_TAKEN)) != 0) {
-        note(controller, WH_TRANSCRIPT_WENT, NULL, 0);
         controller->has_gone = true;
     }
     if ((what & WH_PORT_CAME) != 0) {
+        note_going(controller);
         wh_controller_forget_client(controller);
         note(controller, WH_TRANSCRIPT_CAME, NULL, 0);
     }
@@ -345,10 +356,10 @@ static void serve_port(wh_controller_t *controller) {
     if (!controller->has_gone || controller->port.input.count > 0) {
         return;
     }
-    controller->has_gone = false;
     if (wh_framer_finish(&controller->framer, &frame)) {
         take_frame(controller, &frame);
     }
+    note_going(controller);
 }
 
 /* What was told as one frame is one again. True, and the frame, if it is one. */

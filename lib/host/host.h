@@ -73,6 +73,7 @@ typedef struct {
     wh_sent_t out, in; /* `in`: of a line with chaos */
     wh_framer_t before_chaos;
     uint64_t frames_out, frames_in; /* so far, before chaos */
+    uint64_t told, broken;          /* to the host, behind it: frames, and those of which no copy was whole */
     bool has_action;                /* one was taken on and has not ended */
     bool is_running;                /* and has begun */
     bool is_stopped;                /* it is to end, or not to begin */
@@ -125,7 +126,6 @@ struct wh_host {
     bool is_ended;       /* by the operator: nothing is begun any more */
     bool is_different;   /* what was heard is not what the transcript says: its message tells */
     wh_event_kind_t last_complaint; /* of the cell, where session->complaints says that there was one */
-    uint64_t entries;               /* of the transcript, noted so far */
     uint64_t *shown; /* how often a host was told our error of this number, of WH_HOST_NUMBERS */
 };
 

@@ -11,17 +11,22 @@
 
 /* ------------------------------------------------------------------------------------------------ telling */
 
-static void count_shown(const wh_host_t *host, wh_status_t number) {
-    if (number != WH_OK && (size_t)number < WH_HOST_NUMBERS) {
-        ++host->shown[number];
+/* Tells the host of this error, or of none. It was shown if a frame went out and all came through whole. */
+static void tell(wh_controller_t *controller, wh_encoder_t encoder, const wh_told_t *told, bool is_reply,
+                 wh_status_t number) {
+    const uint64_t before = controller->told;
+    const uint64_t broken = controller->broken;
+    wh_controller_tell(controller, encoder, told, is_reply);
+    const bool is_shown = controller->told > before && controller->broken == broken;
+    if (is_shown && number != WH_OK && (size_t)number < WH_HOST_NUMBERS) {
+        ++controller->host->shown[number];
     }
 }
 
 static void refuse_as(wh_controller_t *controller, const wh_request_t *request, const wh_failure_t *failure) {
     const wh_told_t told = {.request = request, .failure = failure};
-    count_shown(controller->host, failure->number);
     controller->counters.busy += failure->number == WH_STATUS_BUSY ? 1 : 0;
-    wh_controller_tell(controller, WH_ENCODE_REFUSE, &told, true);
+    tell(controller, WH_ENCODE_REFUSE, &told, true, failure->number);
 }
 
 static void refuse(wh_controller_t *controller, const wh_request_t *request, wh_status_t number,
@@ -45,8 +50,7 @@ static void tell_result(wh_controller_t *controller, wh_encoder_t encoder, const
                                 .mechanism = &controller->mechanism,
                                 .sensors = mcs->state.sensors};
     const wh_told_t told = {.request = request, .result = &result};
-    count_shown(controller->host, number);
-    wh_controller_tell(controller, encoder, &told, encoder == WH_ENCODE_ANSWER);
+    tell(controller, encoder, &told, encoder == WH_ENCODE_ANSWER, number);
 }
 
 /* A mistake is a line that names the dialect's file and line. */
@@ -246,13 +250,13 @@ static void begin(wh_controller_t *controller, wh_request_t *request, const wh_l
 void wh_controller_end(wh_controller_t *controller, wh_status_t number, const char *text, double seconds) {
     wh_host_t *host = controller->host;
     const bool is_told = !controller->is_left || controller->dialect.completes_to_next;
-    const uint64_t entries = host->entries;
+    const uint64_t before = controller->told;
     controller->counters.busy += number == WH_STATUS_BUSY ? 1 : 0;
     controller->has_action = controller->is_running = false; /* it asks for its state as it tells this */
     if (is_told) {
         tell_result(controller, WH_ENCODE_COMPLETE, &controller->request, number, text, seconds);
     }
-    if (host->entries == entries) { /* what the host says next comes behind this end all the same */
+    if (controller->told == before) { /* what the host says next comes behind this end all the same */
         wh_host_note(host, controller, WH_TRANSCRIPT_ENDED, NULL, 0);
     }
     if (is_told && controller->dialect.ackn_s > 0 && controller->dialect.text) {
@@ -276,7 +280,9 @@ static void end_faults(const wh_controller_t *controller) {
     wh_session_t *session = controller->host->session;
     if (wh_word_of(controller->lines.lines[controller->lines.count - 1]) == wh_word_of("CLEAR")) {
         (void)snprintf(line, sizeof line, "WAIT %.6f", (double)session->mcs.track.slice_us / 1e6);
+        session->mcs.is_part = true; /* UNDO takes it back with the CLEAR */
         (void)wh_session_execute(session, line, text, sizeof text);
+        session->mcs.is_part = false;
     }
 }
 

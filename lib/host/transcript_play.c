@@ -46,8 +46,23 @@ int64_t wh_transcript_last(const wh_transcript_t *transcript) {
     return transcript->count > 0 ? transcript->entries[transcript->count - 1].slice : 0;
 }
 
-/* An entry as it stands in the file, as far as it is shown. */
-static void show(char shown[SHOWN_FRAME + 200], const wh_transcript_entry_t *entry) {
+/* Before the first byte that differs so many are shown. */
+#define SHOWN_BEFORE 40
+
+/* From where on two frames are shown: a difference far behind would be cut off. */
+static size_t find_shown(const wh_transcript_entry_t *one, const wh_transcript_entry_t *other) {
+    const bool are_frames =
+        one && other && wh_transcript_has_bytes(one->kind) && wh_transcript_has_bytes(other->kind);
+    const size_t size = !are_frames ? 0 : one->size < other->size ? one->size : other->size;
+    size_t same = 0;
+    while (same < size && one->bytes[same] == other->bytes[same]) {
+        ++same;
+    }
+    return same > 2 * SHOWN_BEFORE && are_frames ? same - SHOWN_BEFORE : 0;
+}
+
+/* An entry as it stands in the file, its bytes from this one on, as far as they are shown. */
+static void show(char shown[SHOWN_FRAME + 200], const wh_transcript_entry_t *entry, size_t from) {
     char bytes[SHOWN_FRAME];
     if (!entry) {
         (void)snprintf(shown, SHOWN_FRAME + 200, "nothing");
@@ -59,10 +74,11 @@ static void show(char shown[SHOWN_FRAME + 200], const wh_transcript_entry_t *ent
                        entry->port);
         return;
     }
-    const bool is_whole = wh_transcript_escape(bytes, sizeof bytes, entry->bytes, entry->size) == entry->size;
-    (void)snprintf(shown, SHOWN_FRAME + 200, "%lld %lld.%06lld %c %s \"%s%s", (long long)entry->slice,
+    const size_t size = entry->size - from;
+    const bool is_whole = wh_transcript_escape(bytes, sizeof bytes, entry->bytes + from, size) == size;
+    (void)snprintf(shown, SHOWN_FRAME + 200, "%lld %lld.%06lld %c %s \"%s%s%s", (long long)entry->slice,
                    (long long)entry->time_us / 1000000, (long long)entry->time_us % 1000000, entry->kind,
-                   entry->port, bytes, is_whole ? "\"" : "...");
+                   entry->port, from > 0 ? "..." : "", bytes, is_whole ? "\"" : "...");
 }
 
 /* Says what was heard, or not, in place of the entry in the file, or of nothing. */
@@ -71,8 +87,9 @@ static bool differ(wh_transcript_t *transcript, const wh_transcript_entry_t *hea
     char shown[SHOWN_FRAME + 200];
     char wanted[SHOWN_FRAME + 200];
     char line[32] = "";
-    show(shown, heard);
-    show(wanted, expected);
+    const size_t from = find_shown(heard, expected);
+    show(shown, heard, from);
+    show(wanted, expected, from);
     if (expected) {
         (void)snprintf(line, sizeof line, ":%zu", expected->line);
     }

@@ -66,8 +66,8 @@ typedef enum {
     WH_NOT_RECORDED    /* it does not fit: both messages are to be recorded, by wh_recording_message */
 } wh_recorded_t;
 
-/* Begins. Creates the file, or if it `replaces` an old one, which waits for the first slice, tries if it could. False, and standard
- * error says why, if that was not possible: there is then nothing to close. */
+/* Begins. Creates the file, or if it `replaces` an old one, which waits for the first slice, tries if it
+ * could. False, and standard error says why, if that was not possible: there is then nothing to close. */
 bool wh_recording_open(wh_recording_t *recording);
 
 /* Records a message that was sent or came, whatever it is. With slices it is left out or becomes part of
@@ -85,8 +85,8 @@ void wh_recording_state(wh_recording_t *recording, const void *data, size_t size
 /* False if a recording that is open has failed so far; standard error has said how. */
 bool wh_recording_is_sound(wh_recording_t *recording);
 
-/* Completes the log and closes it. False if the recording failed, or no slice came to replace an old file with;
- * standard error has said so. True without a path, and of a recording that is not open. */
+/* Completes the log and closes it. False if the recording failed, or no slice came to replace an old file
+ * with; standard error has said so. True without a path, and of a recording that is not open. */
 bool wh_recording_close(wh_recording_t *recording);
 
 #endif

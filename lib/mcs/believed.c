@@ -106,9 +106,9 @@ static void check_travel(lua_State *L, wh_mcs_t *mcs, const wh_real_t axes[]) {
     }
 }
 
-/* native.shift(station, robot, gripper, axes, checked): { x, y, z, yaw }, mm and rad, by which the station lies
- * elsewhere than the layout says if the gripper stands in its slot 1 at these axes; if they are to be `checked`,
- * refuses what leaves their travel. */
+/* native.shift(station, robot, gripper, axes, checked): { x, y, z, yaw }, mm and rad, by which the station
+ * lies elsewhere than the layout says if the gripper stands in its slot 1 at these axes; if they are to be
+ * `checked`, refuses what leaves their travel. */
 static int find_shift(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_layout_t *layout = mcs->layout;

@@ -132,7 +132,14 @@ static int push_asked_robot(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_job_functions[] = {{"asked_robot", push_asked_robot},
+/* native.is_part(): true of a line that UNDO takes back with the one before it. */
+static int push_is_part(lua_State *L) {
+    lua_pushboolean(L, wh_mcs_of(L)->is_part);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_job_functions[] = {{"is_part", push_is_part},
+                                         {"asked_robot", push_asked_robot},
                                          {"next_job", next_job},
                                          {"begin_job", begin_job},
                                          {"end_line", end_line},

@@ -302,6 +302,7 @@ struct wh_mcs {
     size_t fault_count;
     wh_status_t alarms[WH_MCS_ALARMS]; /* the errors that wait for a command; WH_OK: a free place */
     int32_t alarm_jobs[WH_MCS_ALARMS]; /* of the job of this number; 0: of any */
+    bool is_part;                      /* the line belongs to the one before it: set by who has it executed */
     int32_t asking_robot;              /* that of a robot's own controller, from 1, while it asks; 0: none */
     int32_t asking;                    /* whose question is answered, likewise: set by who asks */
 

@@ -229,7 +229,7 @@ static int play(lua_State *L) {
 }
 
 /* native.stop_in(seconds, mechanism): a STOP of that mechanism, nil: of all, comes at the first slice at or
- * after so many simulated seconds from now. False if there is no such mechanism. With one there must be
+ * after so many simulated seconds from now; seconds nil: none comes. False if there is no such mechanism. With one there must be
  * tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -239,6 +239,10 @@ static int stop_in(lua_State *L) {
         return 1;
     }
     mcs->stop_slice_axes = axes;
+    if (lua_isnoneornil(L, 1)) {
+        mcs->stop_slice = INT64_MAX;
+        return 0;
+    }
     const double slices = ceil(luaL_checknumber(L, 1) * 1e6 / (double)mcs->track.slice_us);
     mcs->stop_slice = mcs->track.slice + (int64_t)slices;
     lua_pushboolean(L, true);

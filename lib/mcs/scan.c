@@ -1,7 +1,7 @@
 /* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
- *   The beams stand upright in the station's frame as motion control believes it, for the arm goes there, at x = -0.6 and y = +-0.6 of a wafer's radius, near
- *   the edge that the arm comes to. Sweeping along z, each notes the heights of the faces that it passes: of
+ *   The beams stand upright in the station's frame as motion control believes it, for the arm goes there:
+ *   at x = -0.6 and y = +-0.6 of a wafer's radius, near the edge that the arm comes to. Sweeping along z, each notes the heights of the faces that it passes: of
  *   a wafer the back, or where wafers lie face down the face that looks at the slots. A wafer belongs to the
  *   slots nearest to its two heights.
  *   0 empty    no wafer belongs to the slot
@@ -91,8 +91,8 @@ static void mark_wafer(const wh_station_t *place, const sight_t *sight, int code
     }
 }
 
-/* native.scan(station, robot, shift): a list of codes by slot, of the wafers as they lie now; of a station that
- * a host has moved by `shift`, see native.shift. */
+/* native.scan(station, robot, shift): a list of codes by slot, of the wafers as they lie now; of a station
+ * that a host has moved by `shift`, see native.shift. */
 static int scan(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t station = (size_t)wh_mcs_index(L, 1, mcs->layout->station_count);

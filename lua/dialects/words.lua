@@ -243,8 +243,9 @@ return {
     HOLD = { does = "HOLD" },
     RESUME = { does = "RESUME" },
     CLEAR = { does = "CLEAR", run = as_said("CLEAR") },
-    FAULT = { does = "FAULT", run = as_said("FAULT") },
-    ALARM = { does = "ALARM", run = function(request) return "ALARM " .. host.alarm(request.words[2] or "") end },
+    FAULT = { does = "FAULT", run = as_said("FAULT"), answer = keep },
+    ALARM = { does = "ALARM", run = function(request) return "ALARM " .. host.alarm(request.words[2] or "") end,
+              answer = keep },
     ["SET STN"] = { does = "SET_STATION", run = function(request)
       return ("SET_STATION %s %s"):format(host.station(request.words[3] or ""), options(request.words, 4, STANDING))
     end },

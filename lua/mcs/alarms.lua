@@ -14,7 +14,7 @@ return function(native, lookup)
 
   local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
   local PLANNED = STATION .. " LINE"
-  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN VALVE MOVE FLIP LINE OPEN CLOSE"
+  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
@@ -26,7 +26,7 @@ return function(native, lookup)
     LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE SET_STATION" },
     NOT_LEVEL = { "check", STATION },
     NOT_ALONG_ARM = { "check", STATION .. SETTING },
-    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN OFFSET" .. SETTING },
+    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT OFFSET" .. SETTING },
     NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
     WAFER_MISSING = { "cause", "GET SWAP" },
     NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
@@ -37,7 +37,7 @@ return function(native, lookup)
     NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
     NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
     BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES .. SETTING },
-    NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN" },
+    NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT" },
     WAFER_LOST = { "cause", "PUT" },
     DEADLOCK = { "check", STATION },
     FLIP_TIMEOUT = { "cause", "FLIP" },
@@ -62,7 +62,7 @@ return function(native, lookup)
     BAD_SLOT = { "check", "GET PUT SWAP" },
     NOT_MAPPED = { "check", "GET SWAP" },
     CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP ALIGN" },
-    IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN VALVE MOVE FLIP LINE" },
+    IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE" },
     PINS_UP = { "check", "GET PUT SWAP READY ROTATE EDGE_SCAN ALIGN TEACH" },
     DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH" },
     DOOR_BLOCKED = { "check", "CLOSE" },
@@ -77,7 +77,7 @@ return function(native, lookup)
     TWO_NOTCHES = { "check", "ALIGN" },
     OFF_SENSOR = { "check", "ALIGN" },
     TOO_ECCENTRIC = { "check", "ALIGN" },
-    CENTRE_NOT_SURE = { "check", "ALIGN TEACH" },
+    CENTRE_NOT_SURE = { "check", "ALIGN CALIBRATE TEACH" },
     NOTCH_NOT_SURE = { "check", "ALIGN" },
     BAD_SCAN = { "line", "ALIGN" },
     RUN_OVER = { "line", MOVING },
@@ -170,12 +170,30 @@ return function(native, lookup)
     return action(...)
   end
 
+  -- By what bears the running command: the alarm whose STOP is to come to it.
+  local stopping = {}
+
   -- The running command is about to move.
   function alarms.begin_motion(text)
-    local stopped = by_number[lookup.errors.STOPPED.number]
-    if native.alarms() and stopped.words[text:match("^[%u_]+")] and take("STOPPED") then
-      native.stop_in(BEFORE_STOP)
+    local bearer, stopped = alarms.bearer(), by_number[lookup.errors.STOPPED.number]
+    for _, alarm in ipairs(not stopping[bearer] and stopped.words[text:match("^[%u_]+")] and native.alarms() or {}) do
+      if by_number[alarm.error] == stopped then
+        stopping[bearer] = alarm.number
+        native.stop_in(BEFORE_STOP)
+        return
+      end
     end
+  end
+
+  -- It has ended, with the error of this number or none. Where the STOP did not come to it, it waits for another one.
+  local function end_stop(number)
+    local bearer = alarms.bearer()
+    if stopping[bearer] and number == lookup.errors.STOPPED.number then
+      native.disarm(stopping[bearer])
+    elseif stopping[bearer] then
+      native.stop_in()
+    end
+    stopping[bearer] = nil
   end
 
   -------------------------------------------------------------------------------------------------- causes
@@ -195,8 +213,9 @@ return function(native, lookup)
     return target.edge and { "plunger_stuck", target.gripper }
   end
 
+  -- One that has first to go back would be slow at that, and answer another error.
   function causes.GRIP_TIMEOUT(word, target)
-    return word == "get" and target.edge and { "plunger_slow", target.gripper, value = CREEP }
+    return word == "get" and target.edge and native.grip(target.gripper) == "open" and { "plunger_slow", target.gripper, value = CREEP }
   end
 
   function causes.UNGRIP_TIMEOUT(word, target)
@@ -305,6 +324,7 @@ return function(native, lookup)
   -- A command has ended, with the error of this number or none: what was broken for it is whole again, and if it was
   -- that error, it no longer waits. A slice passes, so that this has come to the cell.
   function alarms.mend(number)
+    end_stop(number)
     local bearer, robot = alarms.bearer(), alarms.robot()
     local was = broken[bearer]
     if not was or robot and native.is_held(robot) then

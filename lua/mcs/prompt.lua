@@ -175,7 +175,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
       alarms.refuse(name)
       alarms.check(name)
     end
-    if command.keeps or native.has_jobs() or background.is_any() then
+    if command.keeps or native.is_part() or native.has_jobs() or background.is_any() then
       return run(command, read(name, command, list))
     end
     return states.follow(line, run, command, read(name, command, list))

@@ -268,6 +268,23 @@ static void differences(void **state) {
     wh_transcript_close(&transcript);
 }
 
+/* A difference far behind the beginning of a frame is shown, not cut off. */
+static void a_difference_far_behind(void **state) {
+    (void)state;
+    char heard[1001];
+    char text[1200];
+    memset(heard, 'x', 1000);
+    heard[1000] = '\0';
+    (void)snprintf(text, sizeof text,
+                   "waferhand transcript 1\nlayout \"a\"\nport \"r d\"\n\n0 0.000000 < r \"%s\"\n", heard);
+    heard[900] = 'y';
+    assert_true(parse(text));
+    assert_false(hears(0, "r", heard));
+    assert_non_null(strstr(transcript.message, "heard: 0 0.000000 < r \"...xxxx"));
+    assert_non_null(strstr(transcript.message, "xyx"));
+    wh_transcript_close(&transcript);
+}
+
 /* What is behind an entry = waits for it, and it is compared. */
 static void clock_set_back(void **state) {
     (void)state;
@@ -289,9 +306,10 @@ static void clock_set_back(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(json_refusals), cmocka_unit_test(clock_set_back), cmocka_unit_test(refusals),
-        cmocka_unit_test(round_trip),    cmocka_unit_test(written_lines),  cmocka_unit_test(hosts_side),
-        cmocka_unit_test(differences),
+        cmocka_unit_test(json_refusals), cmocka_unit_test(clock_set_back),
+        cmocka_unit_test(refusals),      cmocka_unit_test(round_trip),
+        cmocka_unit_test(written_lines), cmocka_unit_test(hosts_side),
+        cmocka_unit_test(differences),   cmocka_unit_test(a_difference_far_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

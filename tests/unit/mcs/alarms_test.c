@@ -46,7 +46,58 @@ static void a_put_that_centres(void **state) {
     ASSERT_DIALOGUE("lua/layouts/centring.lua", dialogue);
 }
 
+/* A STOP that comes too late for the command waits for the next one. */
+static void a_stop_that_comes_too_late(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"ALARM 52", "OK fault=17"},
+        {"HOME", "OK seconds=0"},
+        {"MOVE theta=50", "ERROR 52 STOPPED: "},
+        {"HOME", "OK seconds=0.175"},
+        {"MOVE theta=50", "OK seconds="},
+    };
+    ASSERT_DIALOGUE("lua/layouts/paper.lua", dialogue);
+}
+
+/* A plunger that has first to go back is not slowed for an error of its closing. */
+static void a_plunger_that_is_not_open(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"GET A 1", "OK wafer=W01"},
+        {"ALARM 89", "OK fault=17"},
+        {"PUT B 1", "ERROR 89 UNGRIP_TIMEOUT: "},
+        {"ALARM 88", "OK fault=17"},
+        {"GET A 2", "OK wafer=W02"},
+        {"PUT A 2", "OK wafer=W02"},
+        {"GET A 2", "ERROR 88 GRIP_TIMEOUT: "},
+    };
+    ASSERT_DIALOGUE("lua/layouts/edge.lua", dialogue);
+}
+
+/* LIFT and CALIBRATE move something, too. */
+static void what_moves_at_an_aligner(void **state) {
+    (void)state;
+    static const exchange_t lifts[] = {
+        {"ALARM 53", "OK fault=17"},  {"LIFT P UP", "ERROR 53 OUT_OF_BUDGET: "},
+        {"ALARM 48", "OK fault=17"},  {"LIFT P UP", "ERROR 48 BAD_ARGUMENT: "},
+        {"ALARM 40", "OK fault=17"},  {"LIFT P UP", "ERROR 40 NO_SUCH_STATION: "},
+        {"LIFT P UP", "OK seconds="},
+    };
+    static const exchange_t calibrations[] = {
+        {"ALARM 75", "OK fault=17"}, {"CALIBRATE P", "ERROR 75 CENTRE_NOT_SURE: "},
+        {"ALARM 49", "OK fault=17"}, {"CALIBRATE P", "ERROR 49 NOT_A_PREALIGNER: "},
+        {"ALARM 53", "OK fault=17"}, {"CALIBRATE P", "ERROR 53 OUT_OF_BUDGET: "},
+    };
+    ASSERT_DIALOGUE("lua/layouts/stage.lua", lifts);
+    ASSERT_DIALOGUE("lua/layouts/calibrate.lua", calibrations);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_put_that_centres)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_put_that_centres),
+        cmocka_unit_test(a_stop_that_comes_too_late),
+        cmocka_unit_test(a_plunger_that_is_not_open),
+        cmocka_unit_test(what_moves_at_an_aligner),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
