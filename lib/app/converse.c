@@ -113,6 +113,18 @@ static bool check_entries(const wh_host_t *host) {
            refuse(played, 1, "nothing to compare (expected a frame of a controller's, a line with <)");
 }
 
+static int play(wh_host_t *host) {
+    wh_transcript_t *played = host->played;
+    wh_session_t *session = host->session;
+    const bool same = wh_host_converse(host);
+    if (wh_stop_requested && !same && !host->is_different) {
+        (void)snprintf(played->message, sizeof played->message, "interrupted: no difference up to here");
+    }
+    printf("%s%sslices: %" PRId64 ", hash %016" PRIx64 "\n", same ? "same; " : played->message,
+           same ? "" : "\n", session->mcs.track.slice, session->mcs.link->hash(session->mcs.link));
+    return !wh_app_is_printed(0) ? WH_EXIT_USAGE : same ? WH_EXIT_MET : WH_EXIT_FAILED;
+}
+
 static int converse(wh_transcript_t *played) {
     static wh_session_t session;
     heads_t heads = {0};
@@ -129,14 +141,7 @@ static int converse(wh_transcript_t *played) {
         if (!opened) {
             fprintf(stderr, "%s\n", session.message);
         } else if (add_ports(&host) && check_entries(&host)) {
-            const bool same = wh_host_converse(&host);
-            if (wh_stop_requested && !same && !host.is_different) {
-                (void)snprintf(played->message, sizeof played->message,
-                               "interrupted: no difference up to here");
-            }
-            printf("%s%sslices: %" PRId64 ", hash %016" PRIx64 "\n", same ? "same; " : played->message,
-                   same ? "" : "\n", session.mcs.track.slice, session.mcs.link->hash(session.mcs.link));
-            status = !wh_app_is_printed(0) ? WH_EXIT_USAGE : same ? WH_EXIT_MET : WH_EXIT_FAILED;
+            status = play(&host);
         }
         wh_host_close(&host);
         wh_session_close(&session);

@@ -67,27 +67,33 @@ static wh_sent_frame_t *take_due(wh_sent_t *sent, int64_t now_us) {
     return frame;
 }
 
+/* A copy of a frame as chaos has left it. True if that is all of it. */
+static bool enqueue_copy(wh_controller_t *controller, bool is_to_host, const uint8_t *frame, size_t size,
+                         const uint8_t *left, size_t length, int64_t due_us) {
+    if (is_to_host) {
+        note(controller, WH_TRANSCRIPT_HEARD, left, length);
+        ++controller->told;
+    }
+    if (!is_to_host || !controller->host->played) {
+        enqueue(is_to_host ? &controller->out : &controller->in, left, length, due_us);
+    }
+    return length == size && memcmp(left, frame, size) == 0;
+}
+
 /* What chaos leaves of a frame of either direction. What goes to the host is noted as it is made: when it
  * arrives, a wall clock decides, and without one it arrives nowhere. */
 static void enqueue_in_chaos(wh_controller_t *controller, bool is_to_host, const uint8_t *bytes, size_t size,
                              int64_t due_us, bool is_acknowledgement) {
     const wh_chaos_t *chaos = &controller->dialect.chaos;
-    wh_sent_t *sent = is_to_host ? &controller->out : &controller->in;
     uint64_t *number = is_to_host ? &controller->frames_out : &controller->frames_in;
     const wh_chaos_place_t place = {controller->number, is_to_host, (*number)++};
     const wh_chaos_fate_t fate = wh_chaos_fate(chaos, place, is_acknowledgement);
     bool is_whole = false;
     for (size_t copy = 0; copy < fate.copies; ++copy) {
-        uint8_t garbled[WH_CHAOS_BYTES];
-        const size_t length = wh_chaos_garble(chaos, place, copy, bytes, size, garbled);
-        is_whole = is_whole || (length == size && memcmp(garbled, bytes, size) == 0);
-        if (is_to_host) {
-            note(controller, WH_TRANSCRIPT_HEARD, garbled, length);
-            ++controller->told;
-        }
-        if (!is_to_host || !controller->host->played) {
-            enqueue(sent, garbled, length, due_us + fate.later_us[copy]);
-        }
+        uint8_t left[WH_CHAOS_BYTES];
+        const size_t length = wh_chaos_garble(chaos, place, copy, bytes, size, left);
+        is_whole |=
+            enqueue_copy(controller, is_to_host, bytes, size, left, length, due_us + fate.later_us[copy]);
     }
     controller->broken += is_to_host && !is_whole ? 1 : 0;
 }

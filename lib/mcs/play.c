@@ -229,8 +229,8 @@ static int play(lua_State *L) {
 }
 
 /* native.stop_in(seconds, mechanism): a STOP of that mechanism, nil: of all, comes at the first slice at or
- * after so many simulated seconds from now; seconds nil: none comes. False if there is no such mechanism. With one there must be
- * tasks. */
+ * after so many simulated seconds from now; seconds nil: none comes. False if there is no such mechanism.
+ * With one there must be tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     uint32_t axes = WH_MCS_ALL;

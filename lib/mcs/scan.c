@@ -1,9 +1,9 @@
 /* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
  *   The beams stand upright in the station's frame as motion control believes it, for the arm goes there:
- *   at x = -0.6 and y = +-0.6 of a wafer's radius, near the edge that the arm comes to. Sweeping along z, each notes the heights of the faces that it passes: of
- *   a wafer the back, or where wafers lie face down the face that looks at the slots. A wafer belongs to the
- *   slots nearest to its two heights.
+ *   at x = -0.6 and y = +-0.6 of a wafer's radius, near the edge that the arm comes to. Sweeping along z,
+ *   each notes the heights of the faces that it passes: of a wafer the back, or where wafers lie face down
+ *   the face that looks at the slots. A wafer belongs to the slots nearest to its two heights.
  *   0 empty    no wafer belongs to the slot
  *   1 single   one does, level to half the pitch
  *   2 double   more than one does

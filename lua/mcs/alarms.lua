@@ -176,8 +176,8 @@ return function(native, lookup)
   -- The running command is about to move.
   function alarms.begin_motion(text)
     local bearer, stopped = alarms.bearer(), by_number[lookup.errors.STOPPED.number]
-    for _, alarm in ipairs(not stopping[bearer] and stopped.words[text:match("^[%u_]+")] and native.alarms() or {}) do
-      if by_number[alarm.error] == stopped then
+    for _, alarm in ipairs(not stopping[bearer] and native.alarms() or {}) do
+      if by_number[alarm.error] == stopped and stopped.words[text:match("^[%u_]+")] then
         stopping[bearer] = alarm.number
         native.stop_in(BEFORE_STOP)
         return
