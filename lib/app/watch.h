@@ -22,7 +22,7 @@ typedef struct {
     "and it goes on"
 
 /* Watches until SIGINT or SIGTERM ends it: then WH_EXIT_MET. WH_EXIT_USAGE, and a line on standard error, if
- * the system lets no files be watched or begins no process. */
+ * the system lets no files be watched or begins no process. From then on SIGINT and SIGTERM are ignored. */
 int wh_watch(const wh_watch_options_t *options);
 
 #endif
