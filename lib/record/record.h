@@ -20,7 +20,7 @@ typedef struct {
 typedef struct {
     bool is_there; /* else the event is no such */
     bool is_held;  /* false: it is too large or too small for the window, and let go there */
-    double x, y;   /* mm, gripper's frame: the middle of the face that looks at the blade; 0 if nothing is off */
+    double x, y;   /* mm, gripper's frame: the middle of the face that looks at the blade */
     double s;      /* of the plunger, mm */
 } wh_seat_t;
 

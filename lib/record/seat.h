@@ -1,7 +1,7 @@
 /* The seat of a wafer in an edge grip: where it lies once the plunger has closed.
  *
- * The slice in which the plunger meets a wafer decides it (grasp/edge.h), so the event of that slice tells. It
- * comes to pass unless the plunger is opened, or kept from closing by a fault.
+ * The slice in which the plunger meets a wafer decides it (grasp/edge.h), so the event of that slice tells.
+ * It comes to pass unless the plunger is opened, or kept from closing by a fault.
  */
 #ifndef WH_RECORD_SEAT_H
 #define WH_RECORD_SEAT_H
