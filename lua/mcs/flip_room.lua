@@ -1,5 +1,5 @@
 -- Room to turn over: FLIP as `waferhand layout` plays it where a script is likely to ask for it, which is at home, in front
--- of a station, and in a flipper's clamp.
+-- of a station, and in a flipper's clamp; and what a blade that is turned over does at a station.
 
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pcall, tostring, type = ipairs, math, pcall, tostring, type
@@ -14,6 +14,10 @@ return function(native, patterns, lookup, arm, transfer)
     return arm.rehearse(patterns.single, { segment = { moves = { [axis] = math.pi } } })
   end
 
+  local function reason_of(problem)
+    return type(problem) == "table" and problem.text or tostring(problem)
+  end
+
   -- Turns the axis over as FLIP does; `cell` is here and below what lib/mcs/survey.c stands the robot in. Calls
   -- failed(slot, what, reason) if that is refused or the cell complains, and returns true then.
   local function fails(axis, cell, failed, slot, what)
@@ -22,7 +26,7 @@ return function(native, patterns, lookup, arm, transfer)
     end)
     problem = cell.complaint() or not good and problem
     if problem then
-      failed(slot, what, type(problem) == "table" and problem.text or tostring(problem))
+      failed(slot, what, reason_of(problem))
     end
     return problem and true
   end
@@ -49,14 +53,29 @@ return function(native, patterns, lookup, arm, transfer)
     has_none_at_home[blade.robot] = fails(axis, cell, failed, 0, what:format(blade.name, station.name, slot))
   end
 
+  -- GET and PUT from above, with the blade that has just been turned over in front of the slot.
+  local function try_turned(place, cell, failed)
+    local name, slot, blade = place.station.name, place.slot, native.layout.grippers[place.gripper].name
+    for _, command in ipairs { "get", "put" } do
+      local problem = transfer.try(command, name, slot, cell, place.gripper)
+      if problem then
+        failed(slot, ("%s slot %d: %s with %s turned over"):format(name, slot, command:upper(), blade), reason_of(problem))
+        return
+      end
+    end
+  end
+
   -- In front of a slot without a wafer and with one. Turned over, passive pads hold none: FLIP refuses that.
   local function try_front(place, home, cell, failed)
     local station, slot, blade = place.station, place.slot, native.layout.grippers[place.gripper]
     local axis = lookup.axis("flip", blade.robot)
     local what = "%s slot %d: FLIP of %s in front of it"
-    if axis and not is_slow[blade.robot] and cell.stage(place.before)
-      and not fails(axis.index, cell, failed, slot, what:format(station.name, slot, blade.name))
-      and blade.grip ~= "passive" and cell.stage(place.before) then
+    if not axis or is_slow[blade.robot] or not cell.stage(place.before)
+      or fails(axis.index, cell, failed, slot, what:format(station.name, slot, blade.name)) or blade.grip == "passive" then
+      return
+    end
+    try_turned(place, cell, failed)
+    if cell.stage(place.before) then
       try_loaded(station, slot, place.gripper, home, cell, failed)
     end
   end
