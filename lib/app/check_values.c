@@ -12,7 +12,7 @@
 /* What objects may have and may not, by a name that all of their kind have. */
 typedef struct {
     const char *mark;
-    const char *names[13];
+    const char *names[14];
 } optional_t;
 
 static const optional_t optional[] = {
@@ -20,7 +20,7 @@ static const optional_t optional[] = {
     {"error", {"message"}},
     {"measured_utime",
      {"parts", "at", "value", "limit", "fault", "fault_kind", "from", "holder", "other", "height", "status",
-      "message"}}};
+      "message", "seat"}}};
 
 /* ----------------------------------------------------------------------------------------- what there is */
 

@@ -5,6 +5,7 @@
 
 #include "../link/messages.h"
 #include "../link/node.h"
+#include "../record/seat.h"
 #include "app.h"
 #include "connection.h"
 
@@ -61,7 +62,8 @@ static void tell_run(ear_t *ear, int64_t before, int64_t utime) {
 static void tell(ear_t *ear, const wh_state_t *state) {
     ear->record.layout = ear->cell.layout;
     for (size_t i = 0; i < state->event_count; ++i) {
-        wh_record_add_event(&ear->record, state->utime, WH_NONE, &state->events[i]);
+        const wh_seat_t seat = wh_seat_of(ear->cell.layout, state, &state->events[i]);
+        wh_record_add_event(&ear->record, state->utime, WH_NONE, &state->events[i], &seat);
     }
     for (size_t i = 0; !ear->ended && i < ear->record.event_count; ++i) {
         ear->ended = !ear->live->event(ear->live->user, &ear->record, i);

@@ -51,8 +51,8 @@ static int stand(lua_State *L) {
 
 const luaL_Reg wh_mcs_survey_functions[] = {{"windings", list_windings}, {"stand", stand}, {NULL, NULL}};
 
-/* Registry keys of what looks at a station, and of what plays there. */
-static char look_key, play_key;
+/* Registry keys of what looks at a station, of what plays there, and of what turns over there. */
+static char look_key, play_key, flip_key;
 
 /* -------------------------------------------------------------------------------------------- one station */
 
@@ -63,6 +63,7 @@ typedef struct {
     wh_feasibility_t *check;
     size_t station;
     size_t from;         /* whose wafers are put down there: its own, or another one's */
+    bool is_home;        /* the robots turn over at home */
     int32_t blade;       /* WH_NONE: the station's effector; else another gripper on the robot */
     int32_t first, last; /* slots; 0: none yet */
     char word[8];
@@ -169,16 +170,24 @@ static const wh_real_t *read_axes(lua_State *L, const wh_layout_t *layout, wh_re
     return axes;
 }
 
-static void say_too_long(const job_t *job, int64_t slices) {
+/* `what`: a FLIP and where; null: GET, which a PUT follows. */
+static void say_too_long(const job_t *job, const char *what, int64_t slices) {
+    const int32_t station = job->is_home ? WH_NONE : (int32_t)job->station;
     char with[WH_NAME_SIZE + 8];
-    wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station,
-                       "%s: GET%s takes %lld slices: GET and PUT were not played here",
-                       job->layout->stations[job->station].name, with_blade(job, with), (long long)slices);
+    if (what) {
+        wh_feasibility_add(job->check, WH_FINDING_PLAY, station, "%s takes %lld slices: it was not played",
+                           what, (long long)slices);
+    } else {
+        wh_feasibility_add(job->check, WH_FINDING_PLAY, station,
+                           "%s: GET%s takes %lld slices: GET and PUT were not played here",
+                           job->layout->stations[job->station].name, with_blade(job, with),
+                           (long long)slices);
+    }
     wh_feasibility_warn(job->check);
 }
 
-/* cell.stage(axes, empty): a full cell in which the robot stands there; with `empty` a wafer is to be put
- * into that slot. False: what was planned last takes too long to be played, and a warning says so. */
+/* cell.stage(axes, empty, what): a full cell in which the robot stands there; with `empty` a wafer is to be
+ * put into that slot. False: what was planned last takes too long to be played, and a warning says so. */
 static int stage(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     wh_survey_t *survey = job->survey;
@@ -188,7 +197,7 @@ static int stage(lua_State *L) {
     (void)read_axes(L, job->layout, axes);
     const bool fits = 2 * slices <= WH_TRYOUT_SLICES;
     if (!fits) {
-        say_too_long(job, slices);
+        say_too_long(job, luaL_optstring(L, 3, NULL), slices);
     } else {
         const wh_status_t status = wh_tryout_begin(&survey->tryout, job->from, axes, job->station, empty);
         if (status != WH_OK) {
@@ -240,10 +249,16 @@ static bool is_to_be_played(const job_t *job) {
     return good;
 }
 
-/* Runs protected. */
-static int play_at_station(lua_State *L) {
+static void push_cell(lua_State *L, job_t *job) {
     static const luaL_Reg cell[] = {
         {"stage", stage}, {"move", move}, {"begin", begin_anew}, {"complaint", find_complaint}, {NULL, NULL}};
+    lua_newtable(L);
+    lua_pushlightuserdata(L, job);
+    luaL_setfuncs(L, cell, 1);
+}
+
+/* Runs protected. */
+static int play_at_station(lua_State *L) {
     job_t *job = lua_touserdata(L, 1);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &play_key);
     if (job->from != job->station) {
@@ -252,9 +267,7 @@ static int play_at_station(lua_State *L) {
         lua_pushnil(L);
     }
     lua_pushstring(L, job->layout->stations[job->station].name);
-    lua_newtable(L);
-    lua_pushlightuserdata(L, job);
-    luaL_setfuncs(L, cell, 1);
+    push_cell(L, job);
     push_function(L, job, take_failure);
     if (job->blade != WH_NONE) {
         lua_pushinteger(L, (lua_Integer)job->blade + 1);
@@ -265,6 +278,33 @@ static int play_at_station(lua_State *L) {
     return 0;
 }
 
+/* failed(slot, what, reason), of lua/mcs/flip_room.lua: a FLIP without room. A script may turn over
+ * elsewhere, so it is a warning. */
+static int take_no_room(lua_State *L) {
+    job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    const int32_t slot = (int32_t)luaL_checkinteger(L, 1);
+    wh_feasibility_add(job->check, WH_FINDING_PLAY, slot > 0 ? (int32_t)job->station : WH_NONE, "%s: %s",
+                       luaL_checkstring(L, 2), luaL_checkstring(L, 3))
+        ->slot = slot;
+    wh_feasibility_warn(job->check);
+    return 0;
+}
+
+/* Runs protected. */
+static int turn_over(lua_State *L) {
+    job_t *job = lua_touserdata(L, 1);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &flip_key);
+    if (job->is_home) {
+        lua_pushnil(L);
+    } else {
+        lua_pushstring(L, job->layout->stations[job->station].name);
+    }
+    push_cell(L, job);
+    push_function(L, job, take_no_room);
+    lua_call(L, 3, 0);
+    return 0;
+}
+
 /* ---------------------------------------------------------------------------------------------- all of it */
 
 /* Runs protected. */
@@ -272,7 +312,8 @@ static int begin(lua_State *L) {
     const job_t *job = lua_touserdata(L, 1);
     wh_mcs_push_survey(L);
     wh_mcs_set_up(L, &job->survey->mcs, job->layout);
-    lua_call(L, 1, 2);
+    lua_call(L, 1, 3);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &flip_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &play_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &look_key);
     return 0;
@@ -289,27 +330,34 @@ static int look_at_station(lua_State *L) {
     return 0;
 }
 
-static bool play(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+static bool play_by(job_t *job, lua_CFunction function, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
     wh_sandbox_renew(sandbox);
-    const bool good = wh_sandbox_protect(wh_sandbox_state(sandbox), play_at_station, job, result);
+    const bool good = wh_sandbox_protect(wh_sandbox_state(sandbox), function, job, result);
     wh_tryout_end(&job->survey->tryout);
     return good;
 }
 
+static bool play(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+    return play_by(job, play_at_station, sandbox, result);
+}
+
 /* What is left of a large cell is not played, and that is said. */
-static bool is_spent(const job_t *job) {
+static bool is_spent_by(const job_t *job, const char *words) {
     const bool spent = job->survey->tryout.slices > WH_TRYOUT_ALL_SLICES;
     char with[WH_NAME_SIZE + 8];
     if (spent) {
         wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station,
-                           "%s: GET and PUT%s%s were not played here, nor what follows: after %d slices no "
-                           "more is",
-                           job->layout->stations[job->station].name,
+                           "%s: %s%s%s were not played here, nor what follows: after %d slices no more is",
+                           job->layout->stations[job->station].name, words,
                            job->from == job->station ? "" : " of other stations' wafers",
                            with_blade(job, with), WH_TRYOUT_ALL_SLICES);
         wh_feasibility_warn(job->check);
     }
     return spent;
+}
+
+static bool is_spent(const job_t *job) {
+    return is_spent_by(job, "GET and PUT");
 }
 
 /* A station with wafers of others, up to the first finding. */
@@ -369,12 +417,42 @@ static bool play_own(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *res
     return *spent || !is_to_be_played(job) || play(job, sandbox, result);
 }
 
+/* The layout can turn wafers over. */
+static bool has_flips(const wh_layout_t *layout) {
+    bool has = false;
+    for (const wh_carrier_t *robot = layout->machine.carrier; robot; robot = robot->next) {
+        has = has || robot->chain.has_flip;
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        has = has || layout->stations[s].flipper;
+    }
+    return has;
+}
+
+/* FLIP at home, in a cell that is not spent yet. */
+static bool play_home(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+    job->is_home = true;
+    const bool good = !has_flips(job->layout) || play_by(job, turn_over, sandbox, result);
+    job->is_home = false;
+    return good;
+}
+
+/* FLIP in front of a station and in its clamp. */
+static bool play_flips(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
+    if (!has_flips(job->layout)) {
+        return true;
+    }
+    job->from = job->station;
+    *spent = is_spent_by(job, "FLIPs");
+    return *spent || !is_to_be_played(job) || play_by(job, turn_over, sandbox, result);
+}
+
 typedef bool (*step_t)(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent);
 
 /* Each station with its own wafers, then with those that lie on the blade as other stations have them, then
- * with the other blades. */
+ * with the other blades; and what turns over. */
 static bool play_all(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
-    static const step_t steps[] = {play_own, play_carried, play_blades};
+    static const step_t steps[] = {play_own, play_carried, play_blades, play_flips};
     bool good = true, spent = false;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i) {
         if (steps[i] == play_carried && good && !spent && is_too_large(job)) {
@@ -401,7 +479,8 @@ bool wh_survey_open(wh_survey_t *survey, wh_sandbox_t *sandbox, const wh_layout_
         good = wh_sandbox_protect(L, look_at_station, &job, result);
         add_finding(&job);
     }
-    return good && play_all(&job, sandbox, result);
+    job.station = job.from = 0;
+    return good && play_home(&job, sandbox, result) && play_all(&job, sandbox, result);
 }
 
 void wh_survey_close(wh_survey_t *survey) {

@@ -36,7 +36,8 @@ static void forget(wh_tryout_t *tryout) {
 /* ----------------------------------------------------------------------------------------- full of wafers */
 
 static size_t slots_of(const wh_layout_t *layout, size_t station) {
-    return layout->stations[station].taught ? (size_t)layout->places[station].slots : 0;
+    const bool has_any = station < layout->station_count && layout->stations[station].taught;
+    return has_any ? (size_t)layout->places[station].slots : 0;
 }
 
 size_t wh_tryout_slots(const wh_tryout_t *tryout) {

@@ -191,6 +191,12 @@ json_t *wh_event_to_json(const wh_record_t *record, size_t i) {
         put_measured(record, object, &from->event);
     }
     put_particulars(record, object, &from->event);
+    if (from->seat.is_there) {
+        const wh_seat_t *seat = &from->seat;
+        wh_json_put(
+            object, "seat",
+            wh_json_set(json_object(), "dx %g dy %g s %g held %i", seat->x, seat->y, seat->s, seat->is_held));
+    }
     return object;
 }
 

@@ -42,7 +42,9 @@
  *                 from (handed_over: the gripper that let go), holder (contested), other (slot_occupied:
  *                 the wafer that lies there), height (released_unsupported, mm; if
  *                 it is for its tilt, that as value, degrees), status and message
- *                 (bad_input, whose measured values are null)
+ *                 (bad_input, whose measured values are null), seat { dx, dy, s (mm), held } (picked and
+ *                 handed_over by an edge grip: where the wafer lies in the pocket, gripper's frame, once the
+ *                 plunger has closed, and the plunger then)
  *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
  *                 none): the smallest gaps of a run whose collisions were checked
  *   clearance_curves: kind, times_s, gaps (mm; null: wider than 20): for the kinds that were ever near, the

@@ -39,10 +39,11 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
     return command;
 }
 
-void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event,
+                         const wh_seat_t *seat) {
     record->events =
         wh_array_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
-    record->events[record->event_count++] = (wh_event_record_t){utime, command, *event};
+    record->events[record->event_count++] = (wh_event_record_t){utime, command, *event, *seat};
 }
 
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {

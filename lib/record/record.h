@@ -16,10 +16,19 @@ typedef struct {
     size_t first_event;        /* the number of events before it */
 } wh_command_record_t;
 
+/* Where a wafer comes to lie that an edge grip has met: see record/seat.h. */
+typedef struct {
+    bool is_there; /* else the event is no such */
+    bool is_held;  /* false: it is too large or too small for the window, and let go there */
+    double x, y;   /* mm, gripper's frame: the middle of the face that looks at the blade */
+    double s;      /* of the plunger, mm */
+} wh_seat_t;
+
 typedef struct {
     int64_t utime;
     int32_t command; /* index of the command during which it happened, or WH_NONE */
     wh_event_t event;
+    wh_seat_t seat;
 } wh_event_record_t;
 
 typedef struct {
@@ -119,7 +128,8 @@ typedef struct {
 
 /* Appending; texts are copied. */
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);
-void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event,
+                         const wh_seat_t *seat);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */

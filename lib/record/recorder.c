@@ -1,6 +1,7 @@
 #include "recorder.h"
 
 #include "../text/array.h"
+#include "seat.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -127,8 +128,9 @@ static int32_t command_of(const wh_recorder_t *recorder, const wh_event_t *event
 
 void wh_recorder_events(wh_recorder_t *recorder, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
-        wh_record_add_event(recorder->record, state->utime, command_of(recorder, &state->events[i]),
-                            &state->events[i]);
+        const wh_event_t *event = &state->events[i];
+        const wh_seat_t seat = wh_seat_of(recorder->layout, state, event);
+        wh_record_add_event(recorder->record, state->utime, command_of(recorder, event), event, &seat);
     }
     recorder->record->crowded += state->has_lost_events ? 1 : 0;
 }

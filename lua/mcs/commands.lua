@@ -66,6 +66,9 @@ return function(native, patterns, lookup, alarms)
 
   local flippers = native.module("mcs/flippers.lua")(native, patterns, lookup, arm, mechanisms, alarms)
 
+  commands.flip_room = native.module("mcs/flip_room.lua")(native, patterns, lookup, arm, {
+    before = commands.before, try = commands.try })
+  commands.before, commands.try = nil, nil
   commands.centring = centring.last
   commands.calibrate = native.module("mcs/calibration.lua")(native, patterns, lookup, arm, targets, align,
     commands.carry)

@@ -31,14 +31,14 @@ return function(native)
     rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
     try_out = commands.try_out, try_carrying = commands.try_carrying,
     rehearse_centring = commands.rehearse_centring, rehearse_aside = commands.rehearse_aside,
-  })
+  }, commands.flip_room)
   commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
   local is_any_alive = commands.is_any_alive
   commands.finish, commands.serve, commands.is_any_alive = nil, nil, nil
   local bind = commands.bind
   commands.bind = nil
   commands.try_out, commands.try_carrying, commands.rehearse_centring = nil, nil, nil
-  commands.rehearse_aside = nil
+  commands.rehearse_aside, commands.flip_room = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, lookup, alarms)
   queries.station, commands.station = commands.station, nil
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
@@ -137,8 +137,8 @@ return function(native)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), serve
   end
 
-  -- Of a layout that was read already: what looks at a station of it by its name, and what plays there, see
-  -- lua/mcs/reach.lua.
+  -- Of a layout that was read already: what looks at a station of it by its name, what plays there, and what turns over
+  -- there, without a name at home: see lua/mcs/reach.lua.
   local function survey(layout)
     native.layout = layout
     return function(name, found, missed)
@@ -153,6 +153,8 @@ return function(native)
       else
         reach.play(station, cell, failed, gripper)
       end
+    end, function(name, cell, failed)
+      reach.play_flips(layout.stations[name], cell, failed)
     end
   end
 

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, tostring, type = ipairs, math, tostring, type
 
-return function(native, transfer)
+return function(native, transfer, flip_room)
   local rehearse, rehearse_map = transfer.rehearse, transfer.rehearse_map
   local reach = {}
 
@@ -199,6 +199,16 @@ return function(native, transfer)
         failed(slot, word .. " of a wafer from " .. from.name, reason_of(problem))
         return
       end
+    end
+  end
+
+  -- Calls failed(slot, what, reason) for each FLIP that has no room in front of the station or in its clamp; without a
+  -- station for those at home, which come first. Slot 0: of none.
+  function reach.play_flips(station, cell, failed)
+    if station then
+      flip_room.look(station, servers(station), cell, failed)
+    else
+      flip_room.look_at_home(cell, failed)
     end
   end
 

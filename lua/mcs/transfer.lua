@@ -421,11 +421,18 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
     return cell.complaint() or not good and problem or nil
   end
 
+  -- The axes in front of the slot that a GET goes to, from where the arm stands.
+  local function before(station, slot, gripper)
+    return before_slot(plan("get", station, slot, gripper))
+  end
+
+  transfer.try, transfer.before = try, before
+
   -- GET and PUT at these slots, one after another in one cell, from in front of the first one; `gripper` as in
   -- transfer.rehearse. Returns the slot at which a command fails, its word and the error; or nil; or false if
   -- the cell cannot be had.
   function transfer.try_out(station, slots, cell, gripper)
-    if not cell.stage(before_slot(plan("get", station, slots[1], gripper))) then
+    if not cell.stage(before(station, slots[1], gripper)) then
       return false
     end
     for step = 1, 2 * #slots do
@@ -441,7 +448,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   -- A GET at `from`, then a PUT at an empty slot: how the wafer lies on the blade is the other station's
   -- doing. With `again` a GET follows. Returns the word of the one that fails and the error; or nil.
   function transfer.try_carrying(from, station, slot, cell, again)
-    cell.stage(before_slot(plan("get", from, 1)), slot)
+    cell.stage(before(from, 1), slot)
     if try("get", from, 1, cell) then
       return nil
     end

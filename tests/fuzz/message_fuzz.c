@@ -15,6 +15,7 @@
 #include "link/messages.h"
 #include "link/sim_process.h"
 #include "print/record_print.h"
+#include "record/seat.h"
 #include "text/array.h"
 
 /* ------------------------------------------------------------------------------------------------- datagrams */
@@ -441,7 +442,8 @@ static void run_motion_control(frames_t *frames, bool free_running) {
         REQUIRE(status != WH_OK || free_running || (state.seq == seq && state.status == WH_OK));
         for (size_t i = 0; i < state.event_count; ++i) {
             check_event(&state.events[i], seq);
-            wh_record_add_event(&record, state.utime, WH_NONE, &state.events[i]);
+            const wh_seat_t seat = wh_seat_of(layout, &state, &state.events[i]);
+            wh_record_add_event(&record, state.utime, WH_NONE, &state.events[i], &seat);
         }
         wh_mcs_process_idle(&control);
         take_requests();

@@ -97,6 +97,8 @@ final class ProximityHistory {
         double[] limits;
         /** As the layout has them; null where it is not known. */
         String[] names, valves;
+        /** What holds wafers, as ProximityPlungers has it. */
+        int[] grips;
     }
 
     /** Samples that lie together. A full one never changes, so copies share it. */
@@ -359,6 +361,11 @@ final class ProximityHistory {
         return marks.commands(run, from, to);
     }
 
+    /** Where a gripper's plunger was at that time, us; or null. */
+    synchronized ProximityPlungers.Plunger plunger(int gripper, double time) {
+        return marks.plunger(gripper, time);
+    }
+
     /** The newest sample that is not after a time, us; null if there is none. */
     synchronized Reading at(double utime) {
         final int after = count == 0 ? 0 : find(Math.nextUp(utime));
@@ -398,10 +405,12 @@ final class ProximityHistory {
         summary.limits = limits.clone();
         summary.names = new String[grippers];
         summary.valves = new String[grippers];
+        summary.grips = new int[grippers];
         for (int g = 0; g < grippers; g++) {
             final boolean known = isNamed() && g < named.grippers.length;
             summary.names[g] = known ? named.grippers[g] : null;
             summary.valves[g] = known ? named.valves[g] : null;
+            summary.grips[g] = known ? named.grips[g] : ProximityPlungers.VACUUM;
         }
         return summary;
     }

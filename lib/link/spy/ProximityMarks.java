@@ -7,7 +7,8 @@ import java.util.List;
 import java.util.Locale;
 
 /**
- * What is marked on the time axis of a run: the events out of state messages, and the commands out of motion control's.
+ * What is marked on the time axis of a run: the events and plungers out of state messages, and the commands out of motion
+ * control's.
  * Both are read by hand: the generated classes believe any count and any length.
  */
 final class ProximityMarks {
@@ -85,11 +86,14 @@ final class ProximityMarks {
     static final class State {
         private static final int HEAD = 117, WAFER = 101, GRIPPER = 515, EVENT = 157, FAULT = 328, SAMPLE = 4,
                                  LOST = 1, DOOR = 8, LATCHING = 41, LATCH = 24, CHECK = 8;
+        /** Of a gripper's bytes, before its plunger's phase. */
+        private static final int PLUNGER = 270;
         private static final int WAFERS = 256, GRIPPERS = 16, EVENTS = 128, FAULTS = 16, SAMPLES = 64,
                                  DOORS = 8, LATCHES = 16;
 
         final long utime, seq, run, layout;
         final List<Event> events = new ArrayList<>();
+        final List<ProximityPlungers.Plunger> plungers = new ArrayList<>();
 
         /** Throws an IllegalArgumentException or a BufferUnderflowException when the bytes are not a whole state. */
         State(ByteBuffer data) {
@@ -119,6 +123,17 @@ final class ProximityMarks {
                 data.position(first + k * EVENT);
                 events.add(event(data));
             }
+            for (int g = 0; status == 0 && g < grippers; g++) {
+                data.position(first - GRIPPER * (grippers - g) + PLUNGER);
+                plungers.add(plunger(data));
+            }
+        }
+
+        private ProximityPlungers.Plunger plunger(ByteBuffer data) {
+            final int phase = data.get();
+            data.getInt(); // the wafer
+            final double s = data.getDouble();
+            return new ProximityPlungers.Plunger(utime, phase, s, data.getDouble());
         }
 
         private Event event(ByteBuffer data) {
@@ -183,6 +198,7 @@ final class ProximityMarks {
 
     private final ArrayList<Event> events = new ArrayList<>();
     private final ArrayList<Command> commands = new ArrayList<>();
+    private ProximityPlungers plungers = new ProximityPlungers();
     private long lastSeq, missing;
 
     private static void demand(boolean good, String what) {
@@ -208,6 +224,7 @@ final class ProximityMarks {
     /** Another run begins, or the same one again: keeps only commands of it that have begun already. */
     void begin(long run, long utime) {
         events.clear();
+        plungers.clear();
         for (final Command command : commands) {
             command.run = command.run == 0 ? run : command.run;
         }
@@ -227,6 +244,7 @@ final class ProximityMarks {
         lastSeq = message.seq;
         events.addAll(message.events);
         forget(events);
+        plungers.add(message.plungers);
     }
 
     /** Takes how far a command has come. Messages may be missing: what goes on or ends has begun. The first command of a
@@ -272,10 +290,15 @@ final class ProximityMarks {
         return null;
     }
 
-    private static void forget(ArrayList<?> marks) {
+    static void forget(ArrayList<?> marks) {
         if (marks.size() > MOST) {
             marks.subList(0, marks.size() - MOST / 2).clear();
         }
+    }
+
+    /** Where a gripper's plunger was at that time, us; or null. */
+    ProximityPlungers.Plunger plunger(int gripper, double time) {
+        return plungers.at(gripper, time);
     }
 
     /** How many states of the run never came, and with them what happened there. */
@@ -338,6 +361,7 @@ final class ProximityMarks {
     ProximityMarks copy() {
         final ProximityMarks other = new ProximityMarks();
         other.events.addAll(events);
+        other.plungers = plungers.copy();
         other.commands.addAll(commands);
         other.commands.replaceAll(command -> command.isOver() ? command : command.copy(command.end));
         other.lastSeq = lastSeq;

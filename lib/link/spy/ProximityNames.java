@@ -11,6 +11,8 @@ import lcm.lcm.LCMDataInputStream;
 final class ProximityNames {
     final long layout;
     final String[] grippers, valves, wafers;
+    /** What holds wafers, by gripper, as ProximityPlungers has it. */
+    final byte[] grips;
 
     private static final int GRIPPERS = 16;
     private static final int WAFERS = 256;
@@ -42,7 +44,10 @@ final class ProximityNames {
         count(data, GRIPPERS);   // edge grips
         count(data, DOORS);
         valves = new String[grippers.length];
-        skip(data, grippers.length); // grips
+        grips = new byte[grippers.length];
+        for (int g = 0; g < grips.length; g++) {
+            grips[g] = data.readByte();
+        }
         texts(data, grippers);
         texts(data, valves);
         for (int k = 0; k < stations; k++) {

@@ -215,7 +215,7 @@ final class ProximityView extends JPanel {
         final int rows = ProximityTimes.countRows(commands);
 
         int y = area.y + line / 2;
-        paintHeader(g, summary, gripper, reading, new Rectangle(left, y, width, 3 * line));
+        paintHeader(g, summary, gripper, reading, time, new Rectangle(left, y, width, 3 * line));
         y += 3 * line;
         final int lanes = (LANES.length + 1 + rows) * (line + 3);
         final int each = Math.max(2 * line, (area.y + area.height - y - lanes - 2 * line) / 3);
@@ -231,7 +231,8 @@ final class ProximityView extends JPanel {
         y += 2;
         times.paintLines(g, events, y, y + LANES.length * (line + 3));
         for (int k = 0; k < LANES.length; k++) {
-            paintLane(g, strip, k, new Rectangle(left, y, width, line));
+            final boolean isValve = k == 1 && summary.grips[gripper] != ProximityPlungers.VACUUM;
+            paintLane(g, strip, k, isValve ? "valve" : LANES[k], new Rectangle(left, y, width, line));
             y += line + 3;
         }
         times.paintEvents(g, events, shown, new Rectangle(left, y, width, line));
@@ -253,7 +254,7 @@ final class ProximityView extends JPanel {
     }
 
     private void paintHeader(Graphics2D g, ProximityHistory.Summary summary, int gripper,
-                             ProximityHistory.Reading reading, Rectangle area) {
+                             ProximityHistory.Reading reading, double time, Rectangle area) {
         final int line = g.getFontMetrics().getHeight();
         final int flags = reading == null ? 0 : reading.flags[gripper];
         final boolean ready = (flags & ProximityHistory.READY) != 0;
@@ -276,11 +277,7 @@ final class ProximityView extends JPanel {
 
         g.setFont(plain);
         g.setColor(ProximityChart.INK);
-        final String valve = summary.valves[gripper] == null ? "valve" : summary.valves[gripper];
-        final boolean open = (flags & ProximityHistory.OPEN) != 0;
-        final String position = open ? " = 0  open" : " = 1  closed";
-        final String level = fitting(g, area.width, valve + position + (open ? ", vacuum on" : ""),
-                                     valve + position, open ? "open" : "closed", "");
+        final String level = fitting(g, area.width, grip(summary, gripper, flags, time));
         final int second = baseline + line + 2;
         g.drawString(level, area.x, second);
         final int room = area.width - g.getFontMetrics().stringWidth(level + "  ");
@@ -291,6 +288,21 @@ final class ProximityView extends JPanel {
                                           : fitting(g, room, (holds ? "holds " : "measured: ") + wafer + face,
                                                     wafer + face, "");
         g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
+    }
+
+    /** The valve and what it works, in words, and in fewer; passive pads have none. */
+    private String[] grip(ProximityHistory.Summary summary, int gripper, int flags, double time) {
+        final boolean open = (flags & ProximityHistory.OPEN) != 0;
+        final String valve = summary.valves[gripper] == null ? "valve" : summary.valves[gripper];
+        final String position = valve + (open ? " = 0  open" : " = 1  closed");
+        if (summary.grips[gripper] == ProximityPlungers.PASSIVE) {
+            return new String[] {"passive pads", "passive", ""};
+        } else if (summary.grips[gripper] == ProximityPlungers.EDGE) {
+            final ProximityPlungers.Plunger plunger = shown.plunger(gripper, time);
+            final String words = plunger == null ? "plunger unknown" : plunger.words();
+            return new String[] {position + ", edge grip, " + words, words, open ? "open" : "closed", ""};
+        }
+        return new String[] {position + (open ? ", vacuum on" : ""), position, open ? "open" : "closed", ""};
     }
 
     private String wafer(ProximityHistory.Reading reading, int gripper) {
@@ -318,11 +330,11 @@ final class ProximityView extends JPanel {
         g.drawOval(x, y, size, size);
     }
 
-    private static void paintLane(Graphics2D g, ProximityHistory.Strip strip, int lane, Rectangle area) {
+    private static void paintLane(Graphics2D g, ProximityHistory.Strip strip, int lane, String name,
+                                  Rectangle area) {
         final FontMetrics metrics = g.getFontMetrics();
         g.setColor(ProximityChart.FAINT);
-        g.drawString(LANES[lane], area.x - metrics.stringWidth(LANES[lane]) - 6,
-                     area.y + metrics.getAscent());
+        g.drawString(name, area.x - metrics.stringWidth(name) - 6, area.y + metrics.getAscent());
         g.setColor(ProximityChart.GRID);
         g.fillRect(area.x, area.y + area.height / 2, area.width, 1);
         g.setColor(LANE_COLOURS[lane]);

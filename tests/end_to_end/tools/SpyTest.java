@@ -555,9 +555,8 @@ final class SpyTest {
     }
 
     /** A recorded run, written by the simulator itself. */
-    private static void takesARecordedRun(String path) throws IOException {
+    private static ProximityHistory recorded(String path) throws IOException {
         final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
-        final ProximityHistory history = feed.history("WAFERHAND_STATE");
         final Log log = new Log(path, "r");
         try {
             while (true) {
@@ -569,7 +568,42 @@ final class SpyTest {
         } catch (EOFException end) {
             log.close();
         }
+        final ProximityHistory history = feed.history("WAFERHAND_STATE");
         check(history.summary().refused == 0, "each message is whole, by its check, too");
+        return history;
+    }
+
+    /** An edge grip takes a wafer that is 0.2 mm too large, puts it down, and jams at one that lies off. */
+    private static void showsPlungers(String path) throws IOException {
+        final ProximityHistory history = recorded(path);
+        check(history.summary().grips[0] == ProximityPlungers.EDGE, "the cell says what it is");
+        final List<String> words = new ArrayList<>();
+        for (long at = 0; at <= history.summary().last; at += 1000) {
+            final ProximityPlungers.Plunger plunger = history.plunger(0, at);
+            final String text = plunger == null ? "none" : plunger.words();
+            if (!text.contains("closes") && !text.contains("opens") &&
+                (words.isEmpty() || !words.get(words.size() - 1).equals(text))) {
+                words.add(text);
+            }
+        }
+        check(words.equals(List.of("none", "plunger open", "plunger -0.215 mm, holds", "plunger open",
+                                   "plunger -3.000 mm, jammed by 0.500 mm", "plunger open")),
+              words.toString());
+        check(history.copy().plunger(0, AT_END).words().equals("plunger open"), "frozen, too");
+        history.add(new ProximityMarks.State(java.nio.ByteBuffer.wrap(encode(step(RUN, 1)))));
+        check(history.plunger(0, AT_END).words().equals("plunger open") && history.plunger(1, 999) == null,
+              "of another run nothing is left");
+        check(history.summary().grips[0] == ProximityPlungers.VACUUM, "nor of another cell");
+        final ProximityPlungers many = new ProximityPlungers();
+        for (int k = 0; k < 2 * ProximityMarks.MOST; k++) {
+            many.add(List.of(new ProximityPlungers.Plunger(k, 1, k, 0)));
+        }
+        check(many.at(0, 5) == null && many.at(0, AT_END).s == 2 * ProximityMarks.MOST - 1,
+              "the oldest are forgotten");
+    }
+
+    private static void takesARecordedRun(String path) throws IOException {
+        final ProximityHistory history = recorded(path);
         final StringBuilder text = new StringBuilder();
         for (final ProximityMarks.Event event : history.events(0, 0, AT_END)) {
             text.append(event.name()).append(' ').append(history.waferName(event.wafer)).append(", ");
@@ -788,6 +822,7 @@ final class SpyTest {
         marksTasks();
         believesTheSimulator();
         takesARecordedRun(arguments[0]);
+        showsPlungers(arguments[2]);
         putsScansTogether();
         showsAScan(arguments[1]);
         formats();
