@@ -568,7 +568,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
               does = "lets the next command that can answer the error of this number do so; tells the fault's number" },
     CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
     SET_STATION = { takes = { "station" }, options = fields(lookup.standing, { robot = "robot", gripper = "gripper" }),
-                    of_axes = true, needs_option = true, run = set_station,
+                    of_axes = true, run = set_station,
                     does = "from now on the station lies where the gripper is with these axes" },
     STATION = { takes = { "station" }, options = { robot = "robot", gripper = "gripper" }, run = station, asks = true,
                 of_robot = true, keeps = true, does = "where the axes stand with the gripper in its slot 1, degrees and mm" },
