@@ -149,8 +149,8 @@ return function(native, lookup)
   end
 
   local function set(name, fields)
-    local station, robot, gripper = find(name, fields)
-    local axes = set_axes(lookup.table("axes", fields), station, robot, gripper)
+    local station, robot, gripper = find(name, lookup.table("axes", fields))
+    local axes = set_axes(fields, station, robot, gripper)
     move(station, robot, gripper, native.shift(station.index, robot, gripper, axes, true))
   end
 

@@ -80,6 +80,7 @@ function cases.wrong_values()
     get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
     ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
     continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) },
+    station = { station, options }, set_station = { station, { "axes: ", { z = 950 }, { 5, true, "z", NIL } } },
     edge_scan = { station }, align = { station, { "options: ", nil, { 5, true, "90" } } },
     calibrate = { station, options }, lift = { station, { "where: ", "up", { "left", 5, {}, NIL } } },
     valve = { gripper, number("level", 1, 2, -1, 0.5) }, flip = { gripper },

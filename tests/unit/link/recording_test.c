@@ -459,7 +459,7 @@ static void a_run_replaces_a_log_with_its_first_slice(void **state) {
     put_text("run.log", "old");
     assert_true(begin("run.log", false, true, 0));
     wh_recording_message(&record, WH_CHANNEL_REQUEST, "none", 4);
-    assert_true(wh_recording_close(&record));
+    assert_false(wh_recording_close(&record));
     assert_true(has_text("run.log", "old"));
     assert_true(begin("run.log", false, true, 0));
     send_slice(1);
@@ -522,13 +522,18 @@ static void a_run_spares_inputs_and_the_records_of_others(void **state) {
     assert_true(has_text("script.lua", "old"));
 
     put_text("busy.log", "old");
-    const int fd = open(in_folder("busy.log"), O_WRONLY);
+    int fd = open(in_folder("busy.log"), O_WRONLY);
     assert_int_equal(flock(fd, LOCK_EX | LOCK_NB), 0);
+    assert_false(begin("busy.log", false, true, 0));
+    (void)close(fd);
     assert_true(begin("busy.log", false, true, 0));
+    fd = open(in_folder("busy.log"), O_WRONLY);
+    assert_int_equal(flock(fd, LOCK_EX | LOCK_NB), 0);
     send_slice(1);
     assert_false(wh_recording_close(&record));
     assert_true(has_text("busy.log", "old"));
     (void)close(fd);
+    assert_false(begin("no/where.log", false, true, 0));
 }
 
 static void the_file_is_locked_while_it_is_written(void **state) {
