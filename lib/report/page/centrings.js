@@ -31,7 +31,7 @@
         const y = scale(-reach, reach, SIZE + 8, 8);
         made.append(shape('path', { class: 'axis', d: `M${LEFT} 8V${SIZE + 8}H${LEFT + SIZE}` }),
             shape('text', { x: LEFT + SIZE, y: SIZE + BELOW + 4, 'text-anchor': 'end' }, 'x, mm'),
-            shape('text', { x: 4, y: 18 }, 'y, mm'));
+            shape('text', { x: LEFT + 7, y: 18 }, 'y, mm'));
         ticks(reach, 2).forEach((value) => made.append(
             shape('text', { x: x(value), y: SIZE + 24, 'text-anchor': 'middle' }, W.tick(value, reach)),
             shape('text', { x: LEFT - 6, y: y(value) + 4, 'text-anchor': 'end' }, W.tick(value, reach)),
