@@ -57,9 +57,15 @@ static void put_reason(char *line, wh_status_t why) {
 
 /* A log's states against the command's end. */
 static void put_other(char *line, wh_status_t status, const wh_command_record_t *command) {
-    (void)snprintf(line, WH_CENTRING_LINE_BYTES,
-                   "not told: by this log's states it is %d %s, and the command ended with %d %s", (int)status,
-                   wh_status_name(status), (int)command->error, wh_status_name(command->error));
+    const int length = snprintf(line, WH_CENTRING_LINE_BYTES, "not told: this log's states alone give %d %s, but ",
+                                (int)status, wh_status_name(status));
+    if (command->error == WH_OK) {
+        (void)snprintf(line + length, (size_t)(WH_CENTRING_LINE_BYTES - length),
+                       "the command was done: motion control knew more");
+    } else {
+        (void)snprintf(line + length, (size_t)(WH_CENTRING_LINE_BYTES - length),
+                       "the command ended with %d %s", (int)command->error, wh_status_name(command->error));
+    }
 }
 
 static void put_verdict(const wh_centring_record_t *centring, const wh_command_record_t *command,
