@@ -1,5 +1,5 @@
-/* Passes through the beams at stations' doors, as the states tell them: each is estimated again when its beams
- * are disarmed, which motion control does once it has asked. */
+/* Passes through the beams at stations' doors, as the states tell them: each is estimated again when its
+ * beams are disarmed, which motion control does once it has asked. */
 #include <math.h>
 #include <string.h>
 

@@ -81,12 +81,12 @@ void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t 
     wh_pass_t *pass = &mcs->pass;
     wh_pass_free(pass);
     *pass = (wh_pass_t){.order = order,
-                            .station = station,
-                            .gripper = gripper,
-                            .before = pass->number,
-                            .number = pass->number,
-                            .seq = pass->seq,
-                            .goes_on = true};
+                        .station = station,
+                        .gripper = gripper,
+                        .before = pass->number,
+                        .number = pass->number,
+                        .seq = pass->seq,
+                        .goes_on = true};
     mcs->command.latch = order;
     mcs->unplayed = "beams at a station's door";
 }

@@ -15,7 +15,8 @@
 #define LEAST_SD 0.001
 
 /* Where the gripper was as a beam changed; between two slices its heading is the one's. */
-static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing, wh_pose_t *base_from_gripper) {
+static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing,
+                       wh_pose_t *base_from_gripper) {
     const wh_pass_t *pass = &mcs->pass;
     const double slices = crossing->time * 1e6 / (double)mcs->layout->slice_us - (double)pass->armed_seq;
     const size_t slice = (size_t)slices;

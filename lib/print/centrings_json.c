@@ -17,10 +17,10 @@ static json_t *crossing(const void *given, size_t k) {
     const wh_pass_crossing_t *from = &subject->centring->crossings[k];
     const wh_layout_t *layout = subject->record->layout;
     const wh_latch_order_t order = wh_layout_beams_at(layout, (size_t)subject->centring->station);
-    return wh_json_set(json_object(), "beam %d edge %s use %s x %g y %g time %g",
-                       from->crossing.beam - order.first + 1,
-                       from->crossing.edge == WH_CROSSING_IN ? "in" : "out",
-                       wh_centring_use(subject->centring, 0, k), from->crossing.x, from->crossing.y, from->time);
+    return wh_json_set(
+        json_object(), "beam %d edge %s use %s x %g y %g time %g", from->crossing.beam - order.first + 1,
+        from->crossing.edge == WH_CROSSING_IN ? "in" : "out", wh_centring_use(subject->centring, 0, k),
+        from->crossing.x, from->crossing.y, from->time);
 }
 
 static json_t *residuals(const wh_centring_record_t *centring, int32_t i) {
@@ -70,13 +70,12 @@ json_t *wh_centring_to_json(const void *given, size_t i) {
     const subject_t subject = {record, from};
     wh_centring_words_t words;
     wh_centring_words(record, from, &words);
-    json_t *object =
-        wh_json_set(json_object(), "at_s %g command %lld station %s gripper %s wafer %s error %d sure %i",
-                    wh_throughput_seconds(record, from->slice),
-                    from->command != WH_NONE ? (json_int_t)from->command : WH_JSON_NONE,
-                    wh_record_station_name(record, from->station),
-                    wh_record_gripper_name(record, from->gripper), wh_record_wafer_name(record, from->wafer),
-                    (int)words.verdict, words.is_sure);
+    json_t *object = wh_json_set(
+        json_object(), "at_s %g command %lld station %s gripper %s wafer %s error %d sure %i",
+        wh_throughput_seconds(record, from->slice),
+        from->command != WH_NONE ? (json_int_t)from->command : WH_JSON_NONE,
+        wh_record_station_name(record, from->station), wh_record_gripper_name(record, from->gripper),
+        wh_record_wafer_name(record, from->wafer), (int)words.verdict, words.is_sure);
     (void)wh_json_set(object, "missed %lld skipped %i repeated %i lacking %lld", (json_int_t)from->missed,
                       from->skipped, from->repeated, (json_int_t)from->lacking);
     return wh_json_add(object, "known crossings candidates words", known(from),

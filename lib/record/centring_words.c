@@ -48,7 +48,7 @@ static bool is_other(const wh_centring_record_t *centring, const wh_command_reco
 }
 
 static void put_reason(char *line, wh_status_t why) {
-    const char *how = why == WH_STATUS_CENTRE_NOT_SURE       ? "not sure"
+    const char *how = why == WH_STATUS_CENTRE_NOT_SURE        ? "not sure"
                       : why == WH_STATUS_CORRECTION_TOO_LARGE ? "not to be used"
                                                               : "no estimate";
     (void)snprintf(line, WH_CENTRING_LINE_BYTES, "%s: %s (%d %s)", how, wh_record_error_text(why), (int)why,
@@ -57,8 +57,9 @@ static void put_reason(char *line, wh_status_t why) {
 
 /* A log's states against the command's end. */
 static void put_other(char *line, wh_status_t status, const wh_command_record_t *command) {
-    const int length = snprintf(line, WH_CENTRING_LINE_BYTES, "not told: this log's states alone give %d %s, but ",
-                                (int)status, wh_status_name(status));
+    const int length =
+        snprintf(line, WH_CENTRING_LINE_BYTES, "not told: this log's states alone give %d %s, but ",
+                 (int)status, wh_status_name(status));
     if (command->error == WH_OK) {
         (void)snprintf(line + length, (size_t)(WH_CENTRING_LINE_BYTES - length),
                        "the command was done: motion control knew more");
@@ -180,9 +181,10 @@ static void put_notch(char *line, const wh_centring_record_t *centring) {
                        wh_deg_from_rad(known->notch_direction),
                        fmax(wh_deg_from_rad(known->sd_notch), LEAST_DEG));
     } else if (centring->repeated) {
-        (void)snprintf(line, WH_CENTRING_LINE_BYTES,
-                       "notch: a log does not tell if motion control knew its direction; here it counts as not "
-                       "known");
+        (void)snprintf(
+            line, WH_CENTRING_LINE_BYTES,
+            "notch: a log does not tell if motion control knew its direction; here it counts as not "
+            "known");
     } else {
         (void)snprintf(line, WH_CENTRING_LINE_BYTES,
                        "notch: its direction is not known, the crossings alone tell if one met it");

@@ -1,5 +1,5 @@
-/* Centrings on the way: what the beams at a station's door told of a wafer that passed them, as motion control
- * estimated it; of a log, as its states tell it again.
+/* Centrings on the way: what the beams at a station's door told of a wafer that passed them, as motion
+ * control estimated it; of a log, as its states tell it again.
  *
  * A log has the latches and the blade's places. It has not what motion control knew of the notch's direction,
  * which ALIGN may have found; there the direction counts as not known, and `repeated` says so.

@@ -1,5 +1,5 @@
-/* A blade's pass through the beams at a station's door: the latches and the blade's places as they come, slice
- * by slice, and the points of the blade that were in the beams.
+/* A blade's pass through the beams at a station's door: the latches and the blade's places as they come,
+ * slice by slice, and the points of the blade that were in the beams.
  *
  * A latch comes after its delay, so the crossing was where the blade was then. Whoever collects knows the
  * blade's places: motion control as it commands them, a log's reader as the states tell them.

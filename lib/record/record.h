@@ -135,8 +135,8 @@ void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *cen
 /* An open wait, from the end of slice `begin` on. */
 void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin);
 
-/* Drops commands, events, expectations, puts, cycles, waits, centrings and intervals; script, layout, reach and the
- * sums stay. */
+/* Drops commands, events, expectations, puts, cycles, waits, centrings and intervals; script, layout, reach
+ * and the sums stay. */
 void wh_record_forget(wh_record_t *record);
 
 /* The same, but the last command that failed stays: for sessions without an end, which tell it in STATUS.

@@ -1,5 +1,5 @@
-/* Plots of centrings on the way: the blade's frame with the crossings and the circles through them, the middle
- * of it enlarged, and the residuals. */
+/* Plots of centrings on the way: the blade's frame with the crossings and the circles through them, the
+ * middle of it enlarged, and the residuals. */
 #include <math.h>
 
 #include "../math/trig.h"
@@ -85,8 +85,7 @@ static void put_candidate(wh_plot_t *plot, shown_t *shown, int32_t i) {
     for (size_t k = 0; k < centring->count; ++k) {
         const double um = 1000 * wh_centring_residual(centring, i, k);
         wh_plot_row(plot, (double)k + 1, &um, 1);
-        shown->scale =
-            centre->use[k] == WH_CROSSING_USED ? fmax(shown->scale, AIR * fabs(um)) : shown->scale;
+        shown->scale = centre->use[k] == WH_CROSSING_USED ? fmax(shown->scale, AIR * fabs(um)) : shown->scale;
     }
     shown->residuals[i] = wh_plot_end_block(plot);
 }
@@ -138,13 +137,14 @@ static void draw_words(wh_plot_t *plot, const shown_t *shown) {
         if (is_double) {
             put_place(script, centring, 1);
         }
-        fprintf(script, "' at screen 9 / W, screen 1 - 26 / H\nset label 6 'sd %.2f \u00b5m, radius %.4f mm, ",
+        fprintf(script,
+                "' at screen 9 / W, screen 1 - 26 / H\nset label 6 'sd %.2f \u00b5m, radius %.4f mm, ",
                 1000 * centre->sd_centre, centre->radius);
     } else {
         fputs("no place is told' at screen 9 / W, screen 1 - 26 / H\nset label 6 '", script);
     }
-    fprintf(script, "used %d, missed %lld' at screen 9 / W, screen 1 - 40 / H\n", centre ? (int)centre->used : 0,
-            (long long)centring->missed);
+    fprintf(script, "used %d, missed %lld' at screen 9 / W, screen 1 - 40 / H\n",
+            centre ? (int)centre->used : 0, (long long)centring->missed);
     fprintf(script, "set label 8 'notch: %s' at screen 9 / W, screen 1 - 54 / H\n",
             !(known->notch_width > 0) ? "none"
             : known->notch_known      ? "its direction is known by ALIGN"
@@ -196,10 +196,11 @@ static void draw_blade(wh_plot_t *plot, const shown_t *shown) {
             "set xrange [-%.6g:%.6g]\nset yrange [-%.6g:%.6g]\nset xtics 100\nset ytics 100\n"
             "set key at screen 1 - 10 / W, screen 1 - 72 / H top right vertical\n",
             reach, reach, reach, reach);
-    fprintf(plot->script,
-            "plot '%s.dat' index %zu using 1:2 with lines lc rgb '#808080' lw 0.8 dt (2,3) title 'nominal, in "
-            "the middle'",
-            plot->name, shown->nominal);
+    fprintf(
+        plot->script,
+        "plot '%s.dat' index %zu using 1:2 with lines lc rgb '#808080' lw 0.8 dt (2,3) title 'nominal, in "
+        "the middle'",
+        plot->name, shown->nominal);
     draw_block(plot, shown->circles[0], "with lines lc rgb '#1f4e8c' lw 1.1 dt 1",
                title_of(shown->centring, 0));
     draw_block(plot, shown->circles[1], "with lines lc rgb '#9c1c1c' lw 1.1 dt (6,4)",
@@ -209,6 +210,13 @@ static void draw_blade(wh_plot_t *plot, const shown_t *shown) {
                    kind == NOTCH && is_double ? "notch, by the likelier" : looks[kind][1]);
     }
     fputs("\nunset arrow\nset size noratio\n", plot->script);
+}
+
+/* 1, 2 or 5 times a power of ten: one or two of them are within the reach. */
+static double step_within(double reach) {
+    const double power = pow(10, floor(log10(reach / 2)));
+    const double times = reach / 2 / power;
+    return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
 }
 
 /* The same panel's right half, below the key. */
@@ -223,13 +231,14 @@ static void draw_middle(wh_plot_t *plot, const shown_t *shown) {
             "set tmargin at screen 1 - (top + 190) / H\n"
             "set label 1 'middle, y (mm)' at screen 0.59, graph 0.5 center rotate by 90\n"
             "set label 2 'middle, x (mm)' at graph 0.5, graph 0 center offset 0, -2.2\n"
-            "set xrange [-%.6g:%.6g]\nset yrange [-%.6g:%.6g]\nset xtics autofreq\nset ytics autofreq\n"
+            "set xrange [-%.6g:%.6g]\nset yrange [-%.6g:%.6g]\nset xtics %.6g\nset ytics %.6g\n"
             "set size ratio -1\nunset key\n",
-            reach, reach, reach, reach);
+            reach, reach, reach, reach, step_within(reach), step_within(reach));
     fputs("plot '+' using (0):(0) every ::::0 with points lc rgb '#808080' pt 1 ps 1 notitle", plot->script);
     draw_block(plot, shown->middles[0], "with points lc rgb '#1f4e8c' pt 7 ps 0.5", NULL);
     draw_block(plot, shown->middles[1], "with points lc rgb '#9c1c1c' pt 6 ps 0.7 lw 1.4", NULL);
-    fprintf(plot->script, "\nset size noratio\nset lmargin at screen %d / W\nset rmargin at screen 1 - 10 / W\n",
+    fprintf(plot->script,
+            "\nset size noratio\nset lmargin at screen %d / W\nset rmargin at screen 1 - 10 / W\n",
             plot->frame.left);
 }
 
@@ -265,8 +274,7 @@ static void draw_residuals(wh_plot_t *plot, const shown_t *shown) {
         fputs("set label 3 'no place of the wafer is told' at graph 0.5, graph 0.6 center\n", plot->script);
     }
     fputs("plot 0 with lines lc rgb '#808080' lw 0.7 notitle", plot->script);
-    draw_block(plot, shown->residuals[0], "with points lc rgb '#1f4e8c' pt 7 ps 0.5",
-               title_of(centring, 0));
+    draw_block(plot, shown->residuals[0], "with points lc rgb '#1f4e8c' pt 7 ps 0.5", title_of(centring, 0));
     draw_block(plot, shown->residuals[1], "with points lc rgb '#9c1c1c' pt 6 ps 0.7 lw 1.4",
                title_of(centring, 1));
     fputc('\n', plot->script);

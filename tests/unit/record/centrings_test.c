@@ -47,10 +47,12 @@ static const char *words_of(size_t i, size_t line, bool *is_sure) {
 static const char *const told =
     "local function tell()\n"
     "  local c = centring()\n"
-    "  local t = { c.error, c.used, c.missed, #c.crossings, #c.candidates, c.dx or 0, c.dy or 0, c.sd_dx or 0, c.sd_dy or 0,\n"
+    "  local t = { c.error, c.used, c.missed, #c.crossings, #c.candidates, c.dx or 0, c.dy or 0, c.sd_dx or "
+    "0, c.sd_dy or 0,\n"
     "    c.sd or 0, c.radius or 0 }\n"
     "  for _, k in ipairs(c.candidates) do t[#t + 1] = k.dx t[#t + 1] = k.dy t[#t + 1] = k.sd end\n"
-    "  for _, k in ipairs(c.crossings) do t[#t + 1] = k.x t[#t + 1] = k.y t[#t + 1] = k.time t[#t + 1] = k.beam\n"
+    "  for _, k in ipairs(c.crossings) do t[#t + 1] = k.x t[#t + 1] = k.y t[#t + 1] = k.time t[#t + 1] = "
+    "k.beam\n"
     "    t[#t + 1] = ({ rim = 0, notch = 1, other = 2 })[k.use] t[#t + 1] = k.edge == 'in' and 0 or 1 end\n"
     "  for i, value in ipairs(t) do t[i] = ('%.17g'):format(value) end\n"
     "  expect(true, table.concat(t, ' '))\n"
@@ -140,7 +142,8 @@ static void words_tell_the_verdict(void **state) {
     assert_non_null(strstr(words_of(1, 3, &sure), "used: 3 of the rim"));
     assert_non_null(strstr(words_of(1, 3, &sure), "left out: 1 for the notch, 0 as none of the rim"));
     assert_string_equal(words_of(1, 5, &sure), "command: PUT LL 2, done");
-    assert_string_equal(words_of(2, 0, &sure), "not sure: the centre is not told for sure (75 CENTRE_NOT_SURE)");
+    assert_string_equal(words_of(2, 0, &sure),
+                        "not sure: the centre is not told for sure (75 CENTRE_NOT_SURE)");
     assert_false(sure);
     assert_memory_equal(words_of(2, 1, &sure), "centre, not sure: dX 0.", strlen("centre, not sure: dX 0."));
     assert_non_null(strstr(words_of(2, 1, &sure), " mm or dX 0."));
@@ -176,13 +179,15 @@ static void words_of_a_log_say_what_it_does_not_tell(void **state) {
                                                "ended with 75 CENTRE_NOT_SURE");
     assert_false(sure);
     run.record.commands[run.record.centrings[2].command].error = WH_OK;
-    assert_string_equal(words_of(2, 0, &sure), "not told: this log's states alone give 75 CENTRE_NOT_SURE, but "
-                                               "the command was done: motion control knew more");
+    assert_string_equal(words_of(2, 0, &sure),
+                        "not told: this log's states alone give 75 CENTRE_NOT_SURE, but "
+                        "the command was done: motion control knew more");
     assert_false(sure);
     run.record.centrings[1].lacking = 7;
     run.record.centrings[1].skipped = true;
     run.record.centrings[1].command = WH_NONE;
-    assert_non_null(strstr(words_of(1, 3, &sure), "; the simulator has missed slices of the pass; this log lacks 7 slices"));
+    assert_non_null(strstr(words_of(1, 3, &sure),
+                           "; the simulator has missed slices of the pass; this log lacks 7 slices"));
     assert_string_equal(words_of(1, 5, &sure), "command: not told; estimated again from the log's states");
 }
 
@@ -195,10 +200,12 @@ static void words_tell_what_was_known_before(void **state) {
     known->notch_direction = 0.5;
     known->sd_notch = 0.001;
     known->sd_radius = 0.05;
-    assert_string_equal(words_of(0, 4, &sure),
-                        "notch: towards 28.6479\u00b0 on the blade, by ALIGN, standard deviation 0.0573\u00b0");
-    assert_string_equal(words_of(0, 2, &sure), "radius: 150.0000 mm found, 150.0000 mm expected with a standard "
-                                               "deviation of 50.0 \u00b5m");
+    assert_string_equal(
+        words_of(0, 4, &sure),
+        "notch: towards 28.6479\u00b0 on the blade, by ALIGN, standard deviation 0.0573\u00b0");
+    assert_string_equal(words_of(0, 2, &sure),
+                        "radius: 150.0000 mm found, 150.0000 mm expected with a standard "
+                        "deviation of 50.0 \u00b5m");
     known->notch_width = 0;
     assert_string_equal(words_of(0, 4, &sure), "notch: by the layout wafers have none");
     run.record.centrings[0].centres.count = 0;
