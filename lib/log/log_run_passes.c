@@ -14,11 +14,14 @@ static bool is_order(const wh_layout_t *layout, const wh_latches_t *latches) {
            layout->doors[latches->first].kind == WH_DOOR_LIGHT;
 }
 
-static bool are_latches_sound(const wh_latches_t *latches) {
-    bool sound = true;
-    for (int32_t i = 0; i < latches->latch_count; ++i) {
-        const int32_t beam = latches->latches[i].beam;
-        sound = sound && beam >= latches->first && beam < latches->first + latches->count;
+/* A log may hold anything: latches are of the order's beams, and none is younger than its slice. */
+static bool are_sound(const wh_latches_t *latches, int64_t seq) {
+    bool sound = latches->slice >= 0 && latches->slice < seq;
+    for (int32_t i = 0; latches->armed && i < latches->latch_count; ++i) {
+        const wh_latch_t *latch = &latches->latches[i];
+        sound = sound && latch->beam >= latches->first && latch->beam < latches->first + latches->count &&
+                (latch->edge == WH_CROSSING_IN || latch->edge == WH_CROSSING_OUT) && latch->slice > 0 &&
+                latch->slice <= latches->slice && latch->part >= 0 && latch->part <= 1;
     }
     return sound;
 }
@@ -115,14 +118,14 @@ static void estimate(wh_log_run_t *run) {
 void wh_log_run_hear_passes(wh_log_run_t *run) {
     const wh_latches_t *latches = &run->state.physics->latches;
     const bool is_same = latches->number == run->pass_number;
-    if (is_same && !latches->armed) {
+    const bool sound = are_sound(latches, run->state.seq);
+    if (is_same && sound && !latches->armed) {
         estimate(run);
+    }
+    if (!is_same || !sound || !latches->armed) {
         drop(run);
     }
-    if (!is_same || !are_latches_sound(latches)) {
-        drop(run);
-    }
-    if (!is_same && latches->armed) {
+    if (!is_same && sound && latches->armed) {
         begin(run, latches);
     }
     run->pass_number = latches->number;

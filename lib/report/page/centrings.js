@@ -7,7 +7,8 @@
     const { shape } = W;
     const centrings = { shown: 0 };
 
-    const picture = (width, height, label) => shape('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': label });
+    const picture = (width, height, label) => shape('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img',
+        'aria-label': label });
 
     const scale = (low, high, from, to) => (value) => from + (value - low) / (high - low) * (to - from);
 
@@ -15,9 +16,9 @@
     function ticks(reach, count) {
         const rough = reach / count;
         const power = Math.pow(10, Math.floor(Math.log10(rough)));
-        const step = [1, 2, 5, 10].map((times) => times * power).find((each) => each >= rough);
-        const most = Math.floor(reach / step + 1e-9);
-        return Array.from({ length: 2 * most + 1 }, (_, i) => (i - most) * step);
+        const apart = [1, 2, 5, 10].map((times) => times * power).find((each) => each >= rough);
+        const most = Math.floor(reach / apart + 1e-9);
+        return Array.from({ length: 2 * most + 1 }, (_, i) => (i - most) * apart);
     }
 
     const SIZE = 300;
@@ -77,7 +78,7 @@
     const dot = (i, x, y) => shape('circle', { class: `dot${i}`, cx: x, cy: y, r: 4.5 });
 
     function middle(centring) {
-        const reach = centring.candidates.reduce((most, each) => Math.max(most, 1.3 * Math.abs(each.x), 1.3 * Math.abs(each.y)), 0.25);
+        const reach = Math.max(0.25, ...centring.candidates.map((each) => 1.3 * Math.max(Math.abs(each.x), Math.abs(each.y))));
         const { made, x, y } = square(reach, 'The wafer\u2019s centre beside the blade\u2019s middle');
         made.append(shape('path', { class: 'cross', d: `M${x(0) - 7} ${y(0)}h14M${x(0)} ${y(0) - 7}v14` }),
             ...centring.candidates.map((each, i) => dot(i, x(each.x), y(each.y))));
@@ -118,7 +119,8 @@
         if (centring.candidates.length === 2 && !centring.sure) {
             return ['likelier place', 'other place'];
         }
-        return centring.candidates.map((_, i) => (i > 0 ? 'as near as the same' : centring.error === 75 ? 'not likely' : 'fitted'));
+        const first = centring.error === 75 ? 'not likely' : 'fitted';
+        return centring.candidates.map((_, i) => (i > 0 ? 'as near as the same' : first));
     }
 
     function sign(draw, text) {
@@ -194,7 +196,8 @@
         centrings.plots = W.element('div');
         host.append(W.element('section', { class: 'group', id: 'centrings' },
             W.element('h2', {}, 'Centring on the way ', W.element('small', {}, FRAME)),
-            ...controls(doc.run.centrings_left_out || 0), W.element('div', { class: 'scans' }, centrings.words, centrings.plots)));
+            ...controls(doc.run.centrings_left_out || 0),
+            W.element('div', { class: 'scans' }, centrings.words, centrings.plots)));
         show(0);
     };
 
