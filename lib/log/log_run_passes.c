@@ -14,14 +14,18 @@ static bool is_order(const wh_layout_t *layout, const wh_latches_t *latches) {
            layout->doors[latches->first].kind == WH_DOOR_LIGHT;
 }
 
-/* A log may hold anything: latches are of the order's beams, and none is younger than its slice. */
+/* Of the order's beams, and no younger than its slice. */
+static bool is_latch_sound(const wh_latch_t *latch, const wh_latches_t *of) {
+    return latch->beam >= of->first && latch->beam < of->first + of->count &&
+           (latch->edge == WH_CROSSING_IN || latch->edge == WH_CROSSING_OUT) && latch->slice > 0 &&
+           latch->slice <= of->slice && latch->part >= 0 && latch->part <= 1;
+}
+
+/* A log may hold anything. */
 static bool are_sound(const wh_latches_t *latches, int64_t seq) {
     bool sound = latches->slice >= 0 && latches->slice < seq;
     for (int32_t i = 0; latches->armed && i < latches->latch_count; ++i) {
-        const wh_latch_t *latch = &latches->latches[i];
-        sound = sound && latch->beam >= latches->first && latch->beam < latches->first + latches->count &&
-                (latch->edge == WH_CROSSING_IN || latch->edge == WH_CROSSING_OUT) && latch->slice > 0 &&
-                latch->slice <= latches->slice && latch->part >= 0 && latch->part <= 1;
+        sound = sound && is_latch_sound(&latches->latches[i], latches);
     }
     return sound;
 }

@@ -23,7 +23,8 @@ final class CentringPass {
             lines.add(place(told, i));
         }
         lines.add(String.format(Locale.ROOT, "%d crossings, %d latches missed%s", told.crossing_count,
-                                told.missed, told.centre_count == 0 ? "; no place of the wafer is told" : ""));
+                                told.missed,
+                                told.centre_count == 0 ? "; no place of the wafer is told" : ""));
     }
 
     private static String verdict(centring told) {
@@ -41,10 +42,11 @@ final class CentringPass {
 
     private static String place(centring told, int i) {
         final centre at = told.centres[i];
-        return String.format(Locale.ROOT,
-                             "%s: x %.4f, y %.4f mm on the blade, standard deviations %.2f and %.2f µm, radius "
-                                 + "%.4f mm, %d crossings used",
-                             name(told, i), at.x, at.y, 1000 * at.sd_x, 1000 * at.sd_y, at.radius, at.used);
+        return String.format(
+            Locale.ROOT,
+            "%s: x %.4f, y %.4f mm on the blade, standard deviations %.2f and %.2f µm, radius "
+                + "%.4f mm, %d crossings used",
+            name(told, i), at.x, at.y, 1000 * at.sd_x, 1000 * at.sd_y, at.radius, at.used);
     }
 
     /** What a place is called: one that is not sure is not called the centre. */
@@ -85,7 +87,7 @@ final class CentringPass {
 
         private static boolean isSound(centring told) {
             boolean sound = told.crossing_count >= 0 && told.crossing_count <= 16 && told.centre_count >= 0 &&
-                told.centre_count <= 2;
+                            told.centre_count <= 2;
             for (int i = 0; sound && i < told.crossing_count; i++) {
                 sound = isPlace(told.crossings[i].x, told.crossings[i].y);
             }

@@ -98,7 +98,8 @@ final class CentringView extends JPanel {
         final CentringPass of = list.get(place);
         final int line = g.getFontMetrics().getHeight();
         g.setColor(ProximityChart.INK);
-        g.drawString(String.format(Locale.ROOT, "pass %d into station %d on gripper %d at %.3f s, %d of %d   %s",
+        g.drawString(String.format(Locale.ROOT,
+                                   "pass %d into station %d on gripper %d at %.3f s, %d of %d   %s",
                                    of.told.number, of.told.station + 1, of.told.gripper + 1,
                                    of.told.utime / 1e6, place + 1, list.size(), history.lost()),
                      8, line);
