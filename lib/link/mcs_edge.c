@@ -117,7 +117,7 @@ void wh_mcs_process_tell_edge(void *user, const wh_mcs_t *mcs) {
 
 /* -------------------------------------------------------------------------------------------------- beams */
 
-static waferhand_crossing crossing_of(const wh_mcs_crossing_t *from, wh_crossing_use_t use) {
+static waferhand_crossing crossing_of(const wh_pass_crossing_t *from, wh_crossing_use_t use) {
     const wh_crossing_t *crossing = &from->crossing;
     const waferhand_crossing message = {crossing->beam, (int32_t)crossing->edge,
                                         (int32_t)use,   from->time,
@@ -134,7 +134,7 @@ static waferhand_centre centre_of(const wh_centre_t *from) {
 
 void wh_mcs_process_tell_centring(void *user, const wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
-    const wh_mcs_centring_t *centring = &mcs->centring;
+    const wh_centring_record_t *centring = &mcs->centring;
     waferhand_crossing crossings[WH_CROSSINGS];
     waferhand_centre centres[2];
     const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");

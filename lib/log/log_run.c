@@ -119,6 +119,7 @@ static void take_slice(wh_log_run_t *run, const waferhand_command *command, cons
     run->hash = (uint64_t)message->hash;
     run->missed = message->missed;
     count_slice(run, message->seq, axes);
+    wh_log_run_hear_passes(run);
     if (run->collision.memory) {
         wh_collision_observe(&run->collision, whole ? axes : NULL, &run->state);
     }
@@ -469,6 +470,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
 }
 
 void wh_log_run_close(wh_log_run_t *run) {
+    wh_log_run_close_passes(run);
     wh_signals_close(&run->signals);
     wh_record_free(&run->record);
     free(run->collision.memory);

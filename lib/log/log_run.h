@@ -4,7 +4,8 @@
  * name, not by their places in the log. Everything else is what the slices' states say, as a replay goes
  * through them (log/replay.h): commands beside their states, whichever came first. A log does not tell why
  * the robot stood still. It counts as waiting for vacuum if within the same command a valve has opened since
- * an axis other than Z moved.
+ * an axis other than Z moved. Nor does it tell what motion control knew of a notch: centrings on the way are
+ * estimated again without (record/centrings.h).
  */
 #ifndef WH_LOG_LOG_RUN_H
 #define WH_LOG_LOG_RUN_H
@@ -71,6 +72,8 @@ typedef struct {
     bool has_opened_valve;                  /* in the running command, since an axis other than Z moved */
     wh_log_lane_t lanes[WH_RECORDER_PARTS]; /* once there are tasks, by what they were told of first */
     size_t lane_count;
+    wh_pass_t passes[WH_GRIPPERS]; /* of those that had a wafer when beams were armed last */
+    uint32_t pass_number;          /* of that arming */
     wh_run_told_t outcome;
     int32_t last_expectation, last_cycle; /* the highest numbers that were told */
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];

@@ -1,5 +1,6 @@
-/* Between log_run.c, which reads a run slice by slice, log_run_told.c, which takes what was told, and
- * log_run_lanes.c, which keeps several commands apart. */
+/* Between log_run.c, which reads a run slice by slice, log_run_told.c, which takes what was told,
+ * log_run_lanes.c, which keeps several commands apart, and log_run_passes.c, which puts together what beams
+ * told. */
 #ifndef WH_LOG_LOG_RUN_INTERNAL_H
 #define WH_LOG_LOG_RUN_INTERNAL_H
 
@@ -32,6 +33,10 @@ void wh_log_run_count_parts(wh_log_run_t *run, const bool moving[WH_AXES]);
 /* True if this slice's valve of the gripper, told before faults, has switched: motion control may wait for it
  * from then on, for vacuum that builds up or goes, or for an edge grip's plunger. */
 bool wh_log_run_begins_wait(const wh_log_run_t *run, size_t g);
+
+/* What the state of an accepted slice tells of beams: a pass that has ended is added to the record. */
+void wh_log_run_hear_passes(wh_log_run_t *run);
+void wh_log_run_close_passes(wh_log_run_t *run);
 
 /* Takes what motion control told last of all: the verdict. */
 void wh_log_run_judge(wh_log_run_t *run);

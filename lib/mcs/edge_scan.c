@@ -57,7 +57,7 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     const bool was_armed = edge->armed;
     edge->seq = state->seq;
     edge->number = scan->number;
-    wh_mcs_hear_pass(&mcs->pass, state);
+    wh_pass_hear(&mcs->pass, state);
     if (is_of(edge, scan)) {
         follow(edge, scan, (double)mcs->layout->slice_us / 1e6);
         collect(edge, scan);
@@ -69,7 +69,7 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
 
 void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     wh_mcs_t *mcs = user;
-    wh_mcs_follow_pass(&mcs->pass, command);
+    wh_pass_follow(&mcs->pass, command);
     wh_mcs_hear(mcs, state);
 }
 

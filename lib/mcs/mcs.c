@@ -298,6 +298,6 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     wh_mcs_free_lanes(mcs);
     wh_mcs_free_edge(&mcs->edge);
     wh_mcs_free_turns(&mcs->turns);
-    wh_mcs_free_pass(&mcs->pass);
+    wh_pass_free(&mcs->pass);
     wh_rehearsal_free(&mcs->rehearsal);
 }

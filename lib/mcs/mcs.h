@@ -151,38 +151,6 @@ typedef struct {
     int32_t samples; /* in a turn */
 } wh_mcs_turns_t;
 
-/* A blade's pass through the beams at a door, as the states have brought it. */
-typedef struct {
-    wh_latch_order_t order; /* count 0: none was armed */
-    int32_t station, gripper;
-    int64_t seq;             /* of the last state that was heard */
-    uint32_t number, before; /* of the last arming that was heard of, now and when this one was ordered */
-    int64_t armed_seq;       /* the slice whose command carried the order; 0: none yet */
-    bool goes_on;            /* the blade's way is remembered */
-    wh_pose_t *places;       /* where the gripper was commanded to, from the end of that slice on */
-    size_t place_count, place_capacity;
-    wh_latch_t latches[WH_CROSSINGS]; /* of these the first latch_count, as far as there is room */
-    int64_t latch_count;
-    int64_t missed; /* latches that no state brought */
-    bool skipped;   /* the simulator has not had all slices */
-} wh_mcs_pass_t;
-
-/* A latch as a point of the blade. */
-typedef struct {
-    wh_crossing_t crossing;
-    double time; /* of the crossing, s of the run */
-} wh_mcs_crossing_t;
-
-/* What the last pass told. */
-typedef struct {
-    int32_t station, gripper;
-    wh_status_t status; /* WH_OK: the centre is centres.candidates[0] */
-    int64_t missed;
-    size_t count;
-    wh_mcs_crossing_t crossings[WH_CROSSINGS];
-    wh_centres_t centres;
-} wh_mcs_centring_t;
-
 /* What a teaching has measured so far. */
 #define WH_MCS_LESSONS 64
 typedef struct {
@@ -276,8 +244,8 @@ struct wh_mcs {
 
     wh_mcs_edge_t edge;
     wh_mcs_turns_t turns;
-    wh_mcs_pass_t pass;
-    wh_mcs_centring_t centring;
+    wh_pass_t pass;                /* the last one through beams, or touches */
+    wh_centring_record_t centring; /* what it told */
     wh_mcs_teaching_t teaching;
 
     wh_lanes_t *lanes;  /* null: there are no tasks; then `track` has the running segment */

@@ -61,14 +61,9 @@ void wh_mcs_free_lanes(wh_mcs_t *mcs);
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
 void wh_mcs_free_turns(wh_mcs_turns_t *turns);
 
-/* A state that comes after all that were heard; and a command that was sent. */
-void wh_mcs_hear_pass(wh_mcs_pass_t *pass, const wh_state_t *state);
 /* From the end of the next slice on these beams latch, and this gripper's way is remembered. What was
  * collected before is gone. */
 void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper);
-void wh_mcs_follow_pass(wh_mcs_pass_t *pass, const wh_command_t *command);
-
-void wh_mcs_free_pass(wh_mcs_pass_t *pass);
 
 /* The station's frame as motion control believes: as the layout has it, or moved by the table at this stack
  * index, if that is one: see native.shift in believed.c. */

@@ -57,8 +57,8 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     memcpy(mcs->alarms, saved->alarms, sizeof mcs->alarms);
     wh_mcs_free_edge(&mcs->edge);
     mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
-    wh_mcs_free_pass(&mcs->pass);
-    mcs->pass = (wh_mcs_pass_t){.seq = saved->edge_seq, .number = saved->pass_number};
+    wh_pass_free(&mcs->pass);
+    mcs->pass = (wh_pass_t){.seq = saved->edge_seq, .number = saved->pass_number};
     mcs->recorder.slice = saved->track.slice;
     /* The check begins anew: it would take what was put back for a motion. */
     mcs->local.collision.world = NULL;

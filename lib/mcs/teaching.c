@@ -15,8 +15,9 @@
 #define LEAST_SD 0.001
 
 /* Where the gripper was as a beam changed; between two slices its heading is the one's. */
-static bool find_place(const wh_mcs_t *mcs, const wh_mcs_crossing_t *crossing, wh_pose_t *base_from_gripper) {
-    const wh_mcs_pass_t *pass = &mcs->pass;
+static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing,
+                       wh_pose_t *base_from_gripper) {
+    const wh_pass_t *pass = &mcs->pass;
     const double slices = crossing->time * 1e6 / (double)mcs->layout->slice_us - (double)pass->armed_seq;
     const size_t slice = (size_t)slices;
     if (slice + 1 >= pass->place_count) {
@@ -45,7 +46,7 @@ static int begin_teaching(lua_State *L) {
  * took with its middle at (x, y) of base, heading as the station's x does. Returns how many there are now. */
 static int add_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_centring_t *passed = &mcs->centring;
+    const wh_centring_record_t *passed = &mcs->centring;
     wh_mcs_teaching_t *teaching = &mcs->teaching;
     for (size_t i = 0; i < passed->count && teaching->count < WH_MCS_LESSONS; ++i) {
         const wh_crossing_t *crossing = &passed->crossings[i].crossing;
@@ -103,7 +104,7 @@ static int push_block(lua_State *L) {
  * missed = latches that no state brought }. */
 static int push_touched(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_pass_t *pass = &mcs->pass;
+    const wh_pass_t *pass = &mcs->pass;
     const uint32_t bit = UINT32_C(1) << pass->order.first;
     wh_decisions_measured(mcs->decisions, "what a probe feels");
     lua_createtable(L, 0, 3);
@@ -124,7 +125,7 @@ static int add_touch(lua_State *L) {
     const wh_latch_t *latch = &mcs->pass.latches[0];
     const double slice_s = (double)mcs->layout->slice_us / 1e6;
     const double since = (double)(latch->slice - 1) + latch->part;
-    const wh_mcs_crossing_t at = {.time = ((double)mcs->pass.armed_seq + since) * slice_s};
+    const wh_pass_crossing_t at = {.time = ((double)mcs->pass.armed_seq + since) * slice_s};
     wh_mcs_teaching_t *teaching = &mcs->teaching;
     wh_teach_measurement_t lesson = {.kind = WH_TEACH_TOUCH,
                                      .sd = probe->noise > LEAST_SD ? probe->noise : LEAST_SD,

@@ -457,10 +457,20 @@ static void put_lists(const wh_record_t *record, json_t *root) {
     wh_json_put(root, "reach", wh_json_list(reach, record, stations * robot_axes));
 }
 
+static void put_centrings(const wh_record_t *record, json_t *root) {
+    if (record->layout && record->layout->beam_count > 0) {
+        wh_json_put(root, "centrings", wh_json_list(wh_centring_to_json, record, record->centring_count));
+    }
+    if (record->centrings_left_out > 0) {
+        (void)wh_json_set(root, "centrings_left_out %lld", (json_int_t)record->centrings_left_out);
+    }
+}
+
 json_t *wh_record_to_json(const wh_record_t *record) {
     json_t *root = json_object();
     put_head(record, root);
     put_lists(record, root);
+    put_centrings(record, root);
     return root;
 }
 

@@ -61,6 +61,18 @@
  *                 ("mm" or "deg"): how near each axis comes to an end of its travel in GET and PUT at the
  *                 first and last slot of each station, coming from home: the smaller end, where the axis
  *                 then stands, and the slot
+ *   centrings:    only if the layout has beams: what they told of wafers on their way into a station
+ *                 (record/centrings.h). at_s, command (its index; null: not told), station, gripper, wafer
+ *                 (null: not told), error (0: none; of a log what its states say), sure, missed (latches),
+ *                 skipped (the simulator has missed slices), repeated (estimated again from a log, which
+ *                 does not tell the notch's direction), lacking (slices of the pass that the log has not),
+ *                 known { radius,
+ *                 sd_radius, notch_deg, sd_notch_deg (on the blade; null: not known) }, crossings: [{ beam
+ *                 (from 1 at the station), edge ("in" or "out"), use ("rim", "notch", "other", by the first
+ *                 candidate; "none" without one), x, y (on the blade, mm), time }], candidates, the likelier
+ *                 first: [{ x, y (on the blade), dx, dy (in the slot's frame; null: not told), radius,
+ *                 sd_dx, sd_dy, sd (in the worst direction), mismatch, used, uses and residuals_um (of each
+ *                 crossing, by this candidate) }], words: [text], the verdict first
  *
  * Numbers have 17 significant digits where they need them: reading them back gives the same double, -0 and
  * denormals included. NaN and infinities, which JSON has not, are null. Text that is no UTF-8 gets U+FFFD
@@ -99,7 +111,8 @@ int wh_record_print_json(const wh_record_t *record, FILE *out);
 json_t *wh_throughput_to_json(const wh_record_t *record);
 json_t *wh_record_to_json(const wh_record_t *record);
 
-/* One element of `events`; the caller releases it. */
+/* One element of `events`, and of `centrings`; the caller releases it. `record` is a wh_record_t. */
 json_t *wh_event_to_json(const wh_record_t *record, size_t i);
+json_t *wh_centring_to_json(const void *record, size_t i);
 
 #endif

@@ -65,6 +65,21 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
 }
 
+void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *centring) {
+    static const char teach[] = "TEACH ";
+    const char *text = centring->command != WH_NONE ? record->commands[centring->command].text : "";
+    if (strncmp(text, teach, strlen(teach)) == 0) {
+        return;
+    }
+    if (record->centring_count == WH_RECORD_CENTRINGS) {
+        ++record->centrings_left_out;
+        return;
+    }
+    record->centrings = wh_array_grow(record->centrings, record->centring_count, &record->centring_capacity,
+                                      sizeof *record->centrings);
+    record->centrings[record->centring_count++] = *centring;
+}
+
 void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin) {
     record->waits =
         wh_array_grow(record->waits, record->wait_count, &record->wait_capacity, sizeof *record->waits);
@@ -163,6 +178,7 @@ void wh_record_forget(wh_record_t *record) {
     }
     record->command_count = record->event_count = record->expectation_count = 0;
     record->put_count = record->cycle_count = record->wait_count = 0;
+    record->centring_count = record->centrings_left_out = 0;
     record->activity.interval_count = 0;
 }
 
@@ -191,6 +207,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->puts);
     free(record->cycles);
     free(record->waits);
+    free(record->centrings);
     free(record->reach);
     free(record->wafers);
     wh_activity_free(&record->activity);

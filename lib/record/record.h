@@ -4,6 +4,7 @@
 
 #include "../layout/layout.h"
 #include "activity.h"
+#include "centrings.h"
 
 typedef struct {
     int line;                  /* in the script; 0 when unknown */
@@ -117,7 +118,10 @@ typedef struct {
     size_t cycle_count, cycle_capacity;
     wh_wait_record_t *waits; /* in the order in which they began */
     size_t wait_count, wait_capacity;
-    bool has_tasks; /* several commands may have run at once */
+    wh_centring_record_t *centrings; /* in order */
+    size_t centring_count, centring_capacity;
+    size_t centrings_left_out; /* later ones, beyond WH_RECORD_CENTRINGS */
+    bool has_tasks;            /* several commands may have run at once */
     wh_activity_t activity;
     wh_station_reach_t *reach; /* layout->station_count of them, from home; null: nothing was rehearsed */
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
@@ -135,11 +139,14 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
 
+/* Not one of a TEACH, by its command: there the beam's place is what is sought. */
+void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *centring);
+
 /* An open wait, from the end of slice `begin` on. */
 void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin);
 
-/* Drops commands, events, expectations, puts, cycles, waits and intervals; script, layout, reach and the
- * sums stay. */
+/* Drops commands, events, expectations, puts, cycles, waits, centrings and intervals; script, layout, reach
+ * and the sums stay. */
 void wh_record_forget(wh_record_t *record);
 
 /* The same, but the last command that failed stays: for sessions without an end, which tell it in STATUS.

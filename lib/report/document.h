@@ -4,7 +4,8 @@
  * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run" or "log"; notes: [text], what a log did not tell
- *   run          what `run --json` prints, whole (print/record_print.h); of a log what it holds
+ *   run          what `run --json` prints, whole (print/record_print.h), with centrings on the way; of a log
+ *                what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
  *   names        wafers, grippers, stations, doors (only if there are any): [name]; axes: [{ name, unit "mm"
  *   or "rad", low, high, speed }]

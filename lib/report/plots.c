@@ -239,6 +239,7 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
     }
     wh_plots_offsets(plots);
     wh_plots_scans(plots);
+    wh_plots_centrings(plots);
     if (plots->error != 0) {
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;

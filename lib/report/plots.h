@@ -3,8 +3,8 @@
  * Of each gripper that came near a wafer proximity_GRIPPER, (2) to (5) against their limits;
  * valves_and_vacuum; holders; commands, with what the robot's and the chucks' time goes into; axes; of a run
  * that looked for collisions clearances; offsets, how wafers lie in their slots at the end; and of each edge
- * scan edge_scan_NUMBER_CHUCK, with what the estimate makes of it. Those of which a run has nothing are not
- * there.
+ * scan edge_scan_NUMBER_CHUCK, with what the estimate makes of it; of each centring on the way
+ * centring_NUMBER_STATION, likewise. Those of which a run has nothing are not there.
  */
 #ifndef WH_REPORT_PLOTS_H
 #define WH_REPORT_PLOTS_H

@@ -38,5 +38,6 @@ void wh_plots_commands(wh_plots_t *plots);
 void wh_plots_clearances(wh_plots_t *plots);
 void wh_plots_offsets(wh_plots_t *plots);
 void wh_plots_scans(wh_plots_t *plots);
+void wh_plots_centrings(wh_plots_t *plots);
 
 #endif

@@ -239,6 +239,54 @@ class Values(unittest.TestCase):
         self.assertEqual(page.js("return Waferhand.scans.graphs[1].xAxisRange()"), [30, 45])
         self.assertEqual(page.faults(), [])
 
+    def test_centrings(self):
+        """Each centring is reached; marks, circles and words are the document's; what is not sure is never called fitted."""
+        document, path = documents.example("13_centring")
+        centrings = document["run"]["centrings"]
+        self.assertEqual([each["sure"] for each in centrings], [True, True, False])
+        page.open(path)
+        shown = """const all = (of) => Array.from(document.querySelectorAll('#centrings ' + of));
+            const drawn = all('.blade > figure')[0], circle = (each) => ['cx', 'cy', 'r'].map((key) => Number(each.getAttribute(key)));
+            const within = (look) => Array.from(drawn.querySelectorAll(look));
+            return [document.querySelector('#centrings .verdict').className, document.querySelector('#centrings .words').innerText,
+                circle(drawn.querySelector('.nominal')), within('.circle').map(circle),
+                ['rim', 'notch', 'other', 'none'].map((use) => within('.' + use).map((each) => each.textContent)),
+                all('figure.wide .dot0').length, document.querySelector('#centrings p.row').innerText]"""
+        for centring in centrings:
+            style, words, nominal, circles, marks, residuals, key = page.js(shown)
+            self.assertEqual(style, "verdict " + ("good" if centring["sure"] else "warn"))
+            for line in centring["words"]:
+                self.assertIn(line, words)
+            scale = nominal[2] / 150
+            for circle, candidate in zip(circles, centring["candidates"], strict=True):
+                self.assertAlmostEqual((circle[0] - nominal[0]) / scale, candidate["x"], delta=1e-6)
+                self.assertAlmostEqual((nominal[1] - circle[1]) / scale, candidate["y"], delta=1e-6)
+                self.assertAlmostEqual(circle[2] / scale, candidate["radius"], delta=1e-6)
+            for use, found in zip(("rim", "notch", "other", "none"), marks):
+                self.assertEqual(found, [f"beam {each['beam']} {each['edge']}: {each['use']}"
+                                         for each in centring["crossings"] if each["use"] == use])
+            self.assertEqual(residuals, len(centring["crossings"]))
+            self.assertEqual("fitted" in key, centring["sure"])
+            page.js("document.querySelector('#centrings button[title=\"The next centring\"]').click()")
+        self.assertEqual(page.faults(), [])
+
+    def test_centrings_without_a_place(self):
+        """Crossings that nothing is told of are not judged, a notch that was known is drawn, and more are counted."""
+        document = documents.example("13_centring")[0]
+        centring = document["run"]["centrings"][0]
+        centring.update(sure=False, error=70, candidates=[], words=["no estimate: too few"], wafer=None)
+        centring["known"]["notch_deg"] = 30
+        for each in centring["crossings"]:
+            each["use"] = "none"
+        document["run"].update(centrings=[centring], centrings_left_out=2)
+        page.open(documents.page_of(document, "centrings"))
+        text = page.text("#centrings")
+        for words in ("no estimate: too few", "not judged", "notch", "2 later ones are not shown"):
+            self.assertIn(words, text)
+        self.assertNotIn("fitted", text)
+        self.assertEqual(page.js("return document.querySelectorAll('#centrings figure .none').length"), 4)
+        self.assertEqual(page.faults(), [])
+
     def test_tables(self):
         document, path = documents.example("01_transfer")
         page.open(path)

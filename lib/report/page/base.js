@@ -53,16 +53,28 @@ window.Waferhand = {};
         return (text === '-0' ? '0' : text).replace(/-/g, MINUS);
     }
 
+    const SPACE = 'http://www.w3.org/2000/svg';
+
+    /* A shape within an SVG, or the SVG itself; a function listens. */
+    function shape(name, attributes, text) {
+        const made = document.createElementNS(SPACE, name);
+        Object.entries(attributes).forEach(([key, value]) => {
+            if (typeof value === 'function') {
+                made.addEventListener(key, value);
+            } else {
+                made.setAttribute(key, value);
+            }
+        });
+        if (text !== undefined) {
+            made.textContent = text;
+        }
+        return made;
+    }
+
     /* A small picture of filled paths on 24 by 24. */
     function icon(path) {
-        const space = 'http://www.w3.org/2000/svg';
-        const made = document.createElementNS(space, 'svg');
-        const shape = document.createElementNS(space, 'path');
-        made.setAttribute('viewBox', '0 0 24 24');
-        made.setAttribute('class', 'icon');
-        made.setAttribute('aria-hidden', 'true');
-        shape.setAttribute('d', path);
-        made.append(shape);
+        const made = shape('svg', { viewBox: '0 0 24 24', class: 'icon', 'aria-hidden': 'true' });
+        made.append(shape('path', { d: path }));
         return made;
     }
 
@@ -81,5 +93,5 @@ window.Waferhand = {};
         document.getElementById('said').textContent = text;
     }
 
-    Object.assign(W, { element, icon, number, figure, tick, seconds, words, clamp, why, say, DASH });
+    Object.assign(W, { element, shape, icon, number, figure, tick, seconds, words, clamp, why, say, DASH });
 }(window.Waferhand));

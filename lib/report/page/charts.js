@@ -2,22 +2,7 @@
 (function (W) {
     'use strict';
 
-    const SPACE = 'http://www.w3.org/2000/svg';
-
-    function shape(name, attributes, text) {
-        const made = document.createElementNS(SPACE, name);
-        Object.entries(attributes).forEach(([key, value]) => {
-            if (typeof value === 'function') {
-                made.addEventListener(key, value);
-            } else {
-                made.setAttribute(key, value);
-            }
-        });
-        if (text !== undefined) {
-            made.textContent = text;
-        }
-        return made;
-    }
+    const { shape } = W;
 
     const picture = (width, height, label) => shape('svg', { class: 'chart', viewBox: `0 0 ${width} ${height}`, role: 'img',
         'aria-label': label });

@@ -45,9 +45,15 @@
 
     const scans = (from) => list(from.scans).map((scan) => Object.assign({}, SCAN, object(scan)));
 
+    const CENTRING = { at_s: 0, station: '', gripper: '', wafer: null, sure: false, words: ['no estimate'], known: {},
+        crossings: [], candidates: [] };
+
+    const centrings = (run) => list(run.centrings).map((each) => Object.assign({}, CENTRING, object(each)));
+
     function lists(from, run) {
         return { notes: list(from.notes), slots: list(from.slots), marks: list(from.marks), scans: scans(from),
-            commands: list(run.commands), events: events(run), expectations: list(run.expectations) };
+            centrings: centrings(run), commands: list(run.commands), events: events(run),
+            expectations: list(run.expectations) };
     }
 
     function complete(given) {

@@ -23,6 +23,7 @@
         host('plots').append(W.plots.section(curves[0]), ...bars.map(W.lanes.section),
             ...curves.slice(1).map(W.plots.section));
         W.scans.start(doc, host('plots'));
+        W.centrings.start(doc, host('plots'));
         W.plots.fill(false);
     }
 

@@ -133,9 +133,10 @@ final class SpyTest {
             }
         });
         found.sort(java.util.Comparator.comparing(Class::getName));
-        check(found.size() == 2, "two plugins, not " + found);
-        findsEdgeScans((EdgeScanPlugin)found.get(0).getConstructor().newInstance());
-        final SpyPlugin plugin = (SpyPlugin)found.get(1).getConstructor().newInstance();
+        check(found.size() == 3, "three plugins, not " + found);
+        findsCentrings((CentringPlugin)found.get(0).getConstructor().newInstance());
+        findsEdgeScans((EdgeScanPlugin)found.get(1).getConstructor().newInstance());
+        final SpyPlugin plugin = (SpyPlugin)found.get(2).getConstructor().newInstance();
         check(plugin.canHandle(proximity.LCM_FINGERPRINT), "takes proximity");
         check(!plugin.canHandle(state.LCM_FINGERPRINT) && !plugin.canHandle(0), "takes nothing else");
         check(plugin.getAction(null, null).getValue(Action.NAME) != null, "says its name");
@@ -152,6 +153,98 @@ final class SpyTest {
         }
         check(plugin.history("WAFERHAND_EDGE_SCAN").scans().size() == 1,
               "collects scans before a view is opened");
+    }
+
+    private static void findsCentrings(CentringPlugin plugin) throws IOException, InterruptedException {
+        check(plugin.canHandle(centring.LCM_FINGERPRINT), "takes centrings");
+        check(!plugin.canHandle(edge_scan.LCM_FINGERPRINT) && !plugin.canHandle(0), "and nothing else");
+        check(plugin.getAction(null, null).getValue(Action.NAME) != null, "says its name as well");
+        LCM.getSingleton().publish("WAFERHAND_LATCH", pass(1, 70, 0));
+        for (int k = 0; k < 500 && plugin.history().list().isEmpty(); k++) {
+            Thread.sleep(10);
+        }
+        check(plugin.history().list().size() == 1, "collects passes before a view is opened");
+    }
+
+    /** A pass with two crossings and so many centres. */
+    private static centring pass(int number, int status, int centres) {
+        final centring message = new centring();
+        message.run = RUN;
+        message.number = number;
+        message.status = status;
+        message.crossing_count = 2;
+        message.crossings = new crossing[] {new crossing(), new crossing()};
+        message.crossings[0].x = 150;
+        message.crossings[1].x = -150;
+        message.crossings[1].edge = 1;
+        message.centre_count = centres;
+        message.centres = new centre[centres];
+        for (int i = 0; i < centres; i++) {
+            message.centres[i] = new centre();
+            message.centres[i].radius = 150;
+        }
+        return message;
+    }
+
+    private static void refusesPasses() {
+        final CentringPass.History history = new CentringPass.History();
+        check(history.add(pass(1, 70, 0)) && history.add(pass(2, 0, 1)), "passes are kept");
+        check(history.add(pass(2, 75, 2)) && history.list().size() == 2, "one that comes again replaces");
+        check(!history.list().get(1).sure, "by what came last");
+        final centring bad = pass(3, 0, 1);
+        bad.centres[0].radius = Double.NaN;
+        check(!history.add(bad), "no radius is no circle");
+        bad.centres[0].radius = 150;
+        bad.crossings[1].y = Double.NaN;
+        check(!history.add(bad) && history.lost().equals("2 messages refused"), "nor is NaN a place");
+        for (int number = 4; number < 400; number++) {
+            history.add(pass(number, 0, 1));
+        }
+        check(history.list().size() == CentringPass.History.MOST, "the last passes stay");
+    }
+
+    /** The passes of the log 13_centring.lua: sure, sure with the notch in a beam, and not sure. */
+    private static void showsPasses(String path) throws IOException {
+        final CentringPass.History history = new CentringPass.History();
+        final CentringView view = new CentringView(history);
+        for (final int size : new int[] {0, 1, 50, 700}) {
+            picture(view, size, size);
+        }
+        final Log log = new Log(path, "r");
+        try {
+            while (true) {
+                final Log.Event event = log.readNext();
+                if (event.channel.equals("WAFERHAND_LATCH")) {
+                    history.add(new centring(new LCMDataInputStream(event.data)));
+                }
+            }
+        } catch (EOFException end) {
+            log.close();
+        }
+        final java.util.List<CentringPass> list = history.list();
+        check(list.size() == 3 && list.get(0).sure && list.get(1).sure && !list.get(2).sure, "three passes");
+        check(list.get(1).lines.get(1).startsWith("centre: x -0.5997, y 2.1002 mm on the blade"),
+              list.get(1).lines.get(1));
+        check(list.get(1).told.crossings[0].use == 1 && Math.abs(list.get(1).residual(0, 0) + 915.6) < 0.1,
+              "the notch is 0.9 mm deep there");
+        check(list.get(2).lines.get(0).equals("not sure: 75 CENTRE_NOT_SURE"), list.get(2).lines.get(0));
+        check(list.get(2).lines.get(1).startsWith("likelier place: ") &&
+                  list.get(2).lines.get(2).startsWith("other place: "),
+              "neither is called the centre");
+        final BufferedImage unsure = picture(view, 1000, 700);
+        check(count(unsure, ProximityChart.LINE) > 100 && count(unsure, ProximityChart.LIMIT) > 100,
+              "both places are drawn");
+        view.step(-1);
+        final BufferedImage sure = picture(view, 1000, 700);
+        check(!same(sure, unsure) && count(sure, ProximityChart.GOOD) > 20, "an older pass can be seen");
+        view.step(1);
+        check(same(unsure, picture(view, 1000, 700)), "and the newest pass again");
+        history.add(pass(9, 70, 0));
+        check(count(picture(view, 1000, 700), ProximityChart.LINE) < 10, "no place, no circle");
+        for (final int size : new int[] {0, 1, 10, 100, 800}) {
+            picture(view, size, 900);
+            picture(view, 900, size);
+        }
     }
 
     /** A part of a scan whose parts all have so many samples. */
@@ -825,6 +918,8 @@ final class SpyTest {
         showsPlungers(arguments[2]);
         putsScansTogether();
         showsAScan(arguments[1]);
+        refusesPasses();
+        showsPasses(arguments[3]);
         formats();
         System.out.println(checks + " checks passed");
     }

@@ -1,0 +1,56 @@
+/* A blade's pass through the beams at a station's door: the latches and the blade's places as they come,
+ * slice by slice, and the points of the blade that were in the beams.
+ *
+ * A latch comes after its delay, so the crossing was where the blade was then. Whoever collects knows the
+ * blade's places: motion control as it commands them, a log's reader as the states tell them.
+ */
+#ifndef WH_RECORD_PASSES_H
+#define WH_RECORD_PASSES_H
+
+#include "../align/centring.h"
+#include "../layout/layout.h"
+#include "../sim/slice.h"
+
+/* Read only, but for what it begins with: order, station, gripper, seq, number, before and goes_on. */
+typedef struct {
+    wh_latch_order_t order; /* count 0: none was armed */
+    int32_t station, gripper;
+    int64_t seq;             /* of the last state that was heard */
+    uint32_t number, before; /* of the last arming that was heard of, now and when this one was ordered */
+    int64_t armed_seq;       /* the slice whose command carried the order; 0: none yet */
+    bool goes_on;            /* the blade's way is remembered */
+    wh_pose_t *places;       /* base_from_gripper, from the end of that slice on */
+    size_t place_count, place_capacity;
+    wh_latch_t latches[WH_CROSSINGS]; /* of these the first latch_count, as far as there is room */
+    int64_t latch_count;
+    int64_t missed; /* latches that no state brought */
+    bool skipped;   /* the simulator has not had all slices */
+} wh_pass_t;
+
+/* A latch as a point of the blade. */
+typedef struct {
+    wh_crossing_t crossing;
+    double time; /* of the crossing, s of the run */
+} wh_pass_crossing_t;
+
+/* A state that comes after all that were heard. Without `physics` it must not be. */
+void wh_pass_hear(wh_pass_t *pass, const wh_state_t *state);
+
+/* A command of the slice that comes next. */
+void wh_pass_follow(wh_pass_t *pass, const wh_command_t *command);
+
+/* Where the gripper is at the end of a slice. What is behind a gap is not remembered. */
+void wh_pass_stand(wh_pass_t *pass, int64_t seq, const wh_pose_t *base_from_gripper);
+
+/* Forgets the places. */
+void wh_pass_free(wh_pass_t *pass);
+
+/* A beam of the layout, as motion control believes in it. */
+wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam);
+
+/* Each latch as a crossing, with what motion control knows of delays taken off. Returns how many there are;
+ * `missed` is how many latches have none. */
+size_t wh_pass_crossings(const wh_pass_t *pass, const wh_layout_t *layout,
+                         wh_pass_crossing_t crossings[WH_CROSSINGS], int64_t *missed);
+
+#endif
