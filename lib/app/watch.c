@@ -312,7 +312,7 @@ int wh_watch(const wh_watch_options_t *options) {
     (void)close(watch.events);
     (void)close(watch.signals);
     free(watch.files);
-    /* Who ends it may say so twice, to the process and to its group: nothing is left that the second could end. */
+    /* Who ends it may say so twice, to the process and to its group: the second finds nothing to end. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
     (void)sigprocmask(SIG_SETMASK, &before, NULL);
