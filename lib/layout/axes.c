@@ -26,9 +26,11 @@ const char *wh_axis_name(const wh_machine_t *machine, size_t axis) {
         [WH_CHAIN_RAIL] = "rail",     [WH_CHAIN_Z] = "z",         [WH_CHAIN_TILT_X] = "tilt_x",
         [WH_CHAIN_TILT_Y] = "tilt_y", [WH_CHAIN_THETA] = "theta", [WH_CHAIN_REACH] = "r",
         [WH_CHAIN_YAW] = "yaw",       [WH_CHAIN_FLIP] = "flip"};
-    size_t own;
+    size_t own, index = 0;
     const wh_chain_t *chain = chain_of(machine, axis, &own);
-    if (machine->carrier && !machine->carrier->next && machine->carrier->axes[axis] == WH_CARRIER_OTHERS) {
+    const int32_t robot = wh_machine_robot_of(machine, axis, &index);
+    const wh_carrier_t *carrier = robot == WH_NONE ? NULL : wh_machine_carrier(machine, (size_t)robot, NULL);
+    if (carrier && carrier->axes[index] == WH_CARRIER_OTHERS) {
         return own == WH_CHAIN_REACH ? "r2" : "yaw2";
     }
     return own == WH_CHAIN_REACH && is_scara(chain) ? "forearm" : names[own];

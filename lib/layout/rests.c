@@ -101,22 +101,47 @@ static void put_ranges(const directions_t *directions, double width, char *text,
     }
 }
 
+/* True if a rest of the station's edge grip meets the wafer's notch, which lies so on the gripper. */
+static bool is_met(const wh_layout_t *layout, size_t w, wh_edge_wafer_t *lying) {
+    const int32_t gripper = layout->stations[layout->wafers[w].station].effector;
+    const wh_edge_t *edge = &layout->grips[gripper].edge;
+    if (layout->grips[gripper].kind != WH_GRIP_EDGE || !(layout->edge_wafers[w].depth > 0)) {
+        return false;
+    }
+    *lying = lying_of(layout, w);
+    return meets(edge, lying, 1) || meets(edge, lying, -1);
+}
+
+/* How many behind this wafer lie so at its station. */
+static size_t count_more(const wh_layout_t *layout, size_t w) {
+    size_t count = 0;
+    for (size_t other = w + 1; other < layout->wafer_count; ++other) {
+        wh_edge_wafer_t lying;
+        const bool is_there = layout->wafers[other].station == layout->wafers[w].station;
+        count += is_there && is_met(layout, other, &lying) ? 1 : 0;
+    }
+    return count;
+}
+
 static void say_met(wh_feasibility_t *check, size_t w, int32_t gripper, const wh_edge_wafer_t *lying) {
     const wh_layout_t *layout = check->layout;
     const wh_edge_t *edge = &layout->grips[gripper].edge;
     const int32_t station = layout->wafers[w].station;
     directions_t directions;
-    char ranges[320];
+    char ranges[320], others[60] = "";
     find_directions(layout, edge, lying, &directions);
     put_ranges(&directions, (double)wh_deg_from_rad(width_of(edge, lying)), ranges, sizeof ranges);
+    const size_t more = count_more(layout, w);
+    if (more > 0) {
+        (void)snprintf(others, sizeof others, " (and so do those of %zu more there)", more);
+    }
     wh_finding_t *finding = wh_feasibility_add(
         check, WH_FINDING_REST, station,
-        "%s slot %d: the notch of %s points to %.4g degrees of %s, where a rest is, and sinks in there; "
-        "ALIGN "
-        "keeps it off rests, plunger and beams at %s degrees",
+        "%s slot %d: the notch of %s points to %.4g degrees of %s, where a rest is, and sinks in there%s; "
+        "ALIGN keeps it off rests, plunger and beams at %s degrees",
         layout->stations[station].name, (int)layout->wafers[w].slot, layout->wafers[w].name,
         (double)wh_deg_from_rad(wh_atan2((wh_real_t)lying->notch_y, (wh_real_t)lying->notch_x)),
-        layout->grippers[gripper].name, ranges);
+        layout->grippers[gripper].name, others, ranges);
     finding->slot = layout->wafers[w].slot;
     wh_feasibility_warn(check);
 }
@@ -126,15 +151,9 @@ void wh_feasibility_rests(wh_feasibility_t *check) {
     int32_t said = WH_NONE;
     for (size_t w = 0; layout->edge_wafers && w < layout->wafer_count; ++w) {
         const int32_t station = layout->wafers[w].station;
-        const int32_t gripper = layout->stations[station].effector;
-        if (layout->grips[gripper].kind != WH_GRIP_EDGE || !(layout->edge_wafers[w].depth > 0) ||
-            station == said) {
-            continue;
-        }
-        const wh_edge_wafer_t lying = lying_of(layout, w);
-        if (meets(&layout->grips[gripper].edge, &lying, 1) ||
-            meets(&layout->grips[gripper].edge, &lying, -1)) {
-            say_met(check, w, gripper, &lying);
+        wh_edge_wafer_t lying;
+        if (station != said && is_met(layout, w, &lying)) {
+            say_met(check, w, layout->stations[station].effector, &lying);
             said = station;
         }
     }

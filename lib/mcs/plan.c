@@ -300,12 +300,12 @@ static void refuse_slip(lua_State *L, wh_mcs_t *mcs, const wh_carrying_slip_t *s
     const char *name = layout->grippers[slip->gripper].name;
     char axis[2 * WH_NAME_SIZE], reason[8 * WH_NAME_SIZE];
     wh_layout_name_axis(layout, slip->axis, axis, sizeof axis);
+    const int digits = slip->asked - slip->held < 1 ? 4 : 0; /* else both would read the same */
     if (slip->enough >= 1) {
         snprintf(reason, sizeof reason,
-                 "%s asks the wafer on %s for %.0f mm/s^2, friction holds %.0f (expected loaded = { "
-                 "acceleration = "
-                 "%.0f } or less, of %s or of its robot)",
-                 axis, name, slip->asked, slip->held, floor(slip->enough), name);
+                 "%s asks the wafer on %s for %.*f mm/s^2, friction holds %.*f (expected loaded = { "
+                 "acceleration = %.0f } or less, of %s or of its robot)",
+                 axis, name, digits, slip->asked, digits, slip->held, floor(slip->enough), name);
     } else {
         snprintf(
             reason, sizeof reason,

@@ -470,11 +470,12 @@ return function(native, lookup, centring, tasks, alarms)
     return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
   end
 
-  -- What the plunger of an edge grip does. A target keeps the first that is to be told of: not that it is open.
+  -- What the plunger of an edge grip does. A target keeps the first that is to be told of: not that it is open, as it
+  -- should be.
   local function ask_plunger(request)
     local does, s, excess = native.grip(request.grip)
     local target = request.note
-    if target and does ~= "open" and not target.plunger then
+    if target and not (does == "open" and request.assume == "open") and not target.plunger then
       target.plunger = { does = does, s = s, excess = excess, is_on = native.sensor(request.grip) }
     end
     return does

@@ -142,9 +142,10 @@ end
 
 -- Waits until the plunger is where it was sent, `wanted`; at least as long as a sound one takes.
 local function settle(target, wanted)
+  local is_patient = target.timeout > patience(target)
   yield { dwell = patience(target), vacuum = true }
-  local does = yield { grip = target.gripper, assume = wanted, note = target }
-  if does ~= wanted and target.timeout > patience(target) then
+  local does = yield { grip = target.gripper, assume = wanted, note = not is_patient and target or nil }
+  if does ~= wanted and is_patient then
     yield { dwell = target.timeout - patience(target), vacuum = true }
     does = yield { grip = target.gripper, assume = wanted, note = target }
   end
@@ -166,7 +167,8 @@ local function check_open(target)
 end
 
 -- By what the plunger does that stands elsewhere than in its window, or should.
-local WHY = { jammed = "jammed", missed = "missing", still = "unmoved", closing = "unclosed", closed = "disagree" }
+local WHY = { jammed = "jammed", missed = "missing", still = "unmoved", open = "unmoved", opening = "unmoved",
+              closing = "unclosed", closed = "disagree" }
 
 -- Closes the plunger: "taken", or why it does not hold the wafer.
 local function close_plunger(target)
@@ -176,7 +178,8 @@ local function close_plunger(target)
   if not on and target.timeout > patience(target) and (yield { grip = gripper, assume = "closed" }) == "closing" then
     on = yield { sensor = gripper, timeout = target.timeout - patience(target) }
   end
-  if on and is_loaded(gripper, true) then
+  -- A sensor that is on before the plunger is there tells of no wafer.
+  if on and (yield { grip = gripper, assume = "closed" }) == "closed" and is_loaded(gripper, true) then
     return "taken"
   end
   local does = yield { grip = gripper, assume = "closed", note = target }

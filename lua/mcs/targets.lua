@@ -92,7 +92,7 @@ return function(native, lookup, align, mechanisms, stations)
       { "offset", target.offset <= target.stroke, "from 0 to the stroke, %.10g mm", target.stroke },
       { "stroke", math.max(-bottom, target.offset) < pitch,
         "within the pitch of %.10g mm below and above the slot", pitch },
-      { "release", target.release >= bottom and target.release <= target.offset,
+      { "release", target.is_passive or target.release >= bottom and target.release <= target.offset,
         "within the stroke: from %.10g to %.10g mm", bottom, target.offset },
       { "pickup_speed", not layout.sampled or target.pickup_speed <= window,
         'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
@@ -144,8 +144,8 @@ return function(native, lookup, align, mechanisms, stations)
       target.release = 0 -- what it holds lies on no pads, which would be lower
     end
     read_centre(target, word, station, options, prefix)
-    check(target, rules(target, station, native.layout), prefix)
     target.is_passive = native.layout.grippers[target.gripper].grip == "passive"
+    check(target, rules(target, station, native.layout), prefix)
     target.vent = target.is_passive and native.layout.vent or nil
     -- A blade that is turned over comes from above: its pads stop at `touch`, above the slot's plane.
     local flip = lookup.axis("flip", target.robot)

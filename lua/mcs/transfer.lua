@@ -103,6 +103,11 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   local SAYS = { jammed = "stands before its window", missed = "stands behind its window", closed = "holds a wafer",
                  closing = "is on its way", still = "has not moved", opening = "is on its way back", open = "is open" }
 
+  -- To a micrometre, but of a small excess all that tells it from nothing.
+  local function short(value, excess)
+    return (excess < 5e-4 and "%.10g" or "%.3f"):format(value)
+  end
+
   -- What became of a wafer, or of none, at a plunger, as an error if that is one.
   local PLUNGER = {}
 
@@ -128,8 +133,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   function PLUNGER.jammed(target, name, was)
     local clearance = native.layout.grippers[target.gripper].edge.clearance
     native.fail("WAFER_JAMMED", was.excess > 0
-      and ("a wafer lies %.3f mm off the centre of %s (expected at most its clearance, %.10g mm; by %.3f mm)"):format(
-        clearance + was.excess, name, clearance, was.excess)
+      and ("a wafer lies %s mm off the centre of %s (expected at most its clearance, %.10g mm; by %s mm)"):format(
+        short(clearance + was.excess, was.excess), name, clearance, short(was.excess, was.excess))
       or ("the plunger of %s stands at %.3f mm: the wafer is too large"):format(name, was.s))
   end
 
@@ -147,8 +152,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
       local text = "%s came up through %s slot %d without a wafer on its pads"
       native.fail("WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
     elseif found == "missing" then
-      native.fail("WAFER_MISSING", target.edge and ("the plunger of %s went on to the end of its stroke, and met "
-        .. "no wafer"):format(name_of(target.gripper)) or explain(target.gripper))
+      native.fail("WAFER_MISSING", target.edge and ("the plunger of %s went on to the end of its stroke: no wafer lies "
+        .. "there, or one that is too small, or too far out"):format(name_of(target.gripper)) or explain(target.gripper))
     elseif found == "late" then
       fail_late(target, target.gripper)
     elseif found == "early" then
