@@ -89,6 +89,10 @@ static int write_table(const arguments_t *arguments, table_t *table, const wh_lo
     if (!arguments->output && !wh_app_is_printed(copy(table, stdout) ? 0 : -1)) {
         return WH_EXIT_USAGE;
     }
+    if (!run->cell.is_whole) {
+        fprintf(stderr, "%s: %s: what the log itself does not tell of the cell is left out, or empty\n",
+                arguments->log.path, run->cell.note);
+    }
     return wh_log_arguments_judge(&arguments->log, run);
 }
 

@@ -38,8 +38,8 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
         layout = NULL;
     } else if (wh_layout_world_hash(layout) != made->world_hash) {
         (void)snprintf(made->note, sizeof made->note,
-                       "%.200s is not as it was: its shapes, or what collisions are looked for, were other "
-                       "ones when the log was recorded",
+                       "%.200s is not as it was, or has other parameters: its shapes, or what collisions are "
+                       "looked for, were other ones when the log was recorded",
                        path);
         layout = NULL;
     }
