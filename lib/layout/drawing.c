@@ -138,18 +138,23 @@ static bool is_found(const wh_feasibility_t *check, size_t part) {
     return false;
 }
 
+/* A wafer that lies face down has a dashed outline, and says so. */
 static void draw_part(drawing_t *d, wh_projection_t view, size_t part, wh_part_ink_t ink) {
     const wh_layout_t *layout = d->check->layout;
     const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
+    const bool is_face_down = ink == WH_INK_WAFER && pose.R.m[2][2] < 0;
     wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose);
-    fprintf(d->out, "<polygon class=\"%s\" points=\"",
-            is_found(d->check, part) ? "found" : wh_ink_looks[ink].class);
+    fprintf(d->out, "<polygon class=\"%s\" ", is_found(d->check, part) ? "found" : wh_ink_looks[ink].class);
+    if (is_face_down) {
+        fprintf(d->out, "stroke-dasharray=\"%.1f\" ", d->letter / 2);
+    }
+    fputs("points=\"", d->out);
     for (size_t i = 0; i < d->outline.count; ++i) {
         fprintf(d->out, "%s%.1f,%.1f", i > 0 ? " " : "", d->outline.spots[i].x, d->outline.spots[i].y);
     }
     fputs("\"><title>", d->out);
     wh_svg_text(d->out, wh_layout_part_name(layout, (int32_t)part));
-    fputs("</title></polygon>\n", d->out);
+    fputs(is_face_down ? ", face down</title></polygon>\n" : "</title></polygon>\n", d->out);
 }
 
 /* Draws the parts with inks `first` to `last`, in groups. */
