@@ -47,7 +47,7 @@ int64_t wh_transcript_last(const wh_transcript_t *transcript) {
 }
 
 /* Before the first byte that differs so many are shown. */
-#define SHOWN_BEFORE 40
+#define SHOWN_BEFORE ((size_t)40)
 
 /* From where on two frames are shown: a difference far behind would be cut off. */
 static size_t find_shown(const wh_transcript_entry_t *one, const wh_transcript_entry_t *other) {

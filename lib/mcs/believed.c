@@ -69,7 +69,7 @@ static bool turns_in_slot(const wh_layout_t *layout, size_t robot) {
  * and rad: yaw turns it about the vertical through slot 1, or `in_slot`, about the slot's z there. */
 static void move_station(lua_State *L, int shift, const wh_station_t *place, bool in_slot,
                          wh_pose_t *base_from_slot) {
-    wh_real_t by[4];
+    wh_real_t by[4] = {0};
     for (int i = 0; i < 4; ++i) {
         lua_rawgeti(L, shift, i + 1);
         by[i] = luaL_checknumber(L, -1);
@@ -78,7 +78,8 @@ static void move_station(lua_State *L, int shift, const wh_station_t *place, boo
     const wh_pose_t first = wh_station_slot(place, 1);
     const wh_mat3_t turn = wh_mat3_about_z(by[3]);
     const wh_mat3_t *R = &base_from_slot->R;
-    const wh_mat3_t turned = in_slot ? wh_mat3_multiply(R, &turn) : wh_mat3_multiply(&turn, R);
+    wh_mat3_t turned = *R;
+    wh_mat3_multiply_to(in_slot ? R : &turn, in_slot ? &turn : R, &turned);
     const wh_vec3_t off = wh_vec3_subtract(&base_from_slot->r, &first.r);
     const wh_vec3_t in = wh_mat3_transform_back(R, &off);
     const wh_vec3_t aside = wh_mat3_transform(&turned, &in);
