@@ -209,7 +209,9 @@ static void teaching_goes_on_from_what_was_set(void **state) {
         double r, yaw, theta;
         assert_begins("TEACH A keep=true", "OK x=");
         assert_begins("STATION A", "OK station=A");
-        assert_true(number_of("r", &r) && number_of("yaw", &yaw) && number_of("theta", &theta));
+        assert_true(number_of("r", &r));
+        assert_true(number_of("yaw", &yaw));
+        assert_true(number_of("theta", &theta));
         assert_near(r, 700, 0.005);
         assert_near(theta + yaw, 0, 0.005);
     }
