@@ -76,6 +76,9 @@ json_t *wh_centring_to_json(const void *given, size_t i) {
         from->command != WH_NONE ? (json_int_t)from->command : WH_JSON_NONE,
         wh_record_station_name(record, from->station), wh_record_gripper_name(record, from->gripper),
         wh_record_wafer_name(record, from->wafer), (int)words.verdict, words.is_sure);
+    if (from->repeated) { /* what motion control went by is not in the log */
+        (void)wh_json_add(object, "error sure", json_null(), json_null(), NULL);
+    }
     (void)wh_json_set(object, "missed %lld skipped %i repeated %i lacking %lld", (json_int_t)from->missed,
                       from->skipped, from->repeated, (json_int_t)from->lacking);
     return wh_json_add(object, "known crossings candidates words", known(from),

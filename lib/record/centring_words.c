@@ -76,13 +76,16 @@ static void put_verdict(const wh_centring_record_t *centring, const wh_command_r
         centring->status == WH_OK && is_too_large ? WH_STATUS_CORRECTION_TOO_LARGE : centring->status;
     const bool other = is_other(centring, command);
     words->verdict = why;
-    words->is_sure = why == WH_OK && !other;
+    words->is_sure = why == WH_OK && !centring->repeated;
     if (other) {
         put_other(words->lines[VERDICT], centring->status, command);
     } else if (why != WH_OK) {
         put_reason(words->lines[VERDICT], why);
     } else {
-        (void)snprintf(words->lines[VERDICT], WH_CENTRING_LINE_BYTES, "sure");
+        (void)snprintf(words->lines[VERDICT], WH_CENTRING_LINE_BYTES, "%s",
+                       centring->repeated ? "not told: this log's states alone, without a notch's direction, "
+                                            "would be sure of this"
+                                          : "sure");
     }
 }
 

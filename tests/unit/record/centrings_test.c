@@ -172,8 +172,8 @@ static void words_of_a_log_say_what_it_does_not_tell(void **state) {
         assert_non_null(strstr(words_of(i, 4, &sure), "a log does not tell if motion control knew"));
         assert_non_null(strstr(words_of(i, 5, &sure), "estimated again from the log's states"));
     }
-    (void)words_of(0, 0, &sure);
-    assert_true(sure);
+    assert_memory_equal(words_of(0, 0, &sure), "not told: this log's states alone", 33);
+    assert_false(sure);
     run.record.commands[run.record.centrings[0].command].error = WH_STATUS_CENTRE_NOT_SURE;
     assert_string_equal(words_of(0, 0, &sure), "not told: this log's states alone give 0 OK, but the command "
                                                "ended with 75 CENTRE_NOT_SURE");
