@@ -64,7 +64,8 @@
  *   centrings:    only if the layout has beams: what they told of wafers on their way into a station
  *                 (record/centrings.h). at_s, command (its index; null: not told), station, gripper, wafer
  *                 (null: not told), error (0: none) and sure (both null of a log, which does not tell all
- *                 that motion control knew), missed (latches), skipped (the simulator has missed slices), repeated (estimated again from a log, which
+ *                 that motion control knew), missed (latches), skipped (the simulator has missed slices),
+ *                 repeated (estimated again from a log, which
  *                 does not tell the notch's direction), lacking (slices of the pass that the log has not),
  *                 known { radius,
  *                 sd_radius, notch_deg, sd_notch_deg (on the blade; null: not known) }, crossings: [{ beam
