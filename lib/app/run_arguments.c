@@ -107,6 +107,10 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
     }
 }
 
+wh_mcs_listener_t wh_run_listener(wh_signals_t *signals) {
+    return (wh_mcs_listener_t){on_slice, on_boundary, signals};
+}
+
 /* ------------------------------------------------------------------------------------------------- errors */
 
 const wh_option_t wh_run_error_options[] = {
@@ -387,7 +391,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
         return WH_EXIT_USAGE;
     }
     if (wh_run_files_wanted(&arguments->files)) {
-        arguments->run.listener = (wh_mcs_listener_t){on_slice, on_boundary, &signals};
+        arguments->run.listener = wh_run_listener(&signals);
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;

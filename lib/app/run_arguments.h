@@ -21,6 +21,9 @@ extern const wh_option_t wh_run_files_options[];
 /* True if any is wanted. */
 bool wh_run_files_wanted(const wh_run_files_t *files);
 
+/* Fills the signals with each slice that motion control has played, and marks where a run begins anew. */
+wh_mcs_listener_t wh_run_listener(wh_signals_t *signals);
+
 /* Zero it to begin with. */
 typedef struct {
     wh_script_run_options_t run; /* run.script is null when none was named */

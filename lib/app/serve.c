@@ -268,21 +268,6 @@ static bool keep_coverage(const wh_host_t *host, const char *path) {
                      wh_file_write("--coverage", path, write_coverage, host->shown, NULL));
 }
 
-static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
-    if (state->status == WH_OK) {
-        wh_signals_slice(user, command->axes, command->axis_count, state);
-    }
-}
-
-static void on_boundary(void *user, const wh_layout_t *layout) {
-    wh_signals_t *signals = user;
-    if (!signals->layout) {
-        wh_signals_begin(signals, layout, true);
-    } else if (signals->last > 0) {
-        wh_signals_mark(signals);
-    }
-}
-
 static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signals_t *signals) {
     char *command = NULL;
     size_t size = 0;
@@ -390,7 +375,7 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
                         .shows_one_run = wh_run_files_wanted(&arguments->run.files),
                         .stop = &wh_stop_requested};
     if (wh_run_files_wanted(&arguments->run.files)) {
-        host->next = (wh_mcs_listener_t){on_slice, on_boundary, &served.signals};
+        host->next = wh_run_listener(&served.signals);
     }
     const bool good = check_coverage(arguments->coverage) && open_session(&served, arguments) &&
                       open_ports(host, arguments, argc, argv) && open_transcript(host, arguments) &&

@@ -5,6 +5,14 @@
 #include "../script/wh_module_values.h"
 #include "native.h"
 
+void wh_mcs_read_numbers(lua_State *L, int list, wh_real_t numbers[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        lua_rawgeti(L, list, (lua_Integer)i + 1);
+        numbers[i] = luaL_checknumber(L, -1);
+        lua_pop(L, 1);
+    }
+}
+
 /* The slot's frame, displaced in its own axes by the numbers from stack index 3 on: dx, dy, dz. */
 static wh_pose_t corrected_slot(lua_State *L, const wh_station_t *place, int32_t slot) {
     wh_pose_t base_from_slot = wh_station_slot(place, slot);
@@ -70,11 +78,7 @@ static bool turns_in_slot(const wh_layout_t *layout, size_t robot) {
 static void move_station(lua_State *L, int shift, const wh_station_t *place, bool in_slot,
                          wh_pose_t *base_from_slot) {
     wh_real_t by[4] = {0};
-    for (int i = 0; i < 4; ++i) {
-        lua_rawgeti(L, shift, i + 1);
-        by[i] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
+    wh_mcs_read_numbers(L, shift, by, 4);
     const wh_pose_t first = wh_station_slot(place, 1);
     const wh_mat3_t turn = wh_mat3_about_z(by[3]);
     const wh_mat3_t *R = &base_from_slot->R;
@@ -118,11 +122,7 @@ static int find_shift(lua_State *L) {
     const int32_t gripper = wh_mcs_index(L, 3, layout->machine.gripper_count);
     wh_real_t axes[WH_AXES] = {0};
     wh_pose_t poses[WH_GRIPPERS];
-    for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
-        lua_rawgeti(L, 4, (lua_Integer)axis + 1);
-        axes[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
+    wh_mcs_read_numbers(L, 4, axes, layout->machine.axis_count);
     if (lua_toboolean(L, 5)) {
         check_travel(L, mcs, axes);
     }

@@ -65,6 +65,9 @@ void wh_mcs_free_turns(wh_mcs_turns_t *turns);
  * collected before is gone. */
 void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper);
 
+/* The first `count` numbers of the list at this absolute stack index; raises if one is none. */
+void wh_mcs_read_numbers(lua_State *L, int list, wh_real_t numbers[], size_t count);
+
 /* The station's frame as motion control believes: as the layout has it, or moved by the table at this stack
  * index, if that is one: see native.shift in believed.c. */
 wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, size_t station, size_t robot);

@@ -60,15 +60,6 @@ static bool read_pose(lua_State *L, const wh_travel_goal_t *goal, const wh_carri
     return true;
 }
 
-/* The list of all axes at the top of the stack, if it is one. */
-static void read_axes_list(lua_State *L, size_t count, wh_real_t axes[]) {
-    for (size_t axis = 0; lua_istable(L, -1) && axis < count; ++axis) {
-        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
-        axes[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-}
-
 /* native.inverse(request): the axes with the gripper of request.to there, from request.from, or from where
  * they stand. */
 static int find_axes(lua_State *L) {
@@ -82,7 +73,9 @@ static int find_axes(lua_State *L) {
     lua_settop(L, 1);
     memcpy(from, mcs->track.axes, sizeof from);
     lua_getfield(L, 1, "from");
-    read_axes_list(L, machine->axis_count, from);
+    if (lua_istable(L, -1)) {
+        wh_mcs_read_numbers(L, lua_gettop(L), from, machine->axis_count);
+    }
     lua_settop(L, 1);
     lua_getfield(L, 1, "to");
     for (size_t i = 0; i < 4; ++i) {
@@ -113,7 +106,7 @@ static int find_axes(lua_State *L) {
 
 static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
     segment->kind = WH_SEGMENT_AXES;
-    read_axes_list(L, mcs->layout->machine.axis_count, segment->target);
+    wh_mcs_read_numbers(L, lua_gettop(L), segment->target, mcs->layout->machine.axis_count);
 }
 
 /* True if an arm that turns from these axes to those leaves the layout's transit. */

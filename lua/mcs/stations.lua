@@ -26,7 +26,7 @@ return function(native, lookup)
     return station.name .. "\0" .. robot
   end
 
-  function stations.is_taught(station, robot)
+  local function is_taught(station, robot)
     return station.taught or shifts[key(station, robot)] ~= nil
   end
 
@@ -41,12 +41,11 @@ return function(native, lookup)
       shifts[key(station, robot)], undrawn)
   end
 
-  local function check_taught(station, robot)
-    if not stations.is_taught(station, robot) then
+  function stations.check_taught(station, robot)
+    if not is_taught(station, robot) then
       native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
     end
   end
-  stations.check_taught = check_taught
 
   -- The station, and the robot and the gripper that a command means.
   local function find(name, options)
@@ -89,7 +88,7 @@ return function(native, lookup)
   -- Where the axes stand with the gripper in slot 1, as motion control believes: degrees and mm by name.
   local function read(name, options)
     local station, robot, gripper = find(name, options)
-    check_taught(station, robot)
+    stations.check_taught(station, robot)
     local axes, found = axes_at(station, 1, robot, gripper, 0, 0), {}
     for _, axis in ipairs(telling(station, robot, gripper)) do
       local value = axes[axis.index]
@@ -111,14 +110,14 @@ return function(native, lookup)
   -- The axes as the host has them: those that it names in place of where they would stand.
   local function set_axes(fields, station, robot, gripper)
     local known, values, names = telling(station, robot, gripper), {}, { "gripper", "robot" }
-    local axes = stations.is_taught(station, robot) and axes_at(station, 1, robot, gripper, 0, 0) or native.axes()
+    local axes = is_taught(station, robot) and axes_at(station, 1, robot, gripper, 0, 0) or native.axes()
     for _, axis in ipairs(known) do
       names[#names + 1] = axis.name
       local value = fields[axis.name]
       if value ~= nil then
         values[axis.name] = lookup.number(axis.name, value)
         axes[axis.index] = axis.turns and math.rad(value) or value
-      elseif not stations.is_taught(station, robot) then
+      elseif not is_taught(station, robot) then
         native.fail("BAD_ARGUMENT", ("%s: nil (expected a number: %s was never taught)"):format(axis.name, station.name))
       end
     end
