@@ -12,6 +12,7 @@
 #include "../script/reader.h"
 #include "../script/wh_module.h"
 #include "../text/array.h"
+#include "../text/utf8.h"
 #include "mechanism.h"
 #include "pace.h"
 
@@ -439,9 +440,16 @@ bool wh_dialect_open(wh_dialect_t *dialect, const char *path) {
     if (opened && wh_sandbox_protect(L, read_dialect, dialect, &result)) {
         return true;
     }
-    (void)snprintf(dialect->message, sizeof dialect->message, "%s",
-                   L ? result.message : "no memory for a sandbox");
+    wh_dialect_note(dialect, L ? result.message : "no memory for a sandbox");
     return false;
+}
+
+void wh_dialect_note(wh_dialect_t *dialect, const char *text) {
+    char whole[2 * WH_SANDBOX_MESSAGE_BYTES];
+    const bool is_named = strncmp(text, dialect->path, strlen(dialect->path)) == 0;
+    (void)snprintf(whole, sizeof whole, "%.300s%s%.1023s", is_named ? "" : dialect->path,
+                   is_named ? "" : ": ", text);
+    wh_utf8_visible(dialect->message, sizeof dialect->message, whole);
 }
 
 void wh_dialect_close(wh_dialect_t *dialect) {

@@ -60,16 +60,14 @@ bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure) {
     return is_refusal;
 }
 
-/* With a fresh budget. Of a limit that is exhausted nobody knows the line: the file at least is named. */
+/* With a fresh budget. */
 static bool call(wh_dialect_t *dialect, lua_CFunction function, call_t *argument) {
     wh_sandbox_result_t result;
     wh_sandbox_renew(dialect->sandbox);
     if (wh_sandbox_protect(wh_sandbox_state(dialect->sandbox), function, argument, &result)) {
         return true;
     }
-    const char *path = strstr(result.message, dialect->path) ? "" : dialect->path;
-    (void)snprintf(dialect->message, sizeof dialect->message, "%.300s%s%.700s", path, path[0] ? ": " : "",
-                   result.message);
+    wh_dialect_note(dialect, result.message);
     return false;
 }
 

@@ -274,18 +274,18 @@ static bool has_name(const naming_t *naming, const char *wanted) {
 }
 
 static bool refuse_name(const naming_t *naming, const char *theirs, const char *ours) {
-    char *message = naming->dialect->message;
-    const size_t size = sizeof naming->dialect->message;
-    (void)snprintf(message, size,
-                   "%.300s: %s.%.63s: \"%.63s\" (expected a name of the layout's: ", naming->dialect->path,
-                   naming->table, theirs, ours);
+    char text[WH_SANDBOX_MESSAGE_BYTES];
+    size_t length = (size_t)snprintf(text, sizeof text,
+                                     "%s.%.63s: \"%.63s\" (expected a name of the layout's: ", naming->table,
+                                     theirs, ours);
     const char *name = naming->name_at(naming->layout, 0);
-    for (size_t i = 1; name; name = naming->name_at(naming->layout, i++)) {
-        const size_t length = strlen(message);
-        (void)snprintf(message + length, size - length, "%s%.63s", i > 1 ? ", " : "", name);
+    for (size_t i = 1; name && length < sizeof text; name = naming->name_at(naming->layout, i++)) {
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%.63s", i > 1 ? ", " : "", name);
     }
-    const size_t length = strlen(message);
-    (void)snprintf(message + length, size - length, ")");
+    if (length < sizeof text) {
+        (void)snprintf(text + length, sizeof text - length, ")");
+    }
+    wh_dialect_note(naming->dialect, text);
     return false;
 }
 

@@ -189,10 +189,10 @@ static bool is_alone(const wh_host_t *host, wh_controller_t *controller) {
         const wh_controller_t *other = host->controllers[i];
         if (wh_mechanisms_clash(&other->mechanism, &controller->mechanism)) {
             const char *name = controller->mechanism.name;
-            (void)snprintf(controller->dialect.message, sizeof controller->dialect.message,
-                           "%.300s: mechanism: %.63s (expected one that no other port stands for)",
-                           controller->dialect.path,
+            char text[WH_SANDBOX_MESSAGE_BYTES];
+            (void)snprintf(text, sizeof text, "mechanism: %.63s (expected one that no other port stands for)",
                            name ? name : wh_mechanism_names[controller->mechanism.kind]);
+            wh_dialect_note(&controller->dialect, text);
             return false;
         }
     }
@@ -208,8 +208,9 @@ static bool find_mechanism(wh_controller_t *controller, const char *name) {
     if (!name || wh_mechanism_find(dialect->mechanism, name, layout, &controller->mechanism, problem)) {
         return true;
     }
-    (void)snprintf(dialect->message, sizeof dialect->message, "%.300s: mechanism: %.600s", dialect->path,
-                   problem);
+    char text[WH_SANDBOX_MESSAGE_BYTES];
+    (void)snprintf(text, sizeof text, "mechanism: %.600s", problem);
+    wh_dialect_note(dialect, text);
     return false;
 }
 
