@@ -91,8 +91,8 @@ typedef struct {
 bool wh_dialect_open(wh_dialect_t *dialect, const char *path);
 void wh_dialect_close(wh_dialect_t *dialect);
 
-/* Makes this text the `message`: one line that names the file. Of a limit that is exhausted, and of an error that
- * another file's function raised, the text itself does not begin with it. Control characters are shown. */
+/* Makes this text the `message`: one line that names the file, if the text does not begin with it. Control
+ * characters are shown. */
 void wh_dialect_note(wh_dialect_t *dialect, const char *text);
 
 /* True if the layout has all that `stations`, `arms` and `doors` name. Else `message` tells file, field,
