@@ -365,6 +365,7 @@ void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
     }
     wh_feasibility_sight(check);
     wh_feasibility_rests(check);
+    wh_feasibility_pockets(check);
 }
 
 void wh_feasibility_free(wh_feasibility_t *check) {

@@ -1,5 +1,5 @@
 /* Shared by the files that judge a layout: feasibility.c, contact.c, room.c, blades.c, lifted.c, sight.c,
- * rests.c. */
+ * rests.c, pockets.c. */
 #ifndef WH_LAYOUT_FEASIBILITY_INTERNAL_H
 #define WH_LAYOUT_FEASIBILITY_INTERNAL_H
 
@@ -21,8 +21,12 @@ void wh_feasibility_lifted(wh_feasibility_t *check, size_t station);
 /* What beams and edge sensors cannot see. */
 void wh_feasibility_sight(wh_feasibility_t *check);
 
-/* Notches that an edge grip would take over one of its rests. */
+/* A wafer that an edge grip comes for, turned as it lies on that blade, its middle where it is wanted. */
+wh_edge_wafer_t wh_feasibility_lying(const wh_layout_t *layout, size_t wafer);
+
+/* Notches that an edge grip would take over one of its rests, and wafers that it would not hold. */
 void wh_feasibility_rests(wh_feasibility_t *check);
+void wh_feasibility_pockets(wh_feasibility_t *check);
 
 /* The room at a station, and of the robot's blades beside one another. Both need parts. */
 void wh_feasibility_room(wh_feasibility_t *check, size_t station);

@@ -27,8 +27,7 @@ static wh_real_t width_of(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
     return outside;
 }
 
-/* The wafer as it lies on the blade that comes for it, its middle where it is wanted. */
-static wh_edge_wafer_t lying_of(const wh_layout_t *layout, size_t w) {
+wh_edge_wafer_t wh_feasibility_lying(const wh_layout_t *layout, size_t w) {
     const wh_layout_wafer_t *from = &layout->wafers[w];
     const wh_pose_t blade = wh_feasibility_slot(layout, &layout->places[from->station], from->slot);
     const wh_edge_wafer_t *shape = &layout->edge_wafers[w];
@@ -108,7 +107,7 @@ static bool is_met(const wh_layout_t *layout, size_t w, wh_edge_wafer_t *lying) 
     if (layout->grips[gripper].kind != WH_GRIP_EDGE || !(layout->edge_wafers[w].depth > 0)) {
         return false;
     }
-    *lying = lying_of(layout, w);
+    *lying = wh_feasibility_lying(layout, w);
     return meets(edge, lying, 1) || meets(edge, lying, -1);
 }
 

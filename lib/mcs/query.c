@@ -90,6 +90,23 @@ static int read_grip(lua_State *L) {
     return 3;
 }
 
+/* native.weight(gripper): the force of its pads and the weight that would hang on them as they look now, N, if
+ * that is more than they carry; else nothing. */
+static int read_weight(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const wh_pads_t *pads = &mcs->layout->physics.pads;
+    const wh_real_t down = -mcs->state.grippers[gripper].base_from_gripper.R.m[2][2];
+    const wh_real_t weight = pads->mass * pads->gravity * down;
+    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
+    if (pads->mass <= 0 || pads->force >= weight || mcs->layout->grips[gripper].kind != WH_GRIP_VACUUM) {
+        return 0;
+    }
+    lua_pushnumber(L, pads->force);
+    lua_pushnumber(L, weight);
+    return 2;
+}
+
 /* native.is_open(gripper): true if its valve is told to be open. */
 static int read_valve(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -339,6 +356,7 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"face", read_face},
                                            {"held_face", read_held_face},
                                            {"grip", read_grip},
+                                           {"weight", read_weight},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
                                            {"slot_pose", read_slot_pose},

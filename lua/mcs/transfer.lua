@@ -58,9 +58,14 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
 
   -- Why the running command took nothing with it.
   local function explain(gripper)
+    local name = name_of(gripper)
     local wafer, reasons = native.closest(gripper)
-    return wafer and ("%s came closest to %s: %s"):format(name_of(gripper), wafer, reasons)
-      or ("no wafer came near %s while its valve was open"):format(name_of(gripper))
+    if wafer then
+      return ("%s came closest to %s: %s"):format(name, wafer, reasons)
+    end
+    local force, weight = native.weight(gripper)
+    return force and ("%s is turned over, and its pads hold %.4g N (expected at least mass * gravity, %.4g N)"):format(
+      name, force, weight) or ("no wafer came near %s while its valve was open"):format(name)
   end
 
   -- A length as text, without a minus before zeros.
