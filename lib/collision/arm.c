@@ -63,15 +63,19 @@ static void place_column(const wh_chain_t *chain, const wh_real_t q[], wh_pose_t
     bodies[WH_ARM_LIFT] = wh_pose_compose(&bodies[WH_ARM_BASE], &up);
 }
 
-/* Rx(tilt_x) Ry(tilt_y). */
-static wh_mat3_t tilt_at(const wh_real_t q[]) {
+/* Turns the plane of the links by Rx(tilt_x) Ry(tilt_y). */
+static void tilt(const wh_real_t q[], wh_pose_t *plane) {
+    if (wh_real_abs(q[WH_CHAIN_TILT_X]) + wh_real_abs(q[WH_CHAIN_TILT_Y]) <= 0) {
+        return;
+    }
     wh_real_t s;
     wh_real_t c;
     wh_sin_cos(q[WH_CHAIN_TILT_X], &s, &c);
     const wh_mat3_t about_x = {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
     wh_sin_cos(q[WH_CHAIN_TILT_Y], &s, &c);
     const wh_mat3_t about_y = {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
-    return wh_mat3_multiply(&about_x, &about_y);
+    const wh_mat3_t both = wh_mat3_multiply(&about_x, &about_y);
+    plane->R = wh_mat3_multiply(&plane->R, &both);
 }
 
 /* The links in the plane that the column carries, the hand as it is there. */
@@ -90,7 +94,7 @@ static void place_scara(const wh_chain_t *chain, const wh_real_t q[], const wh_p
 }
 
 void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t axes[],
-                          wh_pose_t bodies[]) {
+                          const wh_pose_t *known, wh_pose_t bodies[]) {
     const wh_chain_t *chain = &carrier->chain;
     wh_real_t q[WH_CHAIN_AXES] = {0};
     wh_pose_t effector;
@@ -101,11 +105,14 @@ void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, cons
         }
     }
     q[WH_CHAIN_FLIP] = 0;
-    wh_chain_forward(chain, q, &effector);
+    if (known && !chain->has_flip) {
+        effector = *known;
+    } else {
+        wh_chain_forward(chain, q, &effector);
+    }
     place_column(chain, q, bodies);
     wh_pose_t plane = bodies[WH_ARM_LIFT];
-    const wh_mat3_t tilt = tilt_at(q);
-    plane.R = wh_mat3_multiply(&plane.R, &tilt);
+    tilt(q, &plane);
     const wh_pose_t hand = wh_pose_relative(&plane, &effector);
     if (chain->kind == WH_CHAIN_SCARA) {
         place_scara(chain, q, &hand, links);

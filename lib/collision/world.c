@@ -130,8 +130,10 @@ static void lay_out(const wh_world_config_t *config, block_t *block) {
     tree.leaf_of = take(block, items, sizeof *tree.leaf_of);
     wh_box_t *boxes = take(block, items, sizeof *boxes);
     wh_pose_t *wafers = take(block, config->wafer_count, sizeof *wafers);
+    wh_pose_t *shapes = take(block, config->wafer_count, sizeof *shapes);
     wh_mover_t *all = take(block, movers, sizeof *all);
     wh_mover_pair_t *pairs = take(block, movers * (movers - 1) / 2, sizeof *pairs);
+    double *due = take(block, movers * (movers - 1) / 2, sizeof *due);
     wh_pair_t *near = take(block, movers * WH_NEAR_CAPACITY, sizeof *near);
     if (world) {
         memset(world, 0, sizeof *world);
@@ -141,8 +143,10 @@ static void lay_out(const wh_world_config_t *config, block_t *block) {
         world->tree = tree;
         world->boxes = boxes;
         world->wafers = wafers;
+        world->shapes = shapes;
         world->movers = all;
         world->pairs = pairs;
+        world->due = due;
         world->near = near;
     }
 }
@@ -158,6 +162,7 @@ size_t wh_world_bytes(const wh_world_config_t *config) {
 static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
     for (size_t w = 0; w < world->config->wafer_count; ++w) {
         world->wafers[w] = wafers[w].base_from_wafer;
+        wh_world_place_shape(world, w);
     }
     for (size_t i = 0; i < world->tree.count; ++i) {
         const wh_side_t side = wh_world_side_of_item(world, (int32_t)i);
@@ -230,7 +235,6 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     lay_out(config, &block);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         const wh_real_t gap = config->known ? config->limits[kind] : WH_CLEARANCE_RANGE;
-        world->range = gap > world->range ? gap : world->range;
         world->clearances[kind].gap = world->least[kind] = gap;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }

@@ -1,5 +1,7 @@
 /* The smallest gaps over time. The judgement finds those of what moves, slice by slice. At a bin's end all
  * that is near is measured again, without the lists of what is near: also what has not moved in the bin. */
+#include <string.h>
+
 #include "world_internal.h"
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
@@ -9,7 +11,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     if (kind == WH_CLEARANCES || wh_world_may_touch(look, a, b)) {
         return;
     }
-    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, least[kind], guess, &gap);
+    wh_gap_measure(a->convex, a->now, b->convex, b->now, least[kind], guess, &gap);
     const wh_real_t found = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
     least[kind] = found < least[kind] ? found : least[kind];
 }
@@ -68,6 +70,7 @@ static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
         world->least[kind] = now[kind];
     }
     wh_world_weigh(world);
+    memset(world->due, 0, world->pair_count * sizeof *world->due);
 }
 
 /* If slices are lost, as in a free-running run, their bins show what came after them. */

@@ -38,6 +38,8 @@ typedef struct {
     wh_gone_t way; /* by which the pair can come closer: UPRIGHT if the axis is */
     wh_real_t slack, since;
     wh_vec3_t axis;
+    wh_real_t parted; /* how far apart along the axis the two were at the end of this step of the world */
+    uint32_t step;    /* 0: not known */
 } wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
@@ -45,8 +47,8 @@ typedef struct {
     int32_t part; /* WH_NONE: this gripper holds none */
     int32_t body; /* index in world->bodies */
     wh_part_kind_t kind;
-    wh_pose_t before, now; /* base_from_shape, once someone has asked in this slice: is_placed */
-    bool is_placed;
+    wh_pose_t before, now;        /* base_from_shape, if is_placed */
+    bool is_placed, was_placed;   /* someone has asked in this slice; in the one before */
     wh_real_t radius;             /* of a ball about the body's origin that holds the part */
     wh_real_t motion;             /* the most that a point of it moved in this slice, mm */
     wh_real_t rise;               /* the same, up or down */
@@ -81,6 +83,8 @@ struct wh_world {
     wh_tree_t tree;
     wh_box_t *boxes;   /* of the tree's items, for building it */
     wh_pose_t *wafers; /* base_from_wafer, as of the last slice */
+    wh_pose_t *shapes; /* of wafers that rest: base_from_shape */
+    uint32_t step;     /* this one, from 1 */
     size_t set_down;   /* wafers set down since the tree was built */
     /* of the arms, then the grippers', then of what each holds, then the doors' */
     wh_body_t bodies[WH_ARM_BODIES * WH_WORLD_ARMS + 2 * WH_WORLD_GRIPPERS + WH_WORLD_DOORS];
@@ -88,13 +92,14 @@ struct wh_world {
     size_t mover_count;
     wh_mover_pair_t *pairs;
     size_t pair_count;
+    double *due; /* of each pair: when `gone` is that, something can come of it */
+    double gone; /* at least as far as any two movers have gone together, mm */
     wh_pair_t *near;
     int32_t held[WH_WORLD_GRIPPERS];
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
     bool too_close[WH_CLEARANCES]; /* reported */
     bool struck;                   /* contact was reported and is no longer judged */
-    wh_real_t range;               /* a gap above it comes to nothing */
     /* The smallest gaps of the bin of the curves that is not finished; of the run if no curves are kept. */
     wh_real_t least[WH_CLEARANCES];
     /* For two kinds of parts (wh_world_kinds): nor does a gap above this, which is no new `least`. */
@@ -128,6 +133,7 @@ static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pai
     pair->near.slack = is_there ? 0 : WH_WORLD_NOWHERE;
     pair->near.since = 0;
     pair->near.axis = wh_vec3(0, 0, 0);
+    world->due[pair - world->pairs] = 0;
 }
 
 /* One part of a pair, as the judgement sees it. */
@@ -136,8 +142,8 @@ typedef struct {
     wh_part_kind_t kind;
     int32_t owner, slot;
     const wh_convex_t *convex;
-    const wh_body_t *body; /* null: it rests */
-    wh_pose_t before, now; /* base_from_shape */
+    const wh_body_t *body;         /* null: it rests */
+    const wh_pose_t *before, *now; /* base_from_shape */
     wh_real_t motion, bulge;
 } wh_side_t;
 
@@ -163,6 +169,10 @@ int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
 int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);
 int32_t wh_world_door_body(size_t door) WH_SYMBOL(wh_world_door_body);
 
+/* To be called when a wafer that rests has been put elsewhere. */
+void wh_world_place_shape(wh_world_t *world, size_t wafer) WH_SYMBOL(wh_world_place_shape);
+
+/* What is near is as the world is: valid until something moves. */
 wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
     WH_SYMBOL(wh_world_side_of_mover);
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);

@@ -1,4 +1,6 @@
 /* Where everything is now, and what of it rests. */
+#include <string.h>
+
 #include "world_internal.h"
 
 /* A gripper has left the wafer that it let go when it has gone this far sideways, mm. */
@@ -51,8 +53,20 @@ static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
     return wh_vec3_norm(&change);
 }
 
+static bool has_gone(const wh_body_t *body) {
+    return body->way > 0 || body->turn > 0 || body->lean > 0;
+}
+
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
+    const bool stands = memcmp(&body->now, now, sizeof *now) == 0;
+    if (stands && !has_gone(body)) {
+        return;
+    }
     body->before = body->now;
+    if (stands) {
+        body->way = body->turn = body->lean = 0;
+        return;
+    }
     body->now = *now;
     const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
     body->way = wh_vec3_norm(&way);
@@ -60,18 +74,25 @@ static void move_body(wh_body_t *body, const wh_pose_t *now) {
     body->lean = upright_change(&body->now.R, &body->before.R);
 }
 
-static void move_mover(wh_world_t *world, wh_mover_t *mover) {
+/* Returns the most that a point of it moved, mm. */
+static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
     const wh_body_t *body = &world->bodies[mover->body];
     if (mover->part == WH_NONE) {
-        return;
+        return 0;
     }
+    mover->was_placed = mover->is_placed;
     mover->is_placed = false;
+    if (!has_gone(body)) {
+        mover->motion = mover->bulge = mover->rise = 0;
+        return 0;
+    }
     mover->motion = body->way + body->turn * mover->radius;
     mover->bulge = body->turn * body->turn * mover->radius / 8;
     mover->rise = wh_real_abs(body->now.r.z - body->before.r.z) + body->lean * mover->radius;
     mover->gone[WH_GONE_ANYWHERE] += mover->motion;
     mover->gone[WH_GONE_UPRIGHT] += mover->rise;
     mover->reach -= mover->motion;
+    return mover->motion;
 }
 
 /* --------------------------------------------------------------------------------------- taken and let go */
@@ -102,9 +123,11 @@ static void begin_to_carry(wh_world_t *world, size_t gripper, int32_t wafer) {
     const wh_box_t nothing = wh_box_empty();
     world->held[gripper] = wafer;
     mover->part = (int32_t)(world->config->part_count + (size_t)wafer);
-    world->bodies[mover->body].now = world->wafers[wafer];
+    wh_body_t *body = &world->bodies[mover->body];
+    *body = (wh_body_t){.before = world->wafers[wafer], .now = world->wafers[wafer]};
     wh_tree_set(&world->tree, wh_world_item_of_wafer(world, wafer), &nothing);
     mover->near_count = 0;
+    mover->is_placed = false;
     forget_pairs(world, mover);
     relist_all(world);
 }
@@ -134,6 +157,7 @@ static void forget_item(wh_world_t *world, int32_t item) {
 /* Puts a wafer into the tree where it lies now. */
 static void lay_down(wh_world_t *world, int32_t wafer) {
     const int32_t item = wh_world_item_of_wafer(world, wafer);
+    wh_world_place_shape(world, (size_t)wafer);
     const wh_side_t side = wh_world_side_of_item(world, item);
     const wh_box_t box = wh_world_box(&side);
     wh_tree_set(&world->tree, item, &box);
@@ -236,7 +260,10 @@ void wh_world_move(const wh_look_t *look) {
     }
     take_wafers(look);
     move_held(look);
+    wh_real_t most = 0;
     for (size_t i = 0; i < world->mover_count; ++i) {
-        move_mover(world, &world->movers[i]);
+        const wh_real_t motion = move_mover(world, &world->movers[i]);
+        most = motion > most ? motion : most;
     }
+    world->gone += 2 * (double)most;
 }

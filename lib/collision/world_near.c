@@ -14,11 +14,13 @@ static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
     return side;
 }
 
+/* Where the slice begins the one before has ended. */
 static void place(const wh_world_t *world, wh_mover_t *mover) {
     const wh_body_t *body = &world->bodies[mover->body];
     const wh_convex_t *convex = wh_world_convex(world, mover->part);
     if (!mover->is_placed) {
-        mover->before = wh_pose_compose(&body->before, &convex->body_from_shape);
+        mover->before =
+            mover->was_placed ? mover->now : wh_pose_compose(&body->before, &convex->body_from_shape);
         mover->now = wh_pose_compose(&body->now, &convex->body_from_shape);
         mover->is_placed = true;
     }
@@ -28,8 +30,8 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
     wh_side_t side = side_of_part(world->config, mover->part);
     place(world, mover);
     side.body = &world->bodies[mover->body];
-    side.before = mover->before;
-    side.now = mover->now;
+    side.before = &mover->before;
+    side.now = &mover->now;
     side.motion = mover->motion;
     side.bulge = mover->bulge;
     return side;
@@ -37,15 +39,18 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
 
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) {
     wh_side_t side = side_of_part(world->config, wh_world_part_of_item(world, item));
-    const wh_pose_t *pose = &side.convex->body_from_shape;
-    side.now = side.kind == WH_PART_WAFER ? wh_pose_compose(&world->wafers[side.owner], pose) : *pose;
+    side.now = side.kind == WH_PART_WAFER ? &world->shapes[side.owner] : &side.convex->body_from_shape;
     side.before = side.now;
     return side;
 }
 
+void wh_world_place_shape(wh_world_t *world, size_t wafer) {
+    world->shapes[wafer] = wh_pose_compose(&world->wafers[wafer], &world->config->wafer.body_from_shape);
+}
+
 wh_box_t wh_world_box(const wh_side_t *side) {
     wh_box_t box;
-    wh_convex_bounds(side->convex, &side->now, &box.low, &box.high);
+    wh_convex_bounds(side->convex, side->now, &box.low, &box.high);
     return box;
 }
 
@@ -131,6 +136,7 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);
             near->slack = box_gap(&box, &other, &near->axis);
+            near->step = 0;
             near->way = WH_GONE_ANYWHERE;
             near->since = mover->gone[near->way] - mover->motion;
         }

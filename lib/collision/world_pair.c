@@ -44,7 +44,7 @@ static wh_real_t moved(const wh_pair_t *near, const wh_mover_t *mover) {
 
 bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
     const wh_real_t slack = near->slack - (wh_world_gone(near, a, b) - near->since);
-    if (slack > world->range) {
+    if (slack > world->worth[near->kinds]) {
         return true;
     }
     const wh_real_t bulge = a->bulge + (b ? b->bulge : 0);
@@ -59,7 +59,7 @@ bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t 
 /* base_from_shape at time t of the slice, 0 to 1. */
 static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
     if (!side->body) {
-        return side->now;
+        return *side->now;
     }
     const wh_body_t *body = side->body;
     wh_pose_t pose = body->now;
@@ -123,14 +123,14 @@ static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const
         return end->state;
     }
     if (end->state == WH_GAP_CLEAR || end->state == WH_GAP_TOUCHING) {
-        const wh_real_t start = wh_gap_along(a->convex, &a->before, b->convex, &b->before, end->axis);
-        const wh_real_t stop = wh_gap_along(a->convex, &a->now, b->convex, &b->now, end->axis);
+        const wh_real_t start = wh_gap_along(a->convex, a->before, b->convex, b->before, end->axis);
+        const wh_real_t stop = wh_gap_along(a->convex, a->now, b->convex, b->now, end->axis);
         if (start - bulge > -WH_GAP_TOUCH && stop - bulge > -WH_GAP_TOUCH) {
             return end->state;
         }
     }
     wh_gap_t begin;
-    wh_gap_measure(a->convex, &a->before, b->convex, &b->before, motion, end->axis, &begin);
+    wh_gap_measure(a->convex, a->before, b->convex, b->before, motion, end->axis, &begin);
     if (begin.state == WH_GAP_CLEAR && begin.gap + end->gap > motion) {
         return end->state;
     }
@@ -173,7 +173,7 @@ static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_s
 
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
     if (!look->world->struck) {
-        const wh_gap_t nowhere = {.at = a->now.r};
+        const wh_gap_t nowhere = {.at = a->now->r};
         const wh_side_t nothing = {.part = WH_NONE, .kind = WH_PART_FIXED};
         report_contact(look, a, &nothing, &nowhere, WH_GAP_UNDECIDED);
     }
@@ -209,15 +209,21 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
 
 /* ---------------------------------------------------------------------------------------------- judgement */
 
-/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. */
-static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_pair_t *near) {
+/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. How far it did at
+ * the end of the step before is how far it does at this one's begin. */
+static bool is_parted(const wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t needed,
+                      wh_pair_t *near) {
     const wh_vec3_t axis = near->axis;
     if (axis.x == 0 && axis.y == 0 && axis.z == 0) {
         return false;
     }
     const wh_real_t bulge = a->bulge + b->bulge;
-    const wh_real_t begin = wh_gap_along(a->convex, &a->before, b->convex, &b->before, axis);
-    const wh_real_t end = wh_gap_along(a->convex, &a->now, b->convex, &b->now, axis);
+    const bool is_known = near->step != 0 && near->step + 1 == world->step;
+    const wh_real_t begin =
+        is_known ? near->parted : wh_gap_along(a->convex, a->before, b->convex, b->before, axis);
+    const wh_real_t end = wh_gap_along(a->convex, a->now, b->convex, b->now, axis);
+    near->parted = end;
+    near->step = world->step;
     const bool apart = begin - bulge > 0 && end - bulge > 0 && end >= needed;
     if (apart) {
         near->slack = end;
@@ -232,11 +238,11 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_t worst;
     const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
     const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->least[kind];
-    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, enough > wanted ? enough : wanted, near->axis,
-                   &gap);
+    wh_gap_measure(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis, &gap);
     ++world->counters.measured;
     near->slack = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
     near->axis = gap.axis;
+    near->step = 0;
     if (kind != WH_CLEARANCES) {
         keep_clearance(look, kind, a, b, &gap);
     }
@@ -252,7 +258,7 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_world_t *world = look->world;
     const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
     const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->least[kind];
-    if ((world->struck && kind == WH_CLEARANCES) || is_parted(a, b, least - WH_SAME_GAP, near)) {
+    if ((world->struck && kind == WH_CLEARANCES) || is_parted(world, a, b, least - WH_SAME_GAP, near)) {
         ++world->counters.planes;
     } else if (wh_world_may_touch(look, a, b)) {
         near->slack = 0;

@@ -71,12 +71,40 @@ static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) 
     return &look->input->wafers[side->owner];
 }
 
+/* False if a wafer there is too far beside the station to lie in it. */
+static bool is_beside(const wh_cell_t *cell, const wh_station_t *station, const wh_pose_t *base_from_wafer) {
+    const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &station->base_from_station.r);
+    const wh_real_t height = wh_vec3_dot(&dr, &up);
+    const wh_real_t most = cell->tolerance.projxy + cell->thickness + 1;
+    return wh_vec3_dot(&dr, &dr) - height * height > most * most;
+}
+
+/* True if a wafer there may lie on a gripper's chuck; WH_NONE: on any. */
+static bool may_lie_on(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, int32_t gripper) {
+    for (size_t s = 0; s < cell->count; ++s) {
+        const wh_station_t *station = &cell->stations[s];
+        const bool is_its = gripper == WH_NONE ? station->chuck != WH_NONE : station->chuck == gripper;
+        if (is_its && !is_beside(cell, station, base_from_wafer)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool may_lie_in(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
+    return support->kind == WH_PART_LEDGE
+               ? !is_beside(cell, &cell->stations[support->owner], base_from_wafer)
+               : support->kind == WH_PART_CHUCK && may_lie_on(cell, base_from_wafer, support->owner);
+}
+
 /* True if a wafer at this pose lies in the ledge's slot, or on the gripper's chuck, and not below its
  * plane. */
 static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
-    if (!wh_cell_locate(cell, base_from_wafer, &place) || place.dz < -cell->tolerance.projz) {
+    if (!may_lie_in(cell, base_from_wafer, support) || !wh_cell_locate(cell, base_from_wafer, &place) ||
+        place.dz < -cell->tolerance.projz) {
         return false;
     }
     if (support->kind == WH_PART_LEDGE) {
@@ -104,7 +132,8 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
 static bool is_offered(const wh_look_t *look, const wh_wafer_t *wafer) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
-    return wafer->holder != WH_NONE || (wh_cell_locate(cell, &wafer->base_from_wafer, &place) &&
+    return wafer->holder != WH_NONE || (may_lie_on(cell, &wafer->base_from_wafer, WH_NONE) &&
+                                        wh_cell_locate(cell, &wafer->base_from_wafer, &place) &&
                                         cell->stations[place.station].chuck != WH_NONE);
 }
 
@@ -150,8 +179,8 @@ static wh_clearance_kind_t wafer_and_gripper(const wh_look_t *look, const wh_sid
     if (gripper->kind == WH_PART_CHUCK) {
         return WH_CLEARANCE_WAFER_OTHER;
     }
-    return wafer->now.r.z > gripper->now.r.z ? WH_CLEARANCE_BLADE_WAFER_ABOVE
-                                             : WH_CLEARANCE_BLADE_WAFER_BELOW;
+    return wafer->now->r.z > gripper->now->r.z ? WH_CLEARANCE_BLADE_WAFER_ABOVE
+                                               : WH_CLEARANCE_BLADE_WAFER_BELOW;
 }
 
 /* True if a wafer that moves hangs on the robot of the arm. */

@@ -29,23 +29,25 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
 }
 
 /* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of
- * them. */
-static bool hold_each_other(const wh_look_t *look, const wh_mover_t *a, const wh_mover_t *b) {
-    const wh_world_config_t *config = look->world->config;
-    const bool a_hangs = (size_t)a->part < config->part_count;
-    const bool b_hangs = (size_t)b->part < config->part_count;
-    const int32_t wafer = (a_hangs ? b : a)->part - (int32_t)config->part_count;
-    const int32_t hung = (a_hangs ? a : b)->part;
-    return a_hangs != b_hangs &&
-           (config->parts[hung].kind == WH_PART_BLADE || config->parts[hung].kind == WH_PART_CHUCK) &&
-           look->input->wafers[wafer].holder == config->parts[hung].owner;
+ * them. The movers of held wafers come last. */
+static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) {
+    const wh_world_t *world = look->world;
+    const wh_world_config_t *config = world->config;
+    const size_t hanging = config->part_count - world->fixed_count;
+    if ((size_t)pair->a >= hanging || (size_t)pair->b < hanging) {
+        return false;
+    }
+    const wh_part_t *hung = &config->parts[world->movers[pair->a].part];
+    const int32_t wafer = world->movers[pair->b].part - (int32_t)config->part_count;
+    return (hung->kind == WH_PART_BLADE || hung->kind == WH_PART_CHUCK) &&
+           look->input->wafers[wafer].holder == hung->owner;
 }
 
 static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_t *world = look->world;
     wh_mover_t *a = &world->movers[pair->a];
     wh_mover_t *b = &world->movers[pair->b];
-    if (hold_each_other(look, a, b) || wh_world_is_far(world, &pair->near, a, b) ||
+    if (hold_each_other(look, pair) || wh_world_is_far(world, &pair->near, a, b) ||
         wh_world_is_known(world, a->part, b->part)) {
         return;
     }
@@ -56,21 +58,35 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_remember(&pair->near, a, b);
 }
 
-/* Most pairs are so far apart that nothing else need be known of them. */
-static void judge_pairs(const wh_look_t *look) {
+/* Sums of ways are rounded: a pair is looked at when this much is left, mm. */
+#define EARLY 0.01
+
+/* Looks at a pair. Returns how much farther apart the two are than what can matter. */
+static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
+    const wh_real_t worth = world->worth[pair->near.kinds];
+    if (!(wh_world_slack(pair, movers) > worth) && movers[pair->a].motion + movers[pair->b].motion > 0) {
+        judge_movers(look, pair);
+    }
+    return (double)(wh_world_slack(pair, movers) - worth);
+}
+
+/* Most pairs are so far apart that nothing need be known of them for many slices. */
+static void judge_pairs(const wh_look_t *look) {
+    const wh_world_t *world = look->world;
+    const double gone = world->gone;
     for (size_t i = 0; i < world->pair_count; ++i) {
-        wh_mover_pair_t *pair = &world->pairs[i];
-        if (!(wh_world_slack(pair, movers) > world->range) &&
-            movers[pair->a].motion + movers[pair->b].motion > 0) {
-            judge_movers(look, pair);
+        if (!(gone < world->due[i])) {
+            const double apart = judge_pair(look, &world->pairs[i]);
+            world->due[i] = gone + apart - EARLY;
         }
     }
 }
 
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list) {
     const wh_look_t look = {world, input, list};
+    world->step = world->step < UINT32_MAX ? world->step + 1 : 2;
     wh_world_move(&look);
     for (size_t i = 0; i < world->mover_count; ++i) {
         judge_rest(&look, &world->movers[i]);
@@ -86,7 +102,7 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
 
 static bool cut(const wh_side_t *a, const wh_side_t *b) {
     wh_gap_t gap;
-    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, 0, wh_vec3(0, 0, 0), &gap);
+    wh_gap_measure(a->convex, a->now, b->convex, b->now, 0, wh_vec3(0, 0, 0), &gap);
     return gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
 }
 
@@ -139,6 +155,7 @@ size_t wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int
     contacts_t contacts = {pairs, 0, capacity};
     for (size_t w = 0; w < world->config->wafer_count; ++w) {
         const int32_t item = wh_world_item_of_wafer(world, (int32_t)w);
+        wh_world_place_shape(world, w);
         const wh_side_t a = wh_world_side_of_item(world, item);
         add_rest(&look, &a, item, &contacts);
     }

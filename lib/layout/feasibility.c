@@ -144,7 +144,7 @@ static bool carrier_reaches(const wh_layout_t *layout, size_t station, const wh_
             WH_OK) {
         return true;
     }
-    wh_arm_place_carrier(lengths_at(layout, station), arm, &axes[first], bodies);
+    wh_arm_place_carrier(lengths_at(layout, station), arm, &axes[first], NULL, bodies);
     const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
     return wh_vec3_norm(&out) <= 2 * lengths_at(layout, station)->link;
 }

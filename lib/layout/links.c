@@ -31,12 +31,13 @@ static bool find_effector(const wh_layout_t *layout, size_t arm, const wh_pose_t
     return false;
 }
 
-static void place(wh_links_t *links, const wh_layout_t *layout, size_t arm) {
+/* `known` is where the carrier has the end-effector at the arm's axes; null: not known. */
+static void place(wh_links_t *links, const wh_layout_t *layout, size_t arm, const wh_pose_t *known) {
     const wh_carrier_t *carrier = wh_layout_arm(layout, arm, NULL);
     const wh_arm_t *lengths = wh_layout_arm_lengths(layout, arm == 0 ? 0 : (size_t)layout->arms[arm].robot);
     wh_pose_t *bodies = &links->bodies[arm * WH_ARM_BODIES];
     if (carrier) {
-        wh_arm_place_carrier(lengths, carrier, links->arms[arm].axes, bodies);
+        wh_arm_place_carrier(lengths, carrier, links->arms[arm].axes, known, bodies);
     } else {
         wh_arm_place(lengths, &links->arms[arm].base_from_effector, bodies);
     }
@@ -54,7 +55,7 @@ void wh_links_at(wh_links_t *links, const wh_layout_t *layout, const wh_real_t a
         } else {
             wh_machine_effector(&layout->machine, 0, axes, &at->base_from_effector);
         }
-        place(links, layout, arm);
+        place(links, layout, arm, carrier ? &at->base_from_effector : NULL);
     }
 }
 
@@ -73,20 +74,21 @@ static bool is_at(const wh_pose_t *a, const wh_pose_t *b, wh_real_t slack) {
     return same;
 }
 
-/* Sets the arm's axes. `own` are its robot's; null: not known. */
-static void find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t own[],
-                      wh_real_t slack) {
+/* Sets the arm's axes. `own` are its robot's; null: not known. True if the arm is at these, and its end-effector
+ * `there`. */
+static bool find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t own[],
+                      wh_real_t slack, wh_pose_t *there) {
     const wh_pose_t *effector = &arm->base_from_effector;
     if (own) {
-        wh_pose_t there;
-        carrier->forward(carrier, own, &there);
-        if (is_at(&there, effector, slack)) {
+        carrier->forward(carrier, own, there);
+        if (is_at(there, effector, slack)) {
             memcpy(arm->axes, own, carrier->axis_count * sizeof own[0]);
-            return;
+            return true;
         }
     }
     const wh_chain_choice_t choice = wh_carrier_choice(carrier, arm->axes);
     (void)carrier->inverse(carrier, effector, &choice, arm->axes, arm->axes);
+    return false;
 }
 
 static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
@@ -121,9 +123,8 @@ void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose
             continue;
         }
         arm->base_from_effector = effector;
-        if (is_told && carrier) {
-            find_axes(arm, carrier, own, slack);
-        }
-        place(links, layout, i);
+        wh_pose_t there;
+        const bool is_there = is_told && carrier && find_axes(arm, carrier, own, slack, &there);
+        place(links, layout, i, is_there ? &there : NULL);
     }
 }

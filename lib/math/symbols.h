@@ -337,6 +337,7 @@
 #define wh_world_move WH_SYMBOL_RENAMED(wh_world_move)
 #define wh_world_part_of_item WH_SYMBOL_RENAMED(wh_world_part_of_item)
 #define wh_world_place WH_SYMBOL_RENAMED(wh_world_place)
+#define wh_world_place_shape WH_SYMBOL_RENAMED(wh_world_place_shape)
 #define wh_world_report_crowd WH_SYMBOL_RENAMED(wh_world_report_crowd)
 #define wh_world_settle WH_SYMBOL_RENAMED(wh_world_settle)
 #define wh_world_side_of_item WH_SYMBOL_RENAMED(wh_world_side_of_item)

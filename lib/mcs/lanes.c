@@ -31,7 +31,7 @@ static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
  * its target's bits. True if any is over. */
 static bool draw(wh_mcs_t *mcs) {
     bool is_any_over = false;
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
         if (!lane->is_busy || lane->is_drawn) {
             continue;
@@ -51,7 +51,7 @@ static bool draw(wh_mcs_t *mcs) {
 static void tell_recorder(wh_mcs_t *mcs) {
     wh_recorder_t *recorder = &mcs->recorder;
     recorder->part_count = 0;
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
         const int32_t command = (int32_t)i == mcs->lanes->current ? recorder->running : lane->running;
         if (lane->is_busy || command != WH_NONE) {
@@ -66,7 +66,7 @@ static void tell_recorder(wh_mcs_t *mcs) {
 /* What comes next is decided by the state of a slice that ends a segment. */
 static void await_ends(const wh_mcs_t *mcs) {
     bool is_any_last = false;
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         const wh_lane_t *lane = &mcs->lanes->of[i];
         is_any_last =
             is_any_last || (lane->is_busy && lane->track.segment_slice == lane->track.segment_slices);
@@ -81,7 +81,7 @@ static void await_ends(const wh_mcs_t *mcs) {
 static wh_status_t play_slice(wh_mcs_t *mcs) {
     wh_real_t before[WH_AXES];
     memcpy(before, mcs->track.axes, sizeof before);
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
         if (lane->is_busy) {
             take_axes(mcs, lane);
@@ -94,7 +94,7 @@ static wh_status_t play_slice(wh_mcs_t *mcs) {
     await_ends(mcs);
     const wh_status_t status = wh_mcs_play_slice(mcs, before);
     mcs->recorder.part_count = 0;
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_vacuum_watch_slice(&mcs->lanes->of[i].watch, mcs->state.sensors);
     }
     return status;
@@ -102,7 +102,7 @@ static wh_status_t play_slice(wh_mcs_t *mcs) {
 
 /* What moves one of these axes goes on no more; WH_MCS_ALL: nothing does. */
 static void give_up(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
-    for (size_t i = 0; i < WH_MCS_LANES; ++i) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
         if (lane->is_busy && (axes == WH_MCS_ALL || (lane->axes & axes) != 0)) {
             lane->status = status;
@@ -207,6 +207,7 @@ static int open_lanes(lua_State *L) {
         mcs->unplayed = "tasks";
         mcs->keep_segments = false;
         mcs->lanes = wh_array_new(1, sizeof *mcs->lanes);
+        mcs->lanes->count = 1;
         for (size_t i = 0; i < WH_MCS_LANES; ++i) {
             mcs->lanes->of[i].running = WH_NONE;
         }
@@ -227,6 +228,7 @@ static int switch_lane(lua_State *L) {
     memcpy(lane->callers, mcs->callers, sizeof lane->callers);
     memcpy(lane->word, mcs->word, sizeof lane->word);
     mcs->lanes->current = to;
+    mcs->lanes->count = (size_t)to < mcs->lanes->count ? mcs->lanes->count : (size_t)to + 1;
     lane = current(mcs);
     lane->number = (int32_t)luaL_checkinteger(L, 2);
     mcs->recorder.number = lane->number;

@@ -190,6 +190,7 @@ typedef struct {
 typedef struct {
     int32_t current;        /* whose functions run */
     const char *stopped_by; /* why segments were given up, a constant text; null: the link refused a slice */
+    size_t count;           /* no lane from here on has been a task's */
     wh_lane_t of[WH_MCS_LANES]; /* the script's own first */
 } wh_lanes_t;
 

@@ -213,7 +213,7 @@ static stance_t stance_at(const wh_carrier_t *carrier, const wh_real_t axes[]) {
     static const wh_arm_t arm = {.reach = 100, .link = 300};
     stance_t stance;
     carrier->forward(carrier, axes, &stance.hand);
-    wh_arm_place_carrier(&arm, carrier, axes, stance.links);
+    wh_arm_place_carrier(&arm, carrier, axes, NULL, stance.links);
     return stance;
 }
 

@@ -436,7 +436,7 @@ static void links_of_every_kind_hang_together(void **state) {
         q[3] = kind == WH_CHAIN_TRZ ? 0 : q[3];
         assert_int_equal(wh_carrier_init(&carrier, &chain), WH_OK);
         carrier.forward(&carrier, q, &end);
-        wh_arm_place_carrier(&polar, &carrier, q, bodies);
+        wh_arm_place_carrier(&polar, &carrier, q, NULL, bodies);
         const wh_vec3_t foot = wh_vec3(100, 200 + q[4], 30);
         const wh_vec3_t lift = wh_vec3(100, 200 + q[4], 30 + q[2]);
         assert_near(bodies[WH_ARM_BASE].r.x - foot.x, 0, 1e-9);
