@@ -178,12 +178,13 @@ static int32_t body_of(const wh_part_t *part) {
     return part->kind == WH_PART_ARM ? part->owner : wh_world_gripper_body((size_t)part->owner);
 }
 
-static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t body) {
+static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t body, int32_t arm) {
     wh_mover_t *mover = &world->movers[index];
     memset(mover, 0, sizeof *mover);
     mover->part = part;
     mover->body = body;
     mover->kind = part == WH_NONE ? WH_PART_WAFER : world->config->parts[part].kind;
+    mover->arm = arm;
     mover->near = &world->near[index * WH_NEAR_CAPACITY];
     mover->radius = wh_convex_radius(part == WH_NONE ? &world->config->wafer : wh_world_convex(world, part));
 }
@@ -193,10 +194,14 @@ static void set_up_movers(wh_world_t *world) {
     const size_t hanging = config->part_count - world->fixed_count;
     for (size_t i = 0; i < hanging; ++i) {
         const size_t part = world->fixed_count + i;
-        set_up_mover(world, i, (int32_t)part, body_of(&config->parts[part]));
+        const wh_part_t *hung = &config->parts[part];
+        const bool is_carried = hung->kind == WH_PART_ARM || hung->kind == WH_PART_BLADE;
+        const int32_t arm = is_carried ? wh_world_arm_of(config, hung->kind, hung->owner) : WH_NONE;
+        set_up_mover(world, i, (int32_t)part, body_of(hung), arm);
     }
     for (size_t g = 0; g < config->gripper_count; ++g) {
-        set_up_mover(world, hanging + g, WH_NONE, wh_world_held_body(g));
+        const int32_t arm = wh_world_arm_of(config, WH_PART_BLADE, (int32_t)g);
+        set_up_mover(world, hanging + g, WH_NONE, wh_world_held_body(g), arm);
         world->held[g] = WH_NONE;
         world->left[g].wafer = WH_NONE;
     }
@@ -219,7 +224,9 @@ static void set_up_pairs(wh_world_t *world) {
                 pair->a = (int32_t)a;
                 pair->b = (int32_t)b;
                 wh_world_forget(world, pair);
-                pair->near.kinds = wh_world_kinds(world->movers[a].kind, world->movers[b].kind);
+                const wh_mover_t *other = &world->movers[b];
+                pair->near.worth =
+                    wh_world_worth_of(world->config, &world->movers[a], other->kind, other->arm);
             }
         }
     }

@@ -30,16 +30,30 @@ typedef struct {
  * at one height for most of the time. */
 typedef enum WH_FOUR_BYTES { WH_GONE_ANYWHERE, WH_GONE_UPRIGHT, WH_GONE_WAYS } wh_gone_t;
 
+/* The clearances that a pair may count for. */
+typedef enum WH_FOUR_BYTES {
+    WH_WORTH_NOTHING,
+    WH_WORTH_WAFER_WAFER,
+    WH_WORTH_WAFER_LEDGE,
+    WH_WORTH_WAFER_OTHER,
+    WH_WORTH_BLADE_WAFER, /* above it or below */
+    WH_WORTH_ARM_ITSELF,
+    WH_WORTH_ARM_OTHER,
+    WH_WORTH_BLADE_OTHER,
+    WH_WORTHS
+} wh_worth_t;
+
 /* A pair and its state: when its movers had gone `since` together, the gap was at least `slack`, and so was
  * the separation along `axis` (zero: none yet, and no slack above 0). */
 typedef struct {
-    int32_t other; /* an item of the tree, or a mover */
-    int32_t kinds; /* of both parts: which of world->worth */
-    wh_gone_t way; /* by which the pair can come closer: UPRIGHT if the axis is */
+    int32_t other;    /* an item of the tree, or a mover */
+    wh_worth_t worth; /* which of world->worth */
+    wh_gone_t way;    /* by which the pair can come closer: UPRIGHT if the axis is */
     wh_real_t slack, since;
     wh_vec3_t axis;
     wh_real_t parted; /* how far apart along the axis the two were at the end of this step of the world */
     uint32_t step;    /* 0: not known */
+    uint32_t again;   /* from this step on it is worth while to ask how far apart the two are by now */
 } wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
@@ -47,6 +61,7 @@ typedef struct {
     int32_t part; /* WH_NONE: this gripper holds none */
     int32_t body; /* index in world->bodies */
     wh_part_kind_t kind;
+    int32_t arm;                  /* that it hangs on, or whose gripper holds it; WH_NONE: on none */
     wh_pose_t before, now;        /* base_from_shape, if is_placed */
     bool is_placed, was_placed;   /* someone has asked in this slice; in the one before */
     wh_real_t radius;             /* of a ball about the body's origin that holds the part */
@@ -71,8 +86,6 @@ typedef struct {
     int32_t wafer;
     wh_vec3_t at;
 } wh_left_t;
-
-#define WH_PART_KINDS (WH_PART_WAFER + 1)
 
 /* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
 #define WH_SAME_GAP WH_REAL(1e-4)
@@ -102,8 +115,7 @@ struct wh_world {
     bool struck;                   /* contact was reported and is no longer judged */
     /* The smallest gaps of the bin of the curves that is not finished; of the run if no curves are kept. */
     wh_real_t least[WH_CLEARANCES];
-    /* For two kinds of parts (wh_world_kinds): nor does a gap above this, which is no new `least`. */
-    wh_real_t worth[WH_PART_KINDS * WH_PART_KINDS];
+    wh_real_t worth[WH_WORTHS]; /* a gap above it comes to nothing: it is no new `least` */
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
@@ -204,8 +216,14 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 /* Finishes the bin of the curves if this slice is its end, and begins the next one. */
 void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
 
-/* The index of two kinds of parts in world->worth. */
-int32_t wh_world_kinds(wh_part_kind_t a, wh_part_kind_t b) WH_SYMBOL(wh_world_kinds);
+/* The arm of a part of this kind and owner, which is on a robot; of a held wafer as of a blade, its gripper being
+ * the owner. WH_NONE: on none. */
+int32_t wh_world_arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner)
+    WH_SYMBOL(wh_world_arm_of);
+
+/* What a mover's gaps to something count for. `arm` is the other one's; WH_NONE: it is on none. */
+wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *mover, wh_part_kind_t kind,
+                             int32_t arm) WH_SYMBOL(wh_world_worth_of);
 
 /* Writes world->worth anew, after one of world->least has changed. */
 void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);

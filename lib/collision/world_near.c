@@ -132,7 +132,7 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
         }
         wh_pair_t *near = &mover->near[mover->near_count++];
         near->other = found[i];
-        near->kinds = wh_world_kinds(mover->kind, kind_of_item(world, found[i]));
+        near->worth = wh_world_worth_of(world->config, mover, kind_of_item(world, found[i]), WH_NONE);
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);
             near->slack = box_gap(&box, &other, &near->axis);

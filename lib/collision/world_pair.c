@@ -44,14 +44,14 @@ static wh_real_t moved(const wh_pair_t *near, const wh_mover_t *mover) {
 
 bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
     const wh_real_t slack = near->slack - (wh_world_gone(near, a, b) - near->since);
-    if (slack > world->worth[near->kinds]) {
+    if (slack > world->worth[near->worth]) {
         return true;
     }
     const wh_real_t bulge = a->bulge + (b ? b->bulge : 0);
     const wh_real_t before = slack + moved(near, a) + (b ? moved(near, b) : 0);
     near->slack = before - lost_along(world, near, a, b);
     wh_world_remember(near, a, b);
-    return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->worth[near->kinds];
+    return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->worth[near->worth];
 }
 
 /* ----------------------------------------------------------------------------------------- between slices */

@@ -10,16 +10,18 @@ static int32_t link_of(const wh_part_t *part) {
     return part->kind == WH_PART_ARM ? part->owner % (int32_t)WH_ARM_BODIES : (int32_t)WH_ARM_BODIES;
 }
 
-/* The arm of a part that is on a robot. */
-static int32_t arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner) {
+int32_t wh_world_arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner) {
     if (config->arm_count == 0) {
         return 0;
     }
-    return kind == WH_PART_ARM ? owner / (int32_t)WH_ARM_BODIES : config->carried_by[owner];
+    const int32_t arm =
+        kind == WH_PART_ARM ? owner / (int32_t)WH_ARM_BODIES : (int32_t)config->carried_by[owner];
+    return arm == WH_WORLD_NO_ARM ? WH_NONE : arm;
 }
 
 static bool is_one_robot(const wh_world_config_t *config, int32_t arm, int32_t other) {
-    return arm == other || config->arms[arm].robot == config->arms[other].robot;
+    return arm == other ||
+           (arm != WH_NONE && other != WH_NONE && config->arms[arm].robot == config->arms[other].robot);
 }
 
 /* Of two arms of one robot: what they share belongs to both; where the second one begins, both meet. The
@@ -42,8 +44,8 @@ bool wh_world_belong_together(const wh_world_config_t *config, const wh_part_t *
     if (!is_on_robot(a) || !is_on_robot(b)) {
         return false;
     }
-    const int32_t one = arm_of(config, a->kind, a->owner);
-    const int32_t two = arm_of(config, b->kind, b->owner);
+    const int32_t one = wh_world_arm_of(config, a->kind, a->owner);
+    const int32_t two = wh_world_arm_of(config, b->kind, b->owner);
     const int32_t apart = link_of(a) - link_of(b);
     if (one == two) {
         return apart >= -1 && apart <= 1;
@@ -190,9 +192,9 @@ static bool is_own_load(const wh_look_t *look, const wh_side_t *wafer, const wh_
         return wafer->body != NULL;
     }
     const int32_t gripper = (int32_t)(wafer->body - world->bodies) - wh_world_held_body(0);
-    const int32_t carrier = arm_of(world->config, WH_PART_BLADE, gripper);
-    return carrier != WH_WORLD_NO_ARM &&
-           is_one_robot(world->config, carrier, arm_of(world->config, WH_PART_ARM, arm->owner));
+    const int32_t carrier = wh_world_arm_of(world->config, WH_PART_BLADE, gripper);
+    return carrier != WH_NONE &&
+           is_one_robot(world->config, carrier, wh_world_arm_of(world->config, WH_PART_ARM, arm->owner));
 }
 
 static wh_clearance_kind_t of_wafer(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *other) {
@@ -218,7 +220,8 @@ static bool is_on_arm(const wh_side_t *side) {
 }
 
 static bool are_of_one_robot(const wh_world_config_t *config, const wh_side_t *a, const wh_side_t *b) {
-    return is_one_robot(config, arm_of(config, a->kind, a->owner), arm_of(config, b->kind, b->owner));
+    return is_one_robot(config, wh_world_arm_of(config, a->kind, a->owner),
+                        wh_world_arm_of(config, b->kind, b->owner));
 }
 
 wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {
@@ -237,49 +240,59 @@ wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t
     return has_blade ? WH_CLEARANCE_BLADE_OTHER : WH_CLEARANCES;
 }
 
-/* The clearances that pairs of two kinds of parts may count for, as bits. */
-static unsigned clearances_of_wafer(wh_part_kind_t other) {
+/* The clearances that one may count for, as bits. */
+static const unsigned clearances[WH_WORTHS] = {
+    [WH_WORTH_WAFER_WAFER] = 1U << WH_CLEARANCE_WAFER_WAFER,
+    [WH_WORTH_WAFER_LEDGE] = 1U << WH_CLEARANCE_WAFER_LEDGE,
+    [WH_WORTH_WAFER_OTHER] = 1U << WH_CLEARANCE_WAFER_OTHER,
+    [WH_WORTH_BLADE_WAFER] = 1U << WH_CLEARANCE_BLADE_WAFER_ABOVE | 1U << WH_CLEARANCE_BLADE_WAFER_BELOW,
+    [WH_WORTH_ARM_ITSELF] = 1U << WH_CLEARANCE_ARM_ITSELF,
+    [WH_WORTH_ARM_OTHER] = 1U << WH_CLEARANCE_ARM_OTHER,
+    [WH_WORTH_BLADE_OTHER] = 1U << WH_CLEARANCE_BLADE_OTHER,
+};
+
+static wh_worth_t worth_of_wafer(wh_part_kind_t other, bool is_one) {
     switch (other) {
     case WH_PART_WAFER:
-        return 1U << WH_CLEARANCE_WAFER_WAFER;
+        return WH_WORTH_WAFER_WAFER;
     case WH_PART_LEDGE:
-        return 1U << WH_CLEARANCE_WAFER_LEDGE;
+        return WH_WORTH_WAFER_LEDGE;
     case WH_PART_BLADE:
-        return 1U << WH_CLEARANCE_BLADE_WAFER_ABOVE | 1U << WH_CLEARANCE_BLADE_WAFER_BELOW;
+        return WH_WORTH_BLADE_WAFER;
     case WH_PART_ARM:
-        return 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_ARM_OTHER;
+        return is_one ? WH_WORTH_ARM_ITSELF : WH_WORTH_ARM_OTHER;
     case WH_PART_CHUCK:
     case WH_PART_DOOR:
     case WH_PART_FIXED:
         break;
     }
-    return 1U << WH_CLEARANCE_WAFER_OTHER;
+    return WH_WORTH_WAFER_OTHER;
 }
 
-static unsigned clearances_of(wh_part_kind_t a, wh_part_kind_t b) {
-    const bool has_arm = a == WH_PART_ARM || b == WH_PART_ARM;
-    const bool has_blade = a == WH_PART_BLADE || b == WH_PART_BLADE;
-    if (a == WH_PART_WAFER || b == WH_PART_WAFER) {
-        return clearances_of_wafer(a == WH_PART_WAFER ? b : a);
+wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *mover, wh_part_kind_t kind,
+                             int32_t arm) {
+    const bool is_one = mover->arm != WH_NONE && arm != WH_NONE && is_one_robot(config, mover->arm, arm);
+    const bool has_arm = mover->kind == WH_PART_ARM || kind == WH_PART_ARM;
+    const bool has_blade = mover->kind == WH_PART_BLADE || kind == WH_PART_BLADE;
+    if (mover->kind == WH_PART_WAFER || kind == WH_PART_WAFER) {
+        return worth_of_wafer(mover->kind == WH_PART_WAFER ? kind : mover->kind, is_one);
+    }
+    if (is_one) {
+        return WH_WORTH_ARM_ITSELF;
     }
     if (has_arm) {
-        return 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_ARM_OTHER;
+        return WH_WORTH_ARM_OTHER;
     }
-    return has_blade ? 1U << WH_CLEARANCE_ARM_ITSELF | 1U << WH_CLEARANCE_BLADE_OTHER : 0;
-}
-
-int32_t wh_world_kinds(wh_part_kind_t a, wh_part_kind_t b) {
-    return (int32_t)a * WH_PART_KINDS + (int32_t)b;
+    return has_blade ? WH_WORTH_BLADE_OTHER : WH_WORTH_NOTHING;
 }
 
 void wh_world_weigh(wh_world_t *world) {
-    for (int32_t i = 0; i < WH_PART_KINDS * WH_PART_KINDS; ++i) {
-        const unsigned bits =
-            clearances_of((wh_part_kind_t)(i / WH_PART_KINDS), (wh_part_kind_t)(i % WH_PART_KINDS));
+    for (size_t i = 0; i < WH_WORTHS; ++i) {
         world->worth[i] = 0;
         for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
             const wh_real_t gap = world->least[kind] - WH_SAME_GAP;
-            world->worth[i] = (bits >> kind & 1U) && gap > world->worth[i] ? gap : world->worth[i];
+            const bool counts = (clearances[i] >> kind & 1U) != 0;
+            world->worth[i] = counts && gap > world->worth[i] ? gap : world->worth[i];
         }
     }
 }

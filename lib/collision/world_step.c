@@ -43,12 +43,35 @@ static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) 
            look->input->wafers[wafer].holder == hung->owner;
 }
 
+/* A slack that is worth less than so many slices of this motion is asked for anew; if that does not help, not before
+ * so many slices have gone. */
+#define SOON 16
+
+/* The sum of all ways is much more than two that go side by side have come closer. */
+static void ask_anew(wh_world_t *world, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near) {
+    const wh_real_t soon = SOON * (a->motion + b->motion);
+    if (near->slack - world->worth[near->worth] > soon || world->step < near->again) {
+        return;
+    }
+    const wh_side_t one = wh_world_side_of_mover(world, a);
+    const wh_side_t two = wh_world_side_of_mover(world, b);
+    const wh_real_t apart = wh_gap_along(one.convex, one.now, two.convex, two.now, near->axis);
+    near->again = apart > near->slack + soon ? 0 : world->step + SOON;
+    near->slack = apart > near->slack ? apart : near->slack;
+}
+
 static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_t *world = look->world;
     wh_mover_t *a = &world->movers[pair->a];
     wh_mover_t *b = &world->movers[pair->b];
-    if (hold_each_other(look, pair) || wh_world_is_far(world, &pair->near, a, b) ||
-        wh_world_is_known(world, a->part, b->part)) {
+    if (hold_each_other(look, pair)) {
+        return;
+    }
+    if (wh_world_is_far(world, &pair->near, a, b)) {
+        ask_anew(world, a, b, &pair->near);
+        return;
+    }
+    if (wh_world_is_known(world, a->part, b->part)) {
         return;
     }
     const wh_side_t one = wh_world_side_of_mover(world, a);
@@ -65,7 +88,7 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
-    const wh_real_t worth = world->worth[pair->near.kinds];
+    const wh_real_t worth = world->worth[pair->near.worth];
     if (!(wh_world_slack(pair, movers) > worth) && movers[pair->a].motion + movers[pair->b].motion > 0) {
         judge_movers(look, pair);
     }
