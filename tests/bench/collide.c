@@ -1,5 +1,6 @@
-/* What a slice of an EFEM costs when all its parts are looked at for contact and for the smallest gaps, against FCL and MuJoCo
- * with the same convex parts; and the whole run against real time. To be started at the root, after `make all`. */
+/* What a slice of an EFEM, and of a tool with two robots, costs when all parts are looked at for contact and for the smallest gaps,
+ * against FCL and MuJoCo with the same convex parts; and whole runs against real time. To be started at the root, after `make
+ * all`. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,9 +17,30 @@
 
 enum { ROUNDS = 9, PEERS = 8, STRIDE = 37, COMPARED = 211, FOUND = 64, ARM_GROUPS = 100, LOOSE_GROUPS = 200 };
 
-#define EFEM "lua/layouts/efem.lua"
-#define SCRIPT "build/tests/bench/efem.lua"
-#define LOG "build/tests/bench/efem.lcm"
+#define EFEM "build/tests/bench/efem.lua"
+#define TOOL "lua/examples/27_tool.lua"
+
+/* A cell and a run in it. */
+typedef struct {
+    const char *row;  /* of a slice */
+    const char *what; /* of real time */
+    const char *note;
+    const char *script, *settings;
+    const char *log;
+    size_t slices;    /* so many are looked at, from the run's begin */
+    double real_time; /* the goal */
+    size_t times;     /* that the run is played */
+} scene_t;
+
+/* Of the tool's run that part in which both robots move and wafers come into vacuum and out again: its slices are kept in
+ * memory. */
+static const scene_t scenes[] = {{"a slice of the EFEM", "the EFEM, real time",
+                                  "all parts and wafers of lua/layouts/efem.lua on a run from FOUP to FOUP; "
+                                  "contact within the slice and the smallest gaps",
+                                  EFEM, "", "build/tests/bench/efem.lcm", 100000, 1000, 41},
+                                 {"a slice of the tool", "the tool, real time",
+                                  "all parts and wafers of lua/layouts/tool.lua on the first 40 s of " TOOL,
+                                  TOOL, " --set process=5", "build/tests/bench/tool.lcm", 40000, 300, 9}};
 
 /* One slice as the world reads it, and as peers do. */
 typedef struct {
@@ -30,6 +52,7 @@ typedef struct {
 } slice_t;
 
 typedef struct {
+    const scene_t *scene;
     const wh_layout_t *layout;
     slice_t *slices;
     size_t count, capacity;
@@ -93,7 +116,7 @@ static void on_slice(void *user, const wh_layout_t *layout, const double axes[],
     (void)hash;
     run->layout = layout;
     if (run->count == run->capacity) {
-        bench_differ("the run", "as many slices as expected");
+        return;
     }
     slice_t *slice = &run->slices[run->count];
     slice->wafers = wh_array_new(state->wafer_count, sizeof *slice->wafers);
@@ -108,19 +131,28 @@ static void on_slice(void *user, const wh_layout_t *layout, const double axes[],
     ++run->count;
 }
 
-/* A wafer from one FOUP over the aligner to the other one, played by the program and read from its recording. */
-static void record(run_t *run, wh_log_run_t *log) {
-    FILE *script = fopen(SCRIPT, "w");
+/* A wafer from one FOUP over the aligner to the other one. */
+static void write_efem(void) {
+    FILE *script = fopen(EFEM, "w");
     if (!script ||
-        fputs("cell '../../../" EFEM "'\n"
+        fputs("cell '../../../lua/layouts/efem.lua'\n"
               "get('FOUP1', 12) put('ALIGN', 1) get('ALIGN', 1) put('FOUP2', 7)\n",
               script) < 0 ||
-        fclose(script) != 0 ||
-        system("rm -f " LOG " && build/waferhand run " SCRIPT " --record " LOG " >/dev/null") != 0) {
+        fclose(script) != 0) {
+        bench_differ("the script", "a file that can be written");
+    }
+}
+
+/* Played by the program and read from its recording. */
+static void record(run_t *run, wh_log_run_t *log) {
+    char line[400];
+    (void)snprintf(line, sizeof line, "rm -f %s && build/waferhand run %s%s --record %s >/dev/null",
+                   run->scene->log, run->scene->script, run->scene->settings, run->scene->log);
+    if (system(line) != 0) {
         bench_differ("the program", "a run without a hit");
     }
-    const wh_log_run_options_t options = {.path = LOG, .listener = on_slice, .user = run};
-    run->capacity = 100000;
+    const wh_log_run_options_t options = {.path = run->scene->log, .listener = on_slice, .user = run};
+    run->capacity = run->scene->slices;
     run->slices = wh_array_new(run->capacity, sizeof *run->slices);
     if (!wh_log_run_read(log, &options) || run->count < 1000) {
         bench_differ("the recording", log->message);
@@ -302,7 +334,7 @@ static bench_cell_t cell_of(const run_t *run) {
                                              &world->wafer.body_from_shape);
         for (size_t k = 0; k < count; ++k) {
             neighbours[i * count + k] = is_part && k < world->part_count &&
-                                        wh_world_belong_together(&world->parts[i], &world->parts[k]);
+                                        wh_world_belong_together(world, &world->parts[i], &world->parts[k]);
         }
     }
     return (bench_cell_t){convex, poses, neighbours, moves, count};
@@ -324,7 +356,7 @@ static void race(const run_t *run, const bench_cell_t *cell, const bench_collide
     const bench_contender_t contenders[] = {{.name = "ours"}, {.name = peer->name}};
     const bench_result_t results[] = {{.ns = bench_spread(ours, ROUNDS)},
                                       {bench_spread(theirs, ROUNDS), bench_spread(faster, ROUNDS)}};
-    bench_row("a slice of the EFEM", contenders, results, 1, goal);
+    bench_row(run->scene->row, contenders, results, 1, goal);
     peer->drop(built);
     free(memory);
 }
@@ -344,10 +376,12 @@ static void race_all(const run_t *run, const bench_cell_t *cell, const bench_col
     }
 }
 
-static void time_run(void) {
-    double times[41];
-    for (size_t i = 0; i < sizeof times / sizeof times[0]; ++i) {
-        FILE *answer = popen("build/waferhand run " SCRIPT " --json", "r");
+static void time_run(const scene_t *scene) {
+    double times[64];
+    char command[300];
+    (void)snprintf(command, sizeof command, "build/waferhand run %s --json", scene->script);
+    for (size_t i = 0; i < scene->times; ++i) {
+        FILE *answer = popen(command, "r");
         char line[400];
         double simulated = 0;
         double wall = 0;
@@ -360,24 +394,35 @@ static void time_run(void) {
         }
         times[i] = simulated / wall;
     }
-    const bench_spread_t spread = bench_spread(times, sizeof times / sizeof times[0]);
-    bench_figure("the EFEM, real time", "x real time", &spread, false, 1000);
+    const bench_spread_t spread = bench_spread(times, scene->times);
+    bench_figure(scene->what, "x real time", &spread, false, scene->real_time);
 }
 
-int main(int argc, char **argv) {
-    static run_t run;
+static void play(const scene_t *scene) {
+    run_t run = {.scene = scene};
     static wh_log_run_t log;
-    bench_begin("collide", "ns/slice", argc, argv);
-    bench_note("all parts and wafers of " EFEM
-               " on a run from FOUP to FOUP; contact within the slice and the smallest gaps");
-    bench_note("peers do less: contact at one instant, or the one smallest gap; FCL's continuous: contact "
-               "within the slice alone");
+    bench_note("%s", scene->note);
     record(&run, &log);
     const bench_cell_t cell = cell_of(&run);
     race_all(&run, &cell, bench_peer_symbol("fcl_tree", "bench_cell", "libfcl-dev"));
     race_all(&run, &cell,
              bench_peer_symbol("mujoco", "bench_cell", "the wheel of tests/bench/requirements.txt"));
-    time_run();
+    time_run(scene);
+    for (size_t i = 0; i < run.count; ++i) {
+        free(run.slices[i].wafers);
+        free(run.slices[i].movers);
+    }
+    free(run.slices);
     wh_log_run_close(&log);
+}
+
+int main(int argc, char **argv) {
+    bench_begin("collide", "ns/slice", argc, argv);
+    write_efem();
+    bench_note("peers do less: contact at one instant, or the one smallest gap; FCL's continuous: contact "
+               "within the slice alone");
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
+        play(&scenes[i]);
+    }
     return bench_end();
 }
