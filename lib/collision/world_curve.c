@@ -1,44 +1,44 @@
 /* The smallest gaps over time. The judgement finds those of what moves, slice by slice. At a bin's end all
- * that is near is measured again, without the lists of what is near: also what has not moved in the bin. */
-#include <string.h>
-
+ * that is near and may count is measured again: also what has not moved in the bin. */
 #include "world_internal.h"
 
-static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
-                    wh_real_t least[]) {
-    const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
-    wh_gap_t gap;
-    if (kind == WH_CLEARANCES || wh_world_may_touch(look, a, b)) {
+/* Measures a pair, of which `slack` is left, unless that says that it does not count. What is found is known from then
+ * on. The other one rests if `b` is null; then it is the item near->other. */
+static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near, wh_real_t least[]) {
+    wh_world_t *world = look->world;
+    if (near->slack - (wh_world_gone(near, a, b) - near->since) > wh_world_most_of(near->worth, least)) {
         return;
     }
-    wh_gap_measure(a->convex, a->now, b->convex, b->now, least[kind], guess, &gap);
-    const wh_real_t found = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
-    least[kind] = found < least[kind] ? found : least[kind];
+    const wh_side_t one = wh_world_side_of_mover(world, a);
+    const wh_side_t two = b ? wh_world_side_of_mover(world, b) : wh_world_side_of_item(world, near->other);
+    const wh_clearance_kind_t kind = wh_world_clearance_of(look, &one, &two);
+    if (kind == WH_CLEARANCES || wh_world_may_touch(look, &one, &two)) {
+        return;
+    }
+    if (near->exact < one.gone + two.gone) {
+        wh_gap_t gap;
+        wh_gap_measure(one.convex, one.now, two.convex, two.now, least[kind], near->axis, &gap);
+        wh_world_take_gap(near, &one, &two, &gap, least[kind]);
+        wh_world_remember(near, a, b);
+    }
+    least[kind] = near->slack < least[kind] ? near->slack : least[kind];
 }
 
 static void measure_rest(const wh_look_t *look, wh_mover_t *mover, wh_real_t least[]) {
-    int32_t found[WH_NEAR_CAPACITY];
     if (mover->part == WH_NONE) {
         return;
     }
-    const wh_side_t a = wh_world_side_of_mover(look->world, mover);
-    const wh_box_t around = wh_world_box(&a);
-    const wh_box_t box = wh_box_grown(&around, WH_CLEARANCE_RANGE);
-    const size_t count = wh_tree_find(&look->world->tree, &box, found, WH_NEAR_CAPACITY);
-    for (size_t i = 0; i < count && i < WH_NEAR_CAPACITY; ++i) {
-        const wh_side_t b = wh_world_side_of_item(look->world, found[i]);
-        measure(look, &a, &b, wh_vec3(0, 0, 1), least);
+    wh_world_list_near(look->world, mover);
+    for (size_t i = 0; i < mover->near_count; ++i) {
+        measure(look, mover, NULL, &mover->near[i], least);
     }
 }
 
-static void measure_pair(const wh_look_t *look, const wh_mover_pair_t *pair, wh_real_t least[]) {
+static void measure_pair(const wh_look_t *look, wh_mover_pair_t *pair, wh_real_t least[]) {
     wh_mover_t *a = &look->world->movers[pair->a];
     wh_mover_t *b = &look->world->movers[pair->b];
-    if (a->part != WH_NONE && b->part != WH_NONE &&
-        wh_world_slack(pair, look->world->movers) < WH_CLEARANCE_RANGE) {
-        const wh_side_t one = wh_world_side_of_mover(look->world, a);
-        const wh_side_t two = wh_world_side_of_mover(look->world, b);
-        measure(look, &one, &two, pair->near.axis, least);
+    if (a->part != WH_NONE && b->part != WH_NONE) {
+        measure(look, a, b, &pair->near, least);
     }
 }
 
@@ -64,13 +64,19 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[], const wh_rea
     }
 }
 
-/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. */
+/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. If they are larger, pairs
+ * count that did not. */
 static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
+    double more = 0;
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        const double grown = (double)(now[kind] - world->least[kind]);
+        more = grown > more ? grown : more;
         world->least[kind] = now[kind];
     }
     wh_world_weigh(world);
-    memset(world->due, 0, world->pair_count * sizeof *world->due);
+    for (size_t i = 0; more > 0 && i < world->pair_count; ++i) {
+        world->due[i] -= more;
+    }
 }
 
 /* If slices are lost, as in a free-running run, their bins show what came after them. */

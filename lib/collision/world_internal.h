@@ -53,7 +53,9 @@ typedef struct {
     wh_vec3_t axis;
     wh_real_t parted; /* how far apart along the axis the two were at the end of this step of the world */
     uint32_t step;    /* 0: not known */
-    uint32_t again;   /* from this step on it is worth while to ask how far apart the two are by now */
+    wh_real_t
+        exact; /* when the movers had gone so far together in any way, `slack` was the gap; -1: it is a bound */
+    uint32_t again; /* from this step on it is worth while to ask how far apart the two are by now */
 } wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
@@ -145,6 +147,7 @@ static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pai
     pair->near.slack = is_there ? 0 : WH_WORLD_NOWHERE;
     pair->near.since = 0;
     pair->near.axis = wh_vec3(0, 0, 0);
+    pair->near.exact = -1;
     world->due[pair - world->pairs] = 0;
 }
 
@@ -157,7 +160,17 @@ typedef struct {
     const wh_body_t *body;         /* null: it rests */
     const wh_pose_t *before, *now; /* base_from_shape */
     wh_real_t motion, bulge;
+    wh_real_t gone; /* so far, in whatever way */
 } wh_side_t;
+
+/* Takes over what wh_gap_measure has found, which was asked whether the gap is more than `enough`. */
+static inline void wh_world_take_gap(wh_pair_t *near, const wh_side_t *a, const wh_side_t *b,
+                                     const wh_gap_t *gap, wh_real_t enough) {
+    near->slack = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
+    near->exact = gap->state == WH_GAP_CLEAR && gap->gap <= enough ? a->gone + b->gone : -1;
+    near->axis = gap->axis;
+    near->step = 0;
+}
 
 /* The arguments of a step. */
 typedef struct {
@@ -224,6 +237,9 @@ int32_t wh_world_arm_of(const wh_world_config_t *config, wh_part_kind_t kind, in
 /* What a mover's gaps to something count for. `arm` is the other one's; WH_NONE: it is on none. */
 wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *mover, wh_part_kind_t kind,
                              int32_t arm) WH_SYMBOL(wh_world_worth_of);
+
+/* The largest of those of the gaps, by clearance, that may count. */
+wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) WH_SYMBOL(wh_world_most_of);
 
 /* Writes world->worth anew, after one of world->least has changed. */
 void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);

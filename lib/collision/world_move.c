@@ -149,6 +149,7 @@ static void forget_item(wh_world_t *world, int32_t item) {
             if (mover->near[i].other == item) {
                 mover->near[i].slack = 0;
                 mover->near[i].axis = wh_vec3(0, 0, 0);
+                mover->near[i].exact = -1;
             }
         }
     }

@@ -34,6 +34,7 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
     side.now = &mover->now;
     side.motion = mover->motion;
     side.bulge = mover->bulge;
+    side.gone = mover->gone[WH_GONE_ANYWHERE];
     return side;
 }
 
@@ -136,7 +137,8 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);
             near->slack = box_gap(&box, &other, &near->axis);
-            near->step = 0;
+            near->step = near->again = 0;
+            near->exact = -1;
             near->way = WH_GONE_ANYWHERE;
             near->since = mover->gone[near->way] - mover->motion;
         }

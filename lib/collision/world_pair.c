@@ -50,6 +50,7 @@ bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t 
     const wh_real_t bulge = a->bulge + (b ? b->bulge : 0);
     const wh_real_t before = slack + moved(near, a) + (b ? moved(near, b) : 0);
     near->slack = before - lost_along(world, near, a, b);
+    near->exact = -1;
     wh_world_remember(near, a, b);
     return before - bulge > 0 && near->slack - bulge > 0 && near->slack > world->worth[near->worth];
 }
@@ -227,6 +228,7 @@ static bool is_parted(const wh_world_t *world, const wh_side_t *a, const wh_side
     const bool apart = begin - bulge > 0 && end - bulge > 0 && end >= needed;
     if (apart) {
         near->slack = end;
+        near->exact = -1;
     }
     return apart;
 }
@@ -240,9 +242,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->least[kind];
     wh_gap_measure(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis, &gap);
     ++world->counters.measured;
-    near->slack = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
-    near->axis = gap.axis;
-    near->step = 0;
+    wh_world_take_gap(near, a, b, &gap, enough > wanted ? enough : wanted);
     if (kind != WH_CLEARANCES) {
         keep_clearance(look, kind, a, b, &gap);
     }
@@ -262,6 +262,7 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
         ++world->counters.planes;
     } else if (wh_world_may_touch(look, a, b)) {
         near->slack = 0;
+        near->exact = -1;
     } else {
         measure(look, a, b, kind, near);
     }

@@ -286,13 +286,18 @@ wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *
     return has_blade ? WH_WORTH_BLADE_OTHER : WH_WORTH_NOTHING;
 }
 
+wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) {
+    wh_real_t most = 0;
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        const bool counts = (clearances[worth] >> kind & 1U) != 0;
+        most = counts && gaps[kind] > most ? gaps[kind] : most;
+    }
+    return most;
+}
+
 void wh_world_weigh(wh_world_t *world) {
     for (size_t i = 0; i < WH_WORTHS; ++i) {
-        world->worth[i] = 0;
-        for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-            const wh_real_t gap = world->least[kind] - WH_SAME_GAP;
-            const bool counts = (clearances[i] >> kind & 1U) != 0;
-            world->worth[i] = counts && gap > world->worth[i] ? gap : world->worth[i];
-        }
+        const wh_real_t most = wh_world_most_of((wh_worth_t)i, world->least) - WH_SAME_GAP;
+        world->worth[i] = most > 0 ? most : 0;
     }
 }

@@ -58,6 +58,7 @@ static void ask_anew(wh_world_t *world, wh_mover_t *a, wh_mover_t *b, wh_pair_t 
     const wh_real_t apart = wh_gap_along(one.convex, one.now, two.convex, two.now, near->axis);
     near->again = apart > near->slack + soon ? 0 : world->step + SOON;
     near->slack = apart > near->slack ? apart : near->slack;
+    near->exact = -1;
 }
 
 static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {

@@ -313,6 +313,7 @@
 #define wh_words_integer WH_SYMBOL_RENAMED(wh_words_integer)
 #define wh_words_put WH_SYMBOL_RENAMED(wh_words_put)
 #define wh_words_short WH_SYMBOL_RENAMED(wh_words_short)
+#define wh_world_arm_of WH_SYMBOL_RENAMED(wh_world_arm_of)
 #define wh_world_belong_together WH_SYMBOL_RENAMED(wh_world_belong_together)
 #define wh_world_box WH_SYMBOL_RENAMED(wh_world_box)
 #define wh_world_bytes WH_SYMBOL_RENAMED(wh_world_bytes)
@@ -331,10 +332,9 @@
 #define wh_world_is_known WH_SYMBOL_RENAMED(wh_world_is_known)
 #define wh_world_item_of_wafer WH_SYMBOL_RENAMED(wh_world_item_of_wafer)
 #define wh_world_judge WH_SYMBOL_RENAMED(wh_world_judge)
-#define wh_world_arm_of WH_SYMBOL_RENAMED(wh_world_arm_of)
-#define wh_world_worth_of WH_SYMBOL_RENAMED(wh_world_worth_of)
 #define wh_world_list_near WH_SYMBOL_RENAMED(wh_world_list_near)
 #define wh_world_may_touch WH_SYMBOL_RENAMED(wh_world_may_touch)
+#define wh_world_most_of WH_SYMBOL_RENAMED(wh_world_most_of)
 #define wh_world_move WH_SYMBOL_RENAMED(wh_world_move)
 #define wh_world_part_of_item WH_SYMBOL_RENAMED(wh_world_part_of_item)
 #define wh_world_place WH_SYMBOL_RENAMED(wh_world_place)
@@ -346,5 +346,6 @@
 #define wh_world_step WH_SYMBOL_RENAMED(wh_world_step)
 #define wh_world_validate WH_SYMBOL_RENAMED(wh_world_validate)
 #define wh_world_weigh WH_SYMBOL_RENAMED(wh_world_weigh)
+#define wh_world_worth_of WH_SYMBOL_RENAMED(wh_world_worth_of)
 
 #endif
