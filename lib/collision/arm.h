@@ -44,10 +44,10 @@ bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector) WH
 void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[])
     WH_SYMBOL(wh_arm_place);
 
-/* The same for a robot of any kind at these axes, in the machine's order. `arm` counts for polar arms only.
- * The upper arm's origin is on theta's axis, the hand's at the wrist, as if nothing was flipped. Who knows
- * already what carrier->forward says of these axes gives it as `known`; else it is null. Cost: six products of
- * poses, and, if it is not known or the robot has a flip, that of wh_chain_forward. */
+/* The same for a robot of any kind at these axes, in the machine's order. `arm` counts for polar arms
+ * only. The upper arm's origin is on theta's axis, the hand's at the wrist, as if nothing was flipped. Who
+ * knows already what carrier->forward says of these axes gives it as `known`; else it is null. Cost: six
+ * products of poses, and, if it is not known or the robot has a flip, that of wh_chain_forward. */
 void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t axes[],
                           const wh_pose_t *known, wh_pose_t bodies[]) WH_SYMBOL(wh_arm_place_carrier);
 

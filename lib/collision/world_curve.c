@@ -2,8 +2,8 @@
  * that is near and may count is measured again: also what has not moved in the bin. */
 #include "world_internal.h"
 
-/* Measures a pair, of which `slack` is left, unless that says that it does not count. What is found is known from then
- * on. The other one rests if `b` is null; then it is the item near->other. */
+/* Measures a pair, of which `slack` is left, unless that says that it does not count. What is found is
+ * known from then on. The other one rests if `b` is null; then it is the item near->other. */
 static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near, wh_real_t least[]) {
     wh_world_t *world = look->world;
     if (near->slack - (wh_world_gone(near, a, b) - near->since) > wh_world_most_of(near->worth, least)) {
@@ -64,8 +64,8 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[], const wh_rea
     }
 }
 
-/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. If they are larger, pairs
- * count that did not. */
+/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. If they are
+ * larger, pairs count that did not. */
 static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
     double more = 0;
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {

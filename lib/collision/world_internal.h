@@ -53,9 +53,8 @@ typedef struct {
     wh_vec3_t axis;
     wh_real_t parted; /* how far apart along the axis the two were at the end of this step of the world */
     uint32_t step;    /* 0: not known */
-    wh_real_t
-        exact; /* when the movers had gone so far together in any way, `slack` was the gap; -1: it is a bound */
-    uint32_t again; /* from this step on it is worth while to ask how far apart the two are by now */
+    wh_real_t exact;  /* `slack` was the gap when both had gone so far in any way; -1: it is a bound */
+    uint32_t again;   /* from this step on it is worth while to ask how far apart the two are by now */
 } wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
@@ -229,8 +228,8 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 /* Finishes the bin of the curves if this slice is its end, and begins the next one. */
 void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
 
-/* The arm of a part of this kind and owner, which is on a robot; of a held wafer as of a blade, its gripper being
- * the owner. WH_NONE: on none. */
+/* The arm of a part of this kind and owner, which is on a robot; of a held wafer as of a blade, its
+ * gripper being the owner. WH_NONE: on none. */
 int32_t wh_world_arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner)
     WH_SYMBOL(wh_world_arm_of);
 

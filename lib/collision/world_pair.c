@@ -210,8 +210,8 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
 
 /* ---------------------------------------------------------------------------------------------- judgement */
 
-/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. How far it did at
- * the end of the step before is how far it does at this one's begin. */
+/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. How
+ * far it did at the end of the step before is how far it does at this one's begin. */
 static bool is_parted(const wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t needed,
                       wh_pair_t *near) {
     const wh_vec3_t axis = near->axis;

@@ -269,21 +269,21 @@ static wh_worth_t worth_of_wafer(wh_part_kind_t other, bool is_one) {
     return WH_WORTH_WAFER_OTHER;
 }
 
+/* Of two that are not of one robot. */
+static wh_worth_t worth_of_parts(wh_part_kind_t a, wh_part_kind_t b) {
+    if (a == WH_PART_ARM || b == WH_PART_ARM) {
+        return WH_WORTH_ARM_OTHER;
+    }
+    return a == WH_PART_BLADE || b == WH_PART_BLADE ? WH_WORTH_BLADE_OTHER : WH_WORTH_NOTHING;
+}
+
 wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *mover, wh_part_kind_t kind,
                              int32_t arm) {
     const bool is_one = mover->arm != WH_NONE && arm != WH_NONE && is_one_robot(config, mover->arm, arm);
-    const bool has_arm = mover->kind == WH_PART_ARM || kind == WH_PART_ARM;
-    const bool has_blade = mover->kind == WH_PART_BLADE || kind == WH_PART_BLADE;
     if (mover->kind == WH_PART_WAFER || kind == WH_PART_WAFER) {
         return worth_of_wafer(mover->kind == WH_PART_WAFER ? kind : mover->kind, is_one);
     }
-    if (is_one) {
-        return WH_WORTH_ARM_ITSELF;
-    }
-    if (has_arm) {
-        return WH_WORTH_ARM_OTHER;
-    }
-    return has_blade ? WH_WORTH_BLADE_OTHER : WH_WORTH_NOTHING;
+    return is_one ? WH_WORTH_ARM_ITSELF : worth_of_parts(mover->kind, kind);
 }
 
 wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) {

@@ -43,8 +43,8 @@ static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) 
            look->input->wafers[wafer].holder == hung->owner;
 }
 
-/* A slack that is worth less than so many slices of this motion is asked for anew; if that does not help, not before
- * so many slices have gone. */
+/* A slack that is worth less than so many slices of this motion is asked for anew; if that does not help,
+ * not before so many slices have gone. */
 #define SOON 16
 
 /* The sum of all ways is much more than two that go side by side have come closer. */

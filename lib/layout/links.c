@@ -74,8 +74,8 @@ static bool is_at(const wh_pose_t *a, const wh_pose_t *b, wh_real_t slack) {
     return same;
 }
 
-/* Sets the arm's axes. `own` are its robot's; null: not known. True if the arm is at these, and its end-effector
- * `there`. */
+/* Sets the arm's axes. `own` are its robot's; null: not known. True if the arm is at these, and its
+ * end-effector `there`. */
 static bool find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh_real_t own[],
                       wh_real_t slack, wh_pose_t *there) {
     const wh_pose_t *effector = &arm->base_from_effector;

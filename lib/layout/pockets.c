@@ -1,5 +1,6 @@
-/* Wafers that an edge grip would not hold where they lie: off by more than its pocket's clearance, or of a size
- * that its window does not have. Asked is the very function by which the simulator closes the plunger. */
+/* Wafers that an edge grip would not hold where they lie: off by more than its pocket's clearance, or of a
+ * size that its window does not have. Asked is the very function by which the simulator closes the
+ * plunger. */
 #include <stdio.h>
 
 #include "feasibility_internal.h"

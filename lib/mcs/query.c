@@ -90,8 +90,8 @@ static int read_grip(lua_State *L) {
     return 3;
 }
 
-/* native.weight(gripper): the force of its pads and the weight that would hang on them as they look now, N, if
- * that is more than they carry; else nothing. */
+/* native.weight(gripper): the force of its pads and the weight that would hang on them as they look now,
+ * N, if that is more than they carry; else nothing. */
 static int read_weight(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
