@@ -77,7 +77,7 @@ typedef enum WH_FOUR_BYTES {
     WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks, fixed parts or another robot's blade */
     WH_CLEARANCE_WAFER_WAFER, /* a held wafer and another one */
     WH_CLEARANCE_WAFER_LEDGE, /* a held wafer and a ledge of a slot that it does not lie in */
-    WH_CLEARANCE_WAFER_OTHER, /* a held wafer and fixed parts, chucks, or another gripper's blade */
+    WH_CLEARANCE_WAFER_OTHER, /* a held wafer and fixed parts or chucks */
     WH_CLEARANCE_ARM_OTHER,   /* an arm and fixed parts, ledges, chucks, wafers or another robot */
     WH_CLEARANCE_ARM_ITSELF,  /* a robot's arms, its own blades and held wafers */
     WH_CLEARANCES

@@ -159,6 +159,25 @@ static void a_blade_takes_its_wafer_without_a_hit(void **state) {
     assert_near(least(WH_CLEARANCE_WAFER_LEDGE)->gap, 3, 1e-3);
 }
 
+/* It lies on its ledges, though not in the middle of its slot. */
+static void a_wafer_aside_is_taken_without_a_hit(void **state) {
+    (void)state;
+    wafers[0].base_from_wafer = wh_test_at(712, -9, 900);
+    begin();
+    assert_int_equal(go(712, -9, 897, WH_VALVE_CLOSED), 0);
+    for (int step = 0; step <= 12; ++step) {
+        assert_int_equal(go(712, -9, 897 + 0.5 * step, WH_VALVE_OPEN), 0);
+    }
+    assert_int_equal(grippers[0].wafer, 0);
+    for (int step = 12; step >= 5; --step) {
+        assert_int_equal(go(712, -9, 897 + 0.5 * step, WH_VALVE_OPEN), 0);
+    }
+    for (int step = 5; step >= 0; --step) {
+        assert_int_equal(go(712, -9, 897 + 0.5 * step, WH_VALVE_CLOSED), 0);
+    }
+    assert_int_equal(grippers[0].wafer, WH_NONE);
+}
+
 static void a_held_wafer_hits_a_ledge_of_another_slot(void **state) {
     (void)state;
     begin();
@@ -573,6 +592,7 @@ int main(void) {
         TEST(nothing_tunnels_through_a_thin_wall),
         TEST(a_blade_that_scrapes_a_wafer_is_named),
         TEST(a_blade_takes_its_wafer_without_a_hit),
+        TEST(a_wafer_aside_is_taken_without_a_hit),
         TEST(a_held_wafer_hits_a_ledge_of_another_slot),
         TEST(a_wafer_let_go_rests_where_it_is),
         TEST(letting_go_on_the_way_is_no_contact),
