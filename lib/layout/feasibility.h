@@ -23,7 +23,7 @@ typedef enum {
     WH_FINDING_RELEASE, /* a PUT lets go only after the wafer has gone into its support */
     WH_FINDING_SIGHT,   /* a beam or an edge sensor cannot see what it is there for */
     WH_FINDING_REST,    /* a notch points to where a rest of an edge grip is */
-    WH_FINDING_POCKET,  /* a wafer lies where an edge grip would not hold it, or is of no such size */
+    WH_FINDING_POCKET,  /* a wafer lies so that an edge grip would not hold it, or is of no such size */
     WH_FINDING_PLAY     /* GET or PUT, played at a slot, fails or hits something: see mcs/survey.h */
 } wh_finding_kind_t;
 

@@ -1,4 +1,5 @@
 /* Notches that lie over a rest when an edge grip takes the wafer: it sinks in there. */
+#include <math.h>
 #include <stdio.h>
 
 #include "../math/trig.h"
@@ -13,15 +14,31 @@ static bool meets(const wh_edge_t *edge, const wh_edge_wafer_t *wafer, int side)
     return wh_edge_meets_notch(wafer, out * (double)wh_cos((wh_real_t)edge->alpha), side * out * across);
 }
 
+/* Where the middle of a wafer is once both rests touch it, along the blade. */
+static double seated_at(const wh_edge_t *edge, double radius) {
+    const double out = edge->radius + edge->rest;
+    const double across = out * (double)wh_sin((wh_real_t)edge->alpha);
+    const double reach = radius + edge->rest;
+    return out * (double)wh_cos((wh_real_t)edge->alpha) - sqrt(reach * reach - across * across);
+}
+
+/* Where the rest at +y is as seen from the middle of the wafer, rad. */
+static wh_real_t direction_of(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    const double out = edge->radius + edge->rest;
+    return wh_atan2((wh_real_t)out * wh_sin((wh_real_t)edge->alpha),
+                    (wh_real_t)out * wh_cos((wh_real_t)edge->alpha) - (wh_real_t)wafer->x);
+}
+
 /* How far beside a rest a notch must point, rad: halved to a microradian. */
 static wh_real_t width_of(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    const wh_real_t rest = direction_of(edge, wafer);
     wh_real_t inside = 0;
     wh_real_t outside = WIDEST;
     while (outside - inside > WH_REAL(1e-6)) {
         const wh_real_t middle = (inside + outside) / 2;
         wh_edge_wafer_t turned = *wafer;
-        turned.notch_x = (double)wh_cos((wh_real_t)edge->alpha + middle);
-        turned.notch_y = (double)wh_sin((wh_real_t)edge->alpha + middle);
+        turned.notch_x = (double)wh_cos(rest + middle);
+        turned.notch_y = (double)wh_sin(rest + middle);
         *(meets(edge, &turned, 1) ? &inside : &outside) = middle;
     }
     return outside;
@@ -34,9 +51,10 @@ wh_edge_wafer_t wh_feasibility_lying(const wh_layout_t *layout, size_t w) {
     const wh_vec3_t axis = wh_vec3((wh_real_t)shape->notch_x, (wh_real_t)shape->notch_y, 0);
     const wh_vec3_t in_base = wh_mat3_transform(&layout->start[w].base_from_wafer.R, &axis);
     const wh_vec3_t on_blade = wh_mat3_transform_back(&blade.R, &in_base);
+    const double length = sqrt((double)(on_blade.x * on_blade.x + on_blade.y * on_blade.y));
     wh_edge_wafer_t lying = *shape;
-    lying.notch_x = (double)on_blade.x;
-    lying.notch_y = (double)on_blade.y;
+    lying.notch_x = length > 0 ? (double)on_blade.x / length : 0;
+    lying.notch_y = length > 0 ? (double)on_blade.y / length : 1;
     return lying;
 }
 
@@ -71,10 +89,10 @@ static void add_crossings(directions_t *directions, double radius, double y) {
 
 static void find_directions(const wh_layout_t *layout, const wh_edge_t *edge, const wh_edge_wafer_t *wafer,
                             directions_t *directions) {
-    const double alpha = (double)wh_deg_from_rad((wh_real_t)edge->alpha);
+    const double rest = (double)wh_deg_from_rad(direction_of(edge, wafer));
     directions->count = 0;
-    add_direction(directions, alpha);
-    add_direction(directions, -alpha);
+    add_direction(directions, rest);
+    add_direction(directions, -rest);
     add_direction(directions, 180);
     for (size_t b = 0; b < layout->beam_count; ++b) {
         if (layout->doors[b].kind == WH_DOOR_LIGHT) {
@@ -108,6 +126,7 @@ static bool is_met(const wh_layout_t *layout, size_t w, wh_edge_wafer_t *lying) 
         return false;
     }
     *lying = wh_feasibility_lying(layout, w);
+    lying->x = seated_at(edge, lying->radius);
     return meets(edge, lying, 1) || meets(edge, lying, -1);
 }
 

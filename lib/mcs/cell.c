@@ -287,9 +287,12 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     }
 }
 
-/* edge: { travel: of the whole stroke, s, clearance, mm }. */
+/* edge: { travel: of the whole stroke, s, clearance, and of the plunger's s the window's end and the stroke's,
+ * mm }. */
 static void push_edge(lua_State *L, const wh_edge_t *edge) {
-    lua_createtable(L, 0, 2);
+    lua_createtable(L, 0, 4);
+    wh_lua_set_number(L, "to", edge->gripped_to);
+    wh_lua_set_number(L, "stop", edge->end);
     wh_lua_set_number(L, "travel", (edge->end - edge->retracted) / edge->speed);
     wh_lua_set_number(L, "clearance", edge->clearance);
     lua_setfield(L, -2, "edge");

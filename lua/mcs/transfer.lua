@@ -64,8 +64,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
       return ("%s came closest to %s: %s"):format(name, wafer, reasons)
     end
     local force, weight = native.weight(gripper)
-    return force and ("%s is turned over, and its pads hold %.4g N (expected at least mass * gravity, %.4g N)"):format(
-      name, force, weight) or ("no wafer came near %s while its valve was open"):format(name)
+    return force and ("%s is turned over, where its pads hold no wafer: %.4g N (expected at least mass * gravity * n, "
+      .. "%.4g N)"):format(name, force, weight) or ("no wafer came near %s while its valve was open"):format(name)
   end
 
   -- A length as text, without a minus before zeros.
@@ -143,6 +143,16 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
       or ("the plunger of %s stands at %.3f mm: the wafer is too large"):format(name, was.s))
   end
 
+  function PLUNGER.missing(target, name, was)
+    local edge = native.layout.grippers[target.gripper].edge
+    native.fail("WAFER_MISSING", was.s < edge.stop
+      and ("the plunger of %s stands at %.3f mm, behind its window up to %.10g mm: the wafer is too small, or "
+        .. "its notch is at a rest"):format(
+        name, was.s, edge.to)
+      or ("the plunger of %s went on to the end of its stroke: no wafer lies there, or one that is too far out, too high, "
+        .. "too low or askew"):format(name))
+  end
+
   local function judge_plunger(target, found)
     local fail = target.edge and PLUNGER[found]
     if fail then
@@ -157,8 +167,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
       local text = "%s came up through %s slot %d without a wafer on its pads"
       native.fail("WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
     elseif found == "missing" then
-      native.fail("WAFER_MISSING", target.edge and ("the plunger of %s went on to the end of its stroke: no wafer lies "
-        .. "there, or one that is too small, or too far out"):format(name_of(target.gripper)) or explain(target.gripper))
+      native.fail("WAFER_MISSING", explain(target.gripper))
     elseif found == "late" then
       fail_late(target, target.gripper)
     elseif found == "early" then
