@@ -287,8 +287,8 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     }
 }
 
-/* edge: { travel: of the whole stroke, s, clearance, and of the plunger's s the window's end and the stroke's,
- * mm }. */
+/* edge: { travel: of the whole stroke, s, clearance, mm, and where the plunger's window and its stroke end:
+ * `to` and `stop`, mm }. */
 static void push_edge(lua_State *L, const wh_edge_t *edge) {
     lua_createtable(L, 0, 4);
     wh_lua_set_number(L, "to", edge->gripped_to);

@@ -102,18 +102,27 @@ static void place_robots(void) {
     wafers[0].holder = 0;
 }
 
-/* Home is 110 mm to one side. What has not moved yet has no gap yet: both begin by going. A leg is gone evenly, as fast as it likes, or stood. */
-static void walk_on(int r, int slice) {
+/* Home is 110 mm to one side. What has not moved yet has no gap yet: both begin by going. */
+static void begin_leg(int r, int slice) {
     walk_t *walk = &walks[r];
     const double home = r == 0 ? -110 : 110;
+    const bool stands = slice > 1 && draw(0, 1) < 0.3;
+    const double fast = draw(0, 3);
+    walk->until = slice + 1 + (int)draw(0, draw(0, 1) < 0.5 ? 6 : LEG);
+    walk->dx = walk->dy = walk->dz = walk->dturn_deg = 0;
+    if (!stands) {
+        walk->dx = fast * draw(-1, 1) - 0.008 * (walk->x - home);
+        walk->dy = fast * draw(-1, 1) - 0.006 * walk->y;
+        walk->dz = draw(-0.5, 0.5) - 0.008 * (walk->z - (r == 0 ? -14 : 14));
+        walk->dturn_deg = draw(-0.3, 0.3);
+    }
+}
+
+/* A leg is gone evenly, as fast as it likes, or stood. */
+static void walk_on(int r, int slice) {
+    walk_t *walk = &walks[r];
     if (slice == 1 || slice == walk->until) {
-        walk->until = slice + 1 + (int)draw(0, draw(0, 1) < 0.5 ? 6 : LEG);
-        const bool stands = slice > 1 && draw(0, 1) < 0.3;
-        const double fast = stands ? 0 : draw(0, 3);
-        walk->dx = fast * draw(-1, 1) - (stands ? 0 : 0.008 * (walk->x - home));
-        walk->dy = fast * draw(-1, 1) - (stands ? 0 : 0.006 * walk->y);
-        walk->dz = stands ? 0 : draw(-0.5, 0.5) - 0.008 * (walk->z - (r == 0 ? -14 : 14));
-        walk->dturn_deg = stands ? 0 : draw(-0.3, 0.3);
+        begin_leg(r, slice);
     }
     walk->x += walk->dx;
     walk->y += walk->dy;
@@ -175,22 +184,36 @@ static wh_clearance_kind_t of_wafer(size_t w, size_t part) {
                                                 : WH_CLEARANCE_BLADE_WAFER_BELOW;
 }
 
+/* Of two parts of which one moves at least. */
+static wh_clearance_kind_t of_parts(size_t a, size_t b) {
+    const bool has_arm = kind_of(a) == WH_PART_ARM || kind_of(b) == WH_PART_ARM;
+    if (robot_of(a) == robot_of(b)) {
+        return kind_of(a) == kind_of(b) ? WH_CLEARANCES : WH_CLEARANCE_ARM_ITSELF;
+    }
+    return has_arm ? WH_CLEARANCE_ARM_OTHER : WH_CLEARANCE_BLADE_OTHER;
+}
+
 /* Of two items, a before b; WH_CLEARANCES: they do not count. */
 static wh_clearance_kind_t clearance_of(size_t a, size_t b) {
-    const bool rest = robot_of(a) == WH_NONE && robot_of(b) == WH_NONE;
-    const bool are_rigid = robot_of(a) == robot_of(b) && a < PARTS && b < PARTS &&
-                           kind_of(a) == kind_of(b); /* two parts of one blade */
-    if (rest || are_rigid) {
+    if (robot_of(a) == WH_NONE && robot_of(b) == WH_NONE) {
         return WH_CLEARANCES;
     }
-    if (b >= PARTS) {
-        return a >= PARTS ? WH_CLEARANCE_WAFER_WAFER : of_wafer(b, a);
+    if (b < PARTS) {
+        return of_parts(a, b);
     }
-    if (robot_of(a) == robot_of(b)) {
-        return WH_CLEARANCE_ARM_ITSELF;
-    }
-    const bool has_arm = kind_of(a) == WH_PART_ARM || kind_of(b) == WH_PART_ARM;
-    return has_arm ? WH_CLEARANCE_ARM_OTHER : WH_CLEARANCE_BLADE_OTHER;
+    return a >= PARTS ? WH_CLEARANCE_WAFER_WAFER : of_wafer(b, a);
+}
+
+static void lower(wh_real_t *least, wh_real_t found) {
+    *least = found < *least ? found : *least;
+}
+
+static wh_real_t gap_of(const wh_pose_t places[], size_t a, size_t b) {
+    const wh_convex_t *one = a < PARTS ? &parts[a].convex : &config.wafer;
+    const wh_convex_t *other = b < PARTS ? &parts[b].convex : &config.wafer;
+    wh_gap_t gap;
+    wh_gap_measure(one, &places[a], other, &places[b], WH_CLEARANCE_RANGE, wh_vec3(0, 0, 0), &gap);
+    return gap.state == WH_GAP_CLEAR ? gap.gap : 0;
 }
 
 static void look(oracle_t *oracle) {
@@ -203,22 +226,16 @@ static void look(oracle_t *oracle) {
     for (size_t b = 1; b < ITEMS; ++b) {
         for (size_t a = 0; a < b; ++a) {
             const wh_clearance_kind_t kind = clearance_of(a, b);
-            wh_gap_t gap;
-            if (kind == WH_CLEARANCES) {
-                continue;
+            if (kind != WH_CLEARANCES) {
+                const wh_real_t found = gap_of(places, a, b);
+                lower(&oracle->nearest, found);
+                lower(&oracle->now[kind], found);
             }
-            wh_gap_measure(a < PARTS ? &parts[a].convex : &config.wafer, &places[a],
-                           b < PARTS ? &parts[b].convex : &config.wafer, &places[b], WH_CLEARANCE_RANGE,
-                           wh_vec3(0, 0, 0), &gap);
-            const wh_real_t found = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
-            oracle->nearest = found < oracle->nearest ? found : oracle->nearest;
-            oracle->now[kind] = found < oracle->now[kind] ? found : oracle->now[kind];
         }
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        const wh_real_t now = oracle->now[kind];
-        oracle->least[kind] = now < oracle->least[kind] ? now : oracle->least[kind];
-        oracle->bin[kind] = now < oracle->bin[kind] ? now : oracle->bin[kind];
+        lower(&oracle->least[kind], oracle->now[kind]);
+        lower(&oracle->bin[kind], oracle->now[kind]);
     }
 }
 
