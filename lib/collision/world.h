@@ -149,8 +149,8 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
                           size_t bytes) WH_SYMBOL(wh_world_init);
 
 /* One slice: judges all that moved since the last call. Appends to `list`, which may be null, while there is
- * room: at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is no longer
- * judged, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that
+ * room: at most one WH_EVENT_HIT in a run, the first, after which contact is no longer judged, one
+ * WH_EVENT_UNDECIDED, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that
  * is near, some tens of microseconds for one that has to be measured; independent of what rests elsewhere. */
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list)
     WH_SYMBOL(wh_world_step);
@@ -159,7 +159,8 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
 void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer)
     WH_SYMBOL(wh_world_place);
 
-/* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
+/* The smallest gaps so far, by kind: WH_CLEARANCES of them. Of what moves they are known at the end of each slice, of what
+ * may move but stands with the first bin of the curves that ends; a hit between two slices is a gap of 0. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world) WH_SYMBOL(wh_world_clearances);
 
 /* The smallest gaps over time. A run is divided into bins of equal numbers of slices. When all bins are full,
@@ -172,11 +173,21 @@ typedef struct {
     uint64_t first;
     uint64_t slices; /* in a bin */
     size_t count;    /* finished bins */
+    uint64_t last;   /* 0 while the run goes on; then its last slice, with which the last bin ends */
     /* WH_CLEARANCE_RANGE: nothing nearer. */
     wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS];
 } wh_curves_t;
 
 const wh_curves_t *wh_world_curves(const wh_world_t *world) WH_SYMBOL(wh_world_curves);
+
+/* Writes the curves of a run that has ended: with a last bin, which may be shorter, up to its last slice. */
+void wh_world_copy_curves(const wh_world_t *world, wh_curves_t *curves) WH_SYMBOL(wh_world_copy_curves);
+
+/* The slice with which a bin ends. */
+static inline uint64_t wh_curves_end(const wh_curves_t *curves, size_t bin) {
+    const uint64_t end = curves->first + (bin + 1) * curves->slices;
+    return curves->last > 0 && end > curves->last ? curves->last : end;
+}
 
 /* How the pairs of all slices were decided, for those who ask where the time goes. */
 typedef struct {

@@ -20,6 +20,7 @@ static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair
         wh_gap_measure(one.convex, one.now, two.convex, two.now, least[kind], near->axis, &gap);
         wh_world_take_gap(near, &one, &two, &gap, least[kind]);
         wh_world_remember(near, a, b);
+        wh_world_keep_clearance(look, kind, &one, &two, &gap);
     }
     least[kind] = near->slack < least[kind] ? near->slack : least[kind];
 }
@@ -76,6 +77,17 @@ static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
     wh_world_weigh(world);
     for (size_t i = 0; more > 0 && i < world->pair_count; ++i) {
         world->due[i] -= more;
+    }
+}
+
+void wh_world_copy_curves(const wh_world_t *world, wh_curves_t *curves) {
+    *curves = world->curves;
+    curves->last = world->slice;
+    if (world->slice > curves->first + curves->count * curves->slices) {
+        for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+            curves->gaps[kind][curves->count] = world->least[kind];
+        }
+        ++curves->count;
     }
 }
 

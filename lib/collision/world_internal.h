@@ -113,7 +113,9 @@ struct wh_world {
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
     bool too_close[WH_CLEARANCES]; /* reported */
-    bool struck;                   /* contact was reported and is no longer judged */
+    bool struck;                   /* a hit was reported; contact is no longer judged */
+    bool undecided;                /* that was reported */
+    uint64_t slice;                /* the last one */
     /* The smallest gaps of the bin of the curves that is not finished; of the run if no curves are kept. */
     wh_real_t least[WH_CLEARANCES];
     wh_real_t worth[WH_WORTHS]; /* a gap above it comes to nothing: it is no new `least` */
@@ -239,6 +241,10 @@ wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *
 
 /* The largest of those of the gaps, by clearance, that may count. */
 wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) WH_SYMBOL(wh_world_most_of);
+
+/* Keeps a gap that is the run's smallest of its kind. */
+void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
+                             const wh_side_t *b, const wh_gap_t *gap) WH_SYMBOL(wh_world_keep_clearance);
 
 /* Writes world->worth anew, after one of world->least has changed. */
 void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);

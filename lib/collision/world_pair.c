@@ -167,9 +167,12 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
 
 static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, const wh_gap_t *gap,
                            wh_gap_state_t state) {
-    const wh_event_kind_t kind = state == WH_GAP_HIT ? WH_EVENT_HIT : WH_EVENT_UNDECIDED;
-    look->world->struck = true;
-    (void)append(look, kind, a, b, gap);
+    const bool is_hit = state == WH_GAP_HIT;
+    bool *reported = is_hit ? &look->world->struck : &look->world->undecided;
+    if (!*reported) {
+        (void)append(look, is_hit ? WH_EVENT_HIT : WH_EVENT_UNDECIDED, a, b, gap);
+    }
+    *reported = true;
 }
 
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
@@ -180,16 +183,12 @@ void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
     }
 }
 
-static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
-                           const wh_side_t *b, const wh_gap_t *gap) {
+void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
+                             const wh_side_t *b, const wh_gap_t *gap) {
     wh_world_t *world = look->world;
     wh_clearance_t *least = &world->clearances[kind];
     const wh_real_t limit = world->config->limits[kind];
     const wh_real_t found = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
-    if (found < world->least[kind]) {
-        world->least[kind] = found;
-        wh_world_weigh(world);
-    }
     if (!(found < least->gap - WH_SAME_GAP)) {
         return;
     }
@@ -206,6 +205,21 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
             event->limit = limit;
         }
     }
+}
+
+/* Of a pair that was judged, which the bin of the curves has seen, too. */
+static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
+                           const wh_side_t *b, const wh_gap_t *gap) {
+    wh_world_t *world = look->world;
+    const wh_real_t found = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
+    if (kind == WH_CLEARANCES) {
+        return;
+    }
+    if (found < world->least[kind]) {
+        world->least[kind] = found;
+        wh_world_weigh(world);
+    }
+    wh_world_keep_clearance(look, kind, a, b, gap);
 }
 
 /* ---------------------------------------------------------------------------------------------- judgement */
@@ -243,14 +257,17 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_measure(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis, &gap);
     ++world->counters.measured;
     wh_world_take_gap(near, a, b, &gap, enough > wanted ? enough : wanted);
-    if (kind != WH_CLEARANCES) {
-        keep_clearance(look, kind, a, b, &gap);
+    keep_clearance(look, kind, a, b, &gap);
+    if (world->struck) {
+        return;
     }
-    if (!world->struck) {
-        const wh_gap_state_t state = judge_between(world, a, b, &gap, &worst);
-        if (state == WH_GAP_HIT || state == WH_GAP_UNDECIDED) {
-            report_contact(look, a, b, &worst, state);
-        }
+    const wh_gap_state_t state = judge_between(world, a, b, &gap, &worst);
+    if (state == WH_GAP_HIT || state == WH_GAP_UNDECIDED) {
+        report_contact(look, a, b, &worst, state);
+    }
+    if (state == WH_GAP_HIT) { /* between two slices it was */
+        worst.state = WH_GAP_HIT;
+        keep_clearance(look, kind, a, b, &worst);
     }
 }
 

@@ -233,7 +233,7 @@ static json_t *curve(const void *subject, size_t kind) {
     json_t *times = json_array();
     json_t *gaps = json_array();
     for (size_t bin = 0; bin < curves->count; ++bin) {
-        const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
+        const int64_t slice = (int64_t)wh_curves_end(curves, bin);
         const wh_real_t gap = curves->gaps[kind][bin];
         wh_json_append(times, wh_json_real(wh_throughput_seconds(record, slice)));
         wh_json_append(gaps, wh_json_real(gap < WH_CLEARANCE_RANGE ? gap : HUGE_VAL));

@@ -260,7 +260,7 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(end->world), sizeof record->clearances);
         record->curves = wh_array_new(1, sizeof *record->curves);
-        *record->curves = *wh_world_curves(end->world);
+        wh_world_copy_curves(end->world, record->curves);
     }
     keep_wafers(recorder, end->wafers);
 }

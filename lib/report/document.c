@@ -539,7 +539,7 @@ static void put_clearance(wh_json_text_t *text, const wh_document_t *document, s
     wh_json_text_number(text, "limit", limit > 0 ? limit : HUGE_VAL, 0, true);
     wh_json_text_begin(text, "t", '[');
     for (size_t bin = 0; bin < curves->count; ++bin) {
-        put_second(text, NULL, signals, (int64_t)(curves->first + (bin + 1) * curves->slices));
+        put_second(text, NULL, signals, (int64_t)wh_curves_end(curves, bin));
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "gap", '[');

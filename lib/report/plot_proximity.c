@@ -205,7 +205,7 @@ static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
     wh_plot_block(plot, wh_clearance_name((wh_clearance_kind_t)kind),
                   "t (s), smallest gap since the point before (mm)");
     for (size_t bin = 0; bin < curves->count; ++bin) {
-        const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
+        const int64_t slice = (int64_t)wh_curves_end(curves, bin);
         const double gap = curves->gaps[kind][bin];
         if (gap < WH_CLEARANCE_RANGE) {
             wh_plot_row(plot, wh_signals_seconds(plots->document->signals, slice), &gap, 1);

@@ -251,6 +251,14 @@ static void compare_clearances(const wh_world_t *world, const oracle_t *oracle) 
     }
 }
 
+static wh_real_t nearest_of(const wh_world_t *world) {
+    wh_real_t nearest = WH_CLEARANCE_RANGE;
+    for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
+        lower(&nearest, wh_world_clearances(world)[kind].gap);
+    }
+    return nearest;
+}
+
 /* Each bin of the curves has the smallest gap at its begin and at the end of any of its slices. */
 static void compare_curves(const wh_world_t *world, oracle_t *oracle) {
     const wh_curves_t *curves = wh_world_curves(world);
@@ -305,15 +313,16 @@ static void play_run(int run, int counts[2]) {
         if (oracle.undecided) {
             return;
         }
-        compare_clearances(world, &oracle);
-        compare_curves(world, &oracle);
         if (struck || oracle.deepest < 0) {
             /* What only grazes between two instants is the world's to find. */
             assert_true(struck);
             assert_true(oracle.deepest < 0.6);
+            assert_near(nearest_of(world), 0, 0);
             ++counts[1];
             return;
         }
+        compare_clearances(world, &oracle);
+        compare_curves(world, &oracle);
         stance = to;
     }
     ++counts[0];

@@ -128,6 +128,40 @@ static void full_bins_become_half_as_many(void **state) {
     assert_int_equal(curves->slices, 40);
 }
 
+/* What stands counts from the end of the first bin on: one that then only leaves was never nearer. */
+static void a_late_start_is_no_blind_spot(void **state) {
+    (void)state;
+    while (table.slice < 25) {
+        ++table.slice;
+        const wh_world_input_t input = blade_at(at_height(12));
+        wh_world_step(world, &input, NULL);
+    }
+    while (table.slice < 40) {
+        ++table.slice;
+        const wh_world_input_t input = blade_at(at_height(12 + 0.1 * (double)(table.slice - 25)));
+        wh_world_step(world, &input, NULL);
+    }
+    assert_near(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].gap, 12, 1e-3);
+    assert_int_equal(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].slice, 10);
+}
+
+/* A run that ends within a bin has that part of it, too. */
+static void the_last_bin_may_be_shorter(void **state) {
+    (void)state;
+    wh_curves_t curves;
+    step_to(90);
+    wh_world_copy_curves(world, &curves);
+    assert_int_equal(curves.count, 9);
+    step_to(93);
+    wh_world_copy_curves(world, &curves);
+    assert_int_equal(curves.count, 10);
+    assert_int_equal(wh_curves_end(&curves, 8), 90);
+    assert_int_equal(wh_curves_end(&curves, 9), 93);
+    assert_near(curves.gaps[WH_CLEARANCE_BLADE_OTHER][9], height_in(93), 1e-3);
+    assert_int_equal(wh_world_curves(world)->count, 9);
+    assert_int_equal(wh_curves_end(wh_world_curves(world), 9), 100);
+}
+
 static void lost_slices_leave_no_gap(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
@@ -177,6 +211,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(bins_hold_their_smallest_gaps, open_world, close_world),
         cmocka_unit_test_setup_teardown(cycles_that_are_alike_look_alike, open_world, close_world),
         cmocka_unit_test_setup_teardown(smallest_gap_is_in_its_bin, open_world, close_world),
+        cmocka_unit_test_setup_teardown(a_late_start_is_no_blind_spot, open_world, close_world),
+        cmocka_unit_test_setup_teardown(the_last_bin_may_be_shorter, open_world, close_world),
         cmocka_unit_test_setup_teardown(lost_slices_leave_no_gap, open_world, close_world),
         cmocka_unit_test_setup_teardown(full_bins_become_half_as_many, open_world, close_world),
     };

@@ -129,6 +129,7 @@ static void nothing_tunnels_through_a_thin_wall(void **state) {
                 is_pair(events[0].parts, 0, FIXED + 2));
     assert_int_equal(events[0].slice, 2);
     assert_near(events[0].at.x, 1000, 400);
+    assert_true(least(WH_CLEARANCE_BLADE_OTHER)->gap <= 0 || least(WH_CLEARANCE_ARM_OTHER)->gap <= 0);
     assert_int_equal(go(400, 0, 950, WH_VALVE_CLOSED), 0); /* the first hit is the run's */
 }
 
