@@ -15,9 +15,9 @@
 #define NAMED_STRAYS 20
 
 const char *wh_finding_name(wh_finding_kind_t kind) {
-    static const char *const names[] = {"contact", "space",   "reach",  "links",   "wafer",
-                                        "entry",   "ledges",  "blades", "retract", "tilt",
-                                        "gap",     "release", "sight",  "rest",    "play"};
+    static const char *const names[] = {"contact", "space",  "reach",   "links", "wafer", "entry",
+                                        "ledges",  "blades", "retract", "tilt",  "gap",   "release",
+                                        "sight",   "rest",   "pocket",  "play"};
     return names[kind];
 }
 
