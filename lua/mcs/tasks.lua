@@ -338,6 +338,10 @@ return function(native, lookup)
     current.request = request
     local waits_for = function()
       local resource, owner = obstacle(request)
+      local robot = owner == task and module.stands_in(resource, needs.robot)
+      if robot then -- nobody else will bring it out
+        return ("%s, where %s stands, which has to leave first"):format(resource, lookup.robot_text(robot))
+      end
       return ("%s, which %s has"):format(tostring(resource), owner and owner.name or "nobody")
     end
     local good, problem = pcall(function()
