@@ -2,6 +2,17 @@
 
 #include "../math/trig.h"
 
+bool wh_arm_is_at(const wh_pose_t *body, const wh_pose_t *base_from_body) {
+    const wh_vec3_t off = wh_vec3_subtract(&body->r, &base_from_body->r);
+    wh_real_t apart = wh_real_abs(off.x) + wh_real_abs(off.y) + wh_real_abs(off.z);
+    for (size_t row = 0; apart <= 0 && row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            apart += wh_real_abs(body->R.m[row][column] - base_from_body->R.m[row][column]);
+        }
+    }
+    return apart <= 0;
+}
+
 static wh_vec3_t wrist_of(const wh_arm_t *arm, const wh_pose_t *base_from_effector) {
     const wh_vec3_t x = wh_mat3_column(&base_from_effector->R, 0);
     const wh_vec3_t back = wh_vec3_scale(arm->reach, &x);

@@ -35,6 +35,9 @@ typedef struct {
     bool right_handed;
 } wh_arm_t;
 
+/* True if a body is there already: both poses are the same numbers. */
+bool wh_arm_is_at(const wh_pose_t *body, const wh_pose_t *base_from_body) WH_SYMBOL(wh_arm_is_at);
+
 /* True if both links together reach the wrist of this end-effector's pose. */
 bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector) WH_SYMBOL(wh_arm_reaches);
 

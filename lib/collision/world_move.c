@@ -1,6 +1,4 @@
 /* Where everything is now, and what of it rests. */
-#include <string.h>
-
 #include "world_internal.h"
 
 /* A gripper has left the wafer that it let go when it has gone this far sideways, mm. */
@@ -58,7 +56,7 @@ static bool has_gone(const wh_body_t *body) {
 }
 
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
-    const bool stands = memcmp(&body->now, now, sizeof *now) == 0;
+    const bool stands = wh_arm_is_at(&body->now, now);
     if (stands && !has_gone(body)) {
         return;
     }

@@ -91,22 +91,11 @@ static bool find_axes(wh_links_arm_t *arm, const wh_carrier_t *carrier, const wh
     return false;
 }
 
-static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
-    const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);
-    wh_real_t apart = wh_real_abs(off.x) + wh_real_abs(off.y) + wh_real_abs(off.z);
-    for (size_t row = 0; row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column) {
-            apart += wh_real_abs(a->R.m[row][column] - b->R.m[row][column]);
-        }
-    }
-    return apart <= 0;
-}
-
 /* True if the arm stands at these axes already, and its end-effector with it: nothing need be placed. */
 static bool stands(const wh_links_arm_t *arm, const wh_pose_t *effector, const wh_real_t own[],
                    size_t count) {
     return own && memcmp(own, arm->axes, count * sizeof own[0]) == 0 &&
-           is_same_pose(effector, &arm->base_from_effector);
+           wh_arm_is_at(effector, &arm->base_from_effector);
 }
 
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],

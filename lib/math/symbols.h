@@ -6,6 +6,7 @@
 #define wh_acos WH_SYMBOL_RENAMED(wh_acos)
 #define wh_align_estimate WH_SYMBOL_RENAMED(wh_align_estimate)
 #define wh_align_limits_default WH_SYMBOL_RENAMED(wh_align_limits_default)
+#define wh_arm_is_at WH_SYMBOL_RENAMED(wh_arm_is_at)
 #define wh_arm_place WH_SYMBOL_RENAMED(wh_arm_place)
 #define wh_arm_place_carrier WH_SYMBOL_RENAMED(wh_arm_place_carrier)
 #define wh_arm_reaches WH_SYMBOL_RENAMED(wh_arm_reaches)
