@@ -148,10 +148,11 @@ size_t wh_world_bytes(const wh_world_config_t *config) WH_SYMBOL(wh_world_bytes)
 wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
                           size_t bytes) WH_SYMBOL(wh_world_init);
 
-/* One slice: judges all that moved since the last call. Appends to `list`, which may be null, while there is
- * room: at most one WH_EVENT_HIT in a run, the first, after which contact is no longer judged, one
- * WH_EVENT_UNDECIDED, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that
- * is near, some tens of microseconds for one that has to be measured; independent of what rests elsewhere. */
+/* One slice: judges all that moved since the last call. Appends to `list`, which may be null, while there
+ * is room: at most one WH_EVENT_HIT in a run, the first, after which contact is no longer judged, one
+ * WH_EVENT_UNDECIDED, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for
+ * each pair that is near, some tens of microseconds for one that has to be measured; independent of what
+ * rests elsewhere. */
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list)
     WH_SYMBOL(wh_world_step);
 
@@ -159,8 +160,9 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
 void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer)
     WH_SYMBOL(wh_world_place);
 
-/* The smallest gaps so far, by kind: WH_CLEARANCES of them. Of what moves they are known at the end of each slice, of what
- * may move but stands with the first bin of the curves that ends; a hit between two slices is a gap of 0. */
+/* The smallest gaps so far, by kind: WH_CLEARANCES of them. Of what moves they are known at the end of
+ * each slice, of what may move but stands with the first bin of the curves that ends; a hit between two
+ * slices is a gap of 0. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world) WH_SYMBOL(wh_world_clearances);
 
 /* The smallest gaps over time. A run is divided into bins of equal numbers of slices. When all bins are full,
