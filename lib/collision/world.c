@@ -191,7 +191,7 @@ static void set_up_mover(wh_world_t *world, size_t index, int32_t part, int32_t 
 
 static void set_up_movers(wh_world_t *world) {
     const wh_world_config_t *config = world->config;
-    const size_t hanging = config->part_count - world->fixed_count;
+    const size_t hanging = wh_world_hanging(world);
     for (size_t i = 0; i < hanging; ++i) {
         const size_t part = world->fixed_count + i;
         const wh_part_t *hung = &config->parts[part];

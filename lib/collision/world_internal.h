@@ -190,6 +190,11 @@ static inline size_t wh_world_arms(const wh_world_config_t *config) {
     return config->arm_count > 0 ? config->arm_count : 1;
 }
 
+/* How many movers hang on something; those of held wafers, by gripper, come behind them. */
+static inline size_t wh_world_hanging(const wh_world_t *world) {
+    return world->config->part_count - world->fixed_count;
+}
+
 /* The body index of a gripper, of the wafer that it holds, and of a door. */
 int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
 int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);

@@ -96,8 +96,7 @@ static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
 /* --------------------------------------------------------------------------------------- taken and let go */
 
 static wh_mover_t *mover_of_gripper(wh_world_t *world, size_t gripper) {
-    const size_t hanging = world->config->part_count - world->fixed_count;
-    return &world->movers[hanging + gripper];
+    return &world->movers[wh_world_hanging(world) + gripper];
 }
 
 /* Forgets what is known of this mover's pairs with other movers. */

@@ -29,11 +29,11 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
 }
 
 /* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of
- * them. The movers of held wafers come last. */
+ * them. */
 static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_world_config_t *config = world->config;
-    const size_t hanging = config->part_count - world->fixed_count;
+    const size_t hanging = wh_world_hanging(world);
     if ((size_t)pair->a >= hanging || (size_t)pair->b < hanging) {
         return false;
     }

@@ -446,7 +446,8 @@ bool wh_dialect_open(wh_dialect_t *dialect, const char *path) {
 
 void wh_dialect_note(wh_dialect_t *dialect, const char *text) {
     char whole[2 * WH_SANDBOX_MESSAGE_BYTES];
-    const bool is_named = strncmp(text, dialect->path, strlen(dialect->path)) == 0;
+    const size_t length = strlen(dialect->path);
+    const bool is_named = strncmp(text, dialect->path, length) == 0 && text[length] == ':';
     (void)snprintf(whole, sizeof whole, "%.300s%s%.1023s", is_named ? "" : dialect->path,
                    is_named ? "" : ": ", text);
     wh_utf8_visible(dialect->message, sizeof dialect->message, whole);

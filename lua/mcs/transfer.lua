@@ -145,12 +145,11 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
 
   function PLUNGER.missing(target, name, was)
     local edge = native.layout.grippers[target.gripper].edge
-    native.fail("WAFER_MISSING", was.s < edge.stop
-      and ("the plunger of %s stands at %.3f mm, behind its window up to %.10g mm: the wafer is too small, or "
-        .. "its notch is at a rest"):format(
-        name, was.s, edge.to)
-      or ("the plunger of %s went on to the end of its stroke: no wafer lies there, or one that is too far out, too high, "
-        .. "too low or askew"):format(name))
+    local small = "the plunger of %s stands at %.3f mm, behind its window up to %.10g mm: the wafer is too small, or its "
+      .. "notch is at a rest"
+    local none = "the plunger of %s went on to the end of its stroke: no wafer lies there, or one that is too far out, "
+      .. "too high, too low or askew"
+    native.fail("WAFER_MISSING", was.s < edge.stop and small:format(name, was.s, edge.to) or none:format(name))
   end
 
   local function judge_plunger(target, found)
