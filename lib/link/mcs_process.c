@@ -395,6 +395,7 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
     control->mcs = NULL;
+    wh_protocol_client_end(&control->client);
     wh_mcs_process_stop_waiting(control);
     wh_mcs_process_tell_over(control);
 }

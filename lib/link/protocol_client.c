@@ -157,7 +157,7 @@ static void take_refusal(wh_protocol_client_t *client, const waferhand_state *me
 static void take_message(wh_protocol_client_t *client, const waferhand_state *message, const void *data,
                          size_t size) {
     wh_state_t state;
-    if (message->run != client->identity.run) {
+    if (!client->layout || message->run != client->identity.run) {
         ++client->counters.unasked;
         return;
     }
@@ -502,6 +502,10 @@ void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *l
     client->identity.layout_hash = wh_layout_hash(layout);
     client->resend_us = FIRST_RESEND_US;
     memset(client->written, 0xff, sizeof client->written);
+}
+
+void wh_protocol_client_end(wh_protocol_client_t *client) {
+    client->layout = NULL;
 }
 
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,

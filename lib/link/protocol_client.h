@@ -48,7 +48,7 @@ typedef struct {
 typedef struct {
     wh_link_t link; /* first: &client->link is what the MCS talks to */
     wh_node_t *node;
-    const wh_layout_t *layout;
+    const wh_layout_t *layout; /* null: the run is over */
     wh_protocol_client_options_t options;
     wh_link_identity_t identity;
     waferhand_command command;    /* the last one sent */
@@ -113,6 +113,10 @@ void wh_protocol_client_hear(wh_protocol_client_t *client, const void *data, siz
 
 /* Forgets the run and begins another one, of a layout that may be another. Counters stay. */
 void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout);
+
+/* The run is over, and its layout may go: each state that still comes, such as the second answer to a command that
+ * was sent twice, counts as unasked. Until wh_protocol_client_begin nothing else may be asked of the client. */
+void wh_protocol_client_end(wh_protocol_client_t *client);
 
 /* Sends a command. One that is lost is no error: whoever waits for the answer sends it again. */
 void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *command);

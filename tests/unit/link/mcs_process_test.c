@@ -704,6 +704,18 @@ static void requests_that_wait_when_all_ends_are_told_so(void **state) {
                         "begun");
 }
 
+/* The run's layout may be gone by then: nothing of a state may be held against it. */
+static void a_second_answer_that_comes_when_all_ends_is_not_taken(void **state) {
+    (void)state;
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    const wh_protocol_client_counters_t before = control.client.counters;
+    wh_protocol_client_publish(&node, &control.client.command);
+    wh_mcs_process_finish(&control);
+    assert_null(control.client.layout);
+    assert_int_equal(control.client.counters.unasked, before.unasked + 1);
+    assert_int_equal(control.client.counters.answers, before.answers);
+}
+
 /* A script may compute for long behind its last command, and hears nothing meanwhile. */
 static void what_came_after_the_last_command_is_answered_at_the_end(void **state) {
     (void)state;
@@ -789,6 +801,7 @@ int main(void) {
         IN_PAPER(a_script_takes_no_requests_but_stop),
         IN_PAPER(an_answer_is_whole_or_tells_that_it_was_cut),
         IN_PAPER(requests_that_wait_when_all_ends_are_told_so),
+        IN_PAPER(a_second_answer_that_comes_when_all_ends_is_not_taken),
         IN_PAPER(what_came_after_the_last_command_is_answered_at_the_end),
         IN_PAPER(a_simulator_that_was_given_its_state_back_does_not_call_motion_control_silent),
     };
