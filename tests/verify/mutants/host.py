@@ -20,7 +20,7 @@ from records import Results, Survivors
 
 LEAST_RATE = 0.9
 LIST = "tests/verify/mutants/survivors"
-LONGEST_S = 240  # a test that takes longer is not used
+LONGEST_S = float(os.environ.get("LONGEST", "240"))  # a test that takes longer is not used
 TESTS_S = 240  # as long as tests are begun against one mutant
 COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
 # C alone is counted: C++ has to be optimised, which takes long.
@@ -154,7 +154,7 @@ class Lines:
         for test in self.tests:
             status = self.found.get(test, {"status": "there was no time to count"})["status"]
             if status != 0:
-                told = {None: f"it takes over {LONGEST_S} s", 77: "it is skipped"}
+                told = {None: f"it takes over {LONGEST_S:g} s", 77: "it is skipped"}
                 print(f"not used: {test}: {told.get(status, status)}", flush=True)
         self.found = {test: found for test, found in self.found.items() if found["status"] == 0}
 
