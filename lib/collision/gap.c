@@ -29,7 +29,7 @@ static wh_real_t along(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_vec3
 
 wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                        const wh_pose_t *base_from_b, wh_vec3_t axis) {
-    const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}};
+    const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}, NULL};
     wh_vec3_t at;
     return along(&pair, &axis, &at);
 }
@@ -173,6 +173,7 @@ static void turn_axis(const wh_gap_pair_t *pair, int steps, wh_gap_bounds_t *bou
     for (int turn = 0; turn < turns && bounds->lower < -WH_GAP_TOUCH; ++turn) {
         const wh_real_t before = bounds->lower;
         wh_gap_pair_t apart = *pair;
+        apart.start = NULL;
         apart.shift = wh_vec3_scale(WH_GAP_TOUCH / 10 - before, &bounds->axis);
         wh_gap_bounds_t moved = {-far_away, far_away, bounds->axis, {0, 0, 0}};
         wh_nearest_bounds(&apart, far_away, steps, &moved);
@@ -269,6 +270,13 @@ void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_
 
 void wh_gap_measure(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                     const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap) {
-    const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}};
+    const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}, NULL};
+    wh_gap_measure_within(&pair, enough, guess, &usual, gap);
+}
+
+void wh_gap_follow(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
+                   const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_start_t *start,
+                   wh_gap_t *gap) {
+    const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}, start};
     wh_gap_measure_within(&pair, enough, guess, &usual, gap);
 }

@@ -23,6 +23,7 @@ typedef struct {
     const wh_convex_t *a, *b;
     const wh_pose_t *base_from_a, *base_from_b;
     wh_vec3_t shift;
+    wh_gap_start_t *start; /* with which the search begins, and which it leaves; null: with nothing */
 } wh_gap_pair_t;
 
 /* The bounds of a pair, lower <= signed gap <= upper, each with what proves it. */
@@ -37,7 +38,7 @@ typedef struct {
     int steps, supports;
 } wh_gap_budget_t;
 
-/* Narrows `bounds`, starting at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
+/* Narrows `bounds`, starting with pair->start, else at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
  * step helps any more. bounds->axis must be a unit vector; bounds->upper may be infinite. */
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds)
     WH_SYMBOL(wh_nearest_bounds);

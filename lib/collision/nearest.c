@@ -2,7 +2,8 @@
 
 /* A point of each kernel; `between` goes from a's to b's. */
 typedef struct {
-    wh_vec3_t on_a, on_b, between;
+    wh_vec3_t in_a, in_b; /* in the shape's frame */
+    wh_vec3_t on_a, between; /* in base */
 } pair_point_t;
 
 /* Up to four of them, with the weights by which they add up to the point nearest to the origin. */
@@ -12,21 +13,26 @@ typedef struct {
     size_t count;
 } simplex_t;
 
-/* In base. */
+/* In the shape's frame. */
 static wh_vec3_t kernel_point(const wh_convex_t *shape, const wh_pose_t *pose, const wh_vec3_t *direction) {
     const wh_vec3_t d = wh_mat3_transform_back(&pose->R, direction);
-    const wh_vec3_t point = wh_convex_kernel_support(shape, &d);
-    return wh_pose_point(pose, &point);
+    return wh_convex_kernel_support(shape, &d);
+}
+
+static void place(const wh_gap_pair_t *pair, pair_point_t *point) {
+    point->on_a = wh_pose_point(pair->base_from_a, &point->in_a);
+    wh_vec3_t on_b = wh_pose_point(pair->base_from_b, &point->in_b);
+    on_b = wh_vec3_add(&on_b, &pair->shift);
+    point->between = wh_vec3_subtract(&on_b, &point->on_a);
 }
 
 /* The point of a farthest along the axis, and the one of b farthest against it. */
 static pair_point_t support(const wh_gap_pair_t *pair, const wh_vec3_t *axis) {
     const wh_vec3_t back = wh_vec3_scale(-1, axis);
     pair_point_t point;
-    point.on_a = kernel_point(pair->a, pair->base_from_a, axis);
-    point.on_b = kernel_point(pair->b, pair->base_from_b, &back);
-    point.on_b = wh_vec3_add(&point.on_b, &pair->shift);
-    point.between = wh_vec3_subtract(&point.on_b, &point.on_a);
+    point.in_a = kernel_point(pair->a, pair->base_from_a, axis);
+    point.in_b = kernel_point(pair->b, pair->base_from_b, &back);
+    place(pair, &point);
     return point;
 }
 
@@ -125,6 +131,11 @@ static void choose(part_t *part, unsigned chosen, size_t last) {
  * parts of a part whose own nearest point lies within it. The simplex becomes the best part. Returns its
  * squared distance. */
 static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
+    if (simplex->count == 1) {
+        simplex->weights[0] = 1;
+        *nearest = simplex->points[0].between;
+        return wh_vec3_dot(nearest, nearest);
+    }
     const size_t last = simplex->count - 1;
     part_t best = {.count = 0};
     unsigned within = 0;
@@ -199,11 +210,87 @@ static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, con
     return wh_vec3_add(&on_a, &out);
 }
 
+/* Adds a point. Returns the distance of the nearest point of what is left. */
+static wh_real_t add(simplex_t *simplex, const pair_point_t *point, wh_vec3_t *nearest) {
+    simplex->points[simplex->count++] = *point;
+    return wh_real_sqrt(reduce(simplex, nearest));
+}
+
+/* Takes the simplex's nearest point over into upper bound and axis. False if it is not nearer than what was known. */
+static bool narrow(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *nearest,
+                   wh_real_t distance, wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
+    const wh_real_t upper = distance - wh_convex_round(pair->a) - wh_convex_round(pair->b);
+    if (distance > 0) {
+        *axis = across(simplex, nearest);
+        *axis = wh_vec3_scale(1 / wh_vec3_norm(axis), axis);
+    }
+    if (!(upper < bounds->upper)) {
+        return false;
+    }
+    bounds->upper = upper;
+    bounds->at = middle(pair, simplex, axis, distance);
+    return true;
+}
+
+/* The distance of the nearest point of all, if that lies within them, as it most often still does. Else as if they had
+ * been found one after the other. */
+static wh_real_t add_all(simplex_t *simplex, const pair_point_t points[], size_t count, wh_vec3_t *nearest) {
+    part_t part = {.count = count, .index = {0, 1, 2}};
+    for (size_t i = 0; i < count; ++i) {
+        simplex->points[i] = points[i];
+    }
+    if (weigh(simplex, &part)) {
+        simplex->count = count;
+        for (size_t i = 0; i < count; ++i) {
+            simplex->weights[i] = part.weights[i];
+        }
+        *nearest = part.nearest;
+        return wh_real_sqrt(part.squared);
+    }
+    wh_real_t distance = 0;
+    for (size_t i = 0; i < count; ++i) {
+        distance = add(simplex, &points[i], nearest);
+    }
+    return distance;
+}
+
+/* Begins with the points that the last search ended with. Of shapes that meet by now they say nothing. */
+static void begin(const wh_gap_pair_t *pair, simplex_t *simplex, wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
+    const wh_gap_start_t *start = pair->start;
+    pair_point_t points[3];
+    wh_vec3_t nearest;
+    if (!start || start->count == 0) {
+        return;
+    }
+    for (size_t i = 0; i < start->count; ++i) {
+        points[i].in_a = start->on_a[i];
+        points[i].in_b = start->on_b[i];
+        place(pair, &points[i]);
+    }
+    const wh_real_t distance = add_all(simplex, points, start->count, &nearest);
+    if (!(distance > 0) || !narrow(pair, simplex, &nearest, distance, axis, bounds)) {
+        simplex->count = 0;
+    }
+}
+
+static void leave(const simplex_t *simplex, wh_gap_start_t *start) {
+    if (!start || simplex->count == 0) {
+        return;
+    }
+    start->count = simplex->count < 4 ? simplex->count : 0;
+    for (size_t i = 0; i < start->count; ++i) {
+        start->on_a[i] = simplex->points[i].in_a;
+        start->on_b[i] = simplex->points[i].in_b;
+    }
+}
+
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds) {
     const wh_real_t round = wh_convex_round(pair->a) + wh_convex_round(pair->b);
     simplex_t simplex = {.count = 0};
     wh_vec3_t axis = bounds->axis;
-    for (int step = 0; step < steps; ++step) {
+    begin(pair, &simplex, &axis, bounds);
+    const bool is_known = bounds->upper - bounds->lower <= WH_GAP_TIGHT;
+    for (int step = 0; step < steps && !is_known; ++step) {
         const pair_point_t point = support(pair, &axis);
         const wh_real_t lower = wh_vec3_dot(&point.between, &axis) - round;
         if (!(lower <= bounds->lower)) {
@@ -212,22 +299,14 @@ void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, w
         }
         if (bounds->lower > enough || bounds->upper - bounds->lower <= WH_GAP_TIGHT ||
             has(&simplex, &point)) {
-            return;
+            break;
         }
-        simplex.points[simplex.count++] = point;
         wh_vec3_t nearest;
-        const wh_real_t distance = wh_real_sqrt(reduce(&simplex, &nearest));
-        if (distance > 0) {
-            axis = across(&simplex, &nearest);
-            axis = wh_vec3_scale(1 / wh_vec3_norm(&axis), &axis);
-        }
-        if (!(distance - round < bounds->upper)) {
-            return;
-        }
-        bounds->upper = distance - round;
-        bounds->at = middle(pair, &simplex, &axis, distance);
-        if (simplex.count == 4 || !(distance > 0)) {
-            return;
+        const wh_real_t distance = add(&simplex, &point, &nearest);
+        if (!narrow(pair, &simplex, &nearest, distance, &axis, bounds) || simplex.count == 4 ||
+            !(distance > 0)) {
+            break;
         }
     }
+    leave(&simplex, pair->start);
 }

@@ -7,7 +7,7 @@
 #include "world_internal.h"
 
 /* Slices in a bin of the curves at the start. */
-#define FIRST_BIN 10
+#define FIRST_BIN 20
 
 const char *wh_clearance_name(wh_clearance_kind_t kind) {
     static const char *const names[WH_CLEARANCES] = {"blade_wafer_above", "blade_wafer_below", "blade_other",

@@ -9,18 +9,25 @@ static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair
     if (near->slack - (wh_world_gone(near, a, b) - near->since) > wh_world_most_of(near->worth, least)) {
         return;
     }
-    const wh_side_t one = wh_world_side_of_mover(world, a);
-    const wh_side_t two = b ? wh_world_side_of_mover(world, b) : wh_world_side_of_item(world, near->other);
-    const wh_clearance_kind_t kind = wh_world_clearance_of(look, &one, &two);
-    if (kind == WH_CLEARANCES || wh_world_may_touch(look, &one, &two)) {
+    wh_side_t item;
+    const wh_side_t *one = wh_world_side_of_mover(world, a);
+    const wh_side_t *two = &item;
+    if (b) {
+        two = wh_world_side_of_mover(world, b);
+    } else {
+        item = wh_world_side_of_item(world, near->other);
+    }
+    const wh_clearance_kind_t kind = wh_world_clearance_of(look, one, two);
+    if (kind == WH_CLEARANCES || wh_world_may_touch(look, one, two)) {
         return;
     }
-    if (near->exact < one.gone + two.gone) {
+    if (near->exact < one->gone + two->gone) {
         wh_gap_t gap;
-        wh_gap_measure(one.convex, one.now, two.convex, two.now, least[kind], near->axis, &gap);
-        wh_world_take_gap(near, &one, &two, &gap, least[kind]);
+        wh_gap_follow(one->convex, one->now, two->convex, two->now, least[kind], near->axis,
+                      wh_world_start(world, one->part, two->part), &gap);
+        wh_world_take_gap(near, one, two, &gap, least[kind]);
         wh_world_remember(near, a, b);
-        wh_world_keep_clearance(look, kind, &one, &two, &gap);
+        wh_world_keep_clearance(look, kind, one, two, &gap);
     }
     least[kind] = near->slack < least[kind] ? near->slack : least[kind];
 }

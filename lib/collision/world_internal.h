@@ -57,6 +57,18 @@ typedef struct {
     uint32_t again;   /* from this step on it is worth while to ask how far apart the two are by now */
 } wh_pair_t;
 
+/* One part of a pair, as the judgement sees it. */
+typedef struct {
+    int32_t part;
+    wh_part_kind_t kind;
+    int32_t owner, slot;
+    const wh_convex_t *convex;
+    const wh_body_t *body;         /* null: it rests */
+    const wh_pose_t *before, *now; /* base_from_shape */
+    wh_real_t motion, bulge;
+    wh_real_t gone; /* so far, in whatever way */
+} wh_side_t;
+
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
 typedef struct {
     int32_t part; /* WH_NONE: this gripper holds none */
@@ -74,6 +86,7 @@ typedef struct {
     size_t near_count;
     wh_real_t reach; /* how much farther it may move before the list must be made again */
     bool crowded;    /* more things are near than the list can hold */
+    wh_side_t side;  /* as it was asked for last */
 } wh_mover_t;
 
 /* A pair of movers. */
@@ -87,6 +100,15 @@ typedef struct {
     int32_t wafer;
     wh_vec3_t at;
 } wh_left_t;
+
+/* With which the search for a pair's gap begins. Few pairs are near at a time: they share these, each its own place by
+ * the numbers of its parts, and take turns where two have the same. */
+#define WH_WORLD_STARTS 256
+
+typedef struct {
+    int32_t parts[2];
+    wh_gap_start_t points;
+} wh_start_t;
 
 /* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
 #define WH_SAME_GAP WH_REAL(1e-4)
@@ -106,6 +128,7 @@ struct wh_world {
     size_t mover_count;
     wh_mover_pair_t *pairs;
     size_t pair_count;
+    wh_start_t starts[WH_WORLD_STARTS];
     double *due; /* of each pair: when `gone` is that, something can come of it */
     double gone; /* at least as far as any two movers have gone together, mm */
     wh_pair_t *near;
@@ -152,18 +175,6 @@ static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pai
     world->due[pair - world->pairs] = 0;
 }
 
-/* One part of a pair, as the judgement sees it. */
-typedef struct {
-    int32_t part;
-    wh_part_kind_t kind;
-    int32_t owner, slot;
-    const wh_convex_t *convex;
-    const wh_body_t *body;         /* null: it rests */
-    const wh_pose_t *before, *now; /* base_from_shape */
-    wh_real_t motion, bulge;
-    wh_real_t gone; /* so far, in whatever way */
-} wh_side_t;
-
 /* Takes over what wh_gap_measure has found, which was asked whether the gap is more than `enough`. */
 static inline void wh_world_take_gap(wh_pair_t *near, const wh_side_t *a, const wh_side_t *b,
                                      const wh_gap_t *gap, wh_real_t enough) {
@@ -171,6 +182,17 @@ static inline void wh_world_take_gap(wh_pair_t *near, const wh_side_t *a, const 
     near->exact = gap->state == WH_GAP_CLEAR && gap->gap <= enough ? a->gone + b->gone : -1;
     near->axis = gap->axis;
     near->step = 0;
+}
+
+/* Where the search for the gap of two parts begins. */
+static inline wh_gap_start_t *wh_world_start(wh_world_t *world, int32_t a, int32_t b) {
+    wh_start_t *start = &world->starts[((size_t)a * 31 + (size_t)b) % WH_WORLD_STARTS];
+    if (start->parts[0] != a || start->parts[1] != b) {
+        start->parts[0] = a;
+        start->parts[1] = b;
+        start->points.count = 0;
+    }
+    return &start->points;
 }
 
 /* The arguments of a step. */
@@ -204,7 +226,7 @@ int32_t wh_world_door_body(size_t door) WH_SYMBOL(wh_world_door_body);
 void wh_world_place_shape(wh_world_t *world, size_t wafer) WH_SYMBOL(wh_world_place_shape);
 
 /* What is near is as the world is: valid until something moves. */
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
+const wh_side_t *wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
     WH_SYMBOL(wh_world_side_of_mover);
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);
 

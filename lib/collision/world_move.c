@@ -32,16 +32,20 @@ const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) {
 
 /* ------------------------------------------------------------------------------------------------- motion */
 
-/* An upper bound of the angle between two rotations. The Frobenius norm of the matrices' difference is 2
- * sqrt(2) sin(angle / 2), and asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, with equality at both
- * ends. */
-static wh_real_t angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
+/* The square of the Frobenius norm of two rotations' difference. */
+static wh_real_t spread_of(const wh_mat3_t *a, const wh_mat3_t *b) {
     wh_real_t sum = 0;
     for (size_t i = 0; i < 9; ++i) {
         const wh_real_t d = a->m[i / 3][i % 3] - b->m[i / 3][i % 3];
         sum += d * d;
     }
-    const wh_real_t s = wh_real_sqrt(sum / 8);
+    return sum;
+}
+
+/* An upper bound of the angle between two rotations. The norm of the matrices' difference is 2 sqrt(2)
+ * sin(angle / 2), and asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, with equality at both ends. */
+static wh_real_t angle_of(wh_real_t spread) {
+    const wh_real_t s = wh_real_sqrt(spread / 8);
     return s < 1 ? 2 * s * (1 + WH_REAL(0.5708) * s * s) : WH_REAL(3.1416);
 }
 
@@ -68,8 +72,9 @@ static void move_body(wh_body_t *body, const wh_pose_t *now) {
     body->now = *now;
     const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
     body->way = wh_vec3_norm(&way);
-    body->turn = angle_between(&body->now.R, &body->before.R);
-    body->lean = upright_change(&body->now.R, &body->before.R);
+    const wh_real_t spread = spread_of(&body->now.R, &body->before.R);
+    body->turn = spread > 0 ? angle_of(spread) : 0;
+    body->lean = spread > 0 ? upright_change(&body->now.R, &body->before.R) : 0;
 }
 
 /* Returns the most that a point of it moved, mm. */

@@ -26,15 +26,18 @@ static void place(const wh_world_t *world, wh_mover_t *mover) {
     }
 }
 
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
-    wh_side_t side = side_of_part(world->config, mover->part);
+const wh_side_t *wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover) {
+    wh_side_t *side = &mover->side;
+    if (!side->convex || side->part != mover->part) {
+        *side = side_of_part(world->config, mover->part);
+        side->body = &world->bodies[mover->body];
+        side->before = &mover->before;
+        side->now = &mover->now;
+    }
     place(world, mover);
-    side.body = &world->bodies[mover->body];
-    side.before = &mover->before;
-    side.now = &mover->now;
-    side.motion = mover->motion;
-    side.bulge = mover->bulge;
-    side.gone = mover->gone[WH_GONE_ANYWHERE];
+    side->motion = mover->motion;
+    side->bulge = mover->bulge;
+    side->gone = mover->gone[WH_GONE_ANYWHERE];
     return side;
 }
 

@@ -254,7 +254,8 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_t worst;
     const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
     const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->least[kind];
-    wh_gap_measure(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis, &gap);
+    wh_gap_follow(a->convex, a->now, b->convex, b->now, enough > wanted ? enough : wanted, near->axis,
+                  wh_world_start(world, a->part, b->part), &gap);
     ++world->counters.measured;
     wh_world_take_gap(near, a, b, &gap, enough > wanted ? enough : wanted);
     keep_clearance(look, kind, a, b, &gap);

@@ -14,15 +14,15 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     wh_world_list_near(world, mover);
     world->counters.pairs += mover->near_count;
     if (mover->crowded) {
-        const wh_side_t a = wh_world_side_of_mover(world, mover);
-        wh_world_report_crowd(look, &a);
+        const wh_side_t *a = wh_world_side_of_mover(world, mover);
+        wh_world_report_crowd(look, a);
     }
     for (size_t i = 0; i < mover->near_count; ++i) {
         wh_pair_t *near = &mover->near[i];
         if (!wh_world_is_far(world, near, mover, NULL)) {
-            const wh_side_t a = wh_world_side_of_mover(world, mover);
+            const wh_side_t *a = wh_world_side_of_mover(world, mover);
             const wh_side_t b = wh_world_side_of_item(world, near->other);
-            wh_world_judge(look, &a, &b, near);
+            wh_world_judge(look, a, &b, near);
             wh_world_remember(near, mover, NULL);
         }
     }
@@ -53,9 +53,9 @@ static void ask_anew(wh_world_t *world, wh_mover_t *a, wh_mover_t *b, wh_pair_t 
     if (near->slack - world->worth[near->worth] > soon || world->step < near->again) {
         return;
     }
-    const wh_side_t one = wh_world_side_of_mover(world, a);
-    const wh_side_t two = wh_world_side_of_mover(world, b);
-    const wh_real_t apart = wh_gap_along(one.convex, one.now, two.convex, two.now, near->axis);
+    const wh_side_t *one = wh_world_side_of_mover(world, a);
+    const wh_side_t *two = wh_world_side_of_mover(world, b);
+    const wh_real_t apart = wh_gap_along(one->convex, one->now, two->convex, two->now, near->axis);
     near->again = apart > near->slack + soon ? 0 : world->step + SOON;
     near->slack = apart > near->slack ? apart : near->slack;
     near->exact = -1;
@@ -75,10 +75,10 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     if (wh_world_is_known(world, a->part, b->part)) {
         return;
     }
-    const wh_side_t one = wh_world_side_of_mover(world, a);
-    const wh_side_t two = wh_world_side_of_mover(world, b);
+    const wh_side_t *one = wh_world_side_of_mover(world, a);
+    const wh_side_t *two = wh_world_side_of_mover(world, b);
     ++world->counters.pairs;
-    wh_world_judge(look, &one, &two, &pair->near);
+    wh_world_judge(look, one, two, &pair->near);
     wh_world_remember(&pair->near, a, b);
 }
 
@@ -167,10 +167,10 @@ static void add_pair(const wh_look_t *look, const wh_mover_pair_t *pair, contact
     if (a->part == WH_NONE || b->part == WH_NONE) {
         return;
     }
-    const wh_side_t one = wh_world_side_of_mover(look->world, a);
-    const wh_side_t two = wh_world_side_of_mover(look->world, b);
-    if (!wh_world_may_touch(look, &one, &two) && cut(&one, &two)) {
-        add_contact(contacts, &one, &two);
+    const wh_side_t *one = wh_world_side_of_mover(look->world, a);
+    const wh_side_t *two = wh_world_side_of_mover(look->world, b);
+    if (!wh_world_may_touch(look, one, two) && cut(one, two)) {
+        add_contact(contacts, one, two);
     }
 }
 
@@ -186,8 +186,8 @@ size_t wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int
     }
     for (size_t i = 0; i < world->mover_count; ++i) {
         if (world->movers[i].part != WH_NONE) {
-            const wh_side_t a = wh_world_side_of_mover(world, &world->movers[i]);
-            add_rest(&look, &a, WH_NONE, &contacts);
+            const wh_side_t *a = wh_world_side_of_mover(world, &world->movers[i]);
+            add_rest(&look, a, WH_NONE, &contacts);
         }
     }
     for (size_t i = 0; i < world->pair_count; ++i) {

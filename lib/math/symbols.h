@@ -111,6 +111,7 @@
 #define wh_faults_validate WH_SYMBOL_RENAMED(wh_faults_validate)
 #define wh_flats_find WH_SYMBOL_RENAMED(wh_flats_find)
 #define wh_gap_along WH_SYMBOL_RENAMED(wh_gap_along)
+#define wh_gap_follow WH_SYMBOL_RENAMED(wh_gap_follow)
 #define wh_gap_measure WH_SYMBOL_RENAMED(wh_gap_measure)
 #define wh_gap_measure_within WH_SYMBOL_RENAMED(wh_gap_measure_within)
 #define wh_grasp_buckets WH_SYMBOL_RENAMED(wh_grasp_buckets)

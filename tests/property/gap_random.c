@@ -245,6 +245,56 @@ static void a_guess_changes_nothing(void **state) {
     for_all_kinds(300, check_guess);
 }
 
+/* A little on, or, now and then, somewhere else. */
+static void go_on(pair_t *pair) {
+    const bool jumps = wh_test_below(8) == 0;
+    const wh_vec3_t direction = wh_test_direction();
+    const wh_vec3_t way = wh_vec3_scale(jumps ? wh_test_uniform(0, 100) : wh_test_uniform(0, 2), &direction);
+    const wh_mat3_t turn = wh_test_random_turn(jumps ? WH_TEST_PI : 0.01);
+    pair->base_from_b.r = wh_vec3_add(&pair->base_from_b.r, &way);
+    pair->base_from_b.R = wh_mat3_multiply(&pair->base_from_b.R, &turn);
+    wh_mat3_orthonormalise(&pair->base_from_b.R);
+}
+
+/* Only how deep a shallow overlap is found to be depends on where the search begins. */
+static void assert_same_gap(const wh_gap_t *followed, const wh_gap_t *gap, const pair_t *pair) {
+    const double depth =
+        -wh_gap_along(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b, gap->axis);
+    if (followed->state == gap->state) {
+        assert_near(followed->gap, gap->gap, 2 * WH_GAP_TIGHT);
+    } else {
+        assert_int_not_equal(followed->state, WH_GAP_UNDECIDED);
+        assert_true(depth > -WH_GAP_TOUCH - 2 * WH_GAP_TIGHT && depth < 2 * WH_GAP_TOUCH);
+    }
+}
+
+static void check_followed(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
+    wh_gap_start_t start = {0};
+    wh_vec3_t axis = {0, 0, 0};
+    draw(pair, a, b, wh_test_decades(0.00101, 30));
+    for (int step = 0; step < 20; ++step) {
+        const double enough = wh_test_below(2) ? 1e9 : wh_test_uniform(0, 20);
+        const wh_gap_t gap = measure_pair(pair);
+        wh_gap_t followed;
+        wh_gap_follow(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b, enough, axis, &start,
+                      &followed);
+        if (gap.gap <= enough) {
+            assert_same_gap(&followed, &gap, pair);
+        } else {
+            assert_int_equal(followed.state, WH_GAP_CLEAR);
+            assert_true(followed.gap > enough && followed.gap <= gap.gap + 2 * WH_GAP_TIGHT);
+        }
+        axis = followed.axis;
+        go_on(pair);
+    }
+}
+
+/* Wherever the two have been, and whatever was enough there. */
+static void what_is_followed_has_the_same_gap(void **state) {
+    (void)state;
+    for_all_kinds(300, check_followed);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_level_wafer_is_judged_right),
@@ -255,6 +305,7 @@ int main(void) {
         cmocka_unit_test(what_overlaps_is_a_hit),
         cmocka_unit_test(swapped_shapes_have_the_same_gap),
         cmocka_unit_test(a_guess_changes_nothing),
+        cmocka_unit_test(what_is_followed_has_the_same_gap),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -153,7 +153,7 @@ static wh_gap_state_t within(double z, int steps, int supports) {
     const wh_convex_t blade = wh_test_blade();
     const wh_pose_t here = wh_test_pose(wh_test_rotation(1, 2, 0, 0.02), 0, 0, 0);
     const wh_pose_t there = wh_test_at(40, 30, z);
-    const wh_gap_pair_t pair = {&blade, &wafer, &here, &there, {0, 0, 0}};
+    const wh_gap_pair_t pair = {&blade, &wafer, &here, &there, {0, 0, 0}, NULL};
     const wh_gap_budget_t budget = {steps, supports};
     wh_gap_t gap;
     wh_gap_measure_within(&pair, 1e9, none, &budget, &gap);
@@ -187,7 +187,7 @@ static void what_is_proven_is_never_too_much(void **state) {
     const wh_pose_t here = wh_test_pose(wh_test_rotation(1, 2, 0, 0.3), 0, 0, 0);
     const wh_pose_t there = wh_test_at(200, 200, 200);
     const double want = (double)measure(&wafer, &here, &wafer, &there).gap;
-    const wh_gap_pair_t pair = {&wafer, &wafer, &here, &there, {0, 0, 0}};
+    const wh_gap_pair_t pair = {&wafer, &wafer, &here, &there, {0, 0, 0}, NULL};
     double before = 0;
     for (int steps = 0; steps < 40; ++steps) {
         const wh_gap_budget_t budget = {steps, 0};

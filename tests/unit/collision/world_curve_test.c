@@ -6,6 +6,9 @@
 /* A blade comes down to a wall 12 mm below its lower side, 0.01 mm a slice, and goes up again. */
 enum { PARTS = 2 };
 
+/* Slices of the first bins. */
+enum { BIN = 20 };
+
 static wh_part_t parts[PARTS];
 static wh_world_config_t config;
 static wh_cell_t cell;
@@ -82,13 +85,13 @@ static void bins_hold_their_smallest_gaps(void **state) {
     const wh_curves_t *curves = wh_world_curves(world);
     assert_int_equal(curves->first, 0);
     assert_int_equal(curves->count, 0);
-    step_to(9);
+    step_to(BIN - 1);
     assert_int_equal(curves->count, 0);
-    step_to(905);
-    assert_int_equal(curves->slices, 10);
-    assert_int_equal(curves->count, 90);
-    for (size_t bin = 0; bin < 90; ++bin) {
-        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(10 * (bin + 1)), 1e-3);
+    step_to(45 * BIN + 5);
+    assert_int_equal(curves->slices, BIN);
+    assert_int_equal(curves->count, 45);
+    for (size_t bin = 0; bin < 45; ++bin) {
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(BIN * (bin + 1)), 1e-3);
         assert_near(curves->gaps[WH_CLEARANCE_ARM_OTHER][bin], WH_CLEARANCE_RANGE, 0);
     }
 }
@@ -100,32 +103,32 @@ static void smallest_gap_is_in_its_bin(void **state) {
     ++table.slice;
     const wh_world_input_t dip = blade_at(at_height(0.5));
     wh_world_step(world, &dip, NULL);
-    step_to(1020);
+    step_to(1040);
     const wh_curves_t *curves = wh_world_curves(world);
     assert_near(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].gap, 0.5, 1e-3);
-    assert_int_equal(curves->count, 102);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][99], height_in(1000), 1e-3);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][100], 0.5, 1e-3);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][101], height_in(1010), 1e-3);
+    assert_int_equal(curves->count, 52);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][49], height_in(1000), 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][50], 0.5, 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][51], height_in(1020), 1e-3);
 }
 
 static void full_bins_become_half_as_many(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
-    step_to(10 * WH_CURVE_BINS - 1);
+    step_to(BIN * WH_CURVE_BINS - 1);
     assert_int_equal(curves->count, WH_CURVE_BINS - 1);
-    step_to(10 * WH_CURVE_BINS);
+    step_to(BIN * WH_CURVE_BINS);
     assert_int_equal(curves->count, WH_CURVE_BINS / 2);
-    assert_int_equal(curves->slices, 20);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][0], height_in(20), 1e-6);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][49], 2, 1e-3);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][50], height_in(1000), 1e-3);
+    assert_int_equal(curves->slices, 2 * BIN);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][0], height_in(2 * BIN), 1e-6);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][24], 2, 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][25], height_in(1000), 1e-3);
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][299], WH_CLEARANCE_RANGE, 0);
-    step_to(10 * WH_CURVE_BINS + 19);
+    step_to(BIN * WH_CURVE_BINS + 2 * BIN - 1);
     assert_int_equal(curves->count, WH_CURVE_BINS / 2);
-    step_to(20 * WH_CURVE_BINS);
+    step_to(2 * BIN * WH_CURVE_BINS);
     assert_int_equal(curves->count, WH_CURVE_BINS / 2);
-    assert_int_equal(curves->slices, 40);
+    assert_int_equal(curves->slices, 4 * BIN);
 }
 
 /* What stands counts from the end of the first bin on: one that then only leaves was never nearer. */
@@ -142,39 +145,39 @@ static void a_late_start_is_no_blind_spot(void **state) {
         wh_world_step(world, &input, NULL);
     }
     assert_near(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].gap, 12, 1e-3);
-    assert_int_equal(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].slice, 10);
+    assert_int_equal(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].slice, BIN);
 }
 
 /* A run that ends within a bin has that part of it, too. */
 static void the_last_bin_may_be_shorter(void **state) {
     (void)state;
     wh_curves_t curves;
-    step_to(90);
+    step_to(9 * BIN);
     wh_world_copy_curves(world, &curves);
     assert_int_equal(curves.count, 9);
-    step_to(93);
+    step_to(9 * BIN + 3);
     wh_world_copy_curves(world, &curves);
     assert_int_equal(curves.count, 10);
-    assert_int_equal(wh_curves_end(&curves, 8), 90);
-    assert_int_equal(wh_curves_end(&curves, 9), 93);
-    assert_near(curves.gaps[WH_CLEARANCE_BLADE_OTHER][9], height_in(93), 1e-3);
+    assert_int_equal(wh_curves_end(&curves, 8), 9 * BIN);
+    assert_int_equal(wh_curves_end(&curves, 9), 9 * BIN + 3);
+    assert_near(curves.gaps[WH_CLEARANCE_BLADE_OTHER][9], height_in(9 * BIN + 3), 1e-3);
     assert_int_equal(wh_world_curves(world)->count, 9);
-    assert_int_equal(wh_curves_end(wh_world_curves(world), 9), 100);
+    assert_int_equal(wh_curves_end(wh_world_curves(world), 9), 10 * BIN);
 }
 
 static void lost_slices_leave_no_gap(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
-    step_to(20);
-    table.slice = 54;
-    step_to(55);
+    step_to(2 * BIN);
+    table.slice = 5 * BIN + 4;
+    step_to(5 * BIN + 5);
     assert_int_equal(curves->count, 5);
     for (size_t bin = 2; bin < 5; ++bin) {
-        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(55), 1e-6);
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(5 * BIN + 5), 1e-6);
     }
-    step_to(60);
+    step_to(6 * BIN);
     assert_int_equal(curves->count, 6);
-    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][5], height_in(60), 1e-6);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][5], height_in(6 * BIN), 1e-6);
 }
 
 enum { CYCLE = 1280, CYCLES = 40 };
