@@ -18,6 +18,7 @@
 /* A body that moves, at both ends of the slice. */
 typedef struct {
     wh_pose_t before, now; /* base_from_body */
+    bool has_gone;         /* in this slice */
     wh_real_t way;         /* of its origin, mm */
     wh_real_t turn;        /* about its origin, rad; an upper bound */
     wh_real_t lean;        /* how much of that brings points 1 mm from the origin up or down, mm */

@@ -55,16 +55,13 @@ static wh_real_t upright_change(const wh_mat3_t *a, const wh_mat3_t *b) {
     return wh_vec3_norm(&change);
 }
 
-static bool has_gone(const wh_body_t *body) {
-    return body->way > 0 || body->turn > 0 || body->lean > 0;
-}
-
 static void move_body(wh_body_t *body, const wh_pose_t *now) {
     const bool stands = wh_arm_is_at(&body->now, now);
-    if (stands && !has_gone(body)) {
+    if (stands && !body->has_gone) {
         return;
     }
     body->before = body->now;
+    body->has_gone = !stands;
     if (stands) {
         body->way = body->turn = body->lean = 0;
         return;
@@ -85,7 +82,7 @@ static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
     }
     mover->was_placed = mover->is_placed;
     mover->is_placed = false;
-    if (!has_gone(body)) {
+    if (!body->has_gone) {
         mover->motion = mover->bulge = mover->rise = 0;
         return 0;
     }

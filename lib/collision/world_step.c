@@ -65,9 +65,6 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_t *world = look->world;
     wh_mover_t *a = &world->movers[pair->a];
     wh_mover_t *b = &world->movers[pair->b];
-    if (hold_each_other(look, pair)) {
-        return;
-    }
     if (wh_world_is_far(world, &pair->near, a, b)) {
         ask_anew(world, a, b, &pair->near);
         return;
@@ -85,13 +82,19 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
 /* Sums of ways are rounded: a pair is looked at when this much is left, mm. */
 #define EARLY 0.01
 
-/* Looks at a pair. Returns how much farther apart the two are than what can matter. */
+/* Looks at a pair. Returns how much farther apart the two are than what can matter: without end while they hold each
+ * other, for what is known of a wafer is forgotten when it is taken or let go. */
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
     const wh_real_t worth = world->worth[pair->near.worth];
-    if (!(wh_world_slack(pair, movers) > worth) && movers[pair->a].motion + movers[pair->b].motion > 0) {
-        judge_movers(look, pair);
+    if (!(wh_world_slack(pair, movers) > worth)) {
+        if (hold_each_other(look, pair)) {
+            return (double)WH_WORLD_NOWHERE;
+        }
+        if (movers[pair->a].motion + movers[pair->b].motion > 0) {
+            judge_movers(look, pair);
+        }
     }
     return (double)(wh_world_slack(pair, movers) - worth);
 }
