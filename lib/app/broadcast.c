@@ -149,6 +149,15 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
     return WH_OK;
 }
 
+/* Of a script's run: its layout goes with it. */
+static void finished(void *user, const wh_mcs_t *mcs) {
+    wh_broadcast_t *broadcast = broadcast_of(user);
+    wh_mcs_process_partners(&broadcast->control).finished(user, mcs);
+    if (broadcast->simulation) {
+        wh_sim_process_rest(broadcast->simulation);
+    }
+}
+
 /* --------------------------------------------------------------------------------- opening and closing */
 
 bool wh_broadcast_open(wh_broadcast_t *broadcast, const char *program, const wh_record_arguments_t *record,
@@ -182,7 +191,7 @@ wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast) {
                                .cycle = told.cycle,
                                .edge = told.edge,
                                .centring = told.centring,
-                               .finished = told.finished,
+                               .finished = finished,
                                .user = told.user};
 }
 

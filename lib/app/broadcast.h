@@ -32,7 +32,7 @@ wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast);
 /* What is due by the clock while nothing moves: to be called at least every 100 ms where people watch. */
 void wh_broadcast_tick(wh_broadcast_t *broadcast);
 
-/* Tells that the run is over. The run or session may be gone by now. False if the recording failed, which
+/* Tells that the run is over. A script's run may be gone by now, a session not yet. False if the recording failed, which
  * standard error has said. */
 bool wh_broadcast_close(wh_broadcast_t *broadcast);
 

@@ -348,8 +348,9 @@ static bool close_served(served_t *served) {
     wh_host_close(&served->host);
     wh_serve_cell_close_view(&served->cell);
     wh_signals_close(&served->signals);
+    const bool is_sound = wh_serve_cell_close(&served->cell);
     wh_session_close(&served->session);
-    return wh_serve_cell_close(&served->cell);
+    return is_sound;
 }
 
 static double rate_of(const arguments_t *arguments) {

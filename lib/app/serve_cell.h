@@ -38,7 +38,7 @@ bool wh_serve_cell_open(wh_serve_cell_t *cell, const wh_serve_cell_arguments_t *
 /* Opens the view, if one is asked for, once the session has the layout. */
 bool wh_serve_cell_open_view(wh_serve_cell_t *cell);
 
-/* Before and after the session is closed. The last is false if the recording failed, which standard error has
+/* Both before the session is closed. The last is false if the recording failed, which standard error has
  * said. */
 void wh_serve_cell_close_view(wh_serve_cell_t *cell);
 bool wh_serve_cell_close(wh_serve_cell_t *cell);

@@ -289,8 +289,7 @@ void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, w
     simplex_t simplex = {.count = 0};
     wh_vec3_t axis = bounds->axis;
     begin(pair, &simplex, &axis, bounds);
-    const bool is_known = bounds->upper - bounds->lower <= WH_GAP_TIGHT;
-    for (int step = 0; step < steps && !is_known; ++step) {
+    for (int step = 0; step < steps; ++step) {
         const pair_point_t point = support(pair, &axis);
         const wh_real_t lower = wh_vec3_dot(&point.between, &axis) - round;
         if (!(lower <= bounds->lower)) {

@@ -29,7 +29,7 @@
 
 #include "../cell/station.h"
 #include "arm.h"
-#include "convex.h"
+#include "gap.h"
 #include "tree.h"
 
 WH_HEADER_BEGIN
@@ -129,6 +129,12 @@ typedef struct {
 } wh_world_config_t;
 
 typedef struct wh_world wh_world_t;
+
+/* True if a gap, as it was found, keeps a limit, mm. A gap is known from below, to WH_GAP_TIGHT: so one that is at its
+ * limit keeps it, however its last digits are rounded. */
+static inline bool wh_clearance_is_kept(wh_real_t gap, wh_real_t limit) {
+    return !(gap + WH_GAP_TIGHT < limit);
+}
 
 /* The kind's name, such as "blade_wafer_above": a constant, never null. */
 const char *wh_clearance_name(wh_clearance_kind_t kind) WH_SYMBOL(wh_clearance_name);

@@ -197,7 +197,7 @@ void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, co
     least->parts[0] = a->part;
     least->parts[1] = b->part;
     least->at = gap->at;
-    if (found < limit && !world->too_close[kind]) {
+    if (!wh_clearance_is_kept(found, limit) && !world->too_close[kind]) {
         wh_event_t *event = append(look, WH_EVENT_TOO_CLOSE, a, b, gap);
         world->too_close[kind] = true;
         if (event) {

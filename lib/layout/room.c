@@ -228,9 +228,9 @@ static void check_gap(wh_feasibility_t *check, size_t station, wh_clearance_kind
                       wh_real_t gap, const char *where) {
     const wh_layout_t *layout = check->layout;
     const wh_real_t limit = layout->world.limits[kind];
-    if (has && gap > 0 && limit > 0 && gap < limit) {
+    if (has && gap > 0 && limit > 0 && !wh_clearance_is_kept(gap, limit)) {
         (void)wh_feasibility_add(check, WH_FINDING_GAP, (int32_t)station,
-                                 "%s: the blade has %.4g mm %s, `clearance.%s` asks for more than %.6g mm",
+                                 "%s: the blade has %.4g mm %s, `clearance.%s` asks for at least %.6g mm",
                                  layout->stations[station].name, (double)gap, where, wh_clearance_name(kind),
                                  (double)limit);
     }

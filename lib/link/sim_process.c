@@ -285,9 +285,13 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
     }
 }
 
-void wh_sim_process_close(wh_sim_process_t *simulation) {
+void wh_sim_process_rest(wh_sim_process_t *simulation) {
     if (simulation->proximity_waits) {
         tell_proximity(simulation);
     }
+}
+
+void wh_sim_process_close(wh_sim_process_t *simulation) {
+    wh_sim_process_rest(simulation);
     wh_protocol_server_close(&simulation->server);
 }

@@ -133,6 +133,10 @@ static void hear_collisions(void *user, const wh_command_t *command, const wh_st
 /* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
 static int connect(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    char unread[WH_SANDBOX_MESSAGE_BYTES];
+    if (mcs->refuses_unread && wh_sandbox_find_unread(mcs->sandbox, unread)) {
+        return luaL_error(L, "%s: %s", mcs->layout->path, unread);
+    }
     mcs->link = &mcs->local.simulator.link;
     if (mcs->partners.connect) {
         wh_mcs_watch_slices(mcs);

@@ -221,12 +221,12 @@ typedef struct {
 #define WH_MCS_ALARMS 16
 
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `errors`, `error_count`,
- * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed` and `rehearsal.look_ahead`,
- * which may be set between opening and the cell.
- * Must not be moved once opened. */
+ * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed`, `refuses_unread` and
+ * `rehearsal.look_ahead`, which may be set between opening and the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
+    bool refuses_unread; /* no cell is connected while a parameter is unread */
     bool is_file; /* `script` is a file that is run: it is no layout */
 
     /* The cell, from when the script names it. */

@@ -51,14 +51,11 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
         !wh_mcs_open(&session->mcs, session->sandbox, "prompt", &session->record, &result)) {
         return refuse(session, result.message);
     }
+    session->mcs.refuses_unread = true;
     session->mcs.partners = options->partners;
     session->mcs.listener = options->listener;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result)) {
         return refuse(session, result.message);
-    }
-    if (wh_sandbox_find_unread(session->sandbox, result.message)) {
-        (void)snprintf(session->message, sizeof session->message, "%.200s: %.800s", layout, result.message);
-        return false;
     }
     return true;
 }

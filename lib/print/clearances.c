@@ -26,7 +26,7 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t kind) {
     const wh_layout_t *layout = printer->record->layout;
     const wh_real_t limit = layout->world.limits[kind];
     const bool found = least->parts[0] != WH_NONE;
-    const bool kept = !(least->gap < limit);
+    const bool kept = wh_clearance_is_kept(least->gap, limit);
     if (!found && !(limit > 0)) {
         return;
     }
