@@ -705,6 +705,40 @@ static void a_reset_to_a_layout_that_is_refused_changes_nothing(void **state) {
     (void)remove(path);
 }
 
+static wh_link_t *count_connection(void *user, wh_mcs_t *mcs) {
+    ++*(int *)user;
+    return &mcs->local.simulator.link;
+}
+
+/* Whoever is connected has left the run before: so nothing may be refused behind that. */
+static void a_reset_that_leaves_a_parameter_unread_connects_to_nothing(void **state) {
+    (void)state;
+    static const char path[] = "build/session_test_parameter.lua";
+    static const char layout[] =
+        "return { grippers = { { name = 'EE', on = 'robot' } }, stations = { A = { at = { 700, 0, 900 }, "
+        "slots = %s, pitch = 10 } } }";
+    const char *const parameters[] = {"slots=5"};
+    int connections = 0;
+    const wh_session_options_t options = {.layout = path,
+                                          .limits = {.print_to = stderr},
+                                          .parameters = parameters,
+                                          .parameter_count = 1,
+                                          .partners = {.connect = count_connection, .user = &connections}};
+    char text[400];
+    snprintf(text, sizeof text, layout, "params.slots");
+    write_layout(path, text);
+    assert_true(wh_session_open(&session, &options));
+    assert_int_equal(connections, 1);
+    snprintf(text, sizeof text, layout, "5");
+    write_layout(path, text);
+    assert_answer("RESET", "ERROR 48 BAD_ARGUMENT: ");
+    assert_non_null(strstr(answer, "build/session_test_parameter.lua: --set slots: nobody read params.slots"));
+    assert_int_equal(connections, 1);
+    assert_answer("WAIT 0.5", "OK seconds=0.5");
+    wh_session_close(&session);
+    (void)remove(path);
+}
+
 /* ------------------------------------------------------------------------- SAVE, RESTORE, UNDO
  */
 
@@ -844,6 +878,7 @@ int main(void) {
         IN_PAPER(status_tells_where_all_is),
         IN_PAPER(reset_is_a_new_beginning),
         cmocka_unit_test(a_reset_to_a_layout_that_is_refused_changes_nothing),
+        cmocka_unit_test(a_reset_that_leaves_a_parameter_unread_connects_to_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
