@@ -622,7 +622,7 @@ static void a_urdf_of_the_usual_arm_is_the_usual_arm(void **state) {
         }
         const wh_layout_t *layout = read_sound(fields);
         assert_int_equal(unlink(path), 0);
-        assert_non_null(layout->urdf);
+        assert_non_null(layout->robots[0].urdf);
         assert_true(layout->shapes.arm.right_handed == right);
         expect_same_parts(usual, layout);
         assert_true(wh_layout_world_hash(usual) == wh_layout_world_hash(layout));
