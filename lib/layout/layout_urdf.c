@@ -1,4 +1,4 @@
-/* A robot's `urdf`: the map from its joints to the robot's axes, and the parts that its links are made of. */
+/* Robots' `urdf`: the map from its joints to the robot's axes, and the parts that its links are made of. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -435,8 +435,7 @@ static void read_file(urdf_t *urdf) {
     urdf->map.file = file;
 }
 
-/* If `arm` of shapes, or with several robots `arms.NAME`, has what joints that fold have. The reader is at the
- * layout's top. */
+/* If `shapes` says of the robot's arm what joints that fold have. The reader is at the layout's top. */
 static bool says_links(wh_reader_t *reader, const wh_layout_t *layout, size_t robot) {
     const char *const path[] = {"shapes", layout->robot_count > 1 ? "arms" : "arm",
                                 layout->robots[robot].name};
