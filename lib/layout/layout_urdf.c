@@ -337,8 +337,19 @@ static void read_hull(const urdf_t *urdf, const wh_urdf_shape_t *shape, wh_conve
     wh_reader_refuse(urdf->reader, "urdf", shape->mesh, "an STL mesh for link \"%s\": %s", link, message);
 }
 
-/* "forearm", and of its other shapes "forearm 2"; "forearm hull" where it is the hull of a mesh; with several
- * robots the robot's name comes first. */
+/* True if a link is called so: "forearm 2". */
+static bool is_link(const wh_urdf_file_t *file, const char *link, int number) {
+    char name[WH_URDF_NAME + 16];
+    bool found = false;
+    (void)snprintf(name, sizeof name, "%s %d", link, number);
+    for (size_t i = 0; i < file->link_count; ++i) {
+        found = found || strcmp(name, file->links[i].name) == 0;
+    }
+    return found;
+}
+
+/* "forearm", and of its other shapes "forearm 2", or "forearm shape 2" where a link is called "forearm 2";
+ * "forearm hull" where it is the hull of a mesh; with several robots the robot's name comes first. */
 static void add_part(const urdf_t *urdf, wh_part_list_t *list, size_t index, const wh_part_t *part) {
     const wh_urdf_shape_t *shapes = urdf->file->shapes;
     const wh_layout_t *layout = urdf->layout;
@@ -351,7 +362,8 @@ static void add_part(const urdf_t *urdf, wh_part_list_t *list, size_t index, con
         number += shapes[i].link == shapes[index].link;
     }
     if (number > 1) {
-        wh_shapes_add(list, part, "%s%s%s %d%s", robot, is_one ? "" : " ", link, number, what);
+        wh_shapes_add(list, part, "%s%s%s%s %d%s", robot, is_one ? "" : " ", link,
+                      is_link(urdf->file, link, number) ? " shape" : "", number, what);
     } else {
         wh_shapes_add(list, part, "%s%s%s%s", robot, is_one ? "" : " ", link, what);
     }

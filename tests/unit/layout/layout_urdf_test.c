@@ -823,6 +823,24 @@ static void two_arms_have_their_links_where_their_urdf_says(void **state) {
     assert_int_equal(part(layout, "A forearm 2 hull")->owner, WH_ARM_BODIES + WH_ARM_FOREARM);
 }
 
+/* The second shape of a link beside a link that is called as such a shape would be. */
+static void parts_of_a_urdf_have_names_of_their_own(void **state) {
+    (void)state;
+    static const char second[] =
+        "<box size='0.1 0.1 0.1'/></geometry></visual><visual><geometry><sphere radius='0.02'/></geometry>"
+        "</visual></link><joint name='held' type='fixed'><parent link='fore'/><child link='fore 2'/></joint>"
+        "<link name='fore 2'><visual><geometry><sphere radius='0.01'/>";
+    char fields[2000];
+    char path[WH_TEST_PATH];
+    write_folding(path, "MESH", second);
+    folding_fields(fields, sizeof fields, path, DRIVEN);
+    const wh_layout_t *layout = read_sound(fields);
+    assert_int_equal(unlink(path), 0);
+    assert_near(part(layout, "fore")->convex.half.x, 50, 0);
+    assert_near(part(layout, "fore shape 2")->convex.half.x, 20, 0);
+    assert_near(part(layout, "fore 2")->convex.half.x, 10, 0);
+}
+
 /* The fields of robot A; B has none unless they say so. */
 static const char *const wrong_robots[][2] = {
     {"urdf = 'no_such.urdf'",
@@ -887,6 +905,7 @@ int main(void) {
         cmocka_unit_test(a_urdf_of_one_of_two_is_the_usual_cell),
         cmocka_unit_test(a_link_of_one_robot_meets_the_blade_of_another),
         cmocka_unit_test(two_arms_have_their_links_where_their_urdf_says),
+        cmocka_unit_test(parts_of_a_urdf_have_names_of_their_own),
         cmocka_unit_test(what_is_wrong_names_the_robot),
     };
     return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
