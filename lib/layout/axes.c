@@ -71,9 +71,9 @@ wh_travel_t wh_axis_reach(const wh_machine_t *machine, size_t robot) {
     return reach;
 }
 
-bool wh_layout_is_scara(const wh_layout_t *layout) {
-    size_t own;
-    return is_scara(chain_of(&layout->machine, 0, &own));
+bool wh_layout_is_scara(const wh_layout_t *layout, size_t robot) {
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
+    return carrier && is_scara(&carrier->chain);
 }
 
 static bool is_axis_of(const wh_mount_t *mount, size_t axis) {
@@ -113,7 +113,7 @@ static void name_robot_axis(const wh_layout_t *layout, size_t axis, char *name, 
     static const char *const usual[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
     const char *owner = owner_of(layout, axis);
     const bool is_usual =
-        !owner && axis < WH_ROBOT_AXES && !(axis == WH_AXIS_R && wh_layout_is_scara(layout));
+        !owner && axis < WH_ROBOT_AXES && !(axis == WH_AXIS_R && wh_layout_is_scara(layout, 0));
     (void)snprintf(name, size, "%s%s%s", owner ? owner : "", owner ? " " : "",
                    is_usual ? usual[axis] : wh_axis_name(&layout->machine, axis));
 }

@@ -17,8 +17,8 @@ bool wh_axis_turns(const wh_machine_t *machine, size_t axis);
 /* False for the yaw of an arm without a wrist, which stands at 0. */
 bool wh_axis_exists(const wh_machine_t *machine, size_t axis);
 
-/* True if the robot, of several the first, is of kind "SCARA". */
-bool wh_layout_is_scara(const wh_layout_t *layout);
+/* True if the robot is of kind "SCARA". */
+bool wh_layout_is_scara(const wh_layout_t *layout, size_t robot);
 
 /* How far a robot's end-effector comes from theta's axis at least and at most, mm. */
 wh_travel_t wh_axis_reach(const wh_machine_t *machine, size_t robot);

@@ -56,13 +56,14 @@ typedef struct {
 
 /* A robot: machine.mounts[].robot counts them. */
 typedef struct {
-    char name[WH_NAME_SIZE]; /* "robot" of a layout that has one */
-    wh_elbow_t elbow;        /* SCARA: its usual side */
-    wh_carrier_t carrier;    /* what machine.carrier and its `next` point to, unless that is null */
-    wh_limits_t loaded;      /* while any gripper on it carries a wafer, of each 0: no limit */
-    wh_arm_t arm;            /* of any but the first, of which shapes.arm says it: its links, and */
-    wh_real_t lowest;        /* the least height of its contact plane, mm */
-    wh_real_t transit;       /* mm, see transit.h; 0: the arm turns as it stands */
+    char name[WH_NAME_SIZE];    /* "robot" of a layout that has one */
+    wh_elbow_t elbow;           /* SCARA: its usual side */
+    wh_carrier_t carrier;       /* what machine.carrier and its `next` point to, unless that is null */
+    wh_limits_t loaded;         /* while any gripper on it carries a wafer, of each 0: no limit */
+    wh_arm_t arm;               /* of any but the first, of which shapes.arm says it: its links, and */
+    wh_real_t lowest;           /* the least height of its contact plane, mm */
+    wh_real_t transit;          /* mm, see transit.h; 0: the arm turns as it stands */
+    const wh_part_list_t *urdf; /* its links' parts from a URDF; null: the usual ones of shapes.h */
 } wh_layout_robot_t;
 
 /* How one of several robots comes to a station. */
@@ -239,8 +240,7 @@ typedef struct {
     bool collision;  /* check for contact in each slice */
     bool look_ahead; /* and before each command that moves */
     wh_shapes_t shapes;
-    const wh_part_list_t *urdf; /* the arm's parts of a URDF; null: the usual ones of shapes.h */
-    wh_world_config_t world;    /* filled in also without a check; without parts if there are too many */
+    wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
     wh_errors_t *errors; /* what a study draws; null: no `study` */
     size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */

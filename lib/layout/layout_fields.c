@@ -117,6 +117,7 @@ const wh_reader_field_t wh_layout_robot_fields[] = {
     {"joints", "table<string, string|waferhand.joint>", "what each joint of the URDF that moves follows",
      false},
     {"tool", "string", "the URDF's link that is the end-effector", false},
+    {"tool2", "string", "the same of the second arm or wrist", false},
     {"packages", "table<string, string>", "folders of package:// in the URDF, by name", false},
     END};
 

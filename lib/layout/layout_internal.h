@@ -55,8 +55,8 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);
 
-/* Reads the arm's links from the URDF that `robot` names, if it does, once the arm itself is read. */
-void wh_layout_read_urdf(wh_reader_t *reader, wh_layout_t *layout);
+/* Reads the links of robots from the URDFs that they name, if they do, once the arms' lengths are read. */
+void wh_layout_read_urdfs(wh_reader_t *reader, wh_layout_t *layout);
 
 /* Fails at a field that must not be there. */
 void wh_layout_refuse_field(wh_reader_t *reader, const char *field, const char *expected);

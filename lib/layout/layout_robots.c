@@ -19,14 +19,6 @@ static void refuse_one_place(wh_reader_t *reader, const wh_layout_t *layout, siz
     }
 }
 
-/* Fields that a robot among several does not have. */
-static void refuse_for_one(wh_reader_t *reader) {
-    static const char *const fields[] = {"urdf", "joints", "tool", "packages"};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
-        wh_layout_refuse_field(reader, fields[i], "nothing: it is for a layout with one `robot`");
-    }
-}
-
 void wh_layout_read_robots(wh_reader_t *reader, wh_layout_t *layout) {
     if (!wh_reader_enter(reader, "robots")) {
         wh_reader_refuse(reader, "robots", NULL, "a table of robots by name");
@@ -44,7 +36,6 @@ void wh_layout_read_robots(wh_reader_t *reader, wh_layout_t *layout) {
         wh_layout_robot_t *robot = &layout->robots[r];
         wh_reader_enter(reader, robot->name);
         wh_reader_refuse_unknown(reader, wh_layout_robot_fields);
-        refuse_for_one(reader);
         wh_layout_read_carrier(reader, robot);
         refuse_one_place(reader, layout, r);
         wh_layout_read_loaded(reader, &robot->loaded);

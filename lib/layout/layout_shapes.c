@@ -227,11 +227,6 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
     wh_reader_leave(reader);
 }
 
-static bool is_scara(const wh_layout_t *layout, size_t robot) {
-    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
-    return carrier && carrier->chain.kind == WH_CHAIN_SCARA;
-}
-
 /* The reader is at a polar robot's arm. */
 static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
     arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
@@ -251,7 +246,7 @@ static void take_scara(wh_reader_t *reader, const char *field, const wh_chain_t 
 
 static void read_one_arm(wh_reader_t *reader, wh_layout_t *layout) {
     wh_arm_t *arm = &layout->shapes.arm;
-    if (is_scara(layout, 0)) {
+    if (wh_layout_is_scara(layout, 0)) {
         take_scara(reader, "arm", &layout->carrier.chain, arm);
     } else {
         wh_reader_open_section(reader, "arm", wh_layout_arm_fields);
@@ -265,7 +260,7 @@ static void read_arm_of(wh_reader_t *reader, wh_layout_t *layout, size_t robot) 
     wh_layout_robot_t *of = &layout->robots[robot];
     wh_arm_t *arm = robot == 0 ? &layout->shapes.arm : &of->arm;
     const wh_chain_t *chain = &of->carrier.chain;
-    if (is_scara(layout, robot)) {
+    if (wh_layout_is_scara(layout, robot)) {
         take_scara(reader, of->name, chain, arm);
     } else if (wh_reader_open(reader, of->name, wh_layout_arm_fields)) {
         read_arm(reader, arm);
@@ -299,7 +294,7 @@ static void read_arms(wh_reader_t *reader, wh_layout_t *layout) {
         refuse_other_arms(reader, layout);
     }
     for (size_t robot = 0; robot < layout->robot_count; ++robot) {
-        if (is_said || is_scara(layout, robot)) {
+        if (is_said || wh_layout_is_scara(layout, robot)) {
             read_arm_of(reader, layout, robot);
         }
     }
@@ -353,7 +348,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     read_shell(reader, &shapes->shell);
     read_chuck(reader, &shapes->chuck);
     wh_reader_leave(reader);
-    wh_layout_read_urdf(reader, layout);
+    wh_layout_read_urdfs(reader, layout);
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */
@@ -379,9 +374,24 @@ static wh_stand_t stand_of(const wh_layout_station_t *station) {
     return station->foup ? WH_STAND_FOUP : WH_STAND_LEDGES;
 }
 
+/* The robot of an arm, also in a layout that knows of no robot; and what a URDF says of it, or null. */
+static size_t robot_of(const wh_layout_t *layout, size_t arm) {
+    return arm == 0 ? 0 : (size_t)layout->arms[arm].robot;
+}
+
+static const wh_part_list_t *urdf_of(const wh_layout_t *layout, size_t robot) {
+    return robot < layout->robot_count ? layout->robots[robot].urdf : NULL;
+}
+
 size_t wh_layout_count_parts(const wh_layout_t *layout) {
-    size_t count = layout->urdf ? layout->urdf->count : WH_SHAPES_ROBOT * wh_layout_arms(layout);
-    count += WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+    size_t count = WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+    for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
+        count += urdf_of(layout, robot_of(layout, arm)) ? 0 : WH_SHAPES_ROBOT;
+    }
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        const wh_part_list_t *urdf = urdf_of(layout, robot);
+        count += urdf ? urdf->count : 0;
+    }
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         count += layout->grips[g].kind == WH_GRIP_EDGE ? WH_SHAPES_EDGE : 0;
     }
@@ -400,7 +410,7 @@ static void add_stations(const wh_layout_t *layout, wh_part_list_t *list) {
 
 /* The links of one arm by their usual shapes. */
 static void add_arm(const wh_layout_t *layout, wh_part_list_t *list, size_t arm) {
-    const size_t robot = arm == 0 ? 0 : (size_t)layout->arms[arm].robot;
+    const size_t robot = robot_of(layout, arm);
     const wh_carrier_t *carrier = wh_layout_arm(layout, arm, NULL);
     const wh_arm_t *lengths = wh_layout_arm_lengths(layout, robot);
     char name[WH_NAME_SIZE + 1] = "";
@@ -411,7 +421,7 @@ static void add_arm(const wh_layout_t *layout, wh_part_list_t *list, size_t arm)
                              .robot = name,
                              .number = "",
                              .own = arm == 0 ? WH_ARM_BASE : layout->arms[arm].own};
-    if (is_scara(layout, robot)) {
+    if (wh_layout_is_scara(layout, robot)) {
         memcpy(shape.links, carrier->chain.links, sizeof shape.links);
     }
     if (layout->robot_count > 1) {
@@ -423,12 +433,17 @@ static void add_arm(const wh_layout_t *layout, wh_part_list_t *list, size_t arm)
     wh_shapes_add_arm(list, &layout->shapes, &shape);
 }
 
+/* A robot's URDF, with all of its arms, stands where its first arm would. */
 static void add_robots(const wh_layout_t *layout, wh_part_list_t *list) {
-    for (size_t arm = 0; !layout->urdf && arm < wh_layout_arms(layout); ++arm) {
-        add_arm(layout, list, arm);
-    }
-    for (size_t i = 0; layout->urdf && i < layout->urdf->count; ++i) {
-        wh_shapes_add(list, &layout->urdf->parts[i], "%s", layout->urdf->names[i]);
+    for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
+        const wh_part_list_t *urdf = urdf_of(layout, robot_of(layout, arm));
+        const bool is_first = arm == 0 || layout->arms[arm].own == WH_ARM_BASE;
+        for (size_t i = 0; urdf && is_first && i < urdf->count; ++i) {
+            wh_shapes_add(list, &urdf->parts[i], "%s", urdf->names[i]);
+        }
+        if (!urdf) {
+            add_arm(layout, list, arm);
+        }
     }
 }
 

@@ -1,9 +1,10 @@
-/* A robot's `urdf`: the map from its joints to the robot's axes, and the parts that its links are made of. */
+/* Robots' `urdf`: the map from its joints to the robot's axes, and the parts that its links are made of. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../math/trig.h"
+#include "arms.h"
 #include "axes.h"
 #include "hull.h"
 #include "layout_internal.h"
@@ -14,62 +15,70 @@
 typedef struct {
     wh_reader_t *reader;
     wh_layout_t *layout;
-    char name[512]; /* of the file, as the layout has it */
+    size_t first, count; /* the robot's axes among the machine's */
+    char name[512];      /* of the file, as the layout has it */
     char path[1024];
+    char lengths[2 * WH_NAME_SIZE]; /* the field that has the arm's lengths, such as "shapes.arm" */
     const wh_urdf_file_t *file;
     wh_urdf_map_t map;
 } urdf_t;
 
-static const char *const angle_names[] = {"fold", "shoulder", "elbow", "wrist"};
-enum { ANGLES = WH_URDF_SOURCES - WH_URDF_FOLD };
+/* ----------------------------------------------------------------------------------------------- the axes */
 
-/* --------------------------------------------------------------------------------------------- the joints */
+/* The name of a source; null: this robot has no such axis or angle. */
+static const char *source_name(const urdf_t *urdf, size_t source) {
+    static const char *const angles[WH_URDF_ARMS * WH_URDF_ANGLES] = {
+        "fold", "shoulder", "elbow", "wrist", "fold2", "shoulder2", "elbow2", "wrist2"};
+    const wh_machine_t *machine = &urdf->layout->machine;
+    const size_t angle = source - WH_URDF_FOLD;
+    if (source < urdf->count) {
+        return wh_axis_exists(machine, urdf->first + source) ? wh_axis_name(machine, urdf->first + source)
+                                                             : NULL;
+    }
+    const bool is_there = source >= WH_URDF_FOLD && angle < urdf->map.arm_count * WH_URDF_ANGLES &&
+                          !wh_layout_is_scara(urdf->layout, urdf->map.robot);
+    return is_there ? angles[angle] : NULL;
+}
 
 /* -1: this robot has no such axis or angle. */
-static int32_t find_source(const wh_layout_t *layout, const char *name) {
-    const wh_machine_t *machine = &layout->machine;
-    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
-    for (size_t i = 0; i < count; ++i) {
-        if (wh_axis_exists(machine, i) && strcmp(name, wh_axis_name(machine, i)) == 0) {
+static int32_t find_source(const urdf_t *urdf, const char *name) {
+    for (size_t i = 0; i < WH_URDF_SOURCES; ++i) {
+        const char *known = source_name(urdf, i);
+        if (known && strcmp(name, known) == 0) {
             return (int32_t)i;
-        }
-    }
-    for (int32_t i = 0; !wh_layout_is_scara(layout) && i < ANGLES; ++i) {
-        if (strcmp(name, angle_names[i]) == 0) {
-            return (int32_t)WH_URDF_FOLD + i;
         }
     }
     return -1;
 }
 
 /* All that find_source knows: "theta, r, z". */
-static void list_sources(const wh_layout_t *layout, char *text, size_t size) {
-    const wh_machine_t *machine = &layout->machine;
-    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
+static void list_sources(const urdf_t *urdf, char *text, size_t size) {
     size_t length = 0;
     text[0] = '\0';
-    for (size_t i = 0; i < count + (wh_layout_is_scara(layout) ? 0 : ANGLES) && length < size; ++i) {
-        if (i >= count || wh_axis_exists(machine, i)) {
-            length += (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "",
-                                       i < count ? wh_axis_name(machine, i) : angle_names[i - count]);
+    for (size_t i = 0; i < WH_URDF_SOURCES && length < size; ++i) {
+        const char *known = source_name(urdf, i);
+        if (known) {
+            length += (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "", known);
         }
     }
 }
 
-static bool source_turns(const wh_layout_t *layout, int32_t source) {
-    return source >= WH_URDF_FOLD || wh_axis_turns(&layout->machine, (size_t)source);
+static bool source_turns(const urdf_t *urdf, int32_t source) {
+    return source >= WH_URDF_FOLD || wh_axis_turns(&urdf->layout->machine, urdf->first + (size_t)source);
 }
+
+/* --------------------------------------------------------------------------------------------- the joints */
 
 static int32_t read_source(const urdf_t *urdf, const wh_urdf_link_t *link, const char *field) {
     char name[WH_NAME_SIZE];
     char known[256];
     wh_reader_text(urdf->reader, field, NULL, name, sizeof name);
-    const int32_t source = find_source(urdf->layout, name);
+    const int32_t source = find_source(urdf, name);
     if (source < 0) {
-        list_sources(urdf->layout, known, sizeof known);
+        list_sources(urdf, known, sizeof known);
         wh_reader_refuse(urdf->reader, field, name, "what this robot has: %s", known);
     }
-    if (source_turns(urdf->layout, source) != (link->motion == WH_URDF_TURNS)) {
+    if (source_turns(urdf, source) != (link->motion == WH_URDF_TURNS)) {
         wh_reader_refuse(urdf->reader, field, name, "an axis that %s, as joint \"%s\" of %s does",
                          link->motion == WH_URDF_TURNS ? "turns" : "slides", link->joint, urdf->path);
     }
@@ -114,6 +123,12 @@ static void refuse_other_joints(wh_reader_t *reader, const wh_urdf_file_t *file)
     wh_reader_refuse_unknown(reader, known);
 }
 
+static void note_fold(urdf_t *urdf, int32_t source) {
+    if (source >= WH_URDF_FOLD) {
+        urdf->map.folds[(source - WH_URDF_FOLD) / WH_URDF_ANGLES] = true;
+    }
+}
+
 static void read_joints(urdf_t *urdf) {
     static const wh_reader_field_t none[] = {{NULL, NULL, NULL, false}};
     const wh_urdf_file_t *file = urdf->file;
@@ -124,33 +139,46 @@ static void read_joints(urdf_t *urdf) {
     for (size_t i = 1; i < file->link_count; ++i) {
         if (is_driven(&file->links[i])) {
             read_drive(urdf, &file->links[i], &urdf->map.drives[i]);
-            urdf->map.folds = urdf->map.folds || urdf->map.drives[i].source >= WH_URDF_FOLD;
+            note_fold(urdf, urdf->map.drives[i].source);
         }
     }
     wh_reader_leave(urdf->reader);
 }
 
-static void read_tool(urdf_t *urdf) {
+/* The fields that name the end-effectors. */
+static const char *const tool_fields[WH_URDF_ARMS] = {"tool", "tool2"};
+
+static void read_tool(urdf_t *urdf, size_t arm) {
     char name[WH_URDF_NAME];
     const wh_urdf_file_t *file = urdf->file;
-    wh_reader_text(urdf->reader, "tool", NULL, name, sizeof name);
-    urdf->map.tool = -1;
+    int32_t *tool = &urdf->map.tools[arm];
+    wh_reader_text(urdf->reader, tool_fields[arm], NULL, name, sizeof name);
+    *tool = -1;
     for (size_t i = 0; i < file->link_count; ++i) {
-        urdf->map.tool = strcmp(name, file->links[i].name) == 0 ? (int32_t)i : urdf->map.tool;
+        *tool = strcmp(name, file->links[i].name) == 0 ? (int32_t)i : *tool;
     }
-    if (urdf->map.tool < 0) {
-        wh_reader_refuse(urdf->reader, "tool", name, "a link of %s", urdf->path);
+    if (*tool < 0) {
+        wh_reader_refuse(urdf->reader, tool_fields[arm], name, "a link of %s", urdf->path);
+    }
+}
+
+static void read_tools(urdf_t *urdf) {
+    for (size_t arm = 0; arm < urdf->map.arm_count; ++arm) {
+        read_tool(urdf, arm);
+    }
+    if (urdf->map.arm_count < WH_URDF_ARMS) {
+        wh_layout_refuse_field(urdf->reader, tool_fields[1],
+                               "nothing: it is for a robot with two arms or two wrists");
     }
 }
 
 /* ------------------------------------------------------------------------------------------ the agreement */
 
 /* "theta 12.5, r 400, z 900, yaw 0": degrees and mm. */
-static void describe_axes(const wh_layout_t *layout, const wh_real_t axes[], char *text, size_t size) {
-    const wh_machine_t *machine = &layout->machine;
-    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
+static void describe_axes(const urdf_t *urdf, const wh_real_t axes[], char *text, size_t size) {
+    const wh_machine_t *machine = &urdf->layout->machine;
     size_t length = 0;
-    for (size_t i = 0; i < count && length < size; ++i) {
+    for (size_t i = urdf->first; i < urdf->first + urdf->count && length < size; ++i) {
         if (wh_axis_exists(machine, i)) {
             length += (size_t)snprintf(text + length, size - length, "%s%s %.6g", length > 0 ? ", " : "",
                                        wh_axis_name(machine, i),
@@ -159,22 +187,51 @@ static void describe_axes(const wh_layout_t *layout, const wh_real_t axes[], cha
     }
 }
 
-/* `shapes.arm` has been read: of what the URDF says nothing may be in it. */
-static void take_arm(const urdf_t *urdf, bool says_links) {
-    wh_arm_t *arm = &urdf->layout->shapes.arm;
-    if (says_links) {
-        wh_reader_refuse(urdf->reader, "urdf", urdf->name,
-                         "shapes.arm without reach and link: the joints that follow fold, shoulder, elbow or "
-                         "wrist have them");
-    }
-    wh_urdf_arm(&urdf->map, arm);
+/* The robot's lengths, which the layout's shapes have. */
+static wh_arm_t *lengths_of(const urdf_t *urdf) {
+    return urdf->map.robot == 0 ? &urdf->layout->shapes.arm : &urdf->layout->robots[urdf->map.robot].arm;
+}
+
+static const char *tool_name(const urdf_t *urdf, size_t arm) {
+    return urdf->file->links[urdf->map.tools[arm]].name;
+}
+
+static void measure_arm(const urdf_t *urdf, size_t number, wh_arm_t *arm) {
+    wh_urdf_arm(&urdf->map, number, urdf->layout, arm);
     if (!(arm->link >= 10 && arm->link <= 5000 && arm->reach >= 0 && arm->reach <= 2000)) {
         wh_reader_refuse(
             urdf->reader, "urdf", urdf->name,
             "two links of 10 to 5000 mm, and 0 to 2000 mm from the wrist to \"%s\"; stretched and folded "
             "by 90 degrees they give %.9g and %.9g mm",
-            urdf->file->links[urdf->map.tool].name, arm->link, arm->reach);
+            tool_name(urdf, number), arm->link, arm->reach);
     }
+}
+
+/* `shapes` has been read: of what the URDF says nothing may be in it. Two arms of a robot are alike. */
+static void take_arms(const urdf_t *urdf, bool says_links) {
+    const bool *folds = urdf->map.folds;
+    wh_arm_t arms[WH_URDF_ARMS];
+    for (size_t i = 0; i < WH_URDF_ARMS; ++i) {
+        arms[i] = *lengths_of(urdf);
+        if (folds[i] && says_links) {
+            wh_reader_refuse(urdf->reader, "urdf", urdf->name,
+                             "%s without reach and link: the joints that follow fold, shoulder, elbow or "
+                             "wrist have them",
+                             urdf->lengths);
+        }
+        if (folds[i]) {
+            measure_arm(urdf, i, &arms[i]);
+        }
+    }
+    if (folds[0] && folds[1] &&
+        !(wh_real_abs(arms[0].link - arms[1].link) <= WH_URDF_SAME_MM &&
+          wh_real_abs(arms[0].reach - arms[1].reach) <= WH_URDF_SAME_MM)) {
+        wh_reader_refuse(urdf->reader, "urdf", urdf->name,
+                         "two arms alike: links of %.9g and %.9g mm, wrists %.9g and %.9g mm behind "
+                         "the end-effector",
+                         arms[0].link, arms[1].link, arms[0].reach, arms[1].reach);
+    }
+    *lengths_of(urdf) = folds[0] ? arms[0] : arms[1];
 }
 
 /* Rounding is no difference. */
@@ -184,12 +241,12 @@ static wh_real_t beyond(wh_real_t difference, wh_real_t rounding) {
 
 static void refuse_difference(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
     char axes[256];
-    describe_axes(urdf->layout, findings->axes, axes, sizeof axes);
+    describe_axes(urdf, findings->axes, axes, sizeof axes);
     wh_reader_refuse(
         urdf->reader, "urdf", urdf->name,
         "\"%s\" where the end-effector is, to %g mm; at %s it is %.9g mm and %.9g degrees off: at "
         "(%.9g, %.9g, %.9g), not at (%.9g, %.9g, %.9g)",
-        urdf->file->links[urdf->map.tool].name, WH_URDF_SAME_MM, axes, beyond(findings->mm, WH_URDF_SAME_MM),
+        tool_name(urdf, findings->arm), WH_URDF_SAME_MM, axes, beyond(findings->mm, WH_URDF_SAME_MM),
         wh_deg_from_rad(beyond(findings->rad, WH_URDF_SAME_RAD)), findings->is.x, findings->is.y,
         findings->is.z, findings->should.x, findings->should.y, findings->should.z);
 }
@@ -198,7 +255,7 @@ static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findin
     if (findings->reached == 0) {
         wh_reader_refuse(urdf->reader, "urdf", urdf->name,
                          "links that reach somewhere within the travels: they are %.9g mm long",
-                         urdf->layout->shapes.arm.link);
+                         lengths_of(urdf)->link);
     }
     if (!(findings->mm <= WH_URDF_SAME_MM && findings->rad <= WH_URDF_SAME_RAD)) {
         refuse_difference(urdf, findings);
@@ -207,7 +264,7 @@ static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findin
         const wh_urdf_link_t *link = &urdf->file->links[findings->beyond];
         const wh_real_t unit = link->motion == WH_URDF_TURNS ? wh_deg_from_rad(1) : 1;
         char axes[256];
-        describe_axes(urdf->layout, findings->beyond_axes, axes, sizeof axes);
+        describe_axes(urdf, findings->beyond_axes, axes, sizeof axes);
         wh_reader_refuse(urdf->reader, "urdf", urdf->name,
                          "travels within the limits of joint \"%s\", %.9g to %.9g; at %s it would be at %.9g",
                          link->joint, unit * link->least, unit * link->most, axes,
@@ -280,43 +337,72 @@ static void read_hull(const urdf_t *urdf, const wh_urdf_shape_t *shape, wh_conve
     wh_reader_refuse(urdf->reader, "urdf", shape->mesh, "an STL mesh for link \"%s\": %s", link, message);
 }
 
-/* "forearm", and of its other shapes "forearm 2"; "forearm hull" where it is the hull of a mesh. */
+/* True if a link is called so: "forearm 2". */
+static bool is_link(const wh_urdf_file_t *file, const char *link, int number) {
+    char name[WH_URDF_NAME + 16];
+    bool found = false;
+    (void)snprintf(name, sizeof name, "%s %d", link, number);
+    for (size_t i = 0; i < file->link_count; ++i) {
+        found = found || strcmp(name, file->links[i].name) == 0;
+    }
+    return found;
+}
+
+/* "forearm", and of its other shapes "forearm 2", or "forearm shape 2" where a link is called "forearm 2";
+ * "forearm hull" where it is the hull of a mesh; with several robots the robot's name comes first. */
 static void add_part(const urdf_t *urdf, wh_part_list_t *list, size_t index, const wh_part_t *part) {
     const wh_urdf_shape_t *shapes = urdf->file->shapes;
+    const wh_layout_t *layout = urdf->layout;
+    const bool is_one = layout->robot_count < 2;
     const char *link = urdf->file->links[shapes[index].link].name;
     const char *what = part->convex.kind == WH_CONVEX_MESH ? " hull" : "";
+    const char *robot = is_one ? "" : layout->robots[urdf->map.robot].name;
     int number = 1;
     for (size_t i = 0; i < index; ++i) {
         number += shapes[i].link == shapes[index].link;
     }
     if (number > 1) {
-        wh_shapes_add(list, part, "%s %d%s", link, number, what);
+        wh_shapes_add(list, part, "%s%s%s%s %d%s", robot, is_one ? "" : " ", link,
+                      is_link(urdf->file, link, number) ? " shape" : "", number, what);
     } else {
-        wh_shapes_add(list, part, "%s%s", link, what);
+        wh_shapes_add(list, part, "%s%s%s%s", robot, is_one ? "" : " ", link, what);
     }
+}
+
+static bool folds(const urdf_t *urdf) {
+    return urdf->map.folds[0] || urdf->map.folds[1];
+}
+
+/* The arm whose end-effector a link is; WH_URDF_ARMS: none. */
+static size_t arm_of_tool(const urdf_t *urdf, int32_t link) {
+    size_t arm = 0;
+    while (arm < WH_URDF_ARMS && !(arm < urdf->map.arm_count && urdf->map.tools[arm] == link)) {
+        ++arm;
+    }
+    return arm;
 }
 
 static void refuse_link(const urdf_t *urdf, const wh_urdf_shape_t *shape) {
     const char *link = urdf->file->links[shape->link].name;
-    if (shape->link == urdf->map.tool) {
+    const size_t arm = arm_of_tool(urdf, shape->link);
+    if (arm < WH_URDF_ARMS) {
         wh_reader_refuse(
-            urdf->reader, "tool", link,
+            urdf->reader, tool_fields[arm], link,
             "a link without shapes, for the end-effector's frame: the blade is that of shapes.blade");
     }
     wh_reader_refuse(
         urdf->reader, "urdf", urdf->name,
         "links that move with the arm's column, lift, upper arm, forearm or hand; \"%s\" moves with none "
-        "of them%s",
-        link,
-        urdf->map.folds ? " (is the elbow on the other side? then shapes.arm.right_handed; is the wrist "
-                          "ever behind theta's axis? then r must begin farther out)"
-                        : "");
+        "of them%s%s%s",
+        link, folds(urdf) ? " (is the elbow on the other side? then " : "", folds(urdf) ? urdf->lengths : "",
+        folds(urdf) ? ".right_handed; is the wrist ever behind theta's axis? then r must begin farther out)"
+                    : "");
 }
 
 static void make_part(const urdf_t *urdf, const wh_urdf_findings_t *findings, size_t index, wh_part_t *part) {
     const wh_urdf_shape_t *shape = &urdf->file->shapes[index];
     const int32_t body = findings->body[shape->link];
-    if (body < 0 || shape->link == urdf->map.tool) {
+    if (body < 0 || arm_of_tool(urdf, shape->link) < WH_URDF_ARMS) {
         refuse_link(urdf, shape);
     }
     *part = (wh_part_t){.kind = WH_PART_ARM, .owner = body, .convex = shape->convex};
@@ -344,25 +430,15 @@ static void make_parts(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
         make_part(urdf, findings, i, &part);
         add_part(urdf, list, i, &part);
     }
-    urdf->layout->urdf = list;
+    urdf->layout->robots[urdf->map.robot].urdf = list;
 }
 
 /* ---------------------------------------------------------------------------------------------- the field */
-
-/* The links are those of one arm. */
-static void refuse_several(const urdf_t *urdf) {
-    const wh_carrier_t *carrier = urdf->layout->machine.carrier;
-    if (carrier && (carrier->second || carrier->next)) {
-        wh_reader_refuse(urdf->reader, "urdf", urdf->name,
-                         "nothing: it is for one robot with one arm and one wrist");
-    }
-}
 
 static void read_file(urdf_t *urdf) {
     char message[1024];
     wh_urdf_file_t *file = wh_layout_memory(urdf->reader->L, 1, sizeof *file);
     wh_reader_text(urdf->reader, "urdf", NULL, urdf->name, sizeof urdf->name);
-    refuse_several(urdf);
     wh_layout_path(urdf->path, sizeof urdf->path, urdf->layout->path, urdf->name);
     if (!wh_urdf_read(urdf->path, file, message, sizeof message)) {
         wh_reader_refuse(urdf->reader, "urdf", urdf->name, "a URDF file: %s", message);
@@ -371,51 +447,79 @@ static void read_file(urdf_t *urdf) {
     urdf->map.file = file;
 }
 
-static bool says_links(wh_reader_t *reader) {
-    bool says = false;
-    if (wh_reader_enter(reader, "shapes")) {
-        if (wh_reader_enter(reader, "arm")) {
-            says = wh_reader_has(reader, "reach") || wh_reader_has(reader, "link");
-            wh_reader_leave(reader);
-        }
+/* If `shapes` says of the robot's arm what joints that fold have. The reader is at the layout's top. */
+static bool says_links(wh_reader_t *reader, const wh_layout_t *layout, size_t robot) {
+    const char *const path[] = {"shapes", layout->robot_count > 1 ? "arms" : "arm",
+                                layout->robots[robot].name};
+    const size_t depth = layout->robot_count > 1 ? 3 : 2;
+    size_t entered = 0;
+    while (entered < depth && wh_reader_enter(reader, path[entered])) {
+        ++entered;
+    }
+    const bool says = entered == depth && (wh_reader_has(reader, "reach") || wh_reader_has(reader, "link"));
+    for (; entered > 0; --entered) {
         wh_reader_leave(reader);
     }
     return says;
 }
 
 static void refuse_without(wh_reader_t *reader) {
-    static const char *const fields[] = {"joints", "tool", "packages"};
+    static const char *const fields[] = {"joints", "tool", "tool2", "packages"};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
-        if (wh_reader_has(reader, fields[i])) {
-            (void)wh_reader_push(reader, fields[i]);
-            wh_reader_fail(reader, fields[i], "nothing without urdf");
-        }
+        wh_layout_refuse_field(reader, fields[i], "nothing without urdf");
     }
 }
 
-void wh_layout_read_urdf(wh_reader_t *reader, wh_layout_t *layout) {
-    const bool says = says_links(reader);
-    layout->urdf = NULL;
-    if (!wh_reader_enter(reader, "robot")) {
-        return;
+/* What is known of the robot before its file is read. */
+static void start(urdf_t *urdf, wh_reader_t *reader, wh_layout_t *layout, size_t robot) {
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, &urdf->first);
+    urdf->reader = reader;
+    urdf->layout = layout;
+    urdf->count = carrier ? carrier->axis_count : WH_ROBOT_AXES;
+    urdf->map.robot = robot;
+    urdf->map.arm_count = carrier && carrier->second ? 2 : 1;
+    (void)snprintf(urdf->lengths, sizeof urdf->lengths, "shapes.arm%s%s", layout->robot_count > 1 ? "s." : "",
+                   layout->robot_count > 1 ? layout->robots[robot].name : "");
+}
+
+/* The reader is at the robot. */
+static void read_urdf(wh_reader_t *reader, wh_layout_t *layout, size_t robot, bool says_links) {
+    urdf_t urdf = {.reader = reader};
+    wh_urdf_findings_t findings;
+    start(&urdf, reader, layout, robot);
+    if (wh_reader_enter(reader, "packages")) {
+        wh_reader_leave(reader);
     }
-    if (wh_reader_has(reader, "urdf")) {
-        urdf_t urdf = {.reader = reader, .layout = layout};
-        wh_urdf_findings_t findings;
-        if (wh_reader_enter(reader, "packages")) {
+    read_file(&urdf);
+    read_joints(&urdf);
+    read_tools(&urdf);
+    if (folds(&urdf)) {
+        take_arms(&urdf, says_links);
+    }
+    wh_urdf_examine(&urdf.map, layout, &findings);
+    check_agreement(&urdf, &findings);
+    make_parts(&urdf, &findings);
+}
+
+/* The reader is where the robots are by name. */
+static void read_robot(wh_reader_t *reader, wh_layout_t *layout, size_t robot, bool says_links) {
+    if (wh_reader_enter(reader, layout->robots[robot].name)) {
+        if (wh_reader_has(reader, "urdf")) {
+            read_urdf(reader, layout, robot, says_links);
+        } else {
+            refuse_without(reader);
+        }
+        wh_reader_leave(reader);
+    }
+}
+
+void wh_layout_read_urdfs(wh_reader_t *reader, wh_layout_t *layout) {
+    for (size_t robot = 0; robot < layout->robot_count; ++robot) {
+        const bool says = says_links(reader, layout, robot);
+        const bool is_in_list = wh_reader_enter(reader, "robots");
+        read_robot(reader, layout, robot, says);
+        if (is_in_list) {
             wh_reader_leave(reader);
         }
-        read_file(&urdf);
-        read_joints(&urdf);
-        read_tool(&urdf);
-        if (urdf.map.folds) {
-            take_arm(&urdf, says);
-        }
-        wh_urdf_examine(&urdf.map, layout, &findings);
-        check_agreement(&urdf, &findings);
-        make_parts(&urdf, &findings);
-    } else {
-        refuse_without(reader);
     }
-    wh_reader_leave(reader);
 }

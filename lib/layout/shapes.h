@@ -10,7 +10,7 @@
 #include "../collision/world.h"
 #include "../grasp/edge.h"
 
-#define WH_PART_NAME_SIZE 96
+#define WH_PART_NAME_SIZE 144
 
 /* A horseshoe blade in the gripper's frame: its upper side is the contact plane. mm. */
 typedef struct {

@@ -4,7 +4,32 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "arms.h"
 #include "axes.h"
+
+/* ---------------------------------------------------------------------------------------------- the robot */
+
+/* A map's robot: its carrier, or null, its axes among the machine's, and the first of its arms. */
+typedef struct {
+    const wh_carrier_t *carrier;
+    size_t first, count;
+    size_t arm;
+} robot_t;
+
+static robot_t robot_of(const wh_urdf_map_t *map, const wh_layout_t *layout) {
+    robot_t robot;
+    robot.carrier = wh_machine_carrier(&layout->machine, map->robot, &robot.first);
+    robot.count = robot.carrier ? robot.carrier->axis_count : WH_ROBOT_AXES;
+    robot.arm = 0;
+    while (layout->arms[robot.arm].robot != (int32_t)map->robot) {
+        ++robot.arm;
+    }
+    return robot;
+}
+
+static bool is_scara(const robot_t *robot) {
+    return robot->carrier && robot->carrier->chain.kind == WH_CHAIN_SCARA;
+}
 
 /* ---------------------------------------------------------------------------------------------- the links */
 
@@ -73,21 +98,29 @@ static wh_pose_t rounded_pose(const wh_pose_t *pose) {
     return made;
 }
 
-/* How far out the end-effector is with the arm folded by `quarters` of 90 degrees; 0: stretched. */
-static wh_real_t outwards(const wh_urdf_map_t *map, wh_real_t quarters) {
+/* How far out along `heading` an arm's end-effector is, folded by `quarters` of 90 degrees; 0: stretched. */
+static wh_real_t outwards(const wh_urdf_map_t *map, size_t number, wh_real_t heading, wh_real_t quarters) {
     const wh_real_t fold = quarters * wh_rad_from_deg(90);
     wh_real_t sources[WH_URDF_SOURCES] = {0};
+    wh_real_t *angles = &sources[number * WH_URDF_ANGLES];
     wh_pose_t poses[WH_URDF_LINKS];
-    sources[WH_URDF_FOLD] = sources[WH_URDF_SHOULDER] = sources[WH_URDF_WRIST] = fold;
-    sources[WH_URDF_ELBOW] = -2 * fold;
+    wh_real_t s;
+    wh_real_t c;
+    angles[WH_URDF_FOLD] = angles[WH_URDF_WRIST] = fold;
+    angles[WH_URDF_SHOULDER] = heading + fold;
+    angles[WH_URDF_ELBOW] = -2 * fold;
     place_links(map, sources, poses);
-    return poses[map->tool].r.x;
+    wh_sin_cos(heading, &s, &c);
+    return c * poses[map->tools[number]].r.x + s * poses[map->tools[number]].r.y;
 }
 
-void wh_urdf_arm(const wh_urdf_map_t *map, wh_arm_t *arm) {
-    const wh_real_t folded = outwards(map, arm->right_handed ? -1 : 1);
+void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *layout, wh_arm_t *arm) {
+    const robot_t robot = robot_of(map, layout);
+    const wh_carrier_t *carrier = wh_layout_arm(layout, robot.arm + number, NULL);
+    const wh_real_t heading = carrier ? carrier->chain.arm_heading : 0;
+    const wh_real_t folded = outwards(map, number, heading, arm->right_handed ? -1 : 1);
     arm->reach = rounded(folded, per_mm);
-    arm->link = rounded((outwards(map, 0) - folded) / 2, per_mm);
+    arm->link = rounded((outwards(map, number, heading, 0) - folded) / 2, per_mm);
 }
 
 /* -------------------------------------------------------------------------------------------- the sources */
@@ -99,80 +132,110 @@ static wh_real_t turn_between(const wh_pose_t *from, const wh_pose_t *to) {
 }
 
 /* Only theta, R and yaw tell how the links lie: the others are left at 0. */
-static void find_angles(const wh_layout_t *layout, const wh_real_t axes[], wh_links_t *links) {
-    static const char *const names[] = {"theta", "r", "yaw"};
-    const wh_machine_t *machine = &layout->machine;
-    wh_real_t own[WH_AXES] = {0};
-    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
-    for (size_t i = 0; i < count; ++i) {
+static void find_angles(const robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
+                        wh_links_t *links) {
+    static const char *const names[] = {"theta", "r", "yaw", "r2"};
+    wh_real_t few[WH_AXES] = {0};
+    for (size_t i = robot->first; i < robot->first + robot->count; ++i) {
         for (size_t k = 0; k < sizeof names / sizeof names[0]; ++k) {
-            own[i] = strcmp(wh_axis_name(machine, i), names[k]) == 0 ? axes[i] : own[i];
+            few[i] = strcmp(wh_axis_name(&layout->machine, i), names[k]) == 0 ? axes[i] : few[i];
         }
     }
-    wh_links_at(links, layout, own);
+    wh_links_at(links, layout, few);
 }
 
-/* How much of the arm's length is between shoulder and wrist; above 1 the links do not reach, near 0 and 1
- * rounding turns them. */
-static wh_real_t find_sources(const wh_layout_t *layout, const wh_real_t axes[], wh_real_t sources[]) {
-    const wh_arm_t *arm = &layout->shapes.arm;
-    wh_links_t links;
-    memcpy(sources, axes, WH_AXES * sizeof axes[0]);
-    if (wh_layout_is_scara(layout)) {
-        return WH_REAL(0.5);
-    }
-    find_angles(layout, axes, &links);
-    const wh_pose_t *bodies = links.bodies;
-    const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
-    const wh_real_t fold = wh_acos((axes[WH_AXIS_R] - arm->reach) / (2 * arm->link));
-    sources[WH_URDF_FOLD] = arm->right_handed ? -fold : fold;
-    sources[WH_URDF_SHOULDER] = turn_between(&bodies[WH_ARM_BASE], &bodies[WH_ARM_UPPER]);
-    sources[WH_URDF_ELBOW] = turn_between(&bodies[WH_ARM_UPPER], &bodies[WH_ARM_FOREARM]);
-    sources[WH_URDF_WRIST] = turn_between(&bodies[WH_ARM_FOREARM], &bodies[WH_ARM_HAND]);
+/* The robot's axis that moves arm `number` of a polar robot out. */
+static size_t radial_axis(const robot_t *robot, size_t number) {
+    return robot->first + (number == 0 ? (size_t)WH_AXIS_R : robot->count - 1);
+}
+
+/* How much of an arm's length is between shoulder and wrist. The hand may be higher than the links. */
+static wh_real_t stretch_of(const wh_pose_t bodies[], const wh_arm_t *arm) {
+    wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
+    out.z = 0;
     return wh_vec3_norm(&out) / (2 * arm->link);
+}
+
+/* Writes how much each arm is stretched: above 1 the links do not reach, near 0 and 1 rounding turns them. */
+static void find_sources(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
+                         wh_real_t sources[], wh_real_t stretched[]) {
+    const robot_t robot = robot_of(map, layout);
+    const wh_arm_t *arm = wh_layout_arm_lengths(layout, map->robot);
+    wh_links_t links;
+    memset(sources, 0, WH_URDF_SOURCES * sizeof sources[0]);
+    memcpy(sources, &axes[robot.first], robot.count * sizeof axes[0]);
+    if (!is_scara(&robot)) {
+        find_angles(&robot, layout, axes, &links);
+    }
+    for (size_t i = 0; i < map->arm_count; ++i) {
+        const wh_pose_t *bodies = &links.bodies[(robot.arm + i) * WH_ARM_BODIES];
+        wh_real_t *angles = &sources[i * WH_URDF_ANGLES];
+        stretched[i] = is_scara(&robot) ? WH_REAL(0.5) : stretch_of(bodies, arm);
+        if (!is_scara(&robot)) {
+            const wh_real_t out = axes[radial_axis(&robot, i)];
+            const wh_real_t fold = wh_acos((out - arm->reach) / (2 * arm->link));
+            angles[WH_URDF_FOLD] = arm->right_handed ? -fold : fold;
+            angles[WH_URDF_SHOULDER] = turn_between(&bodies[WH_ARM_BASE], &bodies[WH_ARM_UPPER]);
+            angles[WH_URDF_ELBOW] = turn_between(&bodies[WH_ARM_UPPER], &bodies[WH_ARM_FOREARM]);
+            angles[WH_URDF_WRIST] = turn_between(&bodies[WH_ARM_FOREARM], &bodies[WH_ARM_HAND]);
+        }
+    }
 }
 
 /* ------------------------------------------------------------------------------------- the configurations */
 
 /* Home, then the ends of each axis with the others at home, then multiples of square roots of primes, whose
  * fractions lie evenly. */
-static void configure(const wh_machine_t *machine, size_t number, wh_real_t axes[]) {
+static void configure(const robot_t *robot, const wh_machine_t *machine, size_t number, wh_real_t axes[]) {
     static const wh_real_t primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
-    const size_t count = machine->carrier ? machine->carrier->axis_count : WH_ROBOT_AXES;
     memset(axes, 0, WH_AXES * sizeof axes[0]);
     wh_machine_home(machine, axes);
-    for (size_t i = 0; i < count; ++i) {
-        const wh_travel_t *travel = wh_machine_travel(machine, i);
+    for (size_t i = 0; i < robot->count; ++i) {
+        const wh_travel_t *travel = wh_machine_travel(machine, robot->first + i);
+        wh_real_t *axis = &axes[robot->first + i];
         if (number == 2 * i + 1) {
-            axes[i] = travel->min;
+            *axis = travel->min;
         } else if (number == 2 * i + 2) {
-            axes[i] = travel->max;
-        } else if (number > 2 * count) {
+            *axis = travel->max;
+        } else if (number > 2 * robot->count) {
             const wh_real_t along = (wh_real_t)number * wh_real_sqrt(primes[i]);
-            axes[i] = travel->min + (along - floor(along)) * (travel->max - travel->min);
+            *axis = travel->min + (along - floor(along)) * (travel->max - travel->min);
         }
     }
 }
 
-static void compare_effectors(const wh_layout_t *layout, const wh_real_t axes[],
-                              const wh_pose_t *base_from_tool, wh_urdf_findings_t *findings) {
-    wh_pose_t effector;
+static void compare_effector(const wh_pose_t *effector, const wh_real_t axes[], size_t arm,
+                             const wh_pose_t *base_from_tool, wh_urdf_findings_t *findings) {
     wh_real_t squares = 0;
-    wh_machine_effector(&layout->machine, 0, axes, &effector);
-    const wh_vec3_t off = wh_vec3_subtract(&base_from_tool->r, &effector.r);
+    const wh_vec3_t off = wh_vec3_subtract(&base_from_tool->r, &effector->r);
     for (size_t i = 0; i < 9; ++i) {
-        const wh_real_t entry = base_from_tool->R.m[i / 3][i % 3] - effector.R.m[i / 3][i % 3];
+        const wh_real_t entry = base_from_tool->R.m[i / 3][i % 3] - effector->R.m[i / 3][i % 3];
         squares += entry * entry;
     }
     const wh_real_t mm = wh_vec3_norm(&off);
     const wh_real_t rad = wh_real_sqrt(squares / 2);
     const wh_real_t before = wh_real_max(findings->mm / WH_URDF_SAME_MM, findings->rad / WH_URDF_SAME_RAD);
     if (!(wh_real_max(mm / WH_URDF_SAME_MM, rad / WH_URDF_SAME_RAD) <= before)) {
+        findings->arm = arm;
         findings->mm = mm;
         findings->rad = rad;
         findings->is = base_from_tool->r;
-        findings->should = effector.r;
+        findings->should = effector->r;
         memcpy(findings->axes, axes, sizeof findings->axes);
+    }
+}
+
+static void compare_effectors(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
+                              const wh_pose_t base_from_links[], wh_urdf_findings_t *findings) {
+    const robot_t robot = robot_of(map, layout);
+    for (size_t i = 0; i < map->arm_count; ++i) {
+        wh_pose_t effector;
+        if (i == 0) {
+            wh_machine_effector(&layout->machine, map->robot, axes, &effector);
+        } else {
+            robot.carrier->second->forward(robot.carrier->second, &axes[robot.first], &effector);
+        }
+        compare_effector(&effector, axes, i, &base_from_links[map->tools[i]], findings);
     }
 }
 
@@ -184,7 +247,8 @@ static bool is_beyond(const wh_urdf_map_t *map, int32_t link, wh_real_t *value) 
     while (map->file->links[driver].mimics >= 0) {
         driver = map->file->links[driver].mimics;
     }
-    if (map->drives[driver].source > WH_URDF_FOLD) {
+    const int32_t source = map->drives[driver].source;
+    if (source > WH_URDF_FOLD && source != WH_URDF_FOLD_2) {
         const wh_real_t turn = wh_rad_from_deg(360);
         *value -= turn * rint((*value - (joint->least + joint->most) / 2) / turn);
     }
@@ -205,11 +269,13 @@ static void check_joints(const wh_urdf_map_t *map, const wh_real_t axes[], const
 
 /* --------------------------------------------------------------------------------------------- the bodies */
 
-/* By link and body: where the link was first seen from there; it may still stand still there. */
+/* By link and body, the bodies of a second arm behind those of the first: where the link was first seen from
+ * there; it may still stand still there. */
 typedef struct {
+    size_t body_count;
     bool is_first;
-    bool rests[WH_URDF_LINKS][WH_ARM_BODIES];
-    wh_pose_t body_from_link[WH_URDF_LINKS][WH_ARM_BODIES];
+    bool rests[WH_URDF_LINKS][WH_URDF_ARMS * WH_ARM_BODIES];
+    wh_pose_t body_from_link[WH_URDF_LINKS][WH_URDF_ARMS * WH_ARM_BODIES];
 } rests_t;
 
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
@@ -224,7 +290,7 @@ static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
 static void watch(rests_t *rests, const wh_pose_t base_from_link[], size_t link_count,
                   const wh_pose_t bodies[]) {
     for (size_t i = 0; i < link_count; ++i) {
-        for (size_t body = 0; body < WH_ARM_BODIES; ++body) {
+        for (size_t body = 0; body < rests->body_count; ++body) {
             const wh_pose_t now = wh_pose_relative(&bodies[body], &base_from_link[i]);
             if (rests->is_first) {
                 rests->rests[i][body] = true;
@@ -237,12 +303,14 @@ static void watch(rests_t *rests, const wh_pose_t base_from_link[], size_t link_
     rests->is_first = false;
 }
 
-static void choose_bodies(const rests_t *rests, size_t link_count, wh_urdf_findings_t *findings) {
+/* Of several bodies the first one. `first` is the number of the robot's first body. */
+static void choose_bodies(const rests_t *rests, const wh_layout_t *layout, size_t first, size_t link_count,
+                          wh_urdf_findings_t *findings) {
     for (size_t i = 0; i < link_count; ++i) {
         findings->body[i] = -1;
-        for (size_t body = WH_ARM_BODIES; !rests->is_first && body-- > 0;) {
-            if (rests->rests[i][body]) {
-                findings->body[i] = (int32_t)body;
+        for (size_t body = rests->body_count; !rests->is_first && body-- > 0;) {
+            if (rests->rests[i][body] && wh_layout_has_body(layout, first + body)) {
+                findings->body[i] = (int32_t)(first + body);
                 findings->body_from_link[i] = rounded_pose(&rests->body_from_link[i][body]);
             }
         }
@@ -257,25 +325,40 @@ void wh_urdf_shape_place(const wh_pose_t *body_from_link, wh_convex_t *convex) {
     convex->half.z = rounded(convex->half.z, per_mm);
 }
 
-static bool is_clear(wh_real_t stretched) {
-    return stretched > WH_REAL(1e-3) && stretched < WH_REAL(0.999);
+/* What the links of an arm that folds do not reach is not looked at. */
+static bool is_reached(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
+    bool reached = true;
+    for (size_t i = 0; i < map->arm_count; ++i) {
+        reached = reached && !(map->folds[i] && stretched[i] > 1);
+    }
+    return reached;
+}
+
+static bool is_clear(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
+    bool clear = true;
+    for (size_t i = 0; i < map->arm_count; ++i) {
+        clear = clear && stretched[i] > WH_REAL(1e-3) && stretched[i] < WH_REAL(0.999);
+    }
+    return clear;
 }
 
 void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urdf_findings_t *findings) {
-    const wh_carrier_t *carrier = layout->machine.carrier;
-    const wh_pose_t root =
-        carrier && carrier->chain.is_placed ? carrier->chain.base_from_robot : wh_pose_identity();
-    rests_t rests = {.is_first = true};
+    const robot_t robot = robot_of(map, layout);
+    const wh_chain_t *chain = robot.carrier ? &robot.carrier->chain : NULL;
+    const wh_pose_t root = chain && chain->is_placed ? chain->base_from_robot : wh_pose_identity();
+    const size_t first_body = robot.arm * WH_ARM_BODIES;
+    rests_t rests = {.is_first = true, .body_count = map->arm_count * WH_ARM_BODIES};
     memset(findings, 0, sizeof *findings);
     findings->beyond = -1;
     for (size_t number = 0; number < WH_URDF_CONFIGURATIONS; ++number) {
         wh_real_t axes[WH_AXES];
         wh_real_t sources[WH_URDF_SOURCES];
+        wh_real_t stretched[WH_URDF_ARMS];
         wh_pose_t poses[WH_URDF_LINKS];
         wh_links_t links;
-        configure(&layout->machine, number, axes);
-        const wh_real_t stretched = find_sources(layout, axes, sources);
-        if (map->folds && stretched > 1) {
+        configure(&robot, &layout->machine, number, axes);
+        find_sources(map, layout, axes, sources, stretched);
+        if (!is_reached(map, stretched)) {
             continue;
         }
         ++findings->reached;
@@ -283,12 +366,12 @@ void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urd
         for (size_t i = 0; i < map->file->link_count; ++i) {
             poses[i] = wh_pose_compose(&root, &poses[i]);
         }
-        compare_effectors(layout, axes, &poses[map->tool], findings);
+        compare_effectors(map, layout, axes, poses, findings);
         check_joints(map, axes, sources, findings);
-        if (is_clear(stretched)) {
+        if (is_clear(map, stretched)) {
             wh_links_at(&links, layout, axes);
-            watch(&rests, poses, map->file->link_count, links.bodies);
+            watch(&rests, poses, map->file->link_count, &links.bodies[first_body]);
         }
     }
-    choose_bodies(&rests, map->file->link_count, findings);
+    choose_bodies(&rests, layout, first_body, map->file->link_count, findings);
 }

@@ -386,25 +386,33 @@ static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part, 
     return layout->grippers[part->owner].name;
 }
 
-/* What a robot's URDF says of its arm. */
-static void print_urdf(const listing_t *listing) {
-    const wh_part_list_t *list = listing->layout->urdf;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "link;moves with;shape;x{0,6};y{0,6};z{0,6}");
-    for (size_t i = 0; list && i < list->count; ++i) {
-        const wh_part_t *part = &list->parts[i];
-        const wh_vec3_t *at = &part->convex.body_from_shape.r;
-        char name[2 * WH_NAME_SIZE];
-        wh_grid_named_row(grid, list->names[i]);
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part, name, sizeof name));
-        if (part->convex.kind == WH_CONVEX_MESH) {
-            wh_grid_text(grid, 2, WH_INK_PLAIN, "convex hull of a mesh, %zu corners",
-                         part->convex.point_count);
-        } else {
-            describe_size(grid, 2, &part->convex);
-        }
-        wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
+static void add_link(const listing_t *listing, wh_grid_t *grid, const char *part_name,
+                     const wh_part_t *part) {
+    const wh_vec3_t *at = &part->convex.body_from_shape.r;
+    char name[2 * WH_NAME_SIZE];
+    wh_grid_named_row(grid, part_name);
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part, name, sizeof name));
+    if (part->convex.kind == WH_CONVEX_MESH) {
+        wh_grid_text(grid, 2, WH_INK_PLAIN, "convex hull of a mesh, %zu corners", part->convex.point_count);
+    } else {
+        describe_size(grid, 2, &part->convex);
     }
-    wh_print_titled(&listing->frame, "Links of the URDF, mm", grid);
+    wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
+}
+
+/* What the robots' URDFs say of their arms. */
+static void print_urdfs(const listing_t *listing) {
+    const wh_layout_t *layout = listing->layout;
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "link;moves with;shape;x{0,6};y{0,6};z{0,6}");
+    size_t files = 0;
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const wh_part_list_t *list = layout->robots[r].urdf;
+        files += list ? 1 : 0;
+        for (size_t i = 0; list && i < list->count; ++i) {
+            add_link(listing, grid, list->names[i], &list->parts[i]);
+        }
+    }
+    wh_print_titled(&listing->frame, files > 1 ? "Links of the URDFs, mm" : "Links of the URDF, mm", grid);
 }
 
 static void print_obstacles(const listing_t *listing) {
@@ -504,7 +512,7 @@ int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_sty
     print_holding(&listing);
     print_faults(&listing);
     print_shapes(&listing);
-    print_urdf(&listing);
+    print_urdfs(&listing);
     print_obstacles(&listing);
     print_limits(&listing);
     print_findings(&listing);

@@ -188,7 +188,17 @@ static const char *prepare(const char *path) {
         "300 }, "
         "z = { min = 500, max = 1200 }, urdf = 'lua/layouts/folding.urdf', tool = 'effector', packages = {}, "
         "joints = { lift = { axis = 'z', factor = 1, offset = 0 }, turn = 'theta', q3 = 'fold' } } ";
+    static const char two_arms[] =
+        "cell.stations.A.block, cell.stations.A.beams, cell.stations.A.via, cell.shapes.arm = nil cell.robot "
+        "= { kind = 'TRZ', r "
+        "= { min = 260, home = 300 }, z = { min = 500, max = 1200 }, arms = { {}, { heading = 180, height = "
+        "10 } }, urdf = 'lua/layouts/two_arms.urdf', tool = 'effector', tool2 = 'effector 2', "
+        "joints = { lift = 'z', turn = 'theta', fold = 'fold', fold2 = 'fold2' } } "
+        "cell.grippers[#cell.grippers + 1] = { name = 'Other', arm = 2 } ";
     static char two[300];
+    if (strcmp(path, "robot.tool2") == 0) {
+        return two_arms;
+    }
     for (size_t i = 0; i < sizeof of_urdf / sizeof of_urdf[0]; ++i) {
         if (strncmp(path, of_urdf[i], strlen(of_urdf[i])) == 0) {
             return folding;
@@ -219,7 +229,7 @@ static const char *prepare(const char *path) {
 
 static void try_field(const char *in, const wh_reader_field_t *field) {
     char path[PATH_BYTES];
-    char statement[700];
+    char statement[900];
     char missed[PATH_BYTES + 30];
     join(path, mend_path(in, field->name), field->name);
     const char *before = prepare(path);
@@ -227,10 +237,11 @@ static void try_field(const char *in, const wh_reader_field_t *field) {
     expect_type(field, find_expected(statement, path));
     (void)snprintf(statement, sizeof statement, "%scell.%s = nil", before, path);
     /* Without it something else may be missed that names it. One of an obstacle's shapes must be there, a SCARA's
-     * links, and the tool of a URDF. */
-    const bool is_shape = (strncmp(path, "obstacles", 9) == 0 || strncmp(path, "doors", 5) == 0 ||
-                           strcmp(field->name, "links") == 0 || strcmp(path, "robot.tool") == 0) &&
-                          !field->required;
+     * links, and the tools of a URDF. */
+    const bool is_shape =
+        (strncmp(path, "obstacles", 9) == 0 || strncmp(path, "doors", 5) == 0 ||
+         strcmp(field->name, "links") == 0 || strncmp(path, "robot.tool", strlen("robot.tool")) == 0) &&
+        !field->required;
     (void)snprintf(missed, sizeof missed, "cell.lua: %s: nothing ", path);
     const bool is_missed = !is_read(statement) && strncmp(result.message, missed, strlen(missed)) == 0;
     if (!is_shape && is_missed != field->required) {
@@ -283,7 +294,7 @@ static bool is_of_several(const wh_reader_field_t *field) {
 
 static void try_class(const char *path, const wh_layout_class_t *class) {
     char inner[PATH_BYTES];
-    char statement[700];
+    char statement[900];
     assert_non_null(class->name);
     for (const wh_reader_field_t *field = class->fields; field->name; ++field) {
         if (is_of_several(field)) {

@@ -595,7 +595,7 @@ static void what_is_wrong_with_several_robots_is_named(void **state) {
         {GRIPPERS STATIONS "robots = { A = { transit = 400, rail = {} } }",
          "robots.A.transit: 400 (expected nothing: it is for a robot of kind"},
         {GRIPPERS STATIONS "robots = { A = { urdf = 'a.urdf' } }",
-         "robots.A.urdf: \"a.urdf\" (expected nothing"},
+         "robots.A.urdf: \"a.urdf\" (expected a URDF file: a.urdf: No such file or directory)"},
         {"robots = { V = { kind = 'TRZ', arms = { {}, {} }, at = { 2000, 0, 0 } }, A = {} }, " ON_TWO
          "stations = { S = { at = { 700, 0, 900 } } }",
          "(expected at least one gripper with arm = 2 on V)"},
