@@ -97,10 +97,12 @@ static int digit_value(char letter) {
 
 /* Two hex digits, and passes them. -1: they are none. */
 static int read_digits(const char **at) {
-    const int high = digit_value((*at)[0]);
-    const int low = high < 0 ? -1 : digit_value((*at)[1]);
-    *at += low < 0 ? 0 : 2;
-    return low < 0 ? -1 : 16 * high + low;
+    if (digit_value((*at)[0]) < 0 || digit_value((*at)[1]) < 0) {
+        return -1;
+    }
+    const int value = 16 * digit_value((*at)[0]) + digit_value((*at)[1]);
+    *at += 2;
+    return value;
 }
 
 /* The byte that the text at `*at` stands for, and passes it. -1: it is none. */

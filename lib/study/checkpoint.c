@@ -338,13 +338,14 @@ static bool take_stretch(const wh_study_t *study, const json_t *pair, wh_stretch
 static bool has_lines(const wh_study_t *study, const wh_progress_t *progress, char *message, size_t size) {
     const uint64_t wanted = wh_stretches_below(&progress->done, study->lines);
     const uint64_t found = wh_trial_lines_below(&progress->tally.lines, study->lines);
-    if (found < wanted) {
-        snprintf(message, size,
-                 "has lines of %llu trials, and %llu are done (expected a file that a study "
-                 "with --csv wrote, or --csv without it)",
-                 (unsigned long long)found, (unsigned long long)wanted);
+    if (found == wanted) {
+        return true;
     }
-    return found == wanted;
+    snprintf(message, size,
+             "has lines of %llu trials, and %llu are done (expected a file that a study "
+             "with --csv wrote, or --csv without it)",
+             (unsigned long long)found, (unsigned long long)wanted);
+    return false;
 }
 
 static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
