@@ -499,6 +499,35 @@ static void the_board_shows_the_time(void **state) {
     wh_view_board_free(&board);
 }
 
+static const float *segment_at(const wh_view_board_t *board, char segment) {
+    char name[] = "board::time 1a";
+    name[sizeof name - 2] = segment;
+    const waferhand_viewer_link *body = body_of(board, name);
+    assert_int_equal(body->num_geom, 1);
+    return body->geom[0].position;
+}
+
+/* Three that lie above each other, and a pair that stands on either side of the upper and the lower half. */
+static void a_digits_segments_are_mirror_images(void **state) {
+    static wh_view_board_t board;
+    (void)state;
+    wh_view_board_open(&board, read_sound(CELL));
+    const float *middle = segment_at(&board, 'g');
+    const struct {
+        char one, other;
+        int axis; /* along which the middle is between them */
+    } pairs[] = {{'a', 'd', 1}, {'b', 'f', 0}, {'c', 'e', 0}, {'b', 'c', 1}, {'f', 'e', 1}};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; ++i) {
+        const float *one = segment_at(&board, pairs[i].one), *other = segment_at(&board, pairs[i].other);
+        const int axis = pairs[i].axis;
+        assert_near((double)(one[axis] + other[axis]) / 2, (double)middle[axis], 1e-6);
+        assert_near((double)one[1 - axis], (double)other[1 - axis], 1e-6);
+        assert_true(fabsf(one[axis] - other[axis]) > 0.01F);
+    }
+    assert_near((double)segment_at(&board, 'a')[0], (double)middle[0], 1e-6);
+    wh_view_board_free(&board);
+}
+
 /* Behind and above all that stands, and read from where the camera begins. */
 static void the_board_stands_behind_the_cell(void **state) {
     static wh_view_board_t board;
@@ -656,6 +685,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_board_writes_capitals, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(a_line_is_cut_off_at_the_edge, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(the_board_shows_the_time, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(a_digits_segments_are_mirror_images, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(the_board_stands_behind_the_cell, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(hits_and_commands_go_out, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_a_large_cell_leaves_out, open_sandbox, close_sandbox),
