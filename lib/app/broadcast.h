@@ -32,8 +32,8 @@ wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast);
 /* What is due by the clock while nothing moves: to be called at least every 100 ms where people watch. */
 void wh_broadcast_tick(wh_broadcast_t *broadcast);
 
-/* Tells that the run is over. A script's run may be gone by now, a session not yet. False if the recording failed, which
- * standard error has said. */
+/* Tells that the run is over. A script's run may be gone by now, a session not yet. False if the recording
+ * failed, which standard error has said. */
 bool wh_broadcast_close(wh_broadcast_t *broadcast);
 
 /* Opens a view of the layout, and says at the node what is shown. False, with a line on standard error and

@@ -71,8 +71,8 @@ typedef struct {
     wh_vec3_t at;
 } wh_gap_t;
 
-/* Where a search begins: the points whose distance was the gap of the same two shapes a little before, in the shapes'
- * frames. All zero: nowhere. Any points of the shapes will do: they cost time at most. */
+/* Where a search begins: the points whose distance was the gap of the same two shapes a little before, in
+ * the shapes' frames. All zero: nowhere. Any points of the shapes will do: they cost time at most. */
 typedef struct {
     size_t count; /* at most 3 */
     wh_vec3_t on_a[3], on_b[3];
@@ -92,9 +92,9 @@ void wh_gap_measure(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh
                     const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap)
     WH_SYMBOL(wh_gap_measure);
 
-/* wh_gap_measure of two shapes that are followed on their way: the search begins with the points in `start`, and leaves
- * there those that it ends with. They are the caller's, for this pair alone. The gap is the same to WH_GAP_TIGHT.
- * Cost: half of wh_gap_measure's if the shapes have moved little; and of gaps up to `enough` alone. */
+/* wh_gap_measure of two shapes that are followed on their way: the search begins with the points in
+ * `start`, and leaves there those that it ends with. They are the caller's, for this pair alone. The gap
+ * is the same to WH_GAP_TIGHT. Cost: about half of wh_gap_measure's if the shapes have moved little. */
 void wh_gap_follow(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                    const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_start_t *start,
                    wh_gap_t *gap) WH_SYMBOL(wh_gap_follow);

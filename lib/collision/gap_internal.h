@@ -38,8 +38,9 @@ typedef struct {
     int steps, supports;
 } wh_gap_budget_t;
 
-/* Narrows `bounds`, starting with pair->start, else at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
- * step helps any more. bounds->axis must be a unit vector; bounds->upper may be infinite. */
+/* Narrows `bounds`, starting with pair->start, else at their axis, until they are WH_GAP_TIGHT, or lower
+ * is above `enough`, or no step helps any more. bounds->axis must be a unit vector; bounds->upper may be
+ * infinite. */
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds)
     WH_SYMBOL(wh_nearest_bounds);
 

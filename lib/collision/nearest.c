@@ -2,7 +2,7 @@
 
 /* A point of each kernel; `between` goes from a's to b's. */
 typedef struct {
-    wh_vec3_t in_a, in_b; /* in the shape's frame */
+    wh_vec3_t in_a, in_b;    /* in the shape's frame */
     wh_vec3_t on_a, between; /* in base */
 } pair_point_t;
 
@@ -216,7 +216,8 @@ static wh_real_t add(simplex_t *simplex, const pair_point_t *point, wh_vec3_t *n
     return wh_real_sqrt(reduce(simplex, nearest));
 }
 
-/* Takes the simplex's nearest point over into upper bound and axis. False if it is not nearer than what was known. */
+/* Takes the simplex's nearest point over into upper bound and axis. False if it is not nearer than what
+ * was known. */
 static bool narrow(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *nearest,
                    wh_real_t distance, wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
     const wh_real_t upper = distance - wh_convex_round(pair->a) - wh_convex_round(pair->b);
@@ -232,8 +233,8 @@ static bool narrow(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh
     return true;
 }
 
-/* The distance of the nearest point of all, if that lies within them, as it most often still does. Else as if they had
- * been found one after the other. */
+/* The distance of the nearest point of all, if that lies within them, as it most often still does. Else as
+ * if they had been found one after the other. */
 static wh_real_t add_all(simplex_t *simplex, const pair_point_t points[], size_t count, wh_vec3_t *nearest) {
     part_t part = {.count = count, .index = {0, 1, 2}};
     for (size_t i = 0; i < count; ++i) {

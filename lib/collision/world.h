@@ -130,8 +130,8 @@ typedef struct {
 
 typedef struct wh_world wh_world_t;
 
-/* True if a gap, as it was found, keeps a limit, mm. A gap is known from below, to WH_GAP_TIGHT: so one that is at its
- * limit keeps it, however its last digits are rounded. */
+/* True if a gap, as it was found, keeps a limit, mm. A gap is known from below, to WH_GAP_TIGHT: so one
+ * that is at its limit keeps it, however its last digits are rounded. */
 static inline bool wh_clearance_is_kept(wh_real_t gap, wh_real_t limit) {
     return !(gap + WH_GAP_TIGHT < limit);
 }

@@ -102,8 +102,8 @@ typedef struct {
     wh_vec3_t at;
 } wh_left_t;
 
-/* With which the search for a pair's gap begins. Few pairs are near at a time: they share these, each its own place by
- * the numbers of its parts, and take turns where two have the same. */
+/* With which the search for a pair's gap begins. Few pairs are near at a time: they share these, each its
+ * own place by the numbers of its parts, and take turns where two have the same. */
 #define WH_WORLD_STARTS 256
 
 typedef struct {

@@ -82,8 +82,8 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
 /* Sums of ways are rounded: a pair is looked at when this much is left, mm. */
 #define EARLY 0.01
 
-/* Looks at a pair. Returns how much farther apart the two are than what can matter: without end while they hold each
- * other, for what is known of a wafer is forgotten when it is taken or let go. */
+/* Looks at a pair. Returns how much farther apart the two are than what can matter: without end while they
+ * hold each other, for what is known of a wafer is forgotten when it is taken or let go. */
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;

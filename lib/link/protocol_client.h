@@ -114,8 +114,9 @@ void wh_protocol_client_hear(wh_protocol_client_t *client, const void *data, siz
 /* Forgets the run and begins another one, of a layout that may be another. Counters stay. */
 void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout);
 
-/* The run is over, and its layout may go: each state that still comes, such as the second answer to a command that
- * was sent twice, counts as unasked. Until wh_protocol_client_begin nothing else may be asked of the client. */
+/* The run is over, and its layout may go: each state that still comes, such as the second answer to a
+ * command that was sent twice, counts as unasked. Until wh_protocol_client_begin nothing else may be asked
+ * of the client. */
 void wh_protocol_client_end(wh_protocol_client_t *client);
 
 /* Sends a command. One that is lost is no error: whoever waits for the answer sends it again. */

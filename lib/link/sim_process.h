@@ -66,7 +66,8 @@ bool wh_sim_process_restore(wh_sim_process_t *simulation, const waferhand_state 
  * control. To be called at least every 100 ms. */
 void wh_sim_process_tick(wh_sim_process_t *simulation);
 
-/* The run is over: tells what has waited. Then its layout may go, if nothing but wh_sim_process_close follows. */
+/* The run is over: tells what has waited. Then its layout may go, if nothing but wh_sim_process_close
+ * follows. */
 void wh_sim_process_rest(wh_sim_process_t *simulation);
 
 /* Before the node is closed. Tells what has waited, too. */

@@ -227,7 +227,7 @@ struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
     bool refuses_unread; /* no cell is connected while a parameter is unread */
-    bool is_file; /* `script` is a file that is run: it is no layout */
+    bool is_file;        /* `script` is a file that is run: it is no layout */
 
     /* The cell, from when the script names it. */
     bool reads_layout;         /* the layout's file is running */

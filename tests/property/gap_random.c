@@ -258,8 +258,7 @@ static void go_on(pair_t *pair) {
 
 /* Only how deep a shallow overlap is found to be depends on where the search begins. */
 static void assert_same_gap(const wh_gap_t *followed, const wh_gap_t *gap, const pair_t *pair) {
-    const double depth =
-        -wh_gap_along(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b, gap->axis);
+    const double depth = -wh_gap_along(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b, gap->axis);
     if (followed->state == gap->state) {
         assert_near(followed->gap, gap->gap, 2 * WH_GAP_TIGHT);
     } else {

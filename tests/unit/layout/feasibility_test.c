@@ -145,9 +145,8 @@ static void room_that_is_less_than_asked_for(void **state) {
         "A: the blade has 3 mm to the wafer above, `clearance.blade_wafer_above` asks for at least 3.01 mm");
     expect_finding(WH_FINDING_GAP, "A: the blade has 3.225 mm to the wafer below, "
                                    "`clearance.blade_wafer_below` asks for at least 3.226 mm");
-    expect_finding(
-        WH_FINDING_GAP,
-        "A: the blade has 15 mm to the ledges, `clearance.blade_other` asks for at least 15.1 mm");
+    expect_finding(WH_FINDING_GAP,
+                   "A: the blade has 15 mm to the ledges, `clearance.blade_other` asks for at least 15.1 mm");
     (void)snprintf(fields, sizeof fields, "%s%s", cell,
                    "clearance = { blade_wafer_above = 2.99, blade_wafer_below = 3.224, blade_other = 14.9 }");
     look_at(fields);

@@ -732,7 +732,8 @@ static void a_reset_that_leaves_a_parameter_unread_connects_to_nothing(void **st
     snprintf(text, sizeof text, layout, "5");
     write_layout(path, text);
     assert_answer("RESET", "ERROR 48 BAD_ARGUMENT: ");
-    assert_non_null(strstr(answer, "build/session_test_parameter.lua: --set slots: nobody read params.slots"));
+    assert_non_null(
+        strstr(answer, "build/session_test_parameter.lua: --set slots: nobody read params.slots"));
     assert_int_equal(connections, 1);
     assert_answer("WAIT 0.5", "OK seconds=0.5");
     wh_session_close(&session);
