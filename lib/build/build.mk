@@ -131,6 +131,8 @@ library-test-names:
 # ------------------------------------------------------------------------------------------- compiling
 $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
 $(COLLISION_OBJECTS): FLAGS = $(COLLISION_FLAGS)
+# Its loops are short and many: a twentieth of a run's time.
+$(COLLISION_OBJECTS): CFLAGS := $(CFLAGS:-O2=-O3)
 $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
 $(PROGRAM_CXX_OBJECTS): FLAGS = $(PROGRAM_CXX_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden
