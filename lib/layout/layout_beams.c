@@ -173,8 +173,10 @@ static void check_whole(wh_reader_t *reader, const way_t *way, size_t b) {
 static void check_centring(wh_reader_t *reader, const way_t *way) {
     if (way->beams.count < 2) {
         lua_pushboolean(reader->L, 1);
-        wh_reader_fail(reader, "centre", way->by ? "false, or two beams that %s passes on its way in"
-                                                 : "false, or two beams at the station's door", way->robot);
+        wh_reader_fail(reader, "centre",
+                       way->by ? "false, or two beams that %s passes on its way in"
+                               : "false, or two beams at the station's door",
+                       way->robot);
     }
     for (int32_t b = way->beams.first; b < way->beams.first + way->beams.count; ++b) {
         check_whole(reader, way, (size_t)b);
@@ -193,9 +195,10 @@ static void refuse_idle(wh_reader_t *reader, const wh_layout_t *layout, size_t s
         if (!is_used) {
             const way_t way = {.layout = layout, .station = s};
             enter_item(reader, &way, (size_t)b);
-            wh_reader_fail(reader, NULL,
-                           "a beam on the way in of a robot in `by`, before the slot, where a wafer breaks it; "
-                           "beams are for " WH_AXES_USUAL_OF_SEVERAL);
+            wh_reader_fail(
+                reader, NULL,
+                "a beam on the way in of a robot in `by`, before the slot, where a wafer breaks it; "
+                "beams are for " WH_AXES_USUAL_OF_SEVERAL);
         }
     }
 }
@@ -225,8 +228,8 @@ static void find_ways(wh_reader_t *reader, const wh_layout_t *layout, size_t s) 
     refuse_idle(reader, layout, s);
     if (station->centre && !is_any) {
         lua_pushboolean(reader->L, 1);
-        wh_reader_fail(reader, "centre", "false, or two beams on the way in of a robot in `by`: of "
-                                         WH_AXES_USUAL_OF_SEVERAL);
+        wh_reader_fail(reader, "centre",
+                       "false, or two beams on the way in of a robot in `by`: of " WH_AXES_USUAL_OF_SEVERAL);
     }
 }
 

@@ -141,8 +141,8 @@ static void check_toucher(wh_reader_t *reader, const wh_layout_t *layout, size_t
     const char *name = layout->robots[robot].name;
     const wh_layout_approach_t *by = &layout->stations[s].by[robot];
     if (!wh_layout_is_usual(layout, robot)) {
-        wh_reader_fail(reader, NULL, "nothing: blocks are for " WH_AXES_USUAL_OF_SEVERAL
-                       ", and %s has the probe", name);
+        wh_reader_fail(reader, NULL,
+                       "nothing: blocks are for " WH_AXES_USUAL_OF_SEVERAL ", and %s has the probe", name);
     }
     if (!by->serves) {
         wh_reader_fail(reader, NULL, "nothing: %s, which has the probe, does not serve the station", name);
@@ -150,8 +150,10 @@ static void check_toucher(wh_reader_t *reader, const wh_layout_t *layout, size_t
     const wh_vec3_t own = wh_mat3_column(&layout->places[s].base_from_station.R, 0);
     const wh_vec3_t in = wh_mat3_column(&by->R, 0);
     if (by->is_turned && wh_vec3_dot(&own, &in) < LEAST_ALONG) {
-        wh_reader_fail(reader, NULL, "nothing: %s, which has the probe, comes from another side than the "
-                       "station's `rpy` says", name);
+        wh_reader_fail(reader, NULL,
+                       "nothing: %s, which has the probe, comes from another side than the "
+                       "station's `rpy` says",
+                       name);
     }
 }
 

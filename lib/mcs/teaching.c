@@ -189,7 +189,8 @@ static int arm_touch(lua_State *L) {
 /* -------------------------------------------------------------------------------------------- the whole */
 
 /* What is believed of the station, and of the beam if there was one: it stands where the layout says. */
-static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pass, const wh_pose_t *believed) {
+static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pass,
+                                 const wh_pose_t *believed) {
     const int32_t first = pass->order.first;
     const wh_layout_beam_t *beam = &layout->beams[first];
     wh_teach_guess_t guess = wh_teach_guess_at(believed, beam->x, beam->y);
@@ -230,9 +231,12 @@ static int solve_teaching(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_teaching_functions[] = {
-    {"begin_teaching", begin_teaching}, {"add_teaching", add_teaching},
-    {"solve_teaching", solve_teaching}, {"block", push_block},
-    {"arm_touch", arm_touch},           {"touched", push_touched},
-    {"add_touch", add_touch},           {"way_in", push_way_in},
-    {NULL, NULL}};
+const luaL_Reg wh_mcs_teaching_functions[] = {{"begin_teaching", begin_teaching},
+                                              {"add_teaching", add_teaching},
+                                              {"solve_teaching", solve_teaching},
+                                              {"block", push_block},
+                                              {"arm_touch", arm_touch},
+                                              {"touched", push_touched},
+                                              {"add_touch", add_touch},
+                                              {"way_in", push_way_in},
+                                              {NULL, NULL}};

@@ -96,8 +96,11 @@ return function(native, lookup, align, mechanisms, stations)
   -- If a PUT there would go aside by what beams say, as far as that is clear before it is checked.
   function targets.centres(station_name, robot, options)
     local station = type(station_name) == "string" and native.layout.stations[station_name]
-    local own = type(options) == "table" and options.centre
-    return station ~= nil and station and (own == true or own ~= false and station.centres[robot]) or false
+    local own
+    if type(options) == "table" then
+      own = options.centre
+    end
+    return station and (own == true or own == nil and station.centres[robot]) or false
   end
 
   -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
