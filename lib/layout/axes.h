@@ -40,4 +40,7 @@ const char *wh_layout_axis_label(const wh_layout_t *layout, size_t axis, char *n
 /* Why something is for the usual robot alone: the end of a sentence, such as `a robot of kind "TRZY" ...`. */
 #define WH_AXES_USUAL "a robot of kind \"TRZY\" at base's origin, without rail, tilt and flip"
 
+/* The same of one of several robots. */
+#define WH_AXES_USUAL_OF_SEVERAL "a robot of kind \"TRZY\" without rail, tilt and flip"
+
 #endif

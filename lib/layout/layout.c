@@ -220,7 +220,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_edge_wafers(&reader, layout);
     wh_layout_take_supports(layout, wh_layout_memory(L, wh_layout_count_supports(layout), sizeof(wh_pose_t)));
     wh_layout_read_shapes(&reader, layout);
-    wh_layout_read_blades(layout);
+    wh_layout_read_blades(&reader, layout);
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);
     wh_layout_read_study(&reader, layout);

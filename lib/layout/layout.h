@@ -75,6 +75,11 @@ typedef struct {
     wh_elbow_t elbow; /* and a SCARA's elbow */
     int32_t effector; /* its gripper that serves the station unless a command names another one */
     int32_t door;     /* that it comes through, or WH_NONE */
+    /* Where it was taught slot 1, beside where that is, in base, mm; the beams that it takes to stand where
+     * they are are off by as much. */
+    wh_vec3_t aside;
+    int32_t first_beam, beam_count; /* those of the station's beams that it passes on its way in */
+    bool centre;                    /* a PUT of it corrects by what these say */
 } wh_layout_approach_t;
 
 /* The order in which the valves switch when a chuck and an end-effector pass a wafer on. */
@@ -314,6 +319,19 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout);
 
 /* The order that arms a station's beams; count 0 if it has none. */
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
+
+/* The order that arms those which a robot passes on its way in; count 0 if it passes none, or if beams are
+ * not for its kind. */
+wh_latch_order_t wh_layout_beams_of(const wh_layout_t *layout, size_t station, size_t robot);
+
+/* True if a PUT of the robot corrects by what the station's beams say. */
+bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot);
+
+/* True if beams and blocks are for the robot: see WH_AXES_USUAL; of several robots each may stand anywhere. */
+bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot);
+
+/* How far beside the layout's place one of several robots was taught a station, in base, mm; else zero. */
+wh_vec3_t wh_layout_aside(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* The order that arms a face of a station's block; count 0 if it has none. */
 wh_latch_order_t wh_layout_face_at(const wh_layout_t *layout, size_t station, size_t face);

@@ -132,16 +132,44 @@ static void add_faces(wh_layout_t *layout, size_t s) {
     }
 }
 
+/* So far from the block's own way in, as a cosine, a face no longer looks at the robot. */
+#define LEAST_ALONG WH_REAL(0.98)
+
+/* Of several robots one has the probe, and comes to the block. */
+static void check_toucher(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
+    const size_t robot = layout->machine.mounts[layout->probe.gripper].robot;
+    const char *name = layout->robots[robot].name;
+    const wh_layout_approach_t *by = &layout->stations[s].by[robot];
+    if (!wh_layout_is_usual(layout, robot)) {
+        wh_reader_fail(reader, NULL,
+                       "nothing: blocks are for " WH_AXES_USUAL_OF_SEVERAL ", and %s has the probe", name);
+    }
+    if (!by->serves) {
+        wh_reader_fail(reader, NULL, "nothing: %s, which has the probe, does not serve the station", name);
+    }
+    const wh_vec3_t own = wh_mat3_column(&layout->places[s].base_from_station.R, 0);
+    const wh_vec3_t in = wh_mat3_column(&by->R, 0);
+    if (by->is_turned && wh_vec3_dot(&own, &in) < LEAST_ALONG) {
+        wh_reader_fail(reader, NULL,
+                       "nothing: %s, which has the probe, comes from another side than the "
+                       "station's `rpy` says",
+                       name);
+    }
+}
+
 static void read_block(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     wh_layout_block_t *block = &layout->stations[s].block;
     if (!wh_reader_open(reader, "block", wh_layout_block_fields)) {
         return;
     }
-    if (layout->machine.carrier) {
+    if (layout->robot_count < 2 && !wh_layout_is_usual(layout, 0)) {
         wh_reader_fail(reader, NULL, "nothing: blocks are for " WH_AXES_USUAL);
     }
     if (!layout->probe.is_there) {
         wh_reader_fail(reader, NULL, "nothing: no gripper has a `probe`");
+    }
+    if (layout->stations[s].by) {
+        check_toucher(reader, layout, s);
     }
     if (layout->beam_count + WH_BLOCK_FACES > WH_BEAMS) {
         wh_reader_fail(reader, NULL, "at most %d beams and faces in all of the cell: a block has %d",

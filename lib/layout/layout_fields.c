@@ -287,6 +287,8 @@ const wh_reader_field_t wh_layout_station_fields[] = {
 
 const wh_reader_field_t wh_layout_approach_fields[] = {
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in base: x is this robot's way in", false},
+    {"at", TRIPLE, "where it was taught slot 1, mm, in base, up to 5 mm beside the station's own `at`",
+     false},
     {"rail", NUMBER, "mm: where its rail stands for it", false},
     {"elbow", "\"left\"|\"right\"", "the side of a SCARA's elbow there", false},
     {"door", "string", "the door through which it comes, by name", false},

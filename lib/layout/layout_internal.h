@@ -111,7 +111,7 @@ void wh_layout_read_blocks(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_place_face(wh_layout_t *layout, size_t b);
 
 /* Fills in `blades`, once grippers and shapes are read. */
-void wh_layout_read_blades(wh_layout_t *layout);
+void wh_layout_read_blades(wh_reader_t *reader, wh_layout_t *layout);
 
 /* Reads `loaded` of the robot or gripper at which the reader is. */
 void wh_layout_read_loaded(wh_reader_t *reader, wh_limits_t *loaded);

@@ -89,6 +89,22 @@ static void read_way_in(wh_reader_t *reader, const wh_station_t *place, wh_layou
     }
 }
 
+/* A robot was taught a station no farther beside its place, mm. */
+#define MOST_ASIDE 5
+
+/* Where it was taught slot 1. The station stays where it is. */
+static void read_taught(wh_reader_t *reader, const wh_station_t *place, wh_layout_approach_t *approach) {
+    const wh_vec3_t *own = &place->base_from_station.r;
+    const wh_vec3_t at = wh_reader_vector(reader, "at", own);
+    approach->aside = wh_vec3_subtract(&at, own);
+    const wh_vec3_t *aside = &approach->aside;
+    if (!(wh_real_abs(aside->x) <= MOST_ASIDE && wh_real_abs(aside->y) <= MOST_ASIDE &&
+          wh_real_abs(aside->z) <= MOST_ASIDE)) {
+        (void)wh_reader_push(reader, "at");
+        wh_reader_fail(reader, "at", "numbers up to %d mm beside the station's own `at`", MOST_ASIDE);
+    }
+}
+
 /* `by`: without it any robot may come. */
 static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     wh_layout_station_t *station = &layout->stations[s];
@@ -117,6 +133,7 @@ static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
         if (is_said && wh_reader_open(reader, robot->name, wh_layout_approach_fields)) {
             approach->serves = true;
             read_way_in(reader, &layout->places[s], approach);
+            read_taught(reader, &layout->places[s], approach);
             read_stand(reader, chain, robot->elbow, &approach->rail, &approach->elbow);
             wh_reader_leave(reader);
         }
@@ -217,4 +234,9 @@ void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     station->effector = station->by[robot].effector;
     station->rail = station->by[robot].rail;
     station->elbow = station->by[robot].elbow;
+}
+
+wh_vec3_t wh_layout_aside(const wh_layout_t *layout, size_t station, size_t robot) {
+    const wh_layout_approach_t *by = layout->stations[station].by;
+    return by ? by[robot].aside : wh_vec3(0, 0, 0);
 }

@@ -54,7 +54,7 @@ typedef struct {
     wh_elbow_t elbow;
 } approach_t;
 
-/* Turns the slot to where the robot comes from. */
+/* Turns the slot to where the robot comes from, and moves it to where that was taught it. */
 static approach_t take_approach(const wh_layout_t *layout, size_t index, size_t robot,
                                 wh_pose_t *base_from_slot) {
     const wh_layout_station_t *station = &layout->stations[index];
@@ -63,6 +63,7 @@ static approach_t take_approach(const wh_layout_t *layout, size_t index, size_t 
     }
     const wh_layout_approach_t *by = &station->by[robot];
     base_from_slot->R = by->is_turned ? by->R : base_from_slot->R;
+    wh_taught_move(&layout->robots[robot].carrier.chain, by->rail, &by->aside, base_from_slot);
     return (approach_t){by->rail, by->elbow};
 }
 
@@ -95,11 +96,17 @@ static void move_station(lua_State *L, int shift, const wh_station_t *place, boo
 wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, size_t station,
                                   size_t robot) {
     const wh_station_t *place = &mcs->layout->places[station];
+    const wh_vec3_t aside = wh_layout_aside(mcs->layout, station, robot);
     wh_pose_t believed = place->base_from_station;
+    believed.r = wh_vec3_add(&believed.r, &aside);
     if (lua_istable(L, shift)) {
         move_station(L, shift, place, turns_in_slot(mcs->layout, robot), &believed);
     }
     return believed;
+}
+
+wh_vec3_t wh_mcs_drawn_aside(const wh_mcs_t *mcs, size_t station, size_t robot) {
+    return mcs->local.trial ? wh_trial_cell_aside(mcs->local.trial, station, robot) : wh_vec3(0, 0, 0);
 }
 
 static void check_travel(lua_State *L, wh_mcs_t *mcs, const wh_real_t axes[]) {

@@ -239,6 +239,21 @@ static void push_vias(lua_State *L, const wh_layout_station_t *station) {
     lua_setfield(L, -2, "via");
 }
 
+/* beams: by robot how many of the station's it passes on its way in; centres: if a PUT of it corrects by what
+ * they say. */
+static void push_beams_of(lua_State *L, const wh_layout_t *layout, size_t station) {
+    lua_createtable(L, (int)layout->robot_count, 0);
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        lua_pushinteger(L, wh_layout_beams_of(layout, station, r).count);
+        lua_rawseti(L, -3, (lua_Integer)r + 1);
+        lua_pushboolean(L, wh_layout_centres(layout, station, r));
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -3, "centres");
+    lua_setfield(L, -2, "beams");
+}
+
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
@@ -270,13 +285,12 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_boolean(L, "flipper", station->flipper);
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
-    wh_lua_set_boolean(L, "centre", station->centre);
     if (station->face != WH_STATION_ANY_FACE) {
         wh_lua_set_text(L, "face", wh_layout_face_name(station->face));
     }
     wh_lua_set_number(L, "radius", layout->wafer_diameter / 2);
     wh_lua_set_number(L, "notch", layout->notch);
-    wh_lua_set_integer(L, "beams", wh_layout_beams_at(layout, index).count);
+    push_beams_of(L, layout, index);
     wh_lua_set_boolean(L, "block", station->block.is_there);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
     wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
@@ -356,6 +370,7 @@ static void push_robot(lua_State *L, const wh_layout_t *layout, size_t robot) {
     lua_createtable(L, 0, 4);
     wh_lua_set_text(L, "name", layout->robots[robot].name);
     wh_lua_set_index(L, "first", (int32_t)first);
+    wh_lua_set_boolean(L, "is_usual", wh_layout_is_usual(layout, robot));
     wh_lua_push_numbers(L, &home[first], count);
     lua_setfield(L, -2, "home");
     lua_createtable(L, (int)count, 0);

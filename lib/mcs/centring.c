@@ -38,7 +38,8 @@ static void keep(wh_mcs_t *mcs) {
 static void push_crossing(lua_State *L, const wh_mcs_t *mcs, size_t i) {
     const wh_pass_crossing_t *of = &mcs->centring.crossings[i];
     lua_createtable(L, 0, 6);
-    wh_lua_set_integer(L, "beam", of->crossing.beam - mcs->pass.order.first + 1);
+    const wh_latch_order_t all = wh_layout_beams_at(mcs->layout, (size_t)mcs->centring.station);
+    wh_lua_set_integer(L, "beam", of->crossing.beam - all.first + 1);
     wh_lua_set_text(L, "edge", of->crossing.edge == WH_CROSSING_IN ? "in" : "out");
     wh_lua_set_number(L, "x", of->crossing.x);
     wh_lua_set_number(L, "y", of->crossing.y);
@@ -77,12 +78,20 @@ static void push_centring(lua_State *L, const wh_mcs_t *mcs) {
     lua_setfield(L, -2, "candidates");
 }
 
+wh_vec3_t wh_mcs_beams_aside(const wh_mcs_t *mcs, size_t station, int32_t gripper) {
+    const size_t robot = mcs->layout->machine.mounts[gripper].robot;
+    const wh_vec3_t told = wh_layout_aside(mcs->layout, station, robot);
+    const wh_vec3_t drawn = wh_mcs_drawn_aside(mcs, station, robot);
+    return wh_vec3_add(&told, &drawn);
+}
+
 void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper) {
     wh_pass_t *pass = &mcs->pass;
     wh_pass_free(pass);
     *pass = (wh_pass_t){.order = order,
                         .station = station,
                         .gripper = gripper,
+                        .aside = wh_mcs_beams_aside(mcs, (size_t)station, gripper),
                         .before = pass->number,
                         .number = pass->number,
                         .seq = pass->seq,
@@ -91,14 +100,25 @@ void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t 
     mcs->unplayed = "beams at a station's door";
 }
 
-/* native.arm_beams(station, gripper): from the end of the next slice on the beams at the station's door latch
- * what crosses them, and this gripper's way is remembered. What was collected before is gone. */
+/* The station at stack index 1, and the beams that the robot of the gripper at 2 passes there. */
+static wh_latch_order_t read_pass(lua_State *L, const wh_mcs_t *mcs, int32_t *station, int32_t *gripper) {
+    *station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    *gripper = wh_mcs_index(L, 2, mcs->layout->machine.gripper_count);
+    const size_t robot = mcs->layout->machine.mounts[*gripper].robot;
+    const wh_latch_order_t order = wh_layout_beams_of(mcs->layout, (size_t)*station, robot);
+    luaL_argcheck(L, order.count > 0, 1, "no beams on the way in");
+    return order;
+}
+
+/* native.arm_beams(station, gripper): from the end of the next slice on the beams that this gripper passes on
+ * its way to the station latch what crosses them, and its way is remembered. What was collected before is
+ * gone. */
 static int arm_beams(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
-    const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
-    luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
-    wh_mcs_arm(mcs, order, station, wh_mcs_index(L, 2, mcs->state.gripper_count));
+    int32_t station = 0;
+    int32_t gripper = 0;
+    const wh_latch_order_t order = read_pass(L, mcs, &station, &gripper);
+    wh_mcs_arm(mcs, order, station, gripper);
     return 0;
 }
 
@@ -131,17 +151,19 @@ static int centre(lua_State *L) {
     return 1;
 }
 
-/* native.beam(station): { x, y } in base, mm: where the station's first beam is, at the height of slot 1, as
- * motion control believes; and as `station` the station's pose, likewise. */
+/* native.beam(station, gripper): { x, y } in base, mm: where the first beam is that this gripper passes on its
+ * way to the station, at the height of slot 1, as motion control believes; and its number there, from 1. */
 static int push_beam(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
-    const wh_latch_order_t order = wh_layout_beams_at(mcs->layout, (size_t)station);
-    luaL_argcheck(L, order.count > 0, 1, "no beams at its door");
-    const wh_beam_t beam = wh_pass_beam(mcs->layout, order.first);
-    lua_createtable(L, 0, 2);
+    int32_t station = 0;
+    int32_t gripper = 0;
+    const wh_latch_order_t order = read_pass(L, mcs, &station, &gripper);
+    const wh_vec3_t aside = wh_mcs_beams_aside(mcs, (size_t)station, gripper);
+    const wh_beam_t beam = wh_pass_beam(mcs->layout, order.first, &aside);
+    lua_createtable(L, 0, 3);
     wh_lua_set_number(L, "x", beam.x);
     wh_lua_set_number(L, "y", beam.y);
+    wh_lua_set_integer(L, "number", order.first - wh_layout_beams_at(mcs->layout, (size_t)station).first + 1);
     return 1;
 }
 

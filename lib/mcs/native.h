@@ -61,6 +61,10 @@ void wh_mcs_free_lanes(wh_mcs_t *mcs);
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
 void wh_mcs_free_turns(wh_mcs_turns_t *turns);
 
+/* How far beside where the layout has them, in base, mm, motion control takes a station's beams to stand for
+ * the robot of this gripper: as far as that was taught the station beside. */
+wh_vec3_t wh_mcs_beams_aside(const wh_mcs_t *mcs, size_t station, int32_t gripper);
+
 /* From the end of the next slice on these beams latch, and this gripper's way is remembered. What was
  * collected before is gone. */
 void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper);
@@ -68,9 +72,13 @@ void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t 
 /* The first `count` numbers of the list at this absolute stack index; raises if one is none. */
 void wh_mcs_read_numbers(lua_State *L, int list, wh_real_t numbers[], size_t count);
 
-/* The station's frame as motion control believes: as the layout has it, or moved by the table at this stack
- * index, if that is one: see native.shift in believed.c. */
+/* The station's frame as motion control believes for a robot: as the layout has it, or moved by the table at
+ * this stack index, if that is one: see native.shift in believed.c. */
 wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, size_t station, size_t robot);
+
+/* How far beside that, in base, mm, one of several robots goes in a trial, for it was taught the station so;
+ * else zero. */
+wh_vec3_t wh_mcs_drawn_aside(const wh_mcs_t *mcs, size_t station, size_t robot);
 
 /* Pushes what motion control knows of an edge sensor of the layout: { samples: in a turn, pixels: of the
  * line, pixel, middle and length, mm, run_up: how far the chuck turns from rest to its full speed,

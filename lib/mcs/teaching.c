@@ -31,19 +31,45 @@ static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing,
     return true;
 }
 
-/* native.begin_teaching(station, shift): nothing is measured yet. Returns the pose that is the guess: the
- * station's as the layout has it, or moved by what a host has set, see native.shift. */
+/* native.begin_teaching(station, shift, gripper): nothing is measured yet. Returns the pose that is the guess
+ * for the gripper's robot: the station's as the layout has it, or moved by what a host has set, see
+ * native.shift; and where that robot takes it to be, which in a trial it may have been taught elsewhere. */
 static int begin_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t station = (size_t)wh_mcs_index(L, 1, mcs->layout->station_count);
-    mcs->teaching.count = 0;
-    mcs->teaching.base_from_station = wh_mcs_believed_station(L, 2, mcs, station, 0);
-    wh_lua_push_pose(L, &mcs->teaching.base_from_station);
-    return 1;
+    const int32_t gripper = wh_mcs_index(L, 3, mcs->layout->machine.gripper_count);
+    const size_t robot = mcs->layout->machine.mounts[gripper].robot;
+    wh_mcs_teaching_t *teaching = &mcs->teaching;
+    teaching->count = 0;
+    teaching->base_from_station = wh_mcs_believed_station(L, 2, mcs, station, robot);
+    wh_lua_push_pose(L, &teaching->base_from_station);
+    const wh_vec3_t drawn = wh_mcs_drawn_aside(mcs, station, robot);
+    teaching->base_from_station.r = wh_vec3_add(&teaching->base_from_station.r, &drawn);
+    wh_lua_push_pose(L, &teaching->base_from_station);
+    return 2;
 }
 
-/* native.add_teaching(x, y): the crossings of the last centring were of the rim of the wafer that the gripper
- * took with its middle at (x, y) of base, heading as the station's x does. Returns how many there are now. */
+/* native.way_in(station, robot): of a robot that comes on a way in of its own the pose that has it as x, else
+ * nil; and the station's; both as the layout has them. */
+static int push_way_in(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const int32_t robot = wh_mcs_index(L, 2, wh_machine_robots(&mcs->layout->machine));
+    const wh_layout_approach_t *by = mcs->layout->stations[station].by;
+    const wh_pose_t *place = &mcs->layout->places[station].base_from_station;
+    const wh_pose_t own = {by ? by[robot].R : place->R, place->r};
+    if (by && by[robot].is_turned) {
+        wh_lua_push_pose(L, &own);
+    } else {
+        lua_pushnil(L);
+    }
+    wh_lua_push_pose(L, place);
+    return 2;
+}
+
+/* native.add_teaching(x, y, heading): the crossings of the last centring were of the rim of the wafer that the
+ * gripper took with its middle at (x, y) of base, heading so, rad, or without that as the station's x does.
+ * Returns how many there are now. */
 static int add_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_centring_record_t *passed = &mcs->centring;
@@ -60,6 +86,9 @@ static int add_teaching(lua_State *L) {
         lesson->base_from_pick = teaching->base_from_station;
         lesson->base_from_pick.r.x = luaL_checknumber(L, 1);
         lesson->base_from_pick.r.y = luaL_checknumber(L, 2);
+        if (!lua_isnoneornil(L, 3)) {
+            lesson->base_from_pick.R = wh_mat3_about_z(luaL_checknumber(L, 3));
+        }
         teaching->count += find_place(mcs, &passed->crossings[i], &lesson->base_from_gripper) ? 1 : 0;
     }
     lua_pushinteger(L, (lua_Integer)teaching->count);
@@ -160,12 +189,13 @@ static int arm_touch(lua_State *L) {
 /* -------------------------------------------------------------------------------------------- the whole */
 
 /* What is believed of the station, and of the beam if there was one: it stands where the layout says. */
-static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first, const wh_pose_t *believed) {
+static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pass,
+                                 const wh_pose_t *believed) {
+    const int32_t first = pass->order.first;
     const wh_layout_beam_t *beam = &layout->beams[first];
-    const wh_pose_t *station = &layout->places[beam->station].base_from_station;
     wh_teach_guess_t guess = wh_teach_guess_at(believed, beam->x, beam->y);
     if (layout->doors[first].kind == WH_DOOR_LIGHT) {
-        guess.beam = wh_beam_at(station, beam->x, beam->y, beam->low, beam->high);
+        guess.beam = wh_pass_beam(layout, first, &pass->aside);
     }
     guess.sd_beam = SD_BEAM;
     guess.sd_place = SD_PLACE;
@@ -179,7 +209,7 @@ static wh_teach_guess_t guess_of(const wh_layout_t *layout, int32_t first, const
 static int solve_teaching(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_mcs_teaching_t *teaching = &mcs->teaching;
-    const wh_teach_guess_t guess = guess_of(mcs->layout, mcs->pass.order.first, &teaching->base_from_station);
+    const wh_teach_guess_t guess = guess_of(mcs->layout, &mcs->pass, &teaching->base_from_station);
     wh_taught_t taught;
     wh_decisions_measured(mcs->decisions, "teaching");
     const wh_status_t status = wh_teach_solve(&guess, teaching->lessons, teaching->count, &taught, NULL);
@@ -201,8 +231,12 @@ static int solve_teaching(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_teaching_functions[] = {
-    {"begin_teaching", begin_teaching}, {"add_teaching", add_teaching},
-    {"solve_teaching", solve_teaching}, {"block", push_block},
-    {"arm_touch", arm_touch},           {"touched", push_touched},
-    {"add_touch", add_touch},           {NULL, NULL}};
+const luaL_Reg wh_mcs_teaching_functions[] = {{"begin_teaching", begin_teaching},
+                                              {"add_teaching", add_teaching},
+                                              {"solve_teaching", solve_teaching},
+                                              {"block", push_block},
+                                              {"arm_touch", arm_touch},
+                                              {"touched", push_touched},
+                                              {"add_touch", add_touch},
+                                              {"way_in", push_way_in},
+                                              {NULL, NULL}};

@@ -164,20 +164,31 @@ static wh_real_t turn_along_arm(const wh_chain_t *chain, double rail, const wh_p
     return wh_atan2(to.y, to.x) - lead - wh_atan2(s, c);
 }
 
-void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
-                         wh_pose_t *base_from_slot) {
-    const wh_layout_t *layout = &trial_cell->layout;
-    const wh_vec3_t drawn = wh_errors_draw_taught(layout->errors, &trial_cell->trial, station, robot);
-    if (!(wh_vec3_norm(&drawn) > 0)) {
+void wh_taught_move(const wh_chain_t *chain, double rail, const wh_vec3_t *aside, wh_pose_t *base_from_slot) {
+    const wh_vec3_t taught = wh_vec3_add(&base_from_slot->r, aside);
+    if (!(wh_vec3_norm(aside) > 0)) {
         return;
     }
-    const wh_chain_t *chain = &layout->robots[robot].carrier.chain;
-    const wh_vec3_t taught = wh_vec3_subtract(&base_from_slot->r, &drawn);
     if (chain->kind == WH_CHAIN_TRZ) {
         const wh_mat3_t turn = wh_mat3_about_z(turn_along_arm(chain, rail, base_from_slot, &taught));
         base_from_slot->R = wh_mat3_multiply(&turn, &base_from_slot->R);
     }
     base_from_slot->r = taught;
+}
+
+wh_vec3_t wh_trial_cell_aside(const wh_trial_cell_t *trial_cell, size_t station, size_t robot) {
+    const wh_layout_t *layout = &trial_cell->layout;
+    if (!layout->stations[station].by) {
+        return wh_vec3(0, 0, 0);
+    }
+    const wh_vec3_t drawn = wh_errors_draw_taught(layout->errors, &trial_cell->trial, station, robot);
+    return wh_vec3_scale(-1, &drawn);
+}
+
+void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
+                         wh_pose_t *base_from_slot) {
+    const wh_vec3_t aside = wh_trial_cell_aside(trial_cell, station, robot);
+    wh_taught_move(&trial_cell->layout.robots[robot].carrier.chain, rail, &aside, base_from_slot);
 }
 
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command) {

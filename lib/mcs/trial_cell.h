@@ -44,8 +44,15 @@ typedef struct {
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         const wh_trial_room_t *room);
 
-/* Moves a slot of the station, as motion control takes it, to where one of several robots was taught it. The
- * blade of an arm without a wrist still points along the arm, whose rail stands at `rail`. */
+/* Moves a slot by `aside`, in base, mm. The blade of an arm without a wrist still points along the arm, whose
+ * rail stands at `rail`. */
+void wh_taught_move(const wh_chain_t *chain, double rail, const wh_vec3_t *aside, wh_pose_t *base_from_slot);
+
+/* How far beside where the layout has it, in base, mm, the trial draws that a robot was taught a station; zero
+ * of a robot alone, for which the station stands elsewhere instead. */
+wh_vec3_t wh_trial_cell_aside(const wh_trial_cell_t *trial_cell, size_t station, size_t robot);
+
+/* Moves a slot of the station, as motion control takes it, by that. */
 void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
                          wh_pose_t *base_from_slot);
 

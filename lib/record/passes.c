@@ -59,9 +59,11 @@ void wh_pass_free(wh_pass_t *pass) {
 
 /* ---------------------------------------------------------------------------------------------- crossings */
 
-wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam) {
+wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_vec3_t *aside) {
     const wh_layout_beam_t *of = &layout->beams[beam];
-    return wh_beam_at(&layout->places[of->station].base_from_station, of->x, of->y, of->low, of->high);
+    wh_pose_t base_from_station = layout->places[of->station].base_from_station;
+    base_from_station.r = wh_vec3_add(&base_from_station.r, aside);
+    return wh_beam_at(&base_from_station, of->x, of->y, of->low, of->high);
 }
 
 /* Where the blade was as a latch's beam changed. False if that is not known. */
@@ -77,7 +79,7 @@ static bool find_crossing(const wh_pass_t *pass, const wh_layout_t *layout, cons
         return false;
     }
     const wh_slice_motion_t motion = wh_slice_motion_between(&pass->places[slice], &pass->places[slice + 1]);
-    const wh_beam_t line = wh_pass_beam(layout, latch->beam);
+    const wh_beam_t line = wh_pass_beam(layout, latch->beam, &pass->aside);
     found->time = ((double)pass->armed_seq + time) * slice_s;
     found->crossing.beam = latch->beam;
     found->crossing.edge = latch->edge;

@@ -62,6 +62,12 @@ return function(native, lookup, centring, tasks, alarms)
 
   local STATION, DOOR = "station %s", "door %s"
 
+  -- By which gripper a line goes that names none: of several robots it says which.
+  function arm.leader()
+    local robot = tasks.current().robot
+    return robot and lookup.has_several() and lookup.on_robot(robot)[1] or nil
+  end
+
   -- The station's door for the command's robot.
   local function add_door(needs, station)
     local door = station.doors and needs.robot and station.doors[needs.robot]

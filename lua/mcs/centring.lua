@@ -50,7 +50,7 @@ return function(native, lookup)
       local along, across = part[1] * most.dx - target.dx, part[2] * most.dy - target.dy
       native.try_segment {
         line = { along * place.dir_x - across * place.dir_y, along * place.dir_y + across * place.dir_x, 0 },
-        target = target, where = "where `centre` may lead (`corrections.x` and `.y` of the layout), in",
+        gripper = target.gripper, target = target, where = "where `centre` may lead (`corrections.x` and `.y` of the layout), in",
       }
     end
   end
@@ -138,7 +138,7 @@ return function(native, lookup)
     end
     local text = "%d crossings of %d beams, %d latches missed"
     native.fail("TOO_FEW_SAMPLES",
-      text:format(#result.crossings, lookup.station(target.station).beams, result.missed) .. still)
+      text:format(#result.crossings, lookup.station(target.station).beams[target.robot], result.missed) .. still)
   end
 
   -- What the beams of the last PUT that centred said: see waferhand.centring in lua/mcs/words.lua.

@@ -29,9 +29,7 @@ return function(native, patterns, lookup, alarms)
 
   -- A wafer that is lost meanwhile is an error, unless it is the way out of trouble.
   local function play(segment)
-    local robot = tasks.current().robot
-    local gripper = robot and lookup.has_several() and lookup.on_robot(robot)[1] or nil
-    arm.play(patterns.single, { segment = segment, watched = true, gripper = gripper })
+    arm.play(patterns.single, { segment = segment, watched = true, gripper = arm.leader() })
   end
 
   function alarms.robot()

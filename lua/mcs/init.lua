@@ -107,7 +107,7 @@ return function(native)
 
   -- The words that robot() binds.
   local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop", "station",
-    "set_station" }
+    "set_station", "teach" }
 
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)

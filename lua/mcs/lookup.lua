@@ -226,13 +226,6 @@ return function(native, errors)
     native.fail("AMBIGUOUS_ROBOT", text:format(what, robot_names(station and station.by)))
   end
 
-  -- Refuses what is for one robot alone.
-  function lookup.refuse_for_several(what)
-    if lookup.has_several() then
-      native.fail("BAD_ARGUMENT", what .. " (expected a layout with one robot)")
-    end
-  end
-
   -- The grippers on the robot, or on one of several: their indices and their names.
   function lookup.on_robot(robot)
     local indices, names = {}, {}

@@ -509,7 +509,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
-    TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch" }, run = teach,
+    TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = teach,
               does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
     HOME = { takes = {}, run = moving(commands.home),
              does = "out of the station if the arm stands in one, then home" },

@@ -73,9 +73,12 @@ return function(native, transfer, flip_room)
   function reach.check_later(station, found)
     for _, slot in ipairs(slots_of(station)) do
       check_wound(station, slot, found)
-      local cannot = station.centre and transfer.rehearse_centring(station.name, slot)
-      if cannot then
-        found(slot, "PUT", reason_of(cannot))
+      for _, gripper in ipairs(servers(station)) do
+        local centres = station.centres[native.layout.grippers[gripper].robot]
+        local cannot = centres and transfer.rehearse_centring(station.name, slot, gripper)
+        if cannot then
+          found(slot, "PUT", reason_of(cannot))
+        end
       end
     end
     local problem = station.taught and station.check_map and rehearse_map(station.name)

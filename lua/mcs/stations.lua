@@ -155,10 +155,10 @@ return function(native, lookup)
 
   stations.read, stations.set = read, set
 
-  -- What TEACH found, of the only robot: slot 1 is there in base, mm, and its x axis points in that direction, rad.
-  function stations.learn(station, at, heading)
-    local place = native.slot(station.index, 1, 0, 0, 0, 0, 1, nil, true)
-    move(station, 1, station.effector,
+  -- What TEACH found for a robot: slot 1 is there in base, mm, and its way in leads in that direction, rad.
+  function stations.learn(station, robot, at, heading)
+    local place = native.slot(station.index, 1, 0, 0, 0, 0, robot, nil, true)
+    move(station, robot, station.by[robot],
       { at[1] - place.x, at[2] - place.y, at[3] - place.z, heading - place.heading })
   end
 

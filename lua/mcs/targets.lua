@@ -76,10 +76,31 @@ return function(native, lookup, align, mechanisms, stations)
     if word == "get" and own ~= nil and own ~= false then
       native.fail("BAD_ARGUMENT", ("%scentre: true (expected false: a PUT centres)"):format(prefix))
     end
-    target.centre = word == "put" and prefix ~= nil and station.centre
+    target.centre = word == "put" and prefix ~= nil and station.centres[target.robot]
     if word == "put" and own ~= nil then
       target.centre = own
     end
+  end
+
+  -- Why a PUT does not centre there.
+  local function no_centre(target, station)
+    local beams, robot = station.beams[target.robot], native.layout.robots[target.robot]
+    if not lookup.has_several() then
+      return ("false: %s has %d beams, and two tell a centre"):format(station.name, beams)
+    elseif not robot.is_usual then
+      return ('false: beams are for a robot of kind "TRZY" without rail, tilt and flip, and %s is another'):format(robot.name)
+    end
+    return ("false: %s passes %d beams on its way to %s, and two tell a centre"):format(robot.name, beams, station.name)
+  end
+
+  -- If a PUT there would go aside by what beams say, as far as that is clear before it is checked.
+  function targets.centres(station_name, robot, options)
+    local station = type(station_name) == "string" and native.layout.stations[station_name]
+    local own
+    if type(options) == "table" then
+      own = options.centre
+    end
+    return station and (own == true or own == nil and station.centres[robot]) or false
   end
 
   -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
@@ -98,8 +119,7 @@ return function(native, lookup, align, mechanisms, stations)
         'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
       { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
         "0, or 1e-6 mm/s^2 or more" },
-      { "centre", not target.centre or station.beams > 1, "false: %s has %d beams, and two tell a centre",
-        station.name, station.beams },
+      { "centre", not target.centre or station.beams[target.robot] > 1, "%s", no_centre(target, station) },
       { "retries", math.tointeger(target.retries), "a whole number" },
       { "dz", math.max(-bottom - target.dz, target.offset + target.dz) < pitch,
         "with the stroke within the pitch of %.10g mm below and above the slot", pitch },

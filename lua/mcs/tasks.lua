@@ -13,6 +13,8 @@ local print, select, setmetatable, table, tostring, type = print, select, setmet
 local MOST = 64
 -- Of all stations one at a time: a state brings one scan. Who needs that always waits for it.
 local SENSORS = "the edge sensors"
+-- And of all beams and probes those of one pass: a state brings the latches of one arming.
+local LATCHES = "the beams and probes"
 
 return function(native, lookup)
   local resume, yield = coroutine.resume, coroutine.yield
@@ -311,7 +313,7 @@ return function(native, lookup)
     return current.has_waited
   end
 
-  -- A command begins that needs this: { robot = index, station = NAME, chucks = list, scan = true }, each if it does.
+  -- A command begins that needs this: { robot = index, station = NAME, chucks = list, scan = true, latches = true }, each if it does.
   function module.take(needs)
     current.has_waited = false
     if not is_open or not needs then
@@ -327,6 +329,9 @@ return function(native, lookup)
     end
     if needs.scan then
       request.needs[#request.needs + 1] = SENSORS
+    end
+    if needs.latches then
+      request.needs[#request.needs + 1] = LATCHES
     end
     for _, station in ipairs(needs) do
       request.needs[#request.needs + 1] = station
@@ -347,7 +352,8 @@ return function(native, lookup)
     local good, problem = pcall(function()
       if not is_free(request) then
         current.waits_for = waits_for
-        local is_sure = obstacle(request) == SENSORS
+        local resource = obstacle(request)
+        local is_sure = resource == SENSORS or resource == LATCHES
         if current.job and not current.may_wait and not is_sure then
           native.fail("BUSY", waits_for())
         end

@@ -19,7 +19,7 @@ return function(native, patterns, lookup, arm, targets, stations)
   local LEAST_FLANK, MOST_FLANK = math.rad(0.05), math.rad(0.6)
 
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = false })
+    arm.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
   end
 
   local function along(place, way, height)
@@ -141,12 +141,12 @@ return function(native, patterns, lookup, arm, targets, stations)
       play { line = along(place, -2 * ROOM), speed = SPEED }
     end), 0
     for _, crossing in ipairs(found.crossings) do
-      count = count + (crossing.beam == 1 and 1 or 0)
+      count = count + (crossing.beam == beam.number and 1 or 0)
     end
     if count < 2 then
       native.fail("TOO_FEW_SAMPLES", ("%d crossings of the wafer's rim (expected 2, there and back)"):format(count))
     end
-    native.add_teaching(place.x, place.y)
+    native.add_teaching(place.x, place.y, target.turned and place.heading or nil)
   end
 
   local function rotate(angle, x, y)
@@ -158,7 +158,9 @@ return function(native, patterns, lookup, arm, targets, stations)
   local function find_yaw(station, target, beam, solved)
     local place = target.place
     local x, y = rotate(-place.heading, solved.x, solved.y)
-    local heading, radius = place.heading - station.notch, station.radius - INSIDE
+    -- In the frame of a blade that took the wafer on a way in of its own.
+    local notch = target.turned and station.notch - target.turned or station.notch
+    local heading, radius = place.heading - notch, station.radius - INSIDE
     local to_x, to_y = beam.x + solved.beam_x - radius * place.dir_x, beam.y + solved.beam_y - radius * place.dir_y
     local function at(turn)
       local ox, oy = rotate(heading + turn, x, y)
@@ -171,15 +173,18 @@ return function(native, patterns, lookup, arm, targets, stations)
     end)
     local angles, sum = {}, 0
     for _, crossing in ipairs(found.crossings) do
-      if crossing.beam == 1 then
+      if crossing.beam == beam.number then
         local bx, by = rotate(-heading, solved.beam_x, solved.beam_y)
-        local angle = math.atan(crossing.y + by - y, crossing.x + bx - x) - station.notch
+        local angle = math.atan(crossing.y + by - y, crossing.x + bx - x) - notch
         angles[#angles + 1] = (angle + math.pi) % (2 * math.pi) - math.pi
         sum = sum + angles[#angles]
       end
     end
     if #angles ~= 4 then
-      native.fail("NO_NOTCH", ("%d crossings of the wafer's notch (expected 4)"):format(#angles))
+      local from_tip = math.abs(math.deg((notch + math.pi) % (2 * math.pi) - math.pi))
+      local why = target.turned and ("; on this blade it is %.4g degrees from the tip: where the neck covers it, yaw = false goes without"):format(
+        from_tip) or ""
+      native.fail("NO_NOTCH", ("%d crossings of the wafer's notch (expected 4%s)"):format(#angles, why))
     end
     for _, angle in ipairs(angles) do
       local flank = math.abs(angle - sum / 4)
@@ -191,27 +196,64 @@ return function(native, patterns, lookup, arm, targets, stations)
     return sum / 4
   end
 
-  local function check(name, options)
-    local station = lookup.station(name)
+  local function check_options(options)
     if options ~= nil and type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
     for field, value in pairs(options or {}) do
-      if field == "keep" then
+      if field == "keep" or field == "yaw" then
         lookup.value(field, value, lookup.correct)
+      elseif field == "robot" then
+        lookup.robot(value)
       elseif field ~= "by" or value ~= "beam" and value ~= "touch" then
-        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\" or \"touch\", keep = true or false)"):format(
+        native.fail("BAD_ARGUMENT", ("%s: %s (expected by = \"beam\" or \"touch\", keep or yaw = true or false, robot = \"NAME\")"):format(
           lookup.quote(field), lookup.quote(value)))
       end
     end
-    local by = options and options.by or station.beams == 0 and station.block and "touch" or "beam"
-    if by == "beam" and station.beams == 0 then
-      native.fail("BAD_ARGUMENT", ("station: %s (expected one with beams at its door)"):format(
-        lookup.quote(name)))
-    elseif by == "touch" and not station.block then
-      native.fail("BAD_ARGUMENT", ("station: %s (expected one with a block)"):format(lookup.quote(name)))
+  end
+
+  local function has_beams(station)
+    for _, count in ipairs(station.beams) do
+      if count > 0 then
+        return true
+      end
     end
-    return station, by
+    return false
+  end
+
+  -- By beam or by touch, and of several robots the one that does it: by touch it is the one with the probe.
+  local function way_of(name, options)
+    local station = type(name) == "string" and native.layout.stations[name]
+    local own = type(options) == "table" and options or {}
+    local is_clear, robot = pcall(lookup.robot_for, name, own)
+    local sees = station and (is_clear and station.beams[robot] > 0 or not is_clear and has_beams(station))
+    local by = own.by or station and not sees and station.block and "touch" or "beam"
+    local toucher = by == "touch" and station and station.block and native.block(station.index).gripper
+    return by, not is_clear and own.robot == nil and not lookup.bound() and toucher
+      and native.layout.robots[native.layout.grippers[toucher].robot].name or own.robot, toucher
+  end
+
+  local function check_beam(station, robot)
+    if station.beams[robot] > 0 then
+      return
+    elseif not lookup.has_several() then
+      native.fail("BAD_ARGUMENT", ("station: %s (expected one with beams at its door)"):format(lookup.quote(station.name)))
+    end
+    local own = native.layout.robots[robot]
+    native.fail("BAD_ARGUMENT", own.is_usual
+      and ("station: %s (expected one with beams that %s passes on its way in)"):format(lookup.quote(station.name), own.name)
+      or ('robot: %s (expected one of kind "TRZY" without rail, tilt and flip)'):format(own.name))
+  end
+
+  local function check_touch(station, robot, toucher)
+    if not toucher then
+      native.fail("BAD_ARGUMENT", ("station: %s (expected one with a block)"):format(lookup.quote(station.name)))
+    end
+    local gripper = native.layout.grippers[toucher]
+    if gripper.robot ~= robot then
+      native.fail("BAD_ARGUMENT", ("robot: %s (expected %s: the probe is on %s)"):format(
+        native.layout.robots[robot].name, native.layout.robots[gripper.robot].name, gripper.name))
+    end
   end
 
   local touching = native.module("mcs/touching.lua")(native, patterns, lookup, arm, targets)
@@ -220,22 +262,40 @@ return function(native, patterns, lookup, arm, targets, stations)
     return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1]) + 0.0), math.deg(math.atan(R[2][1], R[1][1]))
   end
 
-  -- What a layout should say: the station's place, and its yaw by so much more than the guess.
-  local function result_of(station, guess, at, yaw)
+  local function key_of(name)
+    return name:match("^[%a_][%w_]*$") or ("[%q]"):format(name)
+  end
+
+  -- What a layout should say: the station's place, and its yaw by so much more than the guess. Of several robots the place
+  -- is where this one was taught it, and the yaw all theirs. Without `yaw` that is as it was.
+  local function result_of(station, robot, guess, at, yaw)
     local roll, pitch, heading = to_rpy(guess.R)
-    local result = { at = at, rpy = { roll, pitch, heading + math.deg(yaw) } }
-    result.text = ("%s = { at = { %.4f, %.4f, %.4f }, rpy = { %.5g, %.5g, %.4f } }"):format(
-      station.name:match("^[%a_][%w_]*$") or ("[%q]"):format(station.name), result.at[1], result.at[2],
-      result.at[3], roll, pitch, result.rpy[3])
+    local result = { at = at, rpy = { roll, pitch, heading + math.deg(yaw or 0) } }
+    local place = ("at = { %.4f, %.4f, %.4f }"):format(at[1], at[2], at[3])
+    local turn = yaw and ("rpy = { %.5g, %.5g, %.4f }"):format(roll, pitch, result.rpy[3])
+    if not lookup.has_several() then
+      result.text = ("%s = { %s }"):format(key_of(station.name), turn and place .. ", " .. turn or place)
+      return result
+    end
+    local own, before = native.way_in(station.index, robot)
+    if own and yaw then
+      local own_roll, own_pitch, own_heading = to_rpy(own.R)
+      local _, _, was = to_rpy(before.R)
+      result.own_rpy = { own_roll, own_pitch, own_heading + result.rpy[3] - was }
+      place = ("%s, rpy = { %.5g, %.5g, %.4f }"):format(place, own_roll, own_pitch, result.own_rpy[3])
+    end
+    result.robot = native.layout.robots[robot].name
+    result.text = ("%s = { %sby = { %s = { %s } } }"):format(key_of(station.name), turn and turn .. ", " or "",
+      key_of(result.robot), place)
     return result
   end
 
-  local function by_touch(name, station)
-    local guess, solved = touching(name, station, stations.shift(station, 1))
+  local function by_touch(name, station, robot)
+    local guess, solved = touching(name, station, stations.shift(station, robot))
     local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, guess.r[3] + solved.z }
-    local result = result_of(station, guess, at, solved.yaw)
+    local result = result_of(station, robot, guess, at, solved.yaw)
     result.sd, result.sd_yaw = { solved.sd_x, solved.sd_y, solved.sd_z }, math.deg(solved.sd_yaw)
-    return result
+    return result, solved.yaw
   end
 
   local function by_beam(station, target, beam, guess, z)
@@ -248,21 +308,31 @@ return function(native, patterns, lookup, arm, targets, stations)
       native.fail("CENTRE_NOT_SURE", "the crossings contradict each other")
     end
     local at = { guess.r[1] + solved.x, guess.r[2] + solved.y, z }
-    local result = result_of(station, guess, at, find_yaw(station, target, beam, solved))
+    local yaw = target.finds_yaw and find_yaw(station, target, beam, solved) or nil
+    local result = result_of(station, target.robot, guess, at, yaw)
     result.sd, result.beam = { solved.sd_x, solved.sd_y, STEP / math.sqrt(12) }, { solved.beam_x, solved.beam_y }
-    return result
+    return { result, yaw }
   end
 
   -- Where it was taken from: on a blade that draws wafers onto its pads it lies lower.
   local function put_back(name, target, z, felt)
     local height = (native.layout.seat and z or felt) - target.place.z
     local release = math.min(math.max(height, target.offset - target.stroke), target.offset)
-    target = targets.at("put", name, 1, { release = release, centre = false }, nil, "")
+    local options = { release = release, centre = false, robot = native.layout.robots[target.robot].name }
+    target = targets.at("put", name, 1, options, nil, "")
     arm.drive(arm.rehearse(patterns.put, target, true))
   end
 
-  local function with_wafer(name, station)
-    local target = targets.at("get", name, 1)
+  -- By how much a robot's own way in turns from the station's x, rad; false: it comes along that.
+  local function turned_by(place, believed)
+    local turned = place.heading - math.atan(believed.R[2][1], believed.R[1][1])
+    turned = (turned + math.pi) % (2 * math.pi) - math.pi
+    return math.abs(turned) > 1e-6 and turned
+  end
+
+  local function with_wafer(name, station, robot, finds_yaw)
+    local target = targets.at("get", name, 1, { robot = native.layout.robots[robot].name })
+    target.finds_yaw = finds_yaw
     if target.is_passive then
       local text = "gripper: %s (expected one with vacuum, whose sensor feels the wafer)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(native.layout.grippers[target.gripper].name)))
@@ -273,30 +343,58 @@ return function(native, patterns, lookup, arm, targets, stations)
     end
     local z, felt = feel(target)
     carry_out(target)
-    local beam = native.beam(station.index)
-    local guess = native.begin_teaching(station.index, stations.shift(station, 1))
-    local good, result = pcall(by_beam, station, target, beam, guess, z)
+    local beam = native.beam(station.index, target.gripper)
+    local guess, believed = native.begin_teaching(station.index, stations.shift(station, robot), target.gripper)
+    target.turned = turned_by(target.place, believed)
+    local good, result = pcall(by_beam, station, target, beam, guess, z + (guess.r[3] - believed.r[3]))
     if native.sensor(target.gripper) then
       put_back(name, target, z, felt)
     end
     if not good then
       error(result, 0)
     end
-    return result
+    return result[1], result[2]
   end
 
-  local function teach(name, options)
-    local station, by = check(name, options)
-    local result = by == "touch" and by_touch(name, station) or with_wafer(name, station)
+  local function teach(name, options, by, toucher)
+    local station = lookup.station(name)
+    check_options(options)
+    local robot = lookup.robot_for(station.name, options)
+    local finds_yaw = not options or options.yaw ~= false
+    if by == "touch" then
+      check_touch(station, robot, toucher)
+      if not finds_yaw then
+        native.fail("BAD_ARGUMENT", "yaw: false (expected true: touches always tell it)")
+      end
+    else
+      check_beam(station, robot)
+    end
+    local before = native.slot(station.index, 1, 0, 0, 0, 0, robot, stations.shift(station, robot), true)
+    local action = by == "touch" and by_touch or with_wafer
+    local result, yaw = action(name, station, robot, finds_yaw)
     if options and options.keep then
-      stations.learn(station, result.at, math.rad(result.rpy[3]))
+      local heading = lookup.has_several() and before.heading + (yaw or 0) or math.rad(result.rpy[3])
+      stations.learn(station, robot, result.at, heading)
     end
     return result
   end
 
+  -- The options with the robot that is meant.
+  local function with_robot(options, robot)
+    local all = {}
+    for field, value in pairs(type(options) == "table" and options or {}) do
+      all[field] = value
+    end
+    all.robot = robot
+    return type(options) == "table" and all or options == nil and robot and all or options
+  end
+
   -- Where the station truly is, by its beam and the wafer in its slot 1, or by its block: see lua/mcs/words.lua.
   return function(station, options)
-    lookup.refuse_for_several("TEACH")
-    return arm.move(arm.needs(true, station), lookup.command("TEACH", station), teach, station, options)
+    local by, robot, toucher = way_of(station, options)
+    options = with_robot(options, robot)
+    local needs = arm.needs(true, station, options)
+    needs.latches = true
+    return arm.move(needs, lookup.command("TEACH", station), teach, station, options, by, toucher)
   end
 end

@@ -17,7 +17,7 @@ return function(native, patterns, lookup, arm, targets)
   local FACES = { "towards the robot", "to the right", "upwards" }
 
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = false })
+    arm.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
   end
 
   -- A point of the station's frame in base, as motion control believes.
@@ -135,10 +135,12 @@ return function(native, patterns, lookup, arm, targets)
            leaves = true }
   end
 
-  -- What all touches tell: see native.solve_teaching. `target` is slot 1 as the blade with the probe takes it.
+  -- Where motion control has been told that the station is, and what all touches tell: see native.solve_teaching.
   return function(name, station, shift)
     local block = native.block(station.index)
-    block.station = native.begin_teaching(station.index, shift)
+    local told, believed = native.begin_teaching(station.index, shift, block.gripper)
+    block.station = believed
+    -- Slot 1 as the blade with the probe takes it.
     local target = targets.at("get", name, 1, nil, block.gripper)
     arm.check_free()
     if native.sensor(block.gripper) then
@@ -158,6 +160,6 @@ return function(native, patterns, lookup, arm, targets)
     if solved.error ~= 0 then
       native.fail("CENTRE_NOT_SURE", "the touches contradict each other")
     end
-    return block.station, solved
+    return told, solved
   end
 end

@@ -261,8 +261,9 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   end
 
   function transfer.put(station, slot, options)
-    local text = text_of("PUT", station, slot, options, "")
-    return arm.move(arm.needs(true, station, options), text, carry, "put", station, slot, options)
+    local text, needs = text_of("PUT", station, slot, options, ""), arm.needs(true, station, options)
+    needs.latches = targets.centres(station, needs.robot, options)
+    return arm.move(needs, text, carry, "put", station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------- SWAP
@@ -405,10 +406,10 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
     return nil, nil, before_slot(got)[arm.first_axis(got.target.gripper)]
   end
 
-  -- Plans a PUT that goes aside by what beams say. Returns the error of one that is refused, or nil.
-  function transfer.rehearse_centring(station, slot)
+  -- Plans a PUT with this gripper that goes aside by what beams say. Returns the error of one that is refused, or nil.
+  function transfer.rehearse_centring(station, slot, gripper)
     local can, problem = pcall(function()
-      arm.rehearse(patterns.put, targets.at("put", station, slot, nil, lookup.station(station).effector, ""))
+      arm.rehearse(patterns.put, targets.at("put", station, slot, nil, gripper, ""))
     end)
     return not can and problem or nil
   end
