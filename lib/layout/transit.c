@@ -104,15 +104,6 @@ wh_real_t wh_transit_least(const wh_layout_t *layout, size_t robot, wh_real_t ya
 
 /* ---------------------------------------------------------------------------------------------- segments */
 
-/* A gripper on the robot: of several robots a way is that of its gripper's. */
-static int32_t gripper_on(const wh_machine_t *machine, size_t robot) {
-    int32_t g = 0;
-    while (machine->mounts[g].axis != WH_NONE || machine->mounts[g].robot != robot) {
-        ++g;
-    }
-    return g;
-}
-
 static void keep_robot(const wh_layout_t *layout, size_t robot, const wh_real_t from[WH_ROBOT_AXES],
                        const wh_real_t to[WH_ROBOT_AXES], wh_segment_t *segment) {
     const bool turns = wh_real_abs(to[WH_AXIS_THETA] - from[WH_AXIS_THETA]) > 0 ||
@@ -122,7 +113,7 @@ static void keep_robot(const wh_layout_t *layout, size_t robot, const wh_real_t 
         if (from[WH_AXIS_R] > reach || to[WH_AXIS_R] > reach) {
             segment->kind = WH_SEGMENT_WAY;
             segment->reach = reach;
-            segment->gripper = layout->robot_count > 1 ? gripper_on(&layout->machine, robot) : WH_NONE;
+            segment->gripper = layout->robot_count > 1 ? wh_layout_first_gripper(layout, robot) : WH_NONE;
         }
     }
 }

@@ -221,22 +221,31 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
     lua_setfield(L, -2, "doors");
 }
 
-/* via: { { theta, r, z, yaw, blend }, ... }: of the axes those that the layout gives; rad, mm. */
-static void push_vias(lua_State *L, const wh_layout_station_t *station) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    lua_createtable(L, (int)station->via_count, 0);
-    for (size_t i = 0; i < station->via_count; ++i) {
-        const wh_layout_via_t *via = &station->vias[i];
-        lua_createtable(L, 0, WH_ROBOT_AXES + 1);
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-            if (via->is_given[axis]) {
-                wh_lua_set_number(L, names[axis], via->point.q[axis]);
-            }
+/* A point: of the robot's axes, by their number from 1, those that the layout gives, rad and mm; and blend. */
+static void push_via(lua_State *L, const wh_layout_via_t *via) {
+    lua_createtable(L, WH_ROBOT_AXES, 1);
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        if (via->is_given[axis]) {
+            lua_pushnumber(L, via->point.q[axis]);
+            lua_rawseti(L, -2, (lua_Integer)axis + 1);
         }
-        wh_lua_set_number(L, "blend", via->point.blend);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
-    lua_setfield(L, -2, "via");
+    wh_lua_set_number(L, "blend", via->point.blend);
+}
+
+/* vias: by robot the list of its points. */
+static void push_vias(lua_State *L, const wh_layout_t *layout, size_t station) {
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const wh_layout_vias_t *vias = wh_layout_vias_of(layout, station, r);
+        lua_createtable(L, (int)vias->count, 0);
+        for (size_t i = 0; i < vias->count; ++i) {
+            push_via(L, &vias->at[i]);
+            lua_rawseti(L, -2, (lua_Integer)i + 1);
+        }
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "vias");
 }
 
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
@@ -265,7 +274,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_index(L, "effector", station->effector);
     push_servers(L, layout, station);
     push_doors_of(L, layout, index);
-    push_vias(L, station);
+    push_vias(L, layout, index);
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "flipper", station->flipper);
     wh_lua_set_boolean(L, "taught", station->taught);

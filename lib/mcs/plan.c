@@ -109,39 +109,49 @@ static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *seg
     wh_mcs_read_numbers(L, lua_gettop(L), segment->target, mcs->layout->machine.axis_count);
 }
 
-/* True if an arm that turns from these axes to those leaves the layout's transit. */
-static bool leaves_transit(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[]) {
+/* True if a robot that turns from these axes of its own to those leaves its transit. */
+static bool leaves_transit(const wh_layout_t *layout, size_t robot, const wh_real_t from[],
+                           const wh_real_t to[]) {
     const bool turns = wh_real_abs(to[WH_AXIS_THETA] - from[WH_AXIS_THETA]) > 0 ||
                        wh_real_abs(to[WH_AXIS_YAW] - from[WH_AXIS_YAW]) > 0;
     const wh_real_t most = wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]);
-    return layout->robots[0].transit > 0 && turns &&
-           most > wh_transit_reach(layout, 0, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
+    return layout->robots[robot].transit > 0 && turns &&
+           most > wh_transit_reach(layout, robot, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
 }
 
 /* A leg that turns must be within the transit as a whole: by via points nothing comes in by itself. */
-static void check_legs(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
-    const wh_real_t *from = mcs->track.axes;
+static void check_legs(lua_State *L, wh_mcs_t *mcs, size_t robot, const wh_segment_t *segment) {
+    const wh_layout_t *layout = mcs->layout;
+    size_t first = 0;
+    (void)wh_machine_carrier(&layout->machine, robot, &first);
+    const wh_real_t *from = &mcs->track.axes[first];
     for (size_t i = 0; i <= segment->point_count; ++i) {
-        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : segment->target;
-        if (leaves_transit(mcs->layout, from, to)) {
+        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : &segment->target[first];
+        if (leaves_transit(layout, robot, from, to)) {
             char reason[WH_TRAVEL_BYTES];
             snprintf(
                 reason, sizeof reason,
-                "leg %zu by `via` turns with r at %.6g mm: beyond `robot.transit` of %.10g mm nothing may",
-                i + 1, wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]), mcs->layout->robots[0].transit);
+                "leg %zu by `via` turns with r at %.6g mm: beyond `%s%s.transit` of %.10g mm nothing may",
+                i + 1, wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]), layout->robot_count > 1 ? "robots." : "",
+                layout->robots[robot].name, layout->robots[robot].transit);
             refuse(L, mcs, WH_STATUS_OUT_OF_REACH, reason);
         }
         from = to;
     }
 }
 
-/* The request's `via`, a list of { theta, R, Z, yaw, blend }. False: it has none. */
+/* The request's `via`, a list of { theta, R, Z, yaw, blend }, and the `robot` that goes by it. False: it has
+ * none. */
 static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
     lua_settop(L, 1);
     if (lua_getfield(L, 1, "via") != LUA_TTABLE) {
         return false;
     }
+    lua_getfield(L, 2, "robot");
+    const size_t robot = (size_t)wh_mcs_index(L, -1, mcs->layout->robot_count);
+    lua_settop(L, 2);
     segment->kind = WH_SEGMENT_VIA;
+    segment->gripper = wh_layout_first_gripper(mcs->layout, robot);
     segment->points = mcs->via_points;
     segment->point_count = (size_t)lua_rawlen(L, -1);
     for (size_t i = 0; i < segment->point_count && i < WH_VIA_POINTS; ++i) {
@@ -155,7 +165,7 @@ static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
         lua_pop(L, 1);
     }
     lua_settop(L, 1);
-    check_legs(L, mcs, segment);
+    check_legs(L, mcs, robot, segment);
     return true;
 }
 

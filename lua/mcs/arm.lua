@@ -317,31 +317,33 @@ return function(native, lookup, centring, tasks, alarms)
     return axes
   end
 
-  local VIA_AXES = { "theta", "r", "z", "yaw" }
+  local VIA_AXES = 4
 
-  -- A station's point, as native.plan takes it: what it does not say of an axis is as at these axes.
-  local function via_point(via, axes)
+  -- A station's point, as native.plan takes it: what it does not say of the robot's axes is as at these axes.
+  local function via_point(via, first, axes)
     local point = {}
-    for index, name in ipairs(VIA_AXES) do
-      point[index] = via[name] or axes[index]
+    for index = 1, VIA_AXES do
+      point[index] = via[index] or axes[first + index - 1]
     end
-    point[#VIA_AXES + 1] = via.blend
+    point[VIA_AXES + 1] = via.blend
     return point
   end
 
-  -- The points between two stations, or none: back along those of the one, then along those of the other. `front` and
-  -- `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it ends.
-  local function vias_between(front, station, there)
-    local stations, here, points = native.layout.stations, native.axes(), {}
+  -- A robot's points between two stations, or none: back along those of the one, then along those of the other.
+  -- `front` and `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it
+  -- ends.
+  local function vias_between(robot, front, station, there)
+    local stations, here, points = native.layout.stations, native.axes(), { robot = robot }
+    local first = native.layout.robots[robot].first
     if front == station then
       return nil
     end
-    local back = front and stations[front].via or {}
+    local back = front and stations[front].vias[robot] or {}
     for index = #back, 1, -1 do
-      points[#points + 1] = via_point(back[index], here)
+      points[#points + 1] = via_point(back[index], first, here)
     end
-    for _, via in ipairs(station and stations[station].via or {}) do
-      points[#points + 1] = via_point(via, there)
+    for _, via in ipairs(station and stations[station].vias[robot] or {}) do
+      points[#points + 1] = via_point(via, first, there)
     end
     return #points > 0 and points or nil
   end
@@ -360,9 +362,11 @@ return function(native, lookup, centring, tasks, alarms)
         local is_left = theta > native.axes()[first]
         request.axes[first] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
       end
-      request.via = request.target and vias_between(front, request.target.station, request.axes) or nil
+      request.via = request.target
+        and vias_between(native.layout.grippers[request.to.gripper].robot, front, request.target.station, request.axes)
+        or nil
     elseif request.homeward then
-      request.via = vias_between(front, nil, request.axes)
+      request.via = vias_between(tasks.current().robot or 1, front, nil, request.axes)
     elseif request.line then
       request.gripper = request.gripper or request.target and request.target.gripper or target.gripper
     elseif request.moves then
