@@ -68,9 +68,9 @@ typedef struct {
 /* The most points of a station that an arm passes: on a way between two stations those of both. */
 #define WH_LAYOUT_VIAS 2
 
-/* One of them, by axes: theta, R, Z, yaw. */
+/* One of them, by the robot's own axes. */
 typedef struct {
-    bool is_given[WH_ROBOT_AXES]; /* false: as in front of the station */
+    bool is_given[WH_CARRIER_AXES]; /* false: as in front of the station */
     wh_via_point_t point;
 } wh_layout_via_t;
 

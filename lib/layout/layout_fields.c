@@ -311,6 +311,7 @@ const wh_reader_field_t wh_layout_via_fields[] = {
     {"r", NUMBER, "mm", false},
     {"z", NUMBER, "mm", false},
     {"yaw", NUMBER, "degrees", false},
+    {"rail", NUMBER, "mm", false},
     {"blend", NUMBER, "mm: how near the arm passes; 0: it stops there", false},
     END};
 

@@ -11,10 +11,23 @@ static const wh_carrier_t *carrier_of(const wh_layout_t *layout, size_t robot) {
     return layout->machine.carrier ? &layout->robots[robot].carrier : NULL;
 }
 
-/* Only a polar arm by itself goes by points, as it does within a circle. */
+/* Only a robot with one polar arm goes by points. */
 static bool goes_by_points(const wh_carrier_t *carrier) {
-    return !carrier || !(carrier->second || carrier->chain.kind == WH_CHAIN_SCARA ||
-                         carrier->chain.has_rail || carrier->chain.has_tilt || carrier->chain.has_flip);
+    return !carrier || !(carrier->second || carrier->chain.kind == WH_CHAIN_SCARA);
+}
+
+/* How many axes the robot has of its own. */
+static size_t axes_of(const wh_carrier_t *carrier) {
+    return carrier ? carrier->axis_count : WH_ROBOT_AXES;
+}
+
+/* The field that says where one of the robot's axes is at a point; null: none does. */
+static const char *field_of(const wh_carrier_t *carrier, size_t own) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
+    if (own < WH_ROBOT_AXES) {
+        return names[own];
+    }
+    return carrier->axes[own] == WH_CHAIN_RAIL ? "rail" : NULL;
 }
 
 /* Within its travel; angles in degrees. */
@@ -28,7 +41,6 @@ static wh_real_t read_axis(wh_reader_t *reader, const wh_layout_t *layout, size_
 }
 
 static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robot, wh_layout_via_t *via) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     const wh_carrier_t *carrier = carrier_of(layout, robot);
     size_t first = 0;
     bool is_any = false;
@@ -37,16 +49,20 @@ static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robo
     if (carrier && carrier->chain.kind == WH_CHAIN_TRZ) {
         wh_layout_refuse_field(reader, "yaw", "nothing: a robot of kind \"TRZ\" has no wrist");
     }
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        via->is_given[axis] = wh_reader_has(reader, names[axis]);
-        if (via->is_given[axis]) {
-            via->point.q[axis] = read_axis(reader, layout, first + axis, names[axis]);
+    if (!carrier || !carrier->chain.has_rail) {
+        wh_layout_refuse_field(reader, "rail", "nothing: the robot has no rail");
+    }
+    for (size_t own = 0; own < axes_of(carrier); ++own) {
+        const char *field = field_of(carrier, own);
+        via->is_given[own] = field && wh_reader_has(reader, field);
+        if (via->is_given[own]) {
+            via->point.q[own] = read_axis(reader, layout, first + own, field);
             is_any = true;
         }
     }
     via->point.blend = wh_reader_number(reader, "blend", USUAL_BLEND, 0, 1000);
     if (!is_any) {
-        wh_reader_fail(reader, NULL, "at least one of theta, r, z and yaw");
+        wh_reader_fail(reader, NULL, "at least one of theta, r, z, yaw and rail");
     }
 }
 
@@ -59,9 +75,7 @@ static void read_points(wh_reader_t *reader, const wh_layout_t *layout, size_t r
     (void)wh_reader_enter(reader, "via");
     vias->count = wh_reader_list(reader);
     if (!goes_by_points(carrier_of(layout, robot))) {
-        wh_reader_fail(reader, NULL,
-                       "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" without rail, tilt, flip and "
-                       "arms");
+        wh_reader_fail(reader, NULL, "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" with one arm");
     }
     if (vias->count > WH_LAYOUT_VIAS) {
         wh_reader_fail(reader, NULL, "at most %d points of a station", WH_LAYOUT_VIAS);
@@ -109,11 +123,11 @@ const wh_layout_vias_t *wh_layout_vias_of(const wh_layout_t *layout, size_t stat
     return at->by ? &at->by[robot].vias : &at->vias;
 }
 
-static uint64_t hash_points(uint64_t hash, const wh_layout_vias_t *vias, size_t station) {
+static uint64_t hash_points(uint64_t hash, const wh_layout_vias_t *vias, size_t station, size_t axis_count) {
     for (size_t i = 0; i < vias->count; ++i) {
         const wh_layout_via_t *via = &vias->at[i];
         hash = wh_hash_real(wh_hash_word(hash, station + 1), via->point.blend);
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        for (size_t axis = 0; axis < axis_count; ++axis) {
             hash = wh_hash_real(wh_hash_int(hash, via->is_given[axis] ? 1 : 0), via->point.q[axis]);
         }
     }
@@ -126,7 +140,7 @@ uint64_t wh_layout_hash_vias(uint64_t hash, const wh_layout_t *layout) {
         for (size_t r = 0; r < layout->robot_count; ++r) {
             const wh_layout_vias_t *vias = wh_layout_vias_of(layout, s, r);
             hash = vias->count > 0 && r > 0 ? wh_hash_word(hash, r) : hash;
-            hash = hash_points(hash, vias, s);
+            hash = hash_points(hash, vias, s, axes_of(carrier_of(layout, r)));
         }
     }
     return hash;

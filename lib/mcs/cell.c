@@ -223,8 +223,8 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
 
 /* A point: of the robot's axes, by their number from 1, those that the layout gives, rad and mm; and blend. */
 static void push_via(lua_State *L, const wh_layout_via_t *via) {
-    lua_createtable(L, WH_ROBOT_AXES, 1);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+    lua_createtable(L, WH_CARRIER_AXES, 1);
+    for (size_t axis = 0; axis < WH_CARRIER_AXES; ++axis) {
         if (via->is_given[axis]) {
             lua_pushnumber(L, via->point.q[axis]);
             lua_rawseti(L, -2, (lua_Integer)axis + 1);
@@ -341,8 +341,9 @@ static void push_door(lua_State *L, const wh_layout_t *layout, size_t door) {
     wh_lua_set_number(L, "timeout", layout->door_list[door].timeout);
 }
 
-/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns. */
-static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first) {
+/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns. With a
+ * transit they come in on its ways. */
+static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first, bool has_transit) {
     const bool is_wrist = carrier->chain.kind == WH_CHAIN_SCARA;
     lua_createtable(L, 2, 0);
     lua_pushinteger(L, (lua_Integer)first + (is_wrist ? WH_AXIS_YAW : WH_AXIS_R) + 1);
@@ -350,7 +351,7 @@ static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first) {
     lua_pushinteger(L, (lua_Integer)first + (lua_Integer)carrier->axis_count);
     lua_rawseti(L, -2, 2);
     lua_setfield(L, -2, "arms");
-    wh_lua_set_boolean(L, "retracts", !is_wrist);
+    wh_lua_set_boolean(L, "retracts", !is_wrist && !has_transit);
 }
 
 /* { name, first: the index of the robot's first axis, home: by its own axes, axes: of those that it has
@@ -379,7 +380,7 @@ static void push_robot(lua_State *L, const wh_layout_t *layout, size_t robot) {
     }
     lua_setfield(L, -2, "axes");
     if (carrier && carrier->second) {
-        push_arms(L, carrier, first);
+        push_arms(L, carrier, first, layout->robots[robot].transit > 0);
     }
 }
 

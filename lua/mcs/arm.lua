@@ -317,15 +317,12 @@ return function(native, lookup, centring, tasks, alarms)
     return axes
   end
 
-  local VIA_AXES = 4
-
   -- A station's point, as native.plan takes it: what it does not say of the robot's axes is as at these axes.
-  local function via_point(via, first, axes)
-    local point = {}
-    for index = 1, VIA_AXES do
-      point[index] = via[index] or axes[first + index - 1]
+  local function via_point(via, robot, axes)
+    local point = { blend = via.blend }
+    for index in ipairs(robot.home) do
+      point[index] = via[index] or axes[robot.first + index - 1]
     end
-    point[VIA_AXES + 1] = via.blend
     return point
   end
 
@@ -334,16 +331,16 @@ return function(native, lookup, centring, tasks, alarms)
   -- ends.
   local function vias_between(robot, front, station, there)
     local stations, here, points = native.layout.stations, native.axes(), { robot = robot }
-    local first = native.layout.robots[robot].first
+    local own = native.layout.robots[robot]
     if front == station then
       return nil
     end
     local back = front and stations[front].vias[robot] or {}
     for index = #back, 1, -1 do
-      points[#points + 1] = via_point(back[index], first, here)
+      points[#points + 1] = via_point(back[index], own, here)
     end
     for _, via in ipairs(station and stations[station].vias[robot] or {}) do
-      points[#points + 1] = via_point(via, first, there)
+      points[#points + 1] = via_point(via, own, there)
     end
     return #points > 0 and points or nil
   end

@@ -414,11 +414,12 @@ static void a_circle_is_kept(void **state) {
     for (int i = 0; i < 40; ++i) {
         const double from = wh_test_uniform(-5, 5);
         const double to = i % 4 == 0 ? from : from + wh_test_uniform(-7, 7);
-        const double reach = wh_transit_reach(layout, 0, from, to);
+        const wh_real_t begin[WH_ROBOT_AXES] = {0, 0, 0, from}, end[WH_ROBOT_AXES] = {1, 0, 0, to};
+        const double reach = wh_transit_reach(layout, 0, 0, begin, end);
         assert_true(reach > 300);
         assert_true(outermost_while_turning(layout, reach, from, to) <= 600 + 1e-6);
         assert_true(outermost_while_turning(layout, reach + 3, from, to) > 600);
-        const double least = wh_transit_least(layout, 0, from, to);
+        const double least = wh_transit_least(layout, 0, begin, end);
         assert_true(least >= outermost_while_turning(layout, 300, from, to) - 1e-6);
         assert_true(least <= outermost_while_turning(layout, 300, from, to) + 3);
     }
