@@ -17,5 +17,6 @@ return {
     A = around(0, not is_two and 500 or nil), B = around(90, not is_two and -300 or nil),
     C = around(180, not is_two and -300 or nil), D = around(-70, not is_two and 0 or nil),
   },
+  study = { placement = { dx = 0.05, dy = 0.05 } },
   wafers = { { name = "W1", station = "A", slot = 1 }, { name = "W2", station = "B", slot = 1 } },
 }
