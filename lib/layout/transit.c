@@ -86,7 +86,7 @@ static wh_real_t height_beside_axis(const look_t *look, wh_outline_t *outline, c
     return most;
 }
 
-/* While the blade turns over, a point is at most so far aside as it is from the flip's axis: on both sides. */
+/* While the blade turns over, a point is at most so far aside as it is from the flip's axis. */
 static void look_at_shape(look_t *look, wh_outline_t *outline, const wh_mount_t *mount,
                           const wh_convex_t *shape) {
     const wh_real_t grown = shape->kind == WH_CONVEX_BOX || shape->kind == WH_CONVEX_MESH ? 1 : ENCLOSING;

@@ -221,7 +221,7 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
     lua_setfield(L, -2, "doors");
 }
 
-/* A point: of the robot's axes, by their number from 1, those that the layout gives, rad and mm; and blend. */
+/* A point: of the robot's axes, by number from 1, those that the layout gives, rad and mm; and blend. */
 static void push_via(lua_State *L, const wh_layout_via_t *via) {
     lua_createtable(L, WH_CARRIER_AXES, 1);
     for (size_t axis = 0; axis < WH_CARRIER_AXES; ++axis) {
@@ -341,8 +341,8 @@ static void push_door(lua_State *L, const wh_layout_t *layout, size_t door) {
     wh_lua_set_number(L, "timeout", layout->door_list[door].timeout);
 }
 
-/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns. With a
- * transit they come in on its ways. */
+/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns.
+ * With a transit they come in on its ways. */
 static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first, bool has_transit) {
     const bool is_wrist = carrier->chain.kind == WH_CHAIN_SCARA;
     lua_createtable(L, 2, 0);

@@ -1,5 +1,5 @@
-/* A polar arm's axes as ways move them (motion/way.h, motion/via.h): theta, R, Z, yaw, and what a carrier has more,
- * in its order. */
+/* A polar arm's axes as ways move them (motion/way.h, motion/via.h): theta, R, Z, yaw, and what a carrier has
+ * more, in its order. */
 #ifndef WH_MOTION_POLAR_H
 #define WH_MOTION_POLAR_H
 

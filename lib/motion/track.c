@@ -202,8 +202,8 @@ static void take_robot(const wh_machine_t *machine, size_t number, wh_polar_t *r
     robot->inner[1] = robot->inner[0];
 }
 
-/* A way, by via points or not, is of a polar robot's own axes; chucks and other robots go in segments of their
- * own. */
+/* A way, by via points or not, is of a polar robot's own axes; chucks and other robots go in segments of
+ * their own. */
 static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, wh_polar_t *robot,
                       size_t *first) {
     const size_t number = robot_of(track->machine, segment);

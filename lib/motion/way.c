@@ -139,7 +139,7 @@ static wh_status_t find_legs(const trip_t *task, legs_t *legs) {
     return search.status == WH_OK ? plan_legs(task, search.inner, legs) : search.status;
 }
 
-/* ------------------------------------------------------------------------------------------------ all axes */
+/* ---------------------------------------------------------------------------------------------- all axes */
 
 /* A way that is being planned. */
 typedef struct {
@@ -277,6 +277,26 @@ static wh_status_t complete(plan_t *plan) {
     return status;
 }
 
+static bool are_finite(const wh_real_t values[], size_t count) {
+    bool good = true;
+    for (size_t i = 0; i < count; ++i) {
+        good = good && wh_real_is_finite(values[i]);
+    }
+    return good;
+}
+
+static wh_status_t check_reach(const wh_polar_t *robot, const wh_real_t reach[]) {
+    const size_t arms = robot->second > 0 ? WH_POLAR_ARMS : 1;
+    if (!are_finite(reach, arms)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    bool is_below = false;
+    for (size_t arm = 0; arm < arms; ++arm) {
+        is_below = is_below || reach[arm] < robot->inner[arm] - WH_SLACK_MM;
+    }
+    return is_below ? WH_STATUS_OUT_OF_REACH : WH_OK;
+}
+
 static wh_status_t check(const wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
                          const wh_real_t to[], const wh_real_t reach[]) {
     if (way == NULL || robot == NULL || from == NULL || to == NULL || reach == NULL) {
@@ -285,21 +305,10 @@ static wh_status_t check(const wh_way_t *way, const wh_polar_t *robot, const wh_
     if (!wh_polar_is_sound(robot)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    for (size_t axis = 0; axis < robot->axis_count; ++axis) {
-        if (!wh_real_is_finite(from[axis]) || !wh_real_is_finite(to[axis])) {
-            return WH_STATUS_NOT_FINITE;
-        }
+    if (!are_finite(from, robot->axis_count) || !are_finite(to, robot->axis_count)) {
+        return WH_STATUS_NOT_FINITE;
     }
-    const size_t arms = robot->second > 0 ? WH_POLAR_ARMS : 1;
-    for (size_t arm = 0; arm < arms; ++arm) {
-        if (!wh_real_is_finite(reach[arm])) {
-            return WH_STATUS_NOT_FINITE;
-        }
-        if (reach[arm] < robot->inner[arm] - WH_SLACK_MM) {
-            return WH_STATUS_OUT_OF_REACH;
-        }
-    }
-    return WH_OK;
+    return check_reach(robot, reach);
 }
 
 wh_status_t wh_way_plan_polar(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],

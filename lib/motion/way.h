@@ -14,10 +14,10 @@
  *
  * If R begins and ends at or below `reach`, all axes move at once, from the first instant to the last.
  *
- * A rail turns with theta and yaw: it moves while the arm is in. Tilts and a flip go all along, as Z does. Of two
- * arms each comes in to a reach of its own: what turns begins when both are in, and ends when the first of
- * them goes out; one that is in at both ends goes all along. Their inner positions are searched for in turn,
- * three times each, each with the other one as it was found last.
+ * A rail turns with theta and yaw: it moves while the arm is in. Tilts and a flip go all along, as Z does. Of
+ * two arms each comes in to a reach of its own: what turns begins when both are in, and ends when the first
+ * of them goes out; one that is in at both ends goes all along. Their inner positions are searched for in
+ * turn, three times each, each with the other one as it was found last.
  *
  * A way is a plain struct without pointers: copy it freely. All functions are reentrant.
  */
@@ -59,8 +59,8 @@ wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t 
                         const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach) WH_SYMBOL(wh_way_plan);
 
 /* The same for a robot with other axes; of one with a single arm, reach[1] does not count. Also
- * WH_STATUS_OUT_OF_RANGE for a robot that wh_polar_is_sound does not pass. Cost: about 40 us, of two arms that both
- * leave the circle 240 us. */
+ * WH_STATUS_OUT_OF_RANGE for a robot that wh_polar_is_sound does not pass. Cost: about 40 us, of two arms
+ * that both leave the circle 240 us. */
 wh_status_t wh_way_plan_polar(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
                               const wh_real_t to[], const wh_real_t reach[WH_POLAR_ARMS])
     WH_SYMBOL(wh_way_plan_polar);
@@ -70,8 +70,8 @@ static inline wh_real_t wh_way_duration(const wh_way_t *way) {
     return way->duration;
 }
 
-/* Writes the axes, as many as it was planned for, at `t` seconds after the start: exactly `from` for t <= 0 (and
- * NaN), exactly `to` from the duration on. No pointer may be null. Cost: about 30 ns. */
+/* Writes the axes, as many as it was planned for, at `t` seconds after the start: exactly `from` for t <= 0
+ * (and NaN), exactly `to` from the duration on. No pointer may be null. Cost: about 30 ns. */
 void wh_way_at(const wh_way_t *way, wh_real_t t, wh_real_t q[]) WH_SYMBOL(wh_way_at);
 
 WH_HEADER_END

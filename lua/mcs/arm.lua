@@ -482,6 +482,15 @@ return function(native, lookup, centring, tasks, alarms)
     return does
   end
 
+  -- True if the robot's arm does not stay where it is: chucks and doors are not its own, and a flip turns the blade there.
+  local function goes_away(request, robot)
+    local now, goes = native.axes(), request.line ~= nil
+    for _, axis in ipairs(request.axes and native.layout.robots[robot or tasks.current().robot or 1].axes or {}) do
+      goes = goes or axis.name ~= "flip" and request.axes[axis.index] ~= now[axis.index]
+    end
+    return goes
+  end
+
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
   -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
   -- whatever its sensor says; a controller would look.
@@ -501,18 +510,16 @@ return function(native, lookup, centring, tasks, alarms)
       centring.begin(request.enters)
     end
     alarms.begin_motion(running[tasks.current()])
-    local front = state.front
-    if request.to or request.homeward then
+    local segment = request.planned or segment_of(request, target, state.front)
+    if request.to or request.homeward or not request.target and goes_away(request, target.robot) then
       state.front = nil   -- one that is stopped ends somewhere between
     end
-    local ended, lost = tasks.play(request.planned or segment_of(request, target, front))
+    local ended, lost = tasks.play(segment)
     if request.leaves then
       state.inside = nil
     end
     if request.to or request.leaves then
       state.front = request.target and request.target.station
-    elseif not request.target and (request.axes or request.line) then
-      state.front = nil
     end
     if lost and lost ~= request.lets_go and target.watched then
       local name, at = native.layout.grippers[lost].name, request.target
