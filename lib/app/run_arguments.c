@@ -291,7 +291,7 @@ static const char *segments_expect(const wh_layout_t *layout) {
         return WH_AXES_USUAL;
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        if (layout->stations[s].via_count > 0) {
+        if (layout->stations[s].vias.count > 0) {
             return "a layout without `via`";
         }
     }

@@ -66,6 +66,21 @@ typedef struct {
     const wh_part_list_t *urdf; /* its links' parts from a URDF; null: the usual ones of shapes.h */
 } wh_layout_robot_t;
 
+/* The most points of a station that an arm passes: on a way between two stations those of both. */
+#define WH_LAYOUT_VIAS 2
+
+/* One of them, by the robot's own axes. */
+typedef struct {
+    bool is_given[WH_CARRIER_AXES]; /* false: as in front of the station */
+    wh_via_point_t point;
+} wh_layout_via_t;
+
+/* All of them, from the way to the station on. */
+typedef struct {
+    size_t count;
+    wh_layout_via_t at[WH_LAYOUT_VIAS];
+} wh_layout_vias_t;
+
 /* How one of several robots comes to a station. */
 typedef struct {
     bool serves;      /* the layout says so, or the robot alone decides by its reach */
@@ -80,6 +95,7 @@ typedef struct {
     wh_vec3_t aside;
     int32_t first_beam, beam_count; /* those of the station's beams that it passes on its way in */
     bool centre;                    /* a PUT of it corrects by what these say */
+    wh_layout_vias_t vias;
 } wh_layout_approach_t;
 
 /* The order in which the valves switch when a chuck and an end-effector pass a wafer on. */
@@ -119,15 +135,6 @@ typedef struct {
     wh_beam_stuck_t stuck;
 } wh_layout_probe_t;
 
-/* The most points of a station that an arm passes: on a way between two stations those of both. */
-#define WH_LAYOUT_VIAS 2
-
-/* One of them, by axes: theta, R, Z, yaw. */
-typedef struct {
-    bool is_given[WH_ROBOT_AXES]; /* false: as in front of the station */
-    wh_via_point_t point;
-} wh_layout_via_t;
-
 /* The station parameters that GET and PUT use. The geometry is in wh_layout_t.places at the same index. */
 typedef struct {
     char name[WH_NAME_SIZE];
@@ -157,11 +164,10 @@ typedef struct {
     wh_station_face_t face; /* as wafers must lie there */
     bool centre;            /* a PUT corrects by what the station's beams say */
     wh_layout_block_t block;
-    double rail;      /* where the robot's rail stands for it, mm */
-    wh_elbow_t elbow; /* and a SCARA's elbow */
-    int32_t door;     /* that wafers come through, or WH_NONE */
-    size_t via_count; /* from the way to the station on */
-    wh_layout_via_t vias[WH_LAYOUT_VIAS];
+    double rail;           /* where the robot's rail stands for it, mm */
+    wh_elbow_t elbow;      /* and a SCARA's elbow */
+    int32_t door;          /* that wafers come through, or WH_NONE */
+    wh_layout_vias_t vias; /* with one robot */
     /* With several robots: how each comes there, and who serves the station unless a command says otherwise;
      * WH_NONE: a command must say. Else null and 0. */
     wh_layout_approach_t *by;
@@ -307,6 +313,12 @@ int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station);
 
 /* The door of a station for a robot, or WH_NONE. */
 int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot);
+
+/* A robot's first gripper: each has one. */
+int32_t wh_layout_first_gripper(const wh_layout_t *layout, size_t robot);
+
+/* The points that a robot passes on its way to a station. */
+const wh_layout_vias_t *wh_layout_vias_of(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* The edge sensors as a simulator takes them: a view of the layout. */
 wh_scanning_t wh_layout_scanning(const wh_layout_t *layout);

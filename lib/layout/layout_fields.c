@@ -292,6 +292,7 @@ const wh_reader_field_t wh_layout_approach_fields[] = {
     {"rail", NUMBER, "mm: where its rail stands for it", false},
     {"elbow", "\"left\"|\"right\"", "the side of a SCARA's elbow there", false},
     {"door", "string", "the door through which it comes, by name", false},
+    {"via", "waferhand.via[]", "where it passes on its way there, and back on its way away", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_fields[] = {
@@ -313,6 +314,7 @@ const wh_reader_field_t wh_layout_via_fields[] = {
     {"r", NUMBER, "mm", false},
     {"z", NUMBER, "mm", false},
     {"yaw", NUMBER, "degrees", false},
+    {"rail", NUMBER, "mm", false},
     {"blend", NUMBER, "mm: how near the arm passes; 0: it stops there", false},
     END};
 

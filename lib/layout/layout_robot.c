@@ -99,14 +99,11 @@ static void refuse_scara(wh_reader_t *reader) {
     }
 }
 
-/* A transit, unless the robot is as simple as one takes. */
+/* A robot that tilts, or has an elbow, keeps no circle. */
 static void refuse_transit(wh_reader_t *reader, wh_chain_kind_t kind) {
-    if (kind == WH_CHAIN_SCARA || wh_reader_has(reader, "rail") || wh_reader_has(reader, "tilt") ||
-        wh_reader_has(reader, "flip") || wh_reader_has(reader, "arms")) {
-        wh_layout_refuse_field(
-            reader, "transit",
-            "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" without rail, tilt, flip and "
-            "arms");
+    if (kind == WH_CHAIN_SCARA || wh_reader_has(reader, "tilt")) {
+        wh_layout_refuse_field(reader, "transit",
+                               "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" without tilt");
     }
 }
 

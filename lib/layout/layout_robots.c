@@ -158,8 +158,7 @@ void wh_layout_read_approach(wh_reader_t *reader, const wh_layout_t *layout, siz
     }
 }
 
-/* A robot's first gripper. */
-static int32_t first_gripper(const wh_layout_t *layout, size_t robot) {
+int32_t wh_layout_first_gripper(const wh_layout_t *layout, size_t robot) {
     size_t g = 0;
     while (layout->grippers[g].station != WH_NONE || layout->machine.mounts[g].robot != robot) {
         ++g;
@@ -204,7 +203,7 @@ static size_t find_servers(wh_reader_t *reader, const wh_layout_t *layout, size_
     for (size_t r = 0; r < layout->robot_count; ++r) {
         wh_layout_approach_t *approach = &station->by[r];
         const bool is_named = wh_reader_has(reader, "effector") && named == r;
-        approach->effector = is_named ? station->effector : first_gripper(layout, r);
+        approach->effector = is_named ? station->effector : wh_layout_first_gripper(layout, r);
         approach->serves = is_by ? approach->serves : reaches(layout, s, approach);
         count += approach->serves ? 1 : 0;
         station->robot = approach->serves ? (int32_t)r : station->robot;

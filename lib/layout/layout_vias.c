@@ -1,67 +1,104 @@
-/* The points that the arm passes on its way to a station, and back on its way away. */
+/* The points that an arm passes on its way to a station, and back on its way away. */
 #include "../math/hash.h"
 #include "../math/trig.h"
+#include "axes.h"
 #include "layout_internal.h"
 
 #define USUAL_BLEND 50
 
-/* Only a polar arm by itself goes by points, as it does within a circle. */
-static bool goes_by_points(const wh_layout_t *layout) {
-    const wh_carrier_t *carrier = layout->machine.carrier;
-    return !carrier || !(carrier->next || carrier->second || carrier->chain.kind == WH_CHAIN_SCARA ||
-                         carrier->chain.has_rail || carrier->chain.has_tilt || carrier->chain.has_flip);
+/* A robot's carrier; null: it is that of motion/robot.h. */
+static const wh_carrier_t *carrier_of(const wh_layout_t *layout, size_t robot) {
+    return layout->machine.carrier ? &layout->robots[robot].carrier : NULL;
+}
+
+/* Only a robot with one polar arm goes by points. */
+static bool goes_by_points(const wh_carrier_t *carrier) {
+    return !carrier || !(carrier->second || carrier->chain.kind == WH_CHAIN_SCARA);
+}
+
+/* How many axes the robot has of its own. */
+static size_t axes_of(const wh_carrier_t *carrier) {
+    return carrier ? carrier->axis_count : WH_ROBOT_AXES;
+}
+
+/* The field that says where one of the robot's axes is at a point; null: none does. */
+static const char *field_of(const wh_carrier_t *carrier, size_t own) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
+    if (own < WH_ROBOT_AXES) {
+        return names[own];
+    }
+    return carrier->axes[own] == WH_CHAIN_RAIL ? "rail" : NULL;
 }
 
 /* Within its travel; angles in degrees. */
 static wh_real_t read_axis(wh_reader_t *reader, const wh_layout_t *layout, size_t axis, const char *name) {
     const wh_travel_t *travel = wh_machine_travel(&layout->machine, axis);
-    if (axis != WH_AXIS_THETA && axis != WH_AXIS_YAW) {
+    if (!wh_axis_turns(&layout->machine, axis)) {
         return wh_reader_number(reader, name, 0, travel->min, travel->max);
     }
     return wh_rad_from_deg(
         wh_reader_number(reader, name, 0, wh_deg_from_rad(travel->min), wh_deg_from_rad(travel->max)));
 }
 
-static void read_via(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_via_t *via) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    const wh_carrier_t *carrier = layout->machine.carrier;
+static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robot, wh_layout_via_t *via) {
+    const wh_carrier_t *carrier = carrier_of(layout, robot);
+    size_t first = 0;
     bool is_any = false;
+    (void)wh_machine_carrier(&layout->machine, robot, &first);
     wh_reader_refuse_unknown(reader, wh_layout_via_fields);
     if (carrier && carrier->chain.kind == WH_CHAIN_TRZ) {
         wh_layout_refuse_field(reader, "yaw", "nothing: a robot of kind \"TRZ\" has no wrist");
     }
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        via->is_given[axis] = wh_reader_has(reader, names[axis]);
-        if (via->is_given[axis]) {
-            via->point.q[axis] = read_axis(reader, layout, axis, names[axis]);
+    if (!carrier || !carrier->chain.has_rail) {
+        wh_layout_refuse_field(reader, "rail", "nothing: the robot has no rail");
+    }
+    for (size_t own = 0; own < axes_of(carrier); ++own) {
+        const char *field = field_of(carrier, own);
+        via->is_given[own] = field && wh_reader_has(reader, field);
+        if (via->is_given[own]) {
+            via->point.q[own] = read_axis(reader, layout, first + own, field);
             is_any = true;
         }
     }
     via->point.blend = wh_reader_number(reader, "blend", USUAL_BLEND, 0, 1000);
     if (!is_any) {
-        wh_reader_fail(reader, NULL, "at least one of theta, r, z and yaw");
+        wh_reader_fail(reader, NULL, "at least one of theta, r, z, yaw and rail");
     }
 }
 
-static void read_station(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
+/* `via` of the station, or of the robot's own part of it, at which the reader is. */
+static void read_points(wh_reader_t *reader, const wh_layout_t *layout, size_t robot,
+                        wh_layout_vias_t *vias) {
     if (!wh_reader_has(reader, "via")) {
         return;
     }
     (void)wh_reader_enter(reader, "via");
-    station->via_count = wh_reader_list(reader);
-    if (!goes_by_points(layout)) {
-        wh_reader_fail(
-            reader, NULL,
-            "nothing: it is for one robot of kind \"TRZY\" or \"TRZ\" without rail, tilt, flip and "
-            "arms");
+    vias->count = wh_reader_list(reader);
+    if (!goes_by_points(carrier_of(layout, robot))) {
+        wh_reader_fail(reader, NULL, "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" with one arm");
     }
-    if (station->via_count > WH_LAYOUT_VIAS) {
+    if (vias->count > WH_LAYOUT_VIAS) {
         wh_reader_fail(reader, NULL, "at most %d points of a station", WH_LAYOUT_VIAS);
     }
-    for (size_t i = 0; i < station->via_count; ++i) {
+    for (size_t i = 0; i < vias->count; ++i) {
         wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        read_via(reader, layout, &station->vias[i]);
+        read_via(reader, layout, robot, &vias->at[i]);
         wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+}
+
+/* With several robots each has its own points: a point is where its axes stand. */
+static void read_by(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
+    wh_layout_refuse_field(reader, "via", "nothing: with several robots `by` says it of each");
+    if (!wh_reader_enter(reader, "by")) {
+        return;
+    }
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        if (wh_reader_enter(reader, layout->robots[r].name)) {
+            read_points(reader, layout, r, &station->by[r].vias);
+            wh_reader_leave(reader);
+        }
     }
     wh_reader_leave(reader);
 }
@@ -69,22 +106,41 @@ static void read_station(wh_reader_t *reader, const wh_layout_t *layout, wh_layo
 void wh_layout_read_vias(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_enter(reader, "stations");
     for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_reader_enter(reader, layout->stations[s].name);
-        read_station(reader, layout, &layout->stations[s]);
+        wh_layout_station_t *station = &layout->stations[s];
+        wh_reader_enter(reader, station->name);
+        if (station->by) {
+            read_by(reader, layout, station);
+        } else {
+            read_points(reader, layout, 0, &station->vias);
+        }
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
 }
 
+const wh_layout_vias_t *wh_layout_vias_of(const wh_layout_t *layout, size_t station, size_t robot) {
+    const wh_layout_station_t *at = &layout->stations[station];
+    return at->by ? &at->by[robot].vias : &at->vias;
+}
+
+static uint64_t hash_points(uint64_t hash, const wh_layout_vias_t *vias, size_t station, size_t axis_count) {
+    for (size_t i = 0; i < vias->count; ++i) {
+        const wh_layout_via_t *via = &vias->at[i];
+        hash = wh_hash_real(wh_hash_word(hash, station + 1), via->point.blend);
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            hash = wh_hash_real(wh_hash_int(hash, via->is_given[axis] ? 1 : 0), via->point.q[axis]);
+        }
+    }
+    return hash;
+}
+
+/* Of the first robot as of one that is alone. */
 uint64_t wh_layout_hash_vias(uint64_t hash, const wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
-        const wh_layout_station_t *station = &layout->stations[s];
-        for (size_t i = 0; i < station->via_count; ++i) {
-            const wh_layout_via_t *via = &station->vias[i];
-            hash = wh_hash_real(wh_hash_word(hash, s + 1), via->point.blend);
-            for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-                hash = wh_hash_real(wh_hash_int(hash, via->is_given[axis] ? 1 : 0), via->point.q[axis]);
-            }
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            const wh_layout_vias_t *vias = wh_layout_vias_of(layout, s, r);
+            hash = vias->count > 0 && r > 0 ? wh_hash_word(hash, r) : hash;
+            hash = hash_points(hash, vias, s, axes_of(carrier_of(layout, r)));
         }
     }
     return hash;

@@ -221,22 +221,31 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
     lua_setfield(L, -2, "doors");
 }
 
-/* via: { { theta, r, z, yaw, blend }, ... }: of the axes those that the layout gives; rad, mm. */
-static void push_vias(lua_State *L, const wh_layout_station_t *station) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    lua_createtable(L, (int)station->via_count, 0);
-    for (size_t i = 0; i < station->via_count; ++i) {
-        const wh_layout_via_t *via = &station->vias[i];
-        lua_createtable(L, 0, WH_ROBOT_AXES + 1);
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-            if (via->is_given[axis]) {
-                wh_lua_set_number(L, names[axis], via->point.q[axis]);
-            }
+/* A point: of the robot's axes, by number from 1, those that the layout gives, rad and mm; and blend. */
+static void push_via(lua_State *L, const wh_layout_via_t *via) {
+    lua_createtable(L, WH_CARRIER_AXES, 1);
+    for (size_t axis = 0; axis < WH_CARRIER_AXES; ++axis) {
+        if (via->is_given[axis]) {
+            lua_pushnumber(L, via->point.q[axis]);
+            lua_rawseti(L, -2, (lua_Integer)axis + 1);
         }
-        wh_lua_set_number(L, "blend", via->point.blend);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
-    lua_setfield(L, -2, "via");
+    wh_lua_set_number(L, "blend", via->point.blend);
+}
+
+/* vias: by robot the list of its points. */
+static void push_vias(lua_State *L, const wh_layout_t *layout, size_t station) {
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const wh_layout_vias_t *vias = wh_layout_vias_of(layout, station, r);
+        lua_createtable(L, (int)vias->count, 0);
+        for (size_t i = 0; i < vias->count; ++i) {
+            push_via(L, &vias->at[i]);
+            lua_rawseti(L, -2, (lua_Integer)i + 1);
+        }
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "vias");
 }
 
 /* beams: by robot how many of the station's it passes on its way in; centres: if a PUT of it corrects by what
@@ -280,7 +289,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_index(L, "effector", station->effector);
     push_servers(L, layout, station);
     push_doors_of(L, layout, index);
-    push_vias(L, station);
+    push_vias(L, layout, index);
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "flipper", station->flipper);
     wh_lua_set_boolean(L, "taught", station->taught);
@@ -346,8 +355,9 @@ static void push_door(lua_State *L, const wh_layout_t *layout, size_t door) {
     wh_lua_set_number(L, "timeout", layout->door_list[door].timeout);
 }
 
-/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns. */
-static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first) {
+/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns.
+ * With a transit they come in on its ways. */
+static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first, bool has_transit) {
     const bool is_wrist = carrier->chain.kind == WH_CHAIN_SCARA;
     lua_createtable(L, 2, 0);
     lua_pushinteger(L, (lua_Integer)first + (is_wrist ? WH_AXIS_YAW : WH_AXIS_R) + 1);
@@ -355,7 +365,7 @@ static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first) {
     lua_pushinteger(L, (lua_Integer)first + (lua_Integer)carrier->axis_count);
     lua_rawseti(L, -2, 2);
     lua_setfield(L, -2, "arms");
-    wh_lua_set_boolean(L, "retracts", !is_wrist);
+    wh_lua_set_boolean(L, "retracts", !is_wrist && !has_transit);
 }
 
 /* { name, first: the index of the robot's first axis, home: by its own axes, axes: of those that it has
@@ -385,7 +395,7 @@ static void push_robot(lua_State *L, const wh_layout_t *layout, size_t robot) {
     }
     lua_setfield(L, -2, "axes");
     if (carrier && carrier->second) {
-        push_arms(L, carrier, first);
+        push_arms(L, carrier, first, layout->robots[robot].transit > 0);
     }
 }
 

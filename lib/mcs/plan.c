@@ -109,53 +109,62 @@ static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *seg
     wh_mcs_read_numbers(L, lua_gettop(L), segment->target, mcs->layout->machine.axis_count);
 }
 
-/* True if an arm that turns from these axes to those leaves the layout's transit. */
-static bool leaves_transit(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[]) {
-    const bool turns = wh_real_abs(to[WH_AXIS_THETA] - from[WH_AXIS_THETA]) > 0 ||
-                       wh_real_abs(to[WH_AXIS_YAW] - from[WH_AXIS_YAW]) > 0;
-    const wh_real_t most = wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]);
-    return layout->robots[0].transit > 0 && turns &&
-           most > wh_transit_reach(layout, 0, from[WH_AXIS_YAW], to[WH_AXIS_YAW]);
-}
-
 /* A leg that turns must be within the transit as a whole: by via points nothing comes in by itself. */
-static void check_legs(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
-    const wh_real_t *from = mcs->track.axes;
+static void check_legs(lua_State *L, wh_mcs_t *mcs, size_t robot, const wh_segment_t *segment) {
+    const wh_layout_t *layout = mcs->layout;
+    size_t first = 0;
+    (void)wh_machine_carrier(&layout->machine, robot, &first);
+    const wh_real_t *from = &mcs->track.axes[first];
     for (size_t i = 0; i <= segment->point_count; ++i) {
-        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : segment->target;
-        if (leaves_transit(mcs->layout, from, to)) {
+        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : &segment->target[first];
+        wh_transit_t transit;
+        if (wh_transit_leaves(layout, robot, from, to, &transit)) {
             char reason[WH_TRAVEL_BYTES];
             snprintf(
                 reason, sizeof reason,
-                "leg %zu by `via` turns with r at %.6g mm: beyond `robot.transit` of %.10g mm nothing may",
-                i + 1, wh_real_max(from[WH_AXIS_R], to[WH_AXIS_R]), mcs->layout->robots[0].transit);
+                "leg %zu by `via` turns with r at %.6g mm: beyond `%s%s.transit` of %.10g mm nothing may",
+                i + 1, transit.r, layout->robot_count > 1 ? "robots." : "", layout->robots[robot].name,
+                layout->robots[robot].transit);
             refuse(L, mcs, WH_STATUS_OUT_OF_REACH, reason);
         }
         from = to;
     }
 }
 
-/* The request's `via`, a list of { theta, R, Z, yaw, blend }. False: it has none. */
+/* A point at the top of the stack: the robot's own axes in order, and `blend`. */
+static void read_point(lua_State *L, wh_via_point_t *point, size_t axis_count) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
+        point->q[axis] = luaL_checknumber(L, -1);
+        lua_pop(L, 1);
+    }
+    lua_getfield(L, -1, "blend");
+    point->blend = luaL_checknumber(L, -1);
+    lua_pop(L, 1);
+}
+
+/* The request's `via`, a list of points, and the `robot` that goes by them. False: it has none. */
 static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
     lua_settop(L, 1);
     if (lua_getfield(L, 1, "via") != LUA_TTABLE) {
         return false;
     }
+    lua_getfield(L, 2, "robot");
+    const size_t robot = (size_t)wh_mcs_index(L, -1, mcs->layout->robot_count);
+    lua_settop(L, 2);
+    size_t first;
+    const wh_carrier_t *carrier = wh_machine_carrier(&mcs->layout->machine, robot, &first);
     segment->kind = WH_SEGMENT_VIA;
+    segment->gripper = wh_layout_first_gripper(mcs->layout, robot);
     segment->points = mcs->via_points;
     segment->point_count = (size_t)lua_rawlen(L, -1);
     for (size_t i = 0; i < segment->point_count && i < WH_VIA_POINTS; ++i) {
         lua_rawgeti(L, 2, (lua_Integer)i + 1);
-        for (size_t axis = 0; axis <= WH_ROBOT_AXES; ++axis) {
-            lua_rawgeti(L, 3, (lua_Integer)axis + 1);
-            *(axis < WH_ROBOT_AXES ? &mcs->via_points[i].q[axis] : &mcs->via_points[i].blend) =
-                luaL_checknumber(L, -1);
-            lua_pop(L, 1);
-        }
+        read_point(L, &mcs->via_points[i], carrier ? carrier->axis_count : WH_ROBOT_AXES);
         lua_pop(L, 1);
     }
     lua_settop(L, 1);
-    check_legs(L, mcs, segment);
+    check_legs(L, mcs, robot, segment);
     return true;
 }
 

@@ -46,6 +46,7 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     segment.seconds = 0;
     segment.gripper = WH_NONE;
     segment.reach = 0;
+    segment.reach2 = 0;
     segment.points = NULL;
     segment.point_count = 0;
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
@@ -184,45 +185,55 @@ static wh_status_t plan_wait(wh_track_t *track, const wh_segment_t *segment) {
     return WH_OK;
 }
 
-/* A way, by via points or not, is of theta, R, Z and yaw of a polar arm; rails, tilts and chucks go in
- * segments of their own. The robot's axes begin at `first`. */
-static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, size_t *first) {
-    const size_t robot = robot_of(track->machine, segment);
-    if (robot == SIZE_MAX) {
+/* A robot's axes as ways take them, beginning at `first`. A second arm's R is the last one. */
+static void take_robot(const wh_machine_t *machine, size_t number, wh_polar_t *robot, size_t *first) {
+    const wh_carrier_t *carrier = wh_machine_carrier(machine, number, first);
+    *robot = wh_polar_from_robot(&machine->robot);
+    if (!carrier) {
+        return;
+    }
+    robot->axis_count = carrier->axis_count;
+    for (size_t own = 0; own < carrier->axis_count; ++own) {
+        robot->limits[own] = *wh_machine_limits(machine, *first + own);
+        robot->rail = carrier->axes[own] == WH_CHAIN_RAIL ? own : robot->rail;
+    }
+    robot->second = carrier->second ? carrier->axis_count - 1 : 0;
+    robot->inner[0] = carrier->chain.travel[WH_CHAIN_REACH].min;
+    robot->inner[1] = robot->inner[0];
+}
+
+/* A way, by via points or not, is of a polar robot's own axes; chucks and other robots go in segments of
+ * their own. */
+static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, wh_polar_t *robot,
+                      size_t *first) {
+    const size_t number = robot_of(track->machine, segment);
+    if (number == SIZE_MAX) {
         return false;
     }
-    const wh_carrier_t *carrier = wh_machine_carrier(track->machine, robot, first);
+    take_robot(track->machine, number, robot, first);
+    const wh_carrier_t *carrier = wh_machine_carrier(track->machine, number, first);
     bool fits = !(carrier && carrier->chain.kind == WH_CHAIN_SCARA);
     for (size_t axis = 0; axis < track->machine->axis_count; ++axis) {
-        const bool is_its = axis >= *first && axis < *first + WH_ROBOT_AXES;
+        const bool is_its = axis >= *first && axis < *first + robot->axis_count;
         fits = fits && (is_its || !(wh_real_abs(segment->target[axis] - track->axes[axis]) > 0));
     }
     return fits;
 }
 
-/* The first four axes of the robot that begins at `first`, as ways take them. */
-static wh_robot_t way_robot(const wh_machine_t *machine, size_t first) {
-    wh_robot_t robot = machine->robot;
-    for (size_t axis = 0; first > 0 && axis < WH_ROBOT_AXES; ++axis) {
-        robot.travel[axis] = *wh_machine_travel(machine, first + axis);
-        robot.limits[axis] = *wh_machine_limits(machine, first + axis);
-    }
-    return robot;
-}
-
 static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
     const wh_status_t travel = wh_machine_check_travel(track->machine, segment->target);
+    wh_polar_t robot;
     size_t first = 0;
     if (travel != WH_OK) {
         return travel;
     }
-    if (!track->ways || !goes_ways(track, segment, &first)) {
+    if (!track->ways || !goes_ways(track, segment, &robot, &first)) {
         return WH_STATUS_BAD_SEGMENT;
     }
-    const wh_robot_t robot = way_robot(track->machine, first);
+    const wh_real_t reach[WH_POLAR_ARMS] = {segment->reach, segment->reach2};
     wh_way_t way;
     const wh_status_t status =
-        track->ways->plan(&way, &robot, &track->axes[first], &segment->target[first], segment->reach);
+        track->ways->plan(&way, &robot, &track->axes[first], &segment->target[first], reach);
     if (status == WH_OK && wh_way_duration(&way) > MAX_SECONDS) {
         return WH_STATUS_BAD_SEGMENT;
     }
@@ -233,28 +244,29 @@ static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
     return status;
 }
 
-/* Each point is one where the axes may be; `first` is the robot's first axis. */
-static wh_status_t check_points(const wh_track_t *track, const wh_segment_t *segment, size_t first) {
+/* Each point is one where the robot's axes may be, which are `count` from `first` on. */
+static wh_status_t check_points(const wh_track_t *track, const wh_segment_t *segment, size_t first,
+                                size_t count) {
     wh_real_t axes[WH_AXES];
     wh_status_t status = wh_machine_check_travel(track->machine, segment->target);
     memcpy(axes, track->axes, sizeof axes);
     for (size_t i = 0; status == WH_OK && i < segment->point_count; ++i) {
-        memcpy(&axes[first], segment->points[i].q, sizeof segment->points[i].q);
+        memcpy(&axes[first], segment->points[i].q, count * sizeof axes[0]);
         status = wh_machine_check_travel(track->machine, axes);
     }
     return status;
 }
 
 static wh_status_t plan_via(wh_track_t *track, const wh_segment_t *segment) {
+    wh_polar_t robot;
     size_t first = 0;
-    if (!track->vias || !segment->points || !goes_ways(track, segment, &first)) {
+    if (!track->vias || !segment->points || !goes_ways(track, segment, &robot, &first)) {
         return WH_STATUS_BAD_SEGMENT;
     }
-    wh_status_t status = check_points(track, segment, first);
+    wh_status_t status = check_points(track, segment, first, robot.axis_count);
     if (status != WH_OK) {
         return status;
     }
-    const wh_robot_t robot = way_robot(track->machine, first);
     wh_via_t via;
     status = track->vias->plan(&via, &robot, &track->axes[first], segment->points, segment->point_count,
                                &segment->target[first]);

@@ -16,6 +16,7 @@
 
 #include "line.h"
 #include "machine.h"
+#include "polar.h"
 #include "via.h"
 #include "way.h"
 
@@ -28,7 +29,7 @@ typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_VALVES, /* valves change; lasts one slice */
     WH_SEGMENT_DWELL,  /* everything stands still for `seconds`, rounded up to whole slices */
     WH_SEGMENT_SENSOR, /* stand still until the sensor of `gripper` is on, at most `seconds` */
-    WH_SEGMENT_WAY,    /* a robot's axes go to target[], R coming in to `reach` while theta and yaw turn */
+    WH_SEGMENT_WAY,    /* a robot's axes go to target[], R coming in to `reach` while it turns */
     WH_SEGMENT_VIA     /* a robot's axes go to target[] by way of `points` */
 } wh_segment_kind_t;
 
@@ -43,7 +44,7 @@ typedef struct {
     /* SENSOR; with several robots or arms, LINE and WAY: any gripper on the one that goes, WH_NONE: the
      * first */
     int32_t gripper;
-    wh_real_t reach; /* WAY: mm, see motion/way.h */
+    wh_real_t reach, reach2; /* WAY: mm, and of a second arm; see motion/way.h */
     /* VIA: the caller's, read by wh_track_begin alone; see motion/via.h */
     const wh_via_point_t *points;
     size_t point_count;
@@ -57,16 +58,16 @@ typedef enum WH_FOUR_BYTES {
 
 /* What a track needs for ways; see wh_track_take_ways. */
 typedef struct {
-    wh_status_t (*plan)(wh_way_t *way, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
-                        const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach);
-    void (*at)(const wh_way_t *way, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]);
+    wh_status_t (*plan)(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[], const wh_real_t to[],
+                        const wh_real_t reach[WH_POLAR_ARMS]);
+    void (*at)(const wh_way_t *way, wh_real_t t, wh_real_t q[]);
 } wh_ways_t;
 
 /* What a track needs for via points; see wh_track_take_vias. */
 typedef struct {
-    wh_status_t (*plan)(wh_via_t *via, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
-                        const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES]);
-    void (*at)(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]);
+    wh_status_t (*plan)(wh_via_t *via, const wh_polar_t *robot, const wh_real_t from[],
+                        const wh_via_point_t points[], size_t count, const wh_real_t to[]);
+    void (*at)(const wh_via_t *via, wh_real_t t, wh_real_t q[]);
 } wh_vias_t;
 
 /* Callers read axes, valves and slice; the rest is the track's own. */
@@ -111,7 +112,7 @@ wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
  *   WH_STATUS_BAD_SEGMENT     a WAY or VIA of a track that takes none, of a SCARA, or one that moves other
- *                             axes than the robot's first four; a VIA's points, as wh_via_plan says; a
+ *                             axes than the robot's own; a VIA's points, as wh_via_plan says; a
  *                             robot's gripper that is on a chuck; kind, gripper, valve, speed, acceleration
  *                             or seconds out of range; a motion of over 1e6 s
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R or the elbow outside its travel, at a VIA's point, too

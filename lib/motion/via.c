@@ -29,8 +29,8 @@ static void shape(const wh_via_t *via, size_t leg, size_t axis, wh_profile_t *pr
 
 /* Two legs of which the second begins `overlap` before the end of the first. */
 typedef struct {
-    const wh_robot_t *robot;
-    wh_profile_t first[WH_ROBOT_AXES], second[WH_ROBOT_AXES];
+    const wh_polar_t *robot;
+    wh_profile_t first[WH_CARRIER_AXES], second[WH_CARRIER_AXES];
     const wh_via_point_t *point;
     wh_real_t overlap;
 } corner_t;
@@ -114,42 +114,44 @@ static bool axis_keeps_limits(const corner_t *corner, size_t axis) {
     return good;
 }
 
-static wh_vec3_t place_of(const wh_real_t q[]) {
+/* Where R's end is, in the robot's frame. */
+static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[]) {
     wh_real_t s;
     wh_real_t c;
     wh_sin_cos(q[WH_AXIS_THETA], &s, &c);
-    return wh_vec3(q[WH_AXIS_R] * c, q[WH_AXIS_R] * s, q[WH_AXIS_Z]);
+    const wh_real_t rail = robot->rail > 0 ? q[robot->rail] : 0;
+    return wh_vec3(q[WH_AXIS_R] * c + rail, q[WH_AXIS_R] * s, q[WH_AXIS_Z]);
 }
 
 /* True if R's end is near the point where the second leg begins, or where the first one ends. */
 static bool is_near(const corner_t *corner, bool is_second) {
-    wh_real_t q[WH_ROBOT_AXES];
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+    wh_real_t q[WH_CARRIER_AXES];
+    for (size_t axis = 0; axis < corner->robot->axis_count; ++axis) {
         const wh_profile_t *first = &corner->first[axis];
         const wh_real_t left =
             is_second ? wh_profile_position(&corner->second[axis], corner->overlap)
                       : wh_profile_position(first, first->duration - corner->overlap) - first->distance;
         q[axis] = corner->point->q[axis] + left;
     }
-    const wh_vec3_t there = place_of(q);
-    const wh_vec3_t point = place_of(corner->point->q);
+    const wh_vec3_t there = place_of(corner->robot, q);
+    const wh_vec3_t point = place_of(corner->robot, corner->point->q);
     const wh_vec3_t apart = wh_vec3_subtract(&there, &point);
     return wh_vec3_norm(&apart) <= corner->point->blend;
 }
 
 static bool fits(const corner_t *corner) {
     bool good = is_near(corner, false) && is_near(corner, true);
-    for (size_t axis = 0; good && axis < WH_ROBOT_AXES; ++axis) {
+    for (size_t axis = 0; good && axis < corner->robot->axis_count; ++axis) {
         good = axis_keeps_limits(corner, axis);
     }
     return good;
 }
 
 /* The leg begins so long before the end of the one before it. */
-static wh_real_t find_overlap(const wh_via_t *via, const wh_robot_t *robot, size_t leg,
+static wh_real_t find_overlap(const wh_via_t *via, const wh_polar_t *robot, size_t leg,
                               const wh_via_point_t *point) {
     corner_t corner = {.robot = robot, .point = point};
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+    for (size_t axis = 0; axis < robot->axis_count; ++axis) {
         shape(via, leg - 1, axis, &corner.first[axis]);
         shape(via, leg, axis, &corner.second[axis]);
     }
@@ -168,8 +170,8 @@ static wh_real_t find_overlap(const wh_via_t *via, const wh_robot_t *robot, size
 /* ----------------------------------------------------------------------------------------------- planning */
 
 /* Each leg from 0 to its duration. */
-static wh_status_t plan_leg(wh_via_t *via, const wh_robot_t *robot, size_t leg) {
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+static wh_status_t plan_leg(wh_via_t *via, const wh_polar_t *robot, size_t leg) {
+    for (size_t axis = 0; axis < robot->axis_count; ++axis) {
         wh_profile_t alone;
         const wh_status_t status =
             wh_profile_plan(&alone, via->at[leg + 1][axis] - via->at[leg][axis], &robot->limits[axis]);
@@ -187,7 +189,7 @@ static wh_status_t plan_leg(wh_via_t *via, const wh_robot_t *robot, size_t leg) 
 static bool are_finite(const wh_via_t *via) {
     bool good = true;
     for (size_t i = 0; i <= via->legs; ++i) {
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        for (size_t axis = 0; axis < via->axis_count; ++axis) {
             good = good && wh_real_is_finite(via->at[i][axis]);
         }
     }
@@ -203,18 +205,20 @@ static bool are_blends(const wh_via_point_t points[], size_t count) {
 }
 
 /* Where legs begin and end. */
-static void take_points(wh_via_t *via, const wh_real_t from[], const wh_via_point_t points[], size_t count,
-                        const wh_real_t to[]) {
+static void take_points(wh_via_t *via, size_t axis_count, const wh_real_t from[],
+                        const wh_via_point_t points[], size_t count, const wh_real_t to[]) {
+    const size_t size = axis_count * sizeof *from;
     memset(via, 0, sizeof *via);
+    via->axis_count = axis_count;
     via->legs = count + 1;
-    memcpy(via->at[0], from, sizeof via->at[0]);
+    memcpy(via->at[0], from, size);
     for (size_t i = 0; i < count; ++i) {
-        memcpy(via->at[i + 1], points[i].q, sizeof via->at[0]);
+        memcpy(via->at[i + 1], points[i].q, size);
     }
-    memcpy(via->at[count + 1], to, sizeof via->at[0]);
+    memcpy(via->at[count + 1], to, size);
 }
 
-static wh_status_t plan_legs(wh_via_t *via, const wh_robot_t *robot, const wh_via_point_t points[]) {
+static wh_status_t plan_legs(wh_via_t *via, const wh_polar_t *robot, const wh_via_point_t points[]) {
     wh_status_t status = WH_OK;
     for (size_t leg = 0; status == WH_OK && leg < via->legs; ++leg) {
         status = plan_leg(via, robot, leg);
@@ -227,16 +231,16 @@ static wh_status_t plan_legs(wh_via_t *via, const wh_robot_t *robot, const wh_vi
     return status;
 }
 
-wh_status_t wh_via_plan(wh_via_t *via, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
-                        const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES]) {
+wh_status_t wh_via_plan_polar(wh_via_t *via, const wh_polar_t *robot, const wh_real_t from[],
+                              const wh_via_point_t points[], size_t count, const wh_real_t to[]) {
     if (!via || !robot || !from || !points || !to) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!are_blends(points, count)) {
+    if (!wh_polar_is_sound(robot) || !are_blends(points, count)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     wh_via_t planned;
-    take_points(&planned, from, points, count, to);
+    take_points(&planned, robot->axis_count, from, points, count, to);
     const wh_status_t status =
         are_finite(&planned) ? plan_legs(&planned, robot, points) : WH_STATUS_NOT_FINITE;
     if (status == WH_OK) {
@@ -245,16 +249,25 @@ wh_status_t wh_via_plan(wh_via_t *via, const wh_robot_t *robot, const wh_real_t 
     return status;
 }
 
-void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) {
+wh_status_t wh_via_plan(wh_via_t *via, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
+                        const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES]) {
+    if (!robot) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_polar_t polar = wh_polar_from_robot(robot);
+    return wh_via_plan_polar(via, &polar, from, points, count, to);
+}
+
+void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[]) {
     if (t >= wh_via_duration(via)) {
-        memcpy(q, via->at[via->legs], sizeof via->at[0]);
+        memcpy(q, via->at[via->legs], via->axis_count * sizeof *q);
         return;
     }
     size_t leg = 0;
     while (leg + 1 < via->legs && t >= via->end[leg]) {
         ++leg;
     }
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+    for (size_t axis = 0; axis < via->axis_count; ++axis) {
         wh_profile_t profile;
         shape(via, leg, axis, &profile);
         q[axis] = via->at[leg][axis] + wh_profile_position(&profile, t - via->begin[leg]);
@@ -266,6 +279,6 @@ void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) {
 }
 
 void wh_track_take_vias(wh_track_t *track) {
-    static const wh_vias_t vias = {wh_via_plan, wh_via_at};
+    static const wh_vias_t vias = {wh_via_plan_polar, wh_via_at};
     track->vias = &vias;
 }

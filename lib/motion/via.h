@@ -8,13 +8,13 @@
  * of both together keep each axis's limits: that is looked at phase by phase, not sampled. Of 64 overlaps, up
  * to half of either leg, the longest that keeps all this is taken; if none does, the arm stops at the point.
  *
- * For theta, R, Z and yaw of a polar arm. A way is a plain struct without pointers: copy it freely. All
- * functions are reentrant.
+ * For a polar arm, with all axes that it has: all go along, and the end that passes a point is that of the
+ * first arm's R. A way is a plain struct without pointers: copy it freely. All functions are reentrant.
  */
 #ifndef WH_MOTION_VIA_H
 #define WH_MOTION_VIA_H
 
-#include "robot.h"
+#include "polar.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(via);
@@ -24,16 +24,17 @@ WH_REFUSE_PACKING(via);
 #define WH_VIA_LEGS (WH_VIA_POINTS + 1)
 
 typedef struct {
-    wh_real_t q[WH_ROBOT_AXES]; /* rad, mm */
-    wh_real_t blend;            /* mm; 0: the arm stops there */
+    wh_real_t q[WH_CARRIER_AXES]; /* rad, mm */
+    wh_real_t blend;              /* mm; 0: the arm stops there */
 } wh_via_point_t;
 
-/* A planned way. Written by wh_via_plan only; reading its fields is fine. Times are s after the start. */
+/* A planned way. Written by wh_via_plan and wh_via_plan_polar only; reading its fields is fine. Times are s
+ * after the start. */
 typedef struct {
-    size_t legs;
+    size_t axis_count, legs;
     wh_real_t begin[WH_VIA_LEGS], end[WH_VIA_LEGS];
-    wh_real_t at[WH_VIA_LEGS + 1][WH_ROBOT_AXES];   /* where legs begin and end */
-    wh_real_t times[WH_VIA_LEGS][WH_ROBOT_AXES][3]; /* of each profile alone: jerk, rise and duration */
+    wh_real_t at[WH_VIA_LEGS + 1][WH_CARRIER_AXES];   /* where legs begin and end */
+    wh_real_t times[WH_VIA_LEGS][WH_CARRIER_AXES][3]; /* of each profile alone: jerk, rise and duration */
 } wh_via_t;
 
 /* Plans the way from axes `from` by these points to axes `to`, at rest at both ends. The robot must pass
@@ -47,14 +48,20 @@ wh_status_t wh_via_plan(wh_via_t *via, const wh_robot_t *robot, const wh_real_t 
                         const wh_via_point_t points[], size_t count, const wh_real_t to[WH_ROBOT_AXES])
     WH_SYMBOL(wh_via_plan);
 
+/* The same for a robot with other axes. Also WH_STATUS_OUT_OF_RANGE for one that wh_polar_is_sound does not
+ * pass. Cost: linear in the axes. */
+wh_status_t wh_via_plan_polar(wh_via_t *via, const wh_polar_t *robot, const wh_real_t from[],
+                              const wh_via_point_t points[], size_t count, const wh_real_t to[])
+    WH_SYMBOL(wh_via_plan_polar);
+
 /* s, never negative. */
 static inline wh_real_t wh_via_duration(const wh_via_t *via) {
     return via->end[via->legs - 1];
 }
 
-/* Writes the axes at `t` seconds after the start: exactly `from` for t <= 0 (and NaN), exactly `to` from the
- * duration on. No pointer may be null. Cost: about 200 ns. */
-void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_via_at);
+/* Writes the axes, as many as it was planned for, at `t` seconds after the start: exactly `from` for t <= 0
+ * (and NaN), exactly `to` from the duration on. No pointer may be null. Cost: about 200 ns. */
+void wh_via_at(const wh_via_t *via, wh_real_t t, wh_real_t q[]) WH_SYMBOL(wh_via_at);
 
 WH_HEADER_END
 

@@ -7,6 +7,7 @@
 #define POSITIONS 32 /* of the first search */
 #define CUTS 24      /* of golden section */
 #define HALVINGS 60  /* of a time: less than rounding */
+#define ROUNDS 3     /* of a search for two arms, in turn */
 
 /* What the search compares: a leg in and a leg out by way of an inner position. */
 typedef struct {
@@ -15,11 +16,13 @@ typedef struct {
     wh_real_t goes_out; /* s after the leg out has begun, when R is at `reach` again */
 } legs_t;
 
-/* What is to be found a way for. */
+/* What is to be found a way for: an arm. */
 typedef struct {
-    const wh_limits_t *limits; /* of R */
-    wh_real_t from, to, reach; /* mm */
-    wh_real_t turn;            /* s that theta and yaw need at least */
+    const wh_limits_t *limits;        /* of its R */
+    wh_real_t from, to, reach, least; /* mm */
+    wh_real_t turn;                   /* s that the axes which turn need at least */
+    wh_real_t others_in;   /* s after the start, when the other arm has come in; 0: there is none */
+    wh_real_t others_tail; /* s that the other arm takes yet once it has left the circle */
 } trip_t;
 
 /* When a profile from `begin` passes `place`, which lies between its ends. */
@@ -51,17 +54,32 @@ static wh_status_t plan_legs(const trip_t *task, wh_real_t inner, legs_t *legs) 
     return status;
 }
 
+/* How long the turn takes from when the arm is in: it also waits for the other arm. */
+static wh_real_t turn_of(const trip_t *task, const legs_t *legs) {
+    return task->turn + (wh_real_max(legs->came_in, task->others_in) - legs->came_in);
+}
+
 /* How long R waits at its inner position. */
 static wh_real_t wait_of(const trip_t *task, const legs_t *legs) {
     const wh_real_t inside = (legs->in.duration - legs->came_in) + legs->goes_out;
-    return task->turn > inside ? task->turn - inside : 0;
+    const wh_real_t turn = turn_of(task, legs);
+    return turn > inside ? turn - inside : 0;
+}
+
+/* How long the arm takes; if the other one goes out, until that has come to its end, too. */
+static wh_real_t lasts(const trip_t *task, const legs_t *legs) {
+    const wh_real_t own = legs->in.duration + wait_of(task, legs) + legs->out.duration;
+    if (task->others_tail > 0) {
+        return wh_real_max(own, legs->came_in + turn_of(task, legs) + task->others_tail);
+    }
+    return own;
 }
 
 static wh_real_t duration_of(const trip_t *task, wh_real_t inner, legs_t *legs, wh_status_t *status) {
     if (*status == WH_OK) {
         *status = plan_legs(task, inner, legs);
     }
-    return *status == WH_OK ? legs->in.duration + wait_of(task, legs) + legs->out.duration : 0;
+    return *status == WH_OK ? lasts(task, legs) : 0;
 }
 
 /* The best inner position so far. */
@@ -113,105 +131,209 @@ static void try_between(inner_t *search, wh_real_t least, wh_real_t most) {
     }
 }
 
-static wh_status_t plan_alone(wh_profile_t *profile, const wh_robot_t *robot, const wh_real_t from[],
-                              const wh_real_t to[], size_t axis) {
-    return wh_profile_plan(profile, to[axis] - from[axis], &robot->limits[axis]);
+/* The legs of the shortest duration. */
+static wh_status_t find_legs(const trip_t *task, legs_t *legs) {
+    inner_t search = {task, task->reach, (wh_real_t)FLT_MAX, WH_OK};
+    try_ends(&search);
+    try_between(&search, task->least < task->reach ? task->least : task->reach, task->reach);
+    return search.status == WH_OK ? plan_legs(task, search.inner, legs) : search.status;
+}
+
+/* ---------------------------------------------------------------------------------------------- all axes */
+
+/* A way that is being planned. */
+typedef struct {
+    wh_way_t *way;
+    const wh_polar_t *robot;
+    wh_real_t turn, along; /* s that those axes need at least */
+    size_t count;          /* of arms that leave the circle */
+    size_t axes[WH_POLAR_ARMS];
+    trip_t trips[WH_POLAR_ARMS];
+    legs_t legs[WH_POLAR_ARMS];
+} plan_t;
+
+static bool turns(const wh_polar_t *robot, size_t axis) {
+    return axis == WH_AXIS_THETA || axis == WH_AXIS_YAW || (axis == robot->rail && robot->rail > 0);
+}
+
+/* Each axis as it is alone. */
+static wh_status_t plan_alone(plan_t *plan) {
+    wh_way_t *way = plan->way;
+    wh_status_t status = WH_OK;
+    for (size_t axis = 0; status == WH_OK && axis < way->axis_count; ++axis) {
+        const wh_real_t distance = way->to[axis] - way->from[axis];
+        status = wh_profile_plan(&way->profiles[axis], distance, &plan->robot->limits[axis]);
+    }
+    return status;
+}
+
+/* True for an arm that leaves the circle. */
+static bool is_out(const plan_t *plan, size_t axis) {
+    bool found = false;
+    for (size_t i = 0; i < plan->count; ++i) {
+        found = found || plan->axes[i] == axis;
+    }
+    return found;
+}
+
+/* How long the axes need that turn, and those that go all along. */
+static void take_times(plan_t *plan) {
+    for (size_t axis = 0; axis < plan->way->axis_count; ++axis) {
+        const wh_real_t alone = plan->way->profiles[axis].duration;
+        if (turns(plan->robot, axis)) {
+            plan->turn = wh_real_max(plan->turn, alone);
+        } else if (!is_out(plan, axis)) {
+            plan->along = wh_real_max(plan->along, alone);
+        }
+    }
+}
+
+static void take_arms(plan_t *plan, const wh_real_t reach[]) {
+    const size_t axes[WH_POLAR_ARMS] = {WH_AXIS_R, plan->robot->second};
+    for (size_t arm = 0; arm < WH_POLAR_ARMS; ++arm) {
+        const size_t axis = axes[arm];
+        const wh_real_t from = plan->way->from[axis];
+        const wh_real_t to = plan->way->to[axis];
+        if (axis > 0 && (from > reach[arm] || to > reach[arm])) {
+            const trip_t trip = {.limits = &plan->robot->limits[axis],
+                                 .from = from,
+                                 .to = to,
+                                 .reach = reach[arm],
+                                 .least = plan->robot->inner[arm]};
+            plan->trips[plan->count] = trip;
+            plan->axes[plan->count] = axis;
+            ++plan->count;
+        }
+    }
+}
+
+/* Two arms in turn, each with the other one as it was found last. */
+static wh_status_t find_all_legs(plan_t *plan) {
+    wh_status_t status = WH_OK;
+    const size_t rounds = plan->count > 1 ? ROUNDS : 1;
+    for (size_t i = 0; status == WH_OK && i < rounds * plan->count; ++i) {
+        const size_t arm = i % plan->count;
+        plan->trips[arm].turn = plan->turn;
+        status = find_legs(&plan->trips[arm], &plan->legs[arm]);
+        if (status == WH_OK && plan->count > 1) {
+            const legs_t *legs = &plan->legs[arm];
+            plan->trips[1 - arm].others_in = legs->came_in;
+            plan->trips[1 - arm].others_tail = legs->out.duration - legs->goes_out;
+        }
+    }
+    return status;
+}
+
+/* Of an arm that leaves the circle: it waits for the turn, for what goes all along, and for the other arm. */
+static void place_arm(plan_t *plan, size_t arm) {
+    const legs_t *legs = &plan->legs[arm];
+    wh_way_out_t *out = &plan->way->outs[arm];
+    wh_real_t whole = plan->along;
+    if (plan->count > 1) {
+        whole = wh_real_max(whole, lasts(&plan->trips[1 - arm], &plan->legs[1 - arm]));
+    }
+    const wh_real_t alone = legs->in.duration + legs->out.duration;
+    const wh_real_t waits = wh_real_max(wait_of(&plan->trips[arm], legs), whole - alone);
+    plan->way->profiles[plan->axes[arm]] = legs->in;
+    out->axis = plan->axes[arm];
+    out->profile = legs->out;
+    out->begin = legs->in.duration + wh_real_max(waits, 0);
+}
+
+/* Between when all arms are in and when the first of them goes out; without any the whole way. */
+static void place_arms(plan_t *plan, wh_real_t *turn_begin, wh_real_t *turn_end) {
+    wh_way_t *way = plan->way;
+    way->out_count = plan->count;
+    way->duration = plan->count > 0 ? 0 : wh_real_max(plan->along, plan->turn);
+    *turn_begin = 0;
+    *turn_end = plan->count > 0 ? (wh_real_t)FLT_MAX : way->duration;
+    for (size_t arm = 0; arm < plan->count; ++arm) {
+        place_arm(plan, arm);
+        const wh_real_t end = way->outs[arm].begin + plan->legs[arm].goes_out;
+        way->duration = wh_real_max(way->duration, way->outs[arm].begin + way->outs[arm].profile.duration);
+        *turn_begin = wh_real_max(*turn_begin, plan->legs[arm].came_in);
+        *turn_end = end < *turn_end ? end : *turn_end;
+    }
 }
 
 static wh_status_t stretch(wh_profile_t *profile, wh_real_t duration) {
     return duration > profile->duration ? wh_profile_stretch(profile, duration) : WH_OK;
 }
 
-/* Theta, yaw and Z as they are alone, and how long the turn takes at least. */
-static wh_status_t plan_turn(wh_way_t *way, const wh_robot_t *robot, wh_real_t *turn) {
-    wh_status_t status = plan_alone(&way->theta, robot, way->from, way->to, WH_AXIS_THETA);
-    if (status == WH_OK) {
-        status = plan_alone(&way->yaw, robot, way->from, way->to, WH_AXIS_YAW);
+static wh_status_t complete(plan_t *plan) {
+    wh_way_t *way = plan->way;
+    wh_real_t turn_begin;
+    wh_real_t turn_end;
+    wh_status_t status = WH_OK;
+    place_arms(plan, &turn_begin, &turn_end);
+    for (size_t axis = 0; status == WH_OK && axis < way->axis_count; ++axis) {
+        if (turns(plan->robot, axis)) {
+            way->begins[axis] = turn_begin;
+            status = stretch(&way->profiles[axis], turn_end - turn_begin);
+        } else if (!is_out(plan, axis)) {
+            status = stretch(&way->profiles[axis], way->duration);
+        }
     }
-    if (status == WH_OK) {
-        status = plan_alone(&way->Z, robot, way->from, way->to, WH_AXIS_Z);
-    }
-    *turn = status == WH_OK ? wh_real_max(way->theta.duration, way->yaw.duration) : 0;
     return status;
 }
 
-/* Completes a way from its legs: R waits for the turn, and for Z. */
-static wh_status_t complete(wh_way_t *way, const trip_t *task, const legs_t *legs) {
-    const wh_real_t legs_alone = legs->in.duration + legs->out.duration;
-    const wh_real_t waits = wh_real_max(wait_of(task, legs), way->Z.duration - legs_alone);
-    way->in = legs->in;
-    way->out = legs->out;
-    way->out_begin = legs->in.duration + wh_real_max(waits, 0);
-    way->duration = way->out_begin + legs->out.duration;
-    way->turn_begin = legs->came_in;
-    const wh_real_t turn_end = way->out_begin + legs->goes_out;
-    wh_status_t status = stretch(&way->theta, turn_end - way->turn_begin);
-    if (status == WH_OK) {
-        status = stretch(&way->yaw, turn_end - way->turn_begin);
+static bool are_finite(const wh_real_t values[], size_t count) {
+    bool good = true;
+    for (size_t i = 0; i < count; ++i) {
+        good = good && wh_real_is_finite(values[i]);
     }
-    return status == WH_OK ? stretch(&way->Z, way->duration) : status;
+    return good;
 }
 
-/* R never leaves the circle: all axes move at once. */
-static wh_status_t move_at_once(wh_way_t *way, const wh_robot_t *robot, wh_real_t turn) {
-    wh_status_t status = plan_alone(&way->in, robot, way->from, way->to, WH_AXIS_R);
-    if (status == WH_OK) {
-        way->duration = wh_real_max(wh_real_max(way->in.duration, way->Z.duration), turn);
-        way->out_begin = way->duration;
-        status = stretch(&way->in, way->duration);
-    }
-    if (status == WH_OK) {
-        status = stretch(&way->theta, way->duration);
-    }
-    if (status == WH_OK) {
-        status = stretch(&way->yaw, way->duration);
-    }
-    return status == WH_OK ? stretch(&way->Z, way->duration) : status;
-}
-
-static wh_status_t go_in_and_out(wh_way_t *way, const wh_robot_t *robot, const trip_t *task) {
-    inner_t search = {task, task->reach, (wh_real_t)FLT_MAX, WH_OK};
-    const wh_real_t least = robot->travel[WH_AXIS_R].min;
-    try_ends(&search);
-    try_between(&search, least < task->reach ? least : task->reach, task->reach);
-    legs_t legs;
-    if (search.status == WH_OK) {
-        search.status = plan_legs(task, search.inner, &legs);
-    }
-    return search.status == WH_OK ? complete(way, task, &legs) : search.status;
-}
-
-static wh_status_t check(const wh_way_t *way, const wh_robot_t *robot, const wh_real_t from[],
-                         const wh_real_t to[], wh_real_t reach) {
-    if (way == NULL || robot == NULL || from == NULL || to == NULL) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        if (!wh_real_is_finite(from[axis]) || !wh_real_is_finite(to[axis])) {
-            return WH_STATUS_NOT_FINITE;
-        }
-    }
-    if (!wh_real_is_finite(reach)) {
+static wh_status_t check_reach(const wh_polar_t *robot, const wh_real_t reach[]) {
+    const size_t arms = robot->second > 0 ? WH_POLAR_ARMS : 1;
+    if (!are_finite(reach, arms)) {
         return WH_STATUS_NOT_FINITE;
     }
-    return reach < robot->travel[WH_AXIS_R].min - WH_SLACK_MM ? WH_STATUS_OUT_OF_REACH : WH_OK;
+    bool is_below = false;
+    for (size_t arm = 0; arm < arms; ++arm) {
+        is_below = is_below || reach[arm] < robot->inner[arm] - WH_SLACK_MM;
+    }
+    return is_below ? WH_STATUS_OUT_OF_REACH : WH_OK;
 }
 
-wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
-                        const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach) {
+static wh_status_t check(const wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
+                         const wh_real_t to[], const wh_real_t reach[]) {
+    if (way == NULL || robot == NULL || from == NULL || to == NULL || reach == NULL) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (!wh_polar_is_sound(robot)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    if (!are_finite(from, robot->axis_count) || !are_finite(to, robot->axis_count)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    return check_reach(robot, reach);
+}
+
+wh_status_t wh_way_plan_polar(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
+                              const wh_real_t to[], const wh_real_t reach[WH_POLAR_ARMS]) {
     wh_status_t status = check(way, robot, from, to, reach);
     if (status != WH_OK) {
         return status;
     }
     wh_way_t planned;
+    plan_t plan;
     memset(&planned, 0, sizeof planned);
-    memcpy(planned.from, from, sizeof planned.from);
-    memcpy(planned.to, to, sizeof planned.to);
-    trip_t task = {&robot->limits[WH_AXIS_R], from[WH_AXIS_R], to[WH_AXIS_R], reach, 0};
-    status = plan_turn(&planned, robot, &task.turn);
+    memset(&plan, 0, sizeof plan);
+    planned.axis_count = robot->axis_count;
+    memcpy(planned.from, from, robot->axis_count * sizeof *from);
+    memcpy(planned.to, to, robot->axis_count * sizeof *to);
+    plan.way = &planned;
+    plan.robot = robot;
+    take_arms(&plan, reach);
+    status = plan_alone(&plan);
     if (status == WH_OK) {
-        const bool is_inside = task.from <= reach && task.to <= reach;
-        status = is_inside ? move_at_once(&planned, robot, task.turn) : go_in_and_out(&planned, robot, &task);
+        take_times(&plan);
+        status = find_all_legs(&plan);
+    }
+    if (status == WH_OK) {
+        status = complete(&plan);
     }
     if (status == WH_OK) {
         *way = planned;
@@ -219,21 +341,31 @@ wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t 
     return status;
 }
 
-void wh_way_at(const wh_way_t *way, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) {
+wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
+                        const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach) {
+    if (robot == NULL) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_polar_t polar = wh_polar_from_robot(robot);
+    const wh_real_t reaches[WH_POLAR_ARMS] = {reach, reach};
+    return wh_way_plan_polar(way, &polar, from, to, reaches);
+}
+
+void wh_way_at(const wh_way_t *way, wh_real_t t, wh_real_t q[]) {
     if (t >= way->duration) {
-        memcpy(q, way->to, sizeof way->to);
+        memcpy(q, way->to, way->axis_count * sizeof *q);
         return;
     }
-    const wh_real_t turned = t - way->turn_begin;
-    const bool is_out = t >= way->out_begin;
-    q[WH_AXIS_THETA] = way->from[WH_AXIS_THETA] + wh_profile_position(&way->theta, turned);
-    q[WH_AXIS_R] = way->from[WH_AXIS_R] + wh_profile_position(&way->in, t) +
-                   (is_out ? wh_profile_position(&way->out, t - way->out_begin) : 0);
-    q[WH_AXIS_Z] = way->from[WH_AXIS_Z] + wh_profile_position(&way->Z, t);
-    q[WH_AXIS_YAW] = way->from[WH_AXIS_YAW] + wh_profile_position(&way->yaw, turned);
+    for (size_t axis = 0; axis < way->axis_count; ++axis) {
+        q[axis] = way->from[axis] + wh_profile_position(&way->profiles[axis], t - way->begins[axis]);
+    }
+    for (size_t i = 0; i < way->out_count; ++i) {
+        const wh_way_out_t *out = &way->outs[i];
+        q[out->axis] += t >= out->begin ? wh_profile_position(&out->profile, t - out->begin) : 0;
+    }
 }
 
 void wh_track_take_ways(wh_track_t *track) {
-    static const wh_ways_t ways = {wh_way_plan, wh_way_at};
+    static const wh_ways_t ways = {wh_way_plan_polar, wh_way_at};
     track->ways = &ways;
 }

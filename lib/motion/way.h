@@ -1,4 +1,4 @@
-/* A way between two stations: the arm comes in, turns and goes out again, overlapped.
+/* A way between two stations: the arm comes in, the robot turns, and the arm goes out again, overlapped.
  *
  * While theta or yaw moves, R is at most `reach`. R goes from where it is to an inner position at or below
  * `reach` and on to its target; theta and yaw move from the instant when R has come in to the one when R goes
@@ -14,23 +14,38 @@
  *
  * If R begins and ends at or below `reach`, all axes move at once, from the first instant to the last.
  *
+ * A rail turns with theta and yaw: it moves while the arm is in. Tilts and a flip go all along, as Z does. Of
+ * two arms each comes in to a reach of its own: what turns begins when both are in, and ends when the first
+ * of them goes out; one that is in at both ends goes all along. Their inner positions are searched for in
+ * turn, three times each, each with the other one as it was found last.
+ *
  * A way is a plain struct without pointers: copy it freely. All functions are reentrant.
  */
 #ifndef WH_MOTION_WAY_H
 #define WH_MOTION_WAY_H
 
-#include "robot.h"
+#include "polar.h"
 
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(way);
 
-/* A planned way. Written by wh_way_plan only; reading its fields is fine. Times are s after the start. */
+/* An arm's way out. */
 typedef struct {
-    wh_profile_t in, out;                             /* of R; `out` begins at out_begin */
-    wh_profile_t theta, yaw;                          /* begin at turn_begin */
-    wh_profile_t Z;                                   /* the whole way */
-    wh_real_t turn_begin, out_begin, duration;        /* s */
-    wh_real_t from[WH_ROBOT_AXES], to[WH_ROBOT_AXES]; /* the axes at its ends */
+    size_t axis;     /* its R */
+    wh_real_t begin; /* s after the start */
+    wh_profile_t profile;
+} wh_way_out_t;
+
+/* A planned way. Written by wh_way_plan and wh_way_plan_polar only; reading its fields is fine. Times are s
+ * after the start. */
+typedef struct {
+    size_t axis_count;
+    wh_profile_t profiles[WH_CARRIER_AXES]; /* by axis; of an arm that leaves the circle its way in */
+    wh_real_t begins[WH_CARRIER_AXES];
+    size_t out_count; /* of arms that leave the circle */
+    wh_way_out_t outs[WH_POLAR_ARMS];
+    wh_real_t duration;
+    wh_real_t from[WH_CARRIER_AXES], to[WH_CARRIER_AXES]; /* the axes at its ends */
 } wh_way_t;
 
 /* Plans the way from axes `from` to axes `to` (rad, mm). The robot must pass wh_robot_validate, both ends
@@ -43,14 +58,21 @@ typedef struct {
 wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t from[WH_ROBOT_AXES],
                         const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach) WH_SYMBOL(wh_way_plan);
 
+/* The same for a robot with other axes; of one with a single arm, reach[1] does not count. Also
+ * WH_STATUS_OUT_OF_RANGE for a robot that wh_polar_is_sound does not pass. Cost: about 40 us, of two arms
+ * that both leave the circle 240 us. */
+wh_status_t wh_way_plan_polar(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
+                              const wh_real_t to[], const wh_real_t reach[WH_POLAR_ARMS])
+    WH_SYMBOL(wh_way_plan_polar);
+
 /* s, never negative. */
 static inline wh_real_t wh_way_duration(const wh_way_t *way) {
     return way->duration;
 }
 
-/* Writes the axes at `t` seconds after the start: exactly `from` for t <= 0 (and NaN), exactly `to` from the
- * duration on. No pointer may be null. Cost: about 30 ns. */
-void wh_way_at(const wh_way_t *way, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_way_at);
+/* Writes the axes, as many as it was planned for, at `t` seconds after the start: exactly `from` for t <= 0
+ * (and NaN), exactly `to` from the duration on. No pointer may be null. Cost: about 30 ns. */
+void wh_way_at(const wh_way_t *way, wh_real_t t, wh_real_t q[]) WH_SYMBOL(wh_way_at);
 
 WH_HEADER_END
 

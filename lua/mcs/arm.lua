@@ -323,31 +323,30 @@ return function(native, lookup, centring, tasks, alarms)
     return axes
   end
 
-  local VIA_AXES = { "theta", "r", "z", "yaw" }
-
-  -- A station's point, as native.plan takes it: what it does not say of an axis is as at these axes.
-  local function via_point(via, axes)
-    local point = {}
-    for index, name in ipairs(VIA_AXES) do
-      point[index] = via[name] or axes[index]
+  -- A station's point, as native.plan takes it: what it does not say of the robot's axes is as at these axes.
+  local function via_point(via, robot, axes)
+    local point = { blend = via.blend }
+    for index in ipairs(robot.home) do
+      point[index] = via[index] or axes[robot.first + index - 1]
     end
-    point[#VIA_AXES + 1] = via.blend
     return point
   end
 
-  -- The points between two stations, or none: back along those of the one, then along those of the other. `front` and
-  -- `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it ends.
-  local function vias_between(front, station, there)
-    local stations, here, points = native.layout.stations, native.axes(), {}
+  -- A robot's points between two stations, or none: back along those of the one, then along those of the other.
+  -- `front` and `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it
+  -- ends.
+  local function vias_between(robot, front, station, there)
+    local stations, here, points = native.layout.stations, native.axes(), { robot = robot }
+    local own = native.layout.robots[robot]
     if front == station then
       return nil
     end
-    local back = front and stations[front].via or {}
+    local back = front and stations[front].vias[robot] or {}
     for index = #back, 1, -1 do
-      points[#points + 1] = via_point(back[index], here)
+      points[#points + 1] = via_point(back[index], own, here)
     end
-    for _, via in ipairs(station and stations[station].via or {}) do
-      points[#points + 1] = via_point(via, there)
+    for _, via in ipairs(station and stations[station].vias[robot] or {}) do
+      points[#points + 1] = via_point(via, own, there)
     end
     return #points > 0 and points or nil
   end
@@ -366,9 +365,11 @@ return function(native, lookup, centring, tasks, alarms)
         local is_left = theta > native.axes()[first]
         request.axes[first] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
       end
-      request.via = request.target and vias_between(front, request.target.station, request.axes) or nil
+      request.via = request.target
+        and vias_between(native.layout.grippers[request.to.gripper].robot, front, request.target.station, request.axes)
+        or nil
     elseif request.homeward then
-      request.via = vias_between(front, nil, request.axes)
+      request.via = vias_between(tasks.current().robot or 1, front, nil, request.axes)
     elseif request.line then
       request.gripper = request.gripper or request.target and request.target.gripper or target.gripper
     elseif request.moves then
@@ -487,6 +488,15 @@ return function(native, lookup, centring, tasks, alarms)
     return does
   end
 
+  -- True if the robot's arm does not stay where it is: chucks and doors are not its own, and a flip turns the blade there.
+  local function goes_away(request, robot)
+    local now, goes = native.axes(), request.line ~= nil
+    for _, axis in ipairs(request.axes and native.layout.robots[robot or tasks.current().robot or 1].axes or {}) do
+      goes = goes or axis.name ~= "flip" and request.axes[axis.index] ~= now[axis.index]
+    end
+    return goes
+  end
+
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
   -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
   -- whatever its sensor says; a controller would look.
@@ -506,18 +516,16 @@ return function(native, lookup, centring, tasks, alarms)
       centring.begin(request.enters)
     end
     alarms.begin_motion(running[tasks.current()])
-    local front = state.front
-    if request.to or request.homeward then
+    local segment = request.planned or segment_of(request, target, state.front)
+    if request.to or request.homeward or not request.target and goes_away(request, target.robot) then
       state.front = nil   -- one that is stopped ends somewhere between
     end
-    local ended, lost = tasks.play(request.planned or segment_of(request, target, front))
+    local ended, lost = tasks.play(segment)
     if request.leaves then
       state.inside = nil
     end
     if request.to or request.leaves then
       state.front = request.target and request.target.station
-    elseif not request.target and (request.axes or request.line) then
-      state.front = nil
     end
     if lost and lost ~= request.lets_go and target.watched then
       local name, at = native.layout.grippers[lost].name, request.target

@@ -361,8 +361,9 @@ static void too_many(void **state) {
 /* --------------------------------------------------------------------------------------------------- the transit */
 
 /* How far what hangs on gripper `g` is from theta's axis, by support points in all directions. */
-static double outermost(const wh_layout_t *layout, size_t g, double R, double yaw) {
-    const wh_pose_t effector = {wh_mat3_about_z(yaw), {R, 0, 0}};
+static double outermost(const wh_layout_t *layout, size_t g, double R, double yaw, double flip) {
+    wh_pose_t effector = {wh_mat3_about_z(yaw), {R, 0, 0}};
+    wh_chain_turn_over(&effector.R, flip);
     const wh_mount_t *mount = &layout->machine.mounts[g];
     const wh_pose_t gripper =
         mount->is_shifted ? wh_pose_compose(&effector, &mount->effector_from_gripper) : effector;
@@ -389,7 +390,7 @@ static double outermost_while_turning(const wh_layout_t *layout, double R, doubl
     for (int k = 0; k <= 90; ++k) {
         for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
             if (layout->grippers[g].station == WH_NONE) {
-                most = fmax(most, outermost(layout, g, R, from + (to - from) * k / 90));
+                most = fmax(most, outermost(layout, g, R, from + (to - from) * k / 90, 0));
             }
         }
     }
@@ -407,14 +408,66 @@ static void a_circle_is_kept(void **state) {
     for (int i = 0; i < 40; ++i) {
         const double from = wh_test_uniform(-5, 5);
         const double to = i % 4 == 0 ? from : from + wh_test_uniform(-7, 7);
-        const double reach = wh_transit_reach(layout, 0, from, to);
+        const wh_real_t begin[WH_ROBOT_AXES] = {0, 0, 0, from}, end[WH_ROBOT_AXES] = {1, 0, 0, to};
+        const double reach = wh_transit_reach(layout, 0, 0, begin, end);
         assert_true(reach > 300);
         assert_true(outermost_while_turning(layout, reach, from, to) <= 600 + 1e-6);
         assert_true(outermost_while_turning(layout, reach + 3, from, to) > 600);
-        const double least = wh_transit_least(layout, 0, from, to);
+        const double least = wh_transit_least(layout, 0, begin, end);
         assert_true(least >= outermost_while_turning(layout, 300, from, to) - 1e-6);
         assert_true(least <= outermost_while_turning(layout, 300, from, to) + 3);
     }
+}
+
+/* A blade that turns over, or is turned over; the flip is in the contact plane. */
+static void a_circle_is_kept_by_a_flip(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "robot = { transit = 600, flip = {}, rail = {} }, grippers = { { name = 'EE', at = { -30, 20, -12 }, "
+        "rpy = { 0, 0, 25 } } }, stations = { " FOUP "}, "
+        "obstacles = { { name = 'camera', on = 'EE', box = { 40, 20, 30 }, at = { -210, 60, 40 } } }, ");
+    for (int i = 0; i < 30; ++i) {
+        wh_real_t begin[WH_CARRIER_AXES] = {0, 300, 900, wh_test_uniform(-3, 3), 0, 0};
+        wh_real_t end[WH_CARRIER_AXES] = {1, 300, 900, wh_test_uniform(-3, 3), 50, 0};
+        begin[5] = wh_test_uniform(0, WH_PI);
+        end[5] = i % 2 == 0 ? begin[5] : wh_test_uniform(0, WH_PI);
+        const double reach = wh_transit_reach(layout, 0, 0, begin, end);
+        double most = 0;
+        double beyond = 0;
+        for (int k = 0; k <= 40; ++k) {
+            for (int l = 0; l <= (i % 2 == 0 ? 0 : 40); ++l) {
+                const double yaw = begin[3] + (end[3] - begin[3]) * k / 40;
+                const double flip = begin[5] + (end[5] - begin[5]) * l / 40;
+                most = fmax(most, outermost(layout, 0, reach, yaw, flip));
+                beyond = fmax(beyond, outermost(layout, 0, reach + 3, yaw, flip));
+            }
+        }
+        assert_true(reach > 300 && most <= 600 + 1e-6);
+        assert_true(i % 2 != 0 || beyond > 600);
+    }
+}
+
+/* Each of two arms has a reach of its own, by what is on it. */
+static void a_circle_is_kept_by_two_arms(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "robot = { kind = 'TRZ', transit = 600, arms = { {}, { heading = 180, height = 10 } } }, grippers = "
+        "{ "
+        "{ name = 'EE' }, { name = 'UP', arm = 2, at = { 40, 0, 0 } } }, stations = { " FOUP "}, ");
+    const wh_real_t begin[WH_CARRIER_AXES] = {0, 300, 900, 0, 300};
+    const wh_real_t end[WH_CARRIER_AXES] = {1, 700, 900, 0, 300};
+    const wh_real_t aside[WH_CARRIER_AXES] = {0, 700, 900, 0, 700};
+    for (size_t arm = 0; arm < 2; ++arm) {
+        const double reach = wh_transit_reach(layout, 0, arm, begin, end);
+        assert_true(reach > 300 && outermost(layout, arm, reach, 0, 0) <= 600 + 1e-6);
+        assert_true(outermost(layout, arm, reach + 3, 0, 0) > 600);
+    }
+    wh_transit_t transit;
+    assert_true(wh_transit_leaves(layout, 0, begin, end, &transit));
+    assert_near(transit.r, 700, 0);
+    assert_near(transit.reach[0] - transit.reach[1], 40, 0.2);
+    assert_false(wh_transit_leaves(layout, 0, begin, begin, &transit));
+    assert_false(wh_transit_leaves(layout, 0, begin, aside, &transit)); /* nothing turns */
 }
 
 static void the_circle_is_read(void **state) {
@@ -445,6 +498,8 @@ int main(void) {
         cmocka_unit_test(bad_shapes),
         cmocka_unit_test(too_many),
         cmocka_unit_test(a_circle_is_kept),
+        cmocka_unit_test(a_circle_is_kept_by_a_flip),
+        cmocka_unit_test(a_circle_is_kept_by_two_arms),
         cmocka_unit_test(the_circle_is_read),
     };
     return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);

@@ -1,0 +1,40 @@
+/* A polar arm's axes as ways move them (motion/way.h, motion/via.h): theta, R, Z, yaw, and what a carrier has
+ * more, in its order. */
+#ifndef WH_MOTION_POLAR_H
+#define WH_MOTION_POLAR_H
+
+#include "carrier.h"
+
+WH_HEADER_BEGIN
+WH_REFUSE_PACKING(polar);
+
+/* The most arms of a robot. */
+#define WH_POLAR_ARMS 2
+
+typedef struct {
+    size_t axis_count; /* WH_ROBOT_AXES to WH_CARRIER_AXES */
+    wh_limits_t limits[WH_CARRIER_AXES];
+    size_t rail;                    /* its axis; 0: there is none */
+    size_t second;                  /* the R of a second arm; 0: there is none */
+    wh_real_t inner[WH_POLAR_ARMS]; /* where the travel of each arm's R begins, mm */
+} wh_polar_t;
+
+/* False if a count or an axis is out of range. Limits are checked where a motion is planned. */
+static inline bool wh_polar_is_sound(const wh_polar_t *robot) {
+    return robot->axis_count >= WH_ROBOT_AXES && robot->axis_count <= WH_CARRIER_AXES &&
+           robot->rail < robot->axis_count && robot->second < robot->axis_count;
+}
+
+/* A robot of motion/robot.h. */
+static inline wh_polar_t wh_polar_from_robot(const wh_robot_t *robot) {
+    wh_polar_t polar = {.axis_count = WH_ROBOT_AXES,
+                        .inner = {robot->travel[WH_AXIS_R].min, robot->travel[WH_AXIS_R].min}};
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        polar.limits[axis] = robot->limits[axis];
+    }
+    return polar;
+}
+
+WH_HEADER_END
+
+#endif
