@@ -339,7 +339,7 @@ wh_latch_order_t wh_layout_beams_of(const wh_layout_t *layout, size_t station, s
 /* True if a PUT of the robot corrects by what the station's beams say. */
 bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot);
 
-/* True if beams and blocks are for the robot: see WH_AXES_USUAL; of several robots each may stand anywhere. */
+/* True if beams and blocks are for the robot: see WH_AXES_USUAL; one of several robots may stand anywhere. */
 bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot);
 
 /* How far beside the layout's place one of several robots was taught a station, in base, mm; else zero. */

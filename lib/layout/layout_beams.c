@@ -67,7 +67,7 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     wh_layout_place_beam(layout, layout->beam_count);
 }
 
-/* ------------------------------------------------------------------------------------------ who passes them */
+/* ---------------------------------------------------------------------------------------- who passes them */
 
 /* A beam as seen along a way in: x in, y to the left, from the slot's centre, mm. */
 typedef struct {
@@ -254,7 +254,7 @@ bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot) 
     return of->by ? of->by[robot].centre : of->centre;
 }
 
-/* ---------------------------------------------------------------------------------------------- a station's */
+/* -------------------------------------------------------------------------------------------- a station's */
 
 void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     const size_t first = layout->beam_count;

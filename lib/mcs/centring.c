@@ -151,8 +151,9 @@ static int centre(lua_State *L) {
     return 1;
 }
 
-/* native.beam(station, gripper): { x, y } in base, mm: where the first beam is that this gripper passes on its
- * way to the station, at the height of slot 1, as motion control believes; and its number there, from 1. */
+/* native.beam(station, gripper): { x, y } in base, mm: where the first beam is that this gripper passes on
+ * its way to the station, at the height of slot 1, as motion control believes; and its number there, from
+ * 1. */
 static int push_beam(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;

@@ -67,9 +67,9 @@ static int push_way_in(lua_State *L) {
     return 2;
 }
 
-/* native.add_teaching(x, y, heading): the crossings of the last centring were of the rim of the wafer that the
- * gripper took with its middle at (x, y) of base, heading so, rad, or without that as the station's x does.
- * Returns how many there are now. */
+/* native.add_teaching(x, y, heading): the crossings of the last centring were of the rim of the wafer that
+ * the gripper took with its middle at (x, y) of base, heading so, rad, or without that as the station's x
+ * does. Returns how many there are now. */
 static int add_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_centring_record_t *passed = &mcs->centring;

@@ -48,7 +48,7 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
  * rail stands at `rail`. */
 void wh_taught_move(const wh_chain_t *chain, double rail, const wh_vec3_t *aside, wh_pose_t *base_from_slot);
 
-/* How far beside where the layout has it, in base, mm, the trial draws that a robot was taught a station; zero
+/* How far beside where the layout has it the trial draws that a robot was taught a station, in base, mm; zero
  * of a robot alone, for which the station stands elsewhere instead. */
 wh_vec3_t wh_trial_cell_aside(const wh_trial_cell_t *trial_cell, size_t station, size_t robot);
 
