@@ -231,8 +231,9 @@ static void write_segment(const writer_t *writer, size_t index) {
     }
     fprintf(out, "}, %" PRId32 ", ", segment->gripper);
     write_real(out, segment->reach);
-    fprintf(out, ", NULL, 0}, %" PRId64 "}",
-            kept->ended ? 0 : kept->slices); /* a run by via points is refused */
+    fputs(", NULL, 0, ", out); /* a run by via points is refused */
+    write_real(out, segment->reach2);
+    fprintf(out, "}, %" PRId64 "}", kept->ended ? 0 : kept->slices);
 }
 
 /* ------------------------------------------------------------------------------------------------- faults */

@@ -27,8 +27,12 @@ static inline bool wh_polar_is_sound(const wh_polar_t *robot) {
 
 /* A robot of motion/robot.h. */
 static inline wh_polar_t wh_polar_from_robot(const wh_robot_t *robot) {
-    wh_polar_t polar = {.axis_count = WH_ROBOT_AXES,
-                        .inner = {robot->travel[WH_AXIS_R].min, robot->travel[WH_AXIS_R].min}};
+    wh_polar_t polar;
+    polar.axis_count = WH_ROBOT_AXES;
+    polar.rail = 0;
+    polar.second = 0;
+    polar.inner[0] = robot->travel[WH_AXIS_R].min;
+    polar.inner[1] = robot->travel[WH_AXIS_R].min;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         polar.limits[axis] = robot->limits[axis];
     }

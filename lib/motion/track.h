@@ -44,10 +44,11 @@ typedef struct {
     /* SENSOR; with several robots or arms, LINE and WAY: any gripper on the one that goes, WH_NONE: the
      * first */
     int32_t gripper;
-    wh_real_t reach, reach2; /* WAY: mm, and of a second arm; see motion/way.h */
+    wh_real_t reach; /* WAY: mm, see motion/way.h */
     /* VIA: the caller's, read by wh_track_begin alone; see motion/via.h */
     const wh_via_point_t *points;
     size_t point_count;
+    wh_real_t reach2; /* WAY: a second arm's */
 } wh_segment_t;
 
 typedef enum WH_FOUR_BYTES {
