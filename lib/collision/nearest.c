@@ -86,7 +86,8 @@ typedef struct {
 
 /* False unless the nearest point lies within the points. */
 static bool weigh(const simplex_t *simplex, part_t *part) {
-    const wh_vec3_t *p[4] = {NULL, NULL, NULL, NULL};
+    const wh_vec3_t *const any = &simplex->points[0].between;
+    const wh_vec3_t *p[4] = {any, any, any, any};
     for (size_t i = 0; i < part->count; ++i) {
         p[i] = &simplex->points[part->index[i]].between;
     }
@@ -249,6 +250,7 @@ static wh_real_t add_all(simplex_t *simplex, const pair_point_t points[], size_t
         return wh_real_sqrt(part.squared);
     }
     wh_real_t distance = 0;
+    simplex->count = 0;
     for (size_t i = 0; i < count; ++i) {
         distance = add(simplex, &points[i], nearest);
     }

@@ -163,7 +163,7 @@ static void read_tool(urdf_t *urdf, size_t arm) {
 }
 
 static void read_tools(urdf_t *urdf) {
-    for (size_t arm = 0; arm < urdf->map.arm_count; ++arm) {
+    for (size_t arm = 0; arm < urdf->map.arm_count && arm < WH_URDF_ARMS; ++arm) {
         read_tool(urdf, arm);
     }
     if (urdf->map.arm_count < WH_URDF_ARMS) {

@@ -52,7 +52,7 @@ static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robo
     if (!carrier || !carrier->chain.has_rail) {
         wh_layout_refuse_field(reader, "rail", "nothing: the robot has no rail");
     }
-    for (size_t own = 0; own < axes_of(carrier); ++own) {
+    for (size_t own = 0; own < axes_of(carrier) && own < WH_CARRIER_AXES; ++own) {
         const char *field = field_of(carrier, own);
         via->is_given[own] = field && wh_reader_has(reader, field);
         if (via->is_given[own]) {

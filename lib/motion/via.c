@@ -125,7 +125,7 @@ static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[]) {
 
 /* True if R's end is near the point where the second leg begins, or where the first one ends. */
 static bool is_near(const corner_t *corner, bool is_second) {
-    wh_real_t q[WH_CARRIER_AXES];
+    wh_real_t q[WH_CARRIER_AXES] = {0};
     for (size_t axis = 0; axis < corner->robot->axis_count; ++axis) {
         const wh_profile_t *first = &corner->first[axis];
         const wh_real_t left =

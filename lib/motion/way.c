@@ -153,7 +153,7 @@ typedef struct {
 } plan_t;
 
 static bool turns(const wh_polar_t *robot, size_t axis) {
-    return axis == WH_AXIS_THETA || axis == WH_AXIS_YAW || (axis == robot->rail && robot->rail > 0);
+    return axis == WH_AXIS_THETA || axis == WH_AXIS_YAW || axis == robot->rail;
 }
 
 /* Each axis as it is alone. */
@@ -210,12 +210,13 @@ static void take_arms(plan_t *plan, const wh_real_t reach[]) {
 /* Two arms in turn, each with the other one as it was found last. */
 static wh_status_t find_all_legs(plan_t *plan) {
     wh_status_t status = WH_OK;
-    const size_t rounds = plan->count > 1 ? ROUNDS : 1;
-    for (size_t i = 0; status == WH_OK && i < rounds * plan->count; ++i) {
-        const size_t arm = i % plan->count;
+    const size_t count = plan->count;
+    const size_t rounds = count > 1 ? ROUNDS : 1;
+    for (size_t i = 0; status == WH_OK && i < rounds * count; ++i) {
+        const size_t arm = i % count;
         plan->trips[arm].turn = plan->turn;
         status = find_legs(&plan->trips[arm], &plan->legs[arm]);
-        if (status == WH_OK && plan->count > 1) {
+        if (status == WH_OK && count > 1) {
             const legs_t *legs = &plan->legs[arm];
             plan->trips[1 - arm].others_in = legs->came_in;
             plan->trips[1 - arm].others_tail = legs->out.duration - legs->goes_out;

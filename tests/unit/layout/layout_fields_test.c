@@ -170,17 +170,8 @@ static const char *prepare_body(const char *path) {
     return is_mesh ? "cell.obstacles[4] = { at = { 0, 0, 0 }, mesh = 'none.stl', unit = 'mm' } " : "";
 }
 
-/* What a field needs that the base's robot does not have. */
-static const char *prepare(const char *path) {
-    static const char scara[] = "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { kind "
-                                "= 'SCARA', links = { 450, 450 }, theta = {}, z = {},"
-                                " forearm = {}, yaw = {}, rail = {}, tilt = {}, flip = {} } ";
-    static const char *const others[] = {"robot.forearm",   "robot.rail",      "robot.tilt",
-                                         "robot.flip",      "robot.links",     "robot.elbow",
-                                         "stations.A.rail", "stations.A.elbow"};
-    static const char *const of_two[][2] = {
-        {"arm", "cell.robot = { kind = 'TRZ', arms = { {}, {} } }"},
-        {"wrist", "cell.robot = { kind = 'SCARA', links = { 450, 450 }, wrists = { {}, {} } }"}};
+/* A robot with links from a file; null: the field asks for none. */
+static const char *prepare_urdf(const char *path) {
     static const char *const of_urdf[] = {"robot.urdf", "robot.joints", "robot.tool", "robot.packages"};
     static const char folding[] =
         "cell.stations.A.block, cell.stations.A.beams, cell.shapes.arm = nil cell.robot = { kind = 'TRZ', r "
@@ -195,17 +186,35 @@ static const char *prepare(const char *path) {
         "10 } }, urdf = 'lua/layouts/two_arms.urdf', tool = 'effector', tool2 = 'effector 2', "
         "joints = { lift = 'z', turn = 'theta', fold = 'fold', fold2 = 'fold2' } } "
         "cell.grippers[#cell.grippers + 1] = { name = 'Other', arm = 2 } ";
-    static char two[300];
     if (strcmp(path, "robot.tool2") == 0) {
         return two_arms;
-    }
-    if (strcmp(path, "stations.A.via[1].rail") == 0) {
-        return "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { rail = {} } ";
     }
     for (size_t i = 0; i < sizeof of_urdf / sizeof of_urdf[0]; ++i) {
         if (strncmp(path, of_urdf[i], strlen(of_urdf[i])) == 0) {
             return folding;
         }
+    }
+    return NULL;
+}
+
+/* What a field needs that the base's robot does not have. */
+static const char *prepare(const char *path) {
+    static const char scara[] = "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { kind "
+                                "= 'SCARA', links = { 450, 450 }, theta = {}, z = {},"
+                                " forearm = {}, yaw = {}, rail = {}, tilt = {}, flip = {} } ";
+    static const char *const others[] = {"robot.forearm",   "robot.rail",      "robot.tilt",
+                                         "robot.flip",      "robot.links",     "robot.elbow",
+                                         "stations.A.rail", "stations.A.elbow"};
+    static const char *const of_two[][2] = {
+        {"arm", "cell.robot = { kind = 'TRZ', arms = { {}, {} } }"},
+        {"wrist", "cell.robot = { kind = 'SCARA', links = { 450, 450 }, wrists = { {}, {} } }"}};
+    static char two[300];
+    const char *const of_file = prepare_urdf(path);
+    if (of_file) {
+        return of_file;
+    }
+    if (strcmp(path, "stations.A.via[1].rail") == 0) {
+        return "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { rail = {} } ";
     }
     for (size_t i = 0; i < sizeof of_two / sizeof of_two[0]; ++i) {
         char of_robot[40], of_gripper[40];
