@@ -27,7 +27,7 @@ static const char *field_of(const wh_carrier_t *carrier, size_t own) {
     if (own < WH_ROBOT_AXES) {
         return names[own];
     }
-    return carrier->axes[own] == WH_CHAIN_RAIL ? "rail" : NULL;
+    return own < WH_CARRIER_AXES && carrier->axes[own] == WH_CHAIN_RAIL ? "rail" : NULL;
 }
 
 /* Within its travel; angles in degrees. */
