@@ -49,6 +49,7 @@ static void transfer(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
+    (void)fixture_event(&f, WH_EVENT_SETTLED, 13090000, 0, FIXTURE_EE); /* no miss */
     char *text = print(&f.record, &piped);
     assert_says(text, "lua/examples/01_transfer.lua on lua/layouts/paper.lua\n"
                       "tolerance paper: |dr_proj_z| < 0.5 mm, |dr_proj_xy| < 50 mm, "
