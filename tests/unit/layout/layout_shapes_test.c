@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "support/layout.h"
+#include "support/parts.h"
 #include "support/random.h"
 
 #include "layout/layout.h"
@@ -14,23 +15,6 @@
 #define FOUP "F = { kind = 'foup', at = { 760, 0, 900 } }, "
 #define STATIONS "stations = { " FOUP PREALIGNER "}, "
 #define CELL GRIPPERS STATIONS
-
-static int32_t find(const wh_layout_t *layout, const char *name) {
-    for (size_t i = 0; i < layout->world.part_count; ++i) {
-        if (strcmp(layout->part_names[i], name) == 0) {
-            return (int32_t)i;
-        }
-    }
-    return WH_NONE;
-}
-
-static const wh_part_t *part(const wh_layout_t *layout, const char *name) {
-    const int32_t index = find(layout, name);
-    if (index == WH_NONE) {
-        fail_msg("no part \"%s\"", name);
-    }
-    return &layout->world.parts[index];
-}
 
 /* A box from x0 to x1 and so on, of a part that hangs on nothing and is not turned, or in its body's frame. */
 static void expect_box(const wh_layout_t *layout, const char *name, double x0, double x1, double y0,

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "support/layout.h"
+#include "support/parts.h"
 #include "support/random.h"
 
 #include "layout/arms.h"
@@ -24,23 +25,6 @@ const char *__lsan_default_suppressions(void);
 
 const char *__lsan_default_suppressions(void) {
     return "leak:liburdfdom_model\n";
-}
-
-static int32_t find(const wh_layout_t *layout, const char *name) {
-    for (size_t i = 0; i < layout->world.part_count; ++i) {
-        if (strcmp(layout->part_names[i], name) == 0) {
-            return (int32_t)i;
-        }
-    }
-    return WH_NONE;
-}
-
-static const wh_part_t *part(const wh_layout_t *layout, const char *name) {
-    const int32_t index = find(layout, name);
-    if (index == WH_NONE) {
-        fail_msg("no part \"%s\"", name);
-    }
-    return &layout->world.parts[index];
 }
 
 /* ------------------------------------------------------------------------------------------------ one robot */
