@@ -310,10 +310,14 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
 /* ------------------------------------------------------------------------- edge sensors, beams and rims */
 
 const wh_reader_field_t wh_layout_via_fields[] = {
-    {"theta", NUMBER, "degrees; an axis that is not given is as in front of the station", false},
-    {"r", NUMBER, "mm", false},
+    {"theta", NUMBER,
+     "degrees, of two arms where the one points that goes to the station; an axis that is not given is as in "
+     "front of the station",
+     false},
+    {"r", NUMBER, "mm, of two arms that of the one that goes to the station", false},
+    {"forearm", NUMBER, "degrees, of a SCARA", false},
     {"z", NUMBER, "mm", false},
-    {"yaw", NUMBER, "degrees", false},
+    {"yaw", NUMBER, "degrees, of two wrists that of the one that goes to the station", false},
     {"rail", NUMBER, "mm", false},
     {"blend", NUMBER, "mm: how near the arm passes; 0: it stops there", false},
     END};

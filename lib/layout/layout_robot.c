@@ -99,14 +99,6 @@ static void refuse_scara(wh_reader_t *reader) {
     }
 }
 
-/* A robot that tilts, or has an elbow, keeps no circle. */
-static void refuse_transit(wh_reader_t *reader, wh_chain_kind_t kind) {
-    if (kind == WH_CHAIN_SCARA || wh_reader_has(reader, "tilt")) {
-        wh_layout_refuse_field(reader, "transit",
-                               "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" without tilt");
-    }
-}
-
 /* What this kind does not have. */
 static void refuse_others(wh_reader_t *reader, wh_chain_kind_t kind) {
     if (kind != WH_CHAIN_SCARA) {
@@ -117,10 +109,12 @@ static void refuse_others(wh_reader_t *reader, wh_chain_kind_t kind) {
     }
     if (kind == WH_CHAIN_SCARA) {
         wh_layout_refuse_field(reader, "r", "nothing: a robot of kind \"SCARA\" has a forearm");
+        wh_layout_refuse_field(reader, "transit",
+                               "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\"; `via` points "
+                               "fold an elbow");
     } else if (kind == WH_CHAIN_TRZ) {
         wh_layout_refuse_field(reader, "yaw", "nothing: a robot of kind \"TRZ\" has no wrist");
     }
-    refuse_transit(reader, kind);
 }
 
 static void read_links(wh_reader_t *reader, wh_real_t links[2]) {

@@ -11,21 +11,21 @@ static const wh_carrier_t *carrier_of(const wh_layout_t *layout, size_t robot) {
     return layout->machine.carrier ? &layout->robots[robot].carrier : NULL;
 }
 
-/* Only a robot with one polar arm goes by points. */
-static bool goes_by_points(const wh_carrier_t *carrier) {
-    return !carrier || !(carrier->second || carrier->chain.kind == WH_CHAIN_SCARA);
-}
-
 /* How many axes the robot has of its own. */
 static size_t axes_of(const wh_carrier_t *carrier) {
     return carrier ? carrier->axis_count : WH_ROBOT_AXES;
 }
 
-/* The field that says where one of the robot's axes is at a point; null: none does. */
+static bool has_elbow(const wh_carrier_t *carrier) {
+    return carrier && carrier->chain.kind == WH_CHAIN_SCARA;
+}
+
+/* The field that says where one of the robot's axes is at a point; null: none does. A second arm has none of
+ * its own: `r` and `yaw` are of the one that goes to the station. */
 static const char *field_of(const wh_carrier_t *carrier, size_t own) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     if (own < WH_ROBOT_AXES) {
-        return names[own];
+        return own == WH_AXIS_R && has_elbow(carrier) ? "forearm" : names[own];
     }
     return own < WH_CARRIER_AXES && carrier->axes[own] == WH_CHAIN_RAIL ? "rail" : NULL;
 }
@@ -40,18 +40,27 @@ static wh_real_t read_axis(wh_reader_t *reader, const wh_layout_t *layout, size_
         wh_reader_number(reader, name, 0, wh_deg_from_rad(travel->min), wh_deg_from_rad(travel->max)));
 }
 
-static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robot, wh_layout_via_t *via) {
-    const wh_carrier_t *carrier = carrier_of(layout, robot);
-    size_t first = 0;
-    bool is_any = false;
-    (void)wh_machine_carrier(&layout->machine, robot, &first);
-    wh_reader_refuse_unknown(reader, wh_layout_via_fields);
+static void refuse_others(wh_reader_t *reader, const wh_carrier_t *carrier) {
+    if (has_elbow(carrier)) {
+        wh_layout_refuse_field(reader, "r", "nothing: a robot of kind \"SCARA\" has a forearm");
+    } else {
+        wh_layout_refuse_field(reader, "forearm", "nothing: this is of a robot of kind \"SCARA\"");
+    }
     if (carrier && carrier->chain.kind == WH_CHAIN_TRZ) {
         wh_layout_refuse_field(reader, "yaw", "nothing: a robot of kind \"TRZ\" has no wrist");
     }
     if (!carrier || !carrier->chain.has_rail) {
         wh_layout_refuse_field(reader, "rail", "nothing: the robot has no rail");
     }
+}
+
+static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robot, wh_layout_via_t *via) {
+    const wh_carrier_t *carrier = carrier_of(layout, robot);
+    size_t first = 0;
+    bool is_any = false;
+    (void)wh_machine_carrier(&layout->machine, robot, &first);
+    wh_reader_refuse_unknown(reader, wh_layout_via_fields);
+    refuse_others(reader, carrier);
     for (size_t own = 0; own < axes_of(carrier) && own < WH_CARRIER_AXES; ++own) {
         const char *field = field_of(carrier, own);
         via->is_given[own] = field && wh_reader_has(reader, field);
@@ -62,7 +71,7 @@ static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robo
     }
     via->point.blend = wh_reader_number(reader, "blend", USUAL_BLEND, 0, 1000);
     if (!is_any) {
-        wh_reader_fail(reader, NULL, "at least one of theta, r, z, yaw and rail");
+        wh_reader_fail(reader, NULL, "at least one of theta, r (of a SCARA forearm), z, yaw and rail");
     }
 }
 
@@ -74,9 +83,6 @@ static void read_points(wh_reader_t *reader, const wh_layout_t *layout, size_t r
     }
     (void)wh_reader_enter(reader, "via");
     vias->count = wh_reader_list(reader);
-    if (!goes_by_points(carrier_of(layout, robot))) {
-        wh_reader_fail(reader, NULL, "nothing: it is for a robot of kind \"TRZY\" or \"TRZ\" with one arm");
-    }
     if (vias->count > WH_LAYOUT_VIAS) {
         wh_reader_fail(reader, NULL, "at most %d points of a station", WH_LAYOUT_VIAS);
     }

@@ -355,8 +355,8 @@ static void push_door(lua_State *L, const wh_layout_t *layout, size_t door) {
     wh_lua_set_number(L, "timeout", layout->door_list[door].timeout);
 }
 
-/* Of two arms or wrists: arms, the indices of their own axes; and if they come in before the robot turns.
- * With a transit they come in on its ways. */
+/* Of two arms or wrists: arms, the indices of their own axes; headings, where each arm points with theta at
+ * 0; and if they come in before the robot turns. With a transit they come in on its ways. */
 static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first, bool has_transit) {
     const bool is_wrist = carrier->chain.kind == WH_CHAIN_SCARA;
     lua_createtable(L, 2, 0);
@@ -365,6 +365,11 @@ static void push_arms(lua_State *L, const wh_carrier_t *carrier, size_t first, b
     lua_pushinteger(L, (lua_Integer)first + (lua_Integer)carrier->axis_count);
     lua_rawseti(L, -2, 2);
     lua_setfield(L, -2, "arms");
+    if (!is_wrist) {
+        const wh_real_t headings[] = {carrier->chain.arm_heading, carrier->second->chain.arm_heading};
+        wh_lua_push_numbers(L, headings, 2);
+        lua_setfield(L, -2, "headings");
+    }
     wh_lua_set_boolean(L, "retracts", !is_wrist && !has_transit);
 }
 

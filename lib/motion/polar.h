@@ -1,5 +1,5 @@
-/* A polar arm's axes as ways move them (motion/way.h, motion/via.h): theta, R, Z, yaw, and what a carrier has
- * more, in its order. */
+/* A robot's axes as ways move them (motion/way.h, motion/via.h): theta, R or a SCARA's elbow, Z, yaw, and
+ * what a carrier has more, in its order. */
 #ifndef WH_MOTION_POLAR_H
 #define WH_MOTION_POLAR_H
 
@@ -16,13 +16,15 @@ typedef struct {
     wh_limits_t limits[WH_CARRIER_AXES];
     size_t rail;                    /* its axis; 0: there is none */
     size_t second;                  /* the R of a second arm; 0: there is none */
-    wh_real_t inner[WH_POLAR_ARMS]; /* where the travel of each arm's R begins, mm */
+    wh_real_t inner[WH_POLAR_ARMS]; /* where the travel of each arm's R begins, mm; of a SCARA not used */
+    wh_real_t links[2];             /* of a SCARA its links, mm; of a polar arm 0 */
 } wh_polar_t;
 
-/* False if a count or an axis is out of range. Limits are checked where a motion is planned. */
+/* False if a count, an axis or a link is out of range. Limits are checked where a motion is planned. */
 static inline bool wh_polar_is_sound(const wh_polar_t *robot) {
     return robot->axis_count >= WH_ROBOT_AXES && robot->axis_count <= WH_CARRIER_AXES &&
-           robot->rail < robot->axis_count && robot->second < robot->axis_count;
+           robot->rail < robot->axis_count && robot->second < robot->axis_count &&
+           (robot->links[0] > 0) == (robot->links[1] > 0);
 }
 
 /* A robot of motion/robot.h. */
@@ -33,6 +35,8 @@ static inline wh_polar_t wh_polar_from_robot(const wh_robot_t *robot) {
     polar.second = 0;
     polar.inner[0] = robot->travel[WH_AXIS_R].min;
     polar.inner[1] = robot->travel[WH_AXIS_R].min;
+    polar.links[0] = 0;
+    polar.links[1] = 0;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         polar.limits[axis] = robot->limits[axis];
     }

@@ -197,13 +197,16 @@ static void take_robot(const wh_machine_t *machine, size_t number, wh_polar_t *r
         robot->limits[own] = *wh_machine_limits(machine, *first + own);
         robot->rail = carrier->axes[own] == WH_CHAIN_RAIL ? own : robot->rail;
     }
-    robot->second = carrier->second ? carrier->axis_count - 1 : 0;
+    const bool has_elbow = carrier->chain.kind == WH_CHAIN_SCARA;
+    robot->second = carrier->second && !has_elbow ? carrier->axis_count - 1 : 0;
     robot->inner[0] = carrier->chain.travel[WH_CHAIN_REACH].min;
     robot->inner[1] = robot->inner[0];
+    robot->links[0] = has_elbow ? carrier->chain.links[0] : 0;
+    robot->links[1] = has_elbow ? carrier->chain.links[1] : 0;
 }
 
-/* A way, by via points or not, is of a polar robot's own axes; chucks and other robots go in segments of
- * their own. */
+/* A way, by via points or not, is of a robot's own axes; chucks and other robots go in segments of their
+ * own. */
 static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, wh_polar_t *robot,
                       size_t *first) {
     const size_t number = robot_of(track->machine, segment);
@@ -211,8 +214,7 @@ static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, wh_p
         return false;
     }
     take_robot(track->machine, number, robot, first);
-    const wh_carrier_t *carrier = wh_machine_carrier(track->machine, number, first);
-    bool fits = !(carrier && carrier->chain.kind == WH_CHAIN_SCARA);
+    bool fits = true;
     for (size_t axis = 0; axis < track->machine->axis_count; ++axis) {
         const bool is_its = axis >= *first && axis < *first + robot->axis_count;
         fits = fits && (is_its || !(wh_real_abs(segment->target[axis] - track->axes[axis]) > 0));
@@ -234,7 +236,7 @@ static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
     wh_way_t way;
     const wh_status_t status =
         track->ways->plan(&way, &robot, &track->axes[first], &segment->target[first], reach);
-    if (status == WH_OK && wh_way_duration(&way) > MAX_SECONDS) {
+    if (status == WH_STATUS_OUT_OF_RANGE || (status == WH_OK && wh_way_duration(&way) > MAX_SECONDS)) {
         return WH_STATUS_BAD_SEGMENT;
     }
     if (status == WH_OK) {

@@ -112,8 +112,8 @@ wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
  * slice to the next. Refused, the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
- *   WH_STATUS_BAD_SEGMENT     a WAY or VIA of a track that takes none, of a SCARA, or one that moves other
- *                             axes than the robot's own; a VIA's points, as wh_via_plan says; a
+ *   WH_STATUS_BAD_SEGMENT     a WAY or VIA of a track that takes none, a WAY of a SCARA, or one that moves
+ *                             other axes than the robot's own; a VIA's points, as wh_via_plan says; a
  *                             robot's gripper that is on a chuck; kind, gripper, valve, speed, acceleration
  *                             or seconds out of range; a motion of over 1e6 s
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R or the elbow outside its travel, at a VIA's point, too

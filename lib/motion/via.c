@@ -114,16 +114,32 @@ static bool axis_keeps_limits(const corner_t *corner, size_t axis) {
     return good;
 }
 
-/* Where R's end is, in the robot's frame. */
-static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[]) {
+/* Where the end of the arm with this R is, in the robot's frame, with theta as where that arm points. */
+static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[], size_t arm) {
+    const bool has_elbow = robot->links[0] > 0;
+    const wh_real_t first = has_elbow ? robot->links[0] : q[arm];
+    const wh_real_t rail = robot->rail > 0 ? q[robot->rail] : 0;
     wh_real_t s;
     wh_real_t c;
     wh_sin_cos(q[WH_AXIS_THETA], &s, &c);
-    const wh_real_t rail = robot->rail > 0 ? q[robot->rail] : 0;
-    return wh_vec3(q[WH_AXIS_R] * c + rail, q[WH_AXIS_R] * s, q[WH_AXIS_Z]);
+    wh_vec3_t place = wh_vec3(first * c + rail, first * s, q[WH_AXIS_Z]);
+    if (has_elbow) {
+        wh_sin_cos(q[WH_AXIS_THETA] + q[WH_AXIS_R], &s, &c);
+        place.x += robot->links[1] * c;
+        place.y += robot->links[1] * s;
+    }
+    return place;
 }
 
-/* True if R's end is near the point where the second leg begins, or where the first one ends. */
+/* True if the arm's end at axes q is at most the blend from where it is at the point. */
+static bool is_end_near(const corner_t *corner, const wh_real_t q[], size_t arm) {
+    const wh_vec3_t there = place_of(corner->robot, q, arm);
+    const wh_vec3_t point = place_of(corner->robot, corner->point->q, arm);
+    const wh_vec3_t apart = wh_vec3_subtract(&there, &point);
+    return wh_vec3_norm(&apart) <= corner->point->blend;
+}
+
+/* True if each arm's end is near the point where the second leg begins, or where the first one ends. */
 static bool is_near(const corner_t *corner, bool is_second) {
     wh_real_t q[WH_CARRIER_AXES] = {0};
     for (size_t axis = 0; axis < corner->robot->axis_count; ++axis) {
@@ -133,10 +149,8 @@ static bool is_near(const corner_t *corner, bool is_second) {
                       : wh_profile_position(first, first->duration - corner->overlap) - first->distance;
         q[axis] = corner->point->q[axis] + left;
     }
-    const wh_vec3_t there = place_of(corner->robot, q);
-    const wh_vec3_t point = place_of(corner->robot, corner->point->q);
-    const wh_vec3_t apart = wh_vec3_subtract(&there, &point);
-    return wh_vec3_norm(&apart) <= corner->point->blend;
+    const size_t second = corner->robot->second;
+    return is_end_near(corner, q, WH_AXIS_R) && (second == 0 || is_end_near(corner, q, second));
 }
 
 static bool fits(const corner_t *corner) {

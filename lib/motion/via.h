@@ -4,12 +4,14 @@
  * From one point to the next all axes go at once, each leg as a synchronised move (motion/move.h). A leg
  * begins before the one before it is over. While both run their positions add up, so that the arm need not
  * stand still at the point between them. Where the first of the two is left, and where the second is joined,
- * R's end is at most `blend` mm from the point: so near does the arm pass it. Speeds, accelerations and jerks
- * of both together keep each axis's limits: that is looked at phase by phase, not sampled. Of 64 overlaps, up
- * to half of either leg, the longest that keeps all this is taken; if none does, the arm stops at the point.
+ * the arm's end is at most `blend` mm from the point: so near does the arm pass it. Speeds, accelerations
+ * and jerks of both together keep each axis's limits: that is looked at phase by phase, not sampled. Of 64
+ * overlaps, up to half of either leg, the longest that keeps all this is taken; if none does, the arm stops
+ * at the point.
  *
- * For a polar arm, with all axes that it has: all go along, and the end that passes a point is that of the
- * first arm's R. A way is a plain struct without pointers: copy it freely. All functions are reentrant.
+ * All axes that the robot has go along. The arm's end is that of R, or a SCARA's wrist. Of two arms both ends
+ * pass a point so near, each where that arm's R is at the point. A way is a plain struct without pointers:
+ * copy it freely. All functions are reentrant.
  */
 #ifndef WH_MOTION_VIA_H
 #define WH_MOTION_VIA_H

@@ -303,7 +303,7 @@ static wh_status_t check(const wh_way_t *way, const wh_polar_t *robot, const wh_
     if (way == NULL || robot == NULL || from == NULL || to == NULL || reach == NULL) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!wh_polar_is_sound(robot)) {
+    if (!wh_polar_is_sound(robot) || robot->links[0] > 0) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     if (!are_finite(from, robot->axis_count) || !are_finite(to, robot->axis_count)) {

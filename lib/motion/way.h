@@ -59,8 +59,8 @@ wh_status_t wh_way_plan(wh_way_t *way, const wh_robot_t *robot, const wh_real_t 
                         const wh_real_t to[WH_ROBOT_AXES], wh_real_t reach) WH_SYMBOL(wh_way_plan);
 
 /* The same for a robot with other axes; of one with a single arm, reach[1] does not count. Also
- * WH_STATUS_OUT_OF_RANGE for a robot that wh_polar_is_sound does not pass. Cost: about 40 us, of two arms
- * that both leave the circle 240 us. */
+ * WH_STATUS_OUT_OF_RANGE for a SCARA and for a robot that wh_polar_is_sound does not pass. Cost: about 40 us,
+ * of two arms that both leave the circle 240 us. */
 wh_status_t wh_way_plan_polar(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[],
                               const wh_real_t to[], const wh_real_t reach[WH_POLAR_ARMS])
     WH_SYMBOL(wh_way_plan_polar);

@@ -12,7 +12,8 @@ return function(native, lookup, centring, tasks, alarms)
   -- By robot:
   -- inside   the target whose straight line the arm has entered and not left
   -- since    the command that entered it
-  -- front    the name of the station that it stands in, or in front of; nil: elsewhere
+  -- front    { station, gripper }: the name of the station that it stands in, or in front of, and with which gripper;
+  --          nil: elsewhere
   -- stopped  a command that was cut short, and neither RECOVER nor HOME came since; else nil
   -- homed    nil: as the layout says
   -- held     the plan of a command that stands still in a phase, and its text; else nil. The host knows of it, too,
@@ -313,9 +314,67 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- Both arms come in, if the robot turns on its way to the point.
-  local function retracted(request)
-    local robot, axes = native.layout.robots[native.layout.grippers[request.before.gripper].robot], native.axes()
+  -- The turn nearest to `near` of an angle.
+  local function nearest_turn(angle, near)
+    return angle + 2 * math.pi * math.floor((near - angle) / (2 * math.pi) + 0.5)
+  end
+
+  -- A station's point as native.plan takes it, of a robot that goes there with `gripper`: what the point does not say is
+  -- as at these axes. Of two arms or wrists it says where this gripper's is.
+  local function via_point(via, robot, gripper, axes)
+    local point, arm_number = { blend = via.blend }, native.layout.grippers[gripper].arm
+    for index in ipairs(robot.home) do
+      point[index] = via[index] or axes[robot.first + index - 1]
+    end
+    if robot.arms and arm_number == 2 then
+      local first, second = robot.arms[1] - robot.first + 1, robot.arms[2] - robot.first + 1
+      point[first], point[second] = axes[robot.arms[1]], via[first] or axes[robot.arms[2]]
+    end
+    if robot.headings and via[1] then
+      point[1] = nearest_turn(via[1] - robot.headings[arm_number], axes[robot.first])
+    end
+    return point
+  end
+
+  -- The number of points that a robot has at a station, nil: of none.
+  local function vias_of(robot, station)
+    return station and native.layout.stations[station].vias[robot] or {}
+  end
+
+  -- A robot's points between where it stands in front of and where it goes, or none: back along those of the one, then
+  -- along those of the other. Both are { station, gripper }, or nil for elsewhere; `there` the axes where it ends.
+  local function vias_between(robot, front, goal, there)
+    local here, points, own = native.axes(), { robot = robot }, native.layout.robots[robot]
+    if front and goal and front.station == goal.station then
+      return nil
+    end
+    local back = vias_of(robot, front and front.station)
+    for index = #back, 1, -1 do
+      points[#points + 1] = via_point(back[index], own, front.gripper, here)
+    end
+    for _, via in ipairs(vias_of(robot, goal and goal.station)) do
+      points[#points + 1] = via_point(via, own, goal.gripper, there)
+    end
+    return #points > 0 and points or nil
+  end
+
+  -- True if the robot has points where it stands in front of or goes to: then it comes in by them.
+  local function has_points(robot, front, station)
+    return (not front or front.station ~= station) and #vias_of(robot, front and front.station) + #vias_of(robot, station) > 0
+  end
+
+  -- The same of the robot's way home.
+  function arm.goes_home_by_points()
+    return has_points(tasks.current().robot or 1, arm.state().front, nil)
+  end
+
+  -- Both arms come in, if the robot turns on its way to the point and has no points for that.
+  local function retracted(request, front)
+    local number = native.layout.grippers[request.before.gripper].robot
+    local robot, axes = native.layout.robots[number], native.axes()
+    if has_points(number, front, request.target.station) then
+      return axes
+    end
     local there = native.inverse { to = request.before, target = request.target, where = request.where }
     for _, axis in ipairs(math.abs(there[robot.first] - axes[robot.first]) > 1e-9 and robot.arms or {}) do
       axes[axis] = robot.home[axis - robot.first + 1]
@@ -323,39 +382,17 @@ return function(native, lookup, centring, tasks, alarms)
     return axes
   end
 
-  -- A station's point, as native.plan takes it: what it does not say of the robot's axes is as at these axes.
-  local function via_point(via, robot, axes)
-    local point = { blend = via.blend }
-    for index in ipairs(robot.home) do
-      point[index] = via[index] or axes[robot.first + index - 1]
-    end
-    return point
-  end
-
-  -- A robot's points between two stations, or none: back along those of the one, then along those of the other.
-  -- `front` and `station` are their names, nil where the arm comes from or goes elsewhere; `there` the axes where it
-  -- ends.
-  local function vias_between(robot, front, station, there)
-    local stations, here, points = native.layout.stations, native.axes(), { robot = robot }
-    local own = native.layout.robots[robot]
-    if front == station then
-      return nil
-    end
-    local back = front and stations[front].vias[robot] or {}
-    for index = #back, 1, -1 do
-      points[#points + 1] = via_point(back[index], own, here)
-    end
-    for _, via in ipairs(station and stations[station].vias[robot] or {}) do
-      points[#points + 1] = via_point(via, own, there)
-    end
-    return #points > 0 and points or nil
+  -- What the arm stands in front of when a request to a station has been performed; nil: elsewhere.
+  local function in_front(request)
+    local target = request.target
+    return target and { station = target.station, gripper = target.gripper }
   end
 
   -- The segment of a request, its axes found for where the gripper shall be. Detour 1 turns theta the longer
-  -- way round, detour 2 the shorter way and a whole turn. `front` is the station that the arm stands in front of.
+  -- way round, detour 2 the shorter way and a whole turn. `front` is what the arm stands in front of.
   local function segment_of(request, target, front)
     if request.before then
-      request.axes = retracted(request)
+      request.axes = retracted(request, front)
     elseif request.to then
       request.axes = native.inverse(request)
       fold_other(request)
@@ -366,8 +403,7 @@ return function(native, lookup, centring, tasks, alarms)
         request.axes[first] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
       end
       request.via = request.target
-        and vias_between(native.layout.grippers[request.to.gripper].robot, front, request.target.station, request.axes)
-        or nil
+        and vias_between(native.layout.grippers[request.to.gripper].robot, front, in_front(request), request.axes) or nil
     elseif request.homeward then
       request.via = vias_between(tasks.current().robot or 1, front, nil, request.axes)
     elseif request.line then
@@ -429,7 +465,7 @@ return function(native, lookup, centring, tasks, alarms)
       end
       plan.way = request.way or plan.way
       request.planned = is_segment and native.plan(segment_of(request, plan.target, front)) or nil
-      front = request.to and request.target and request.target.station or front
+      front = request.to and in_front(request) or front
       plan[#plan + 1] = request
       request = step(assumed(request))
     end
@@ -525,7 +561,7 @@ return function(native, lookup, centring, tasks, alarms)
       state.inside = nil
     end
     if request.to or request.leaves then
-      state.front = request.target and request.target.station
+      state.front = in_front(request)
     end
     if lost and lost ~= request.lets_go and target.watched then
       local name, at = native.layout.grippers[lost].name, request.target

@@ -227,10 +227,11 @@ return function(native, patterns, lookup, alarms)
   local function home()
     recover()
     local axes, robot = native.axes(), native.layout.robots[tasks.current().robot]
-    for _, axis in ipairs(robot.retracts and robot.arms or {}) do
+    local retracts = robot.retracts and not arm.goes_home_by_points()
+    for _, axis in ipairs(retracts and robot.arms or {}) do
       axes[axis] = robot.home[axis - robot.first + 1]
     end
-    if robot.retracts then
+    if retracts then
       arm.play(patterns.single, { segment = { axes = axes } })
     end
     for axis, position in ipairs(robot.home) do

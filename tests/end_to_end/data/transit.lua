@@ -1,4 +1,4 @@
--- Within a circle: with two arms, or on a rail with a blade that turns over.
+-- Within a circle: with two arms, on a rail with a blade that turns over, or with a column that tilts.
 cell "transit_layout.lua"
 if params.robot == "two" then
   get("A", 1, { gripper = "LO" })
@@ -17,6 +17,16 @@ if params.robot == "two" then
   home()
   expect_offset("W1", "C", 1, 0, 0, 0.5)
   expect_offset("W2", "D", 1, 0, 0, 0.5)
+elseif params.robot == "tilts" then
+  get("A", 1)
+  put("C", 1)
+  get("B", 1)
+  ready("D", 1)
+  put("D", 2)
+  ready("B", 2)
+  home()
+  expect_offset("W1", "C", 1, 0, 0, 0.5)
+  expect_offset("W2", "D", 2, 0, 0, 0.5)
 else
   get("A", 1)
   put("B", 2)

@@ -1,21 +1,24 @@
--- A robot with two arms between four stations, or one on a rail that turns its blade over, that stays within a circle while it turns.
-local function around(degrees, rail)
+-- A robot with two arms between four stations, one on a rail that turns its blade over, or one whose column tilts to one of the
+-- stations, that stays within a circle while it turns.
+local function around(degrees, rail, roll)
   local angle = math.rad(degrees)
-  return { at = { 740 * math.cos(angle) + (rail or 0), 740 * math.sin(angle), 900 }, rpy = { 0, 0, degrees }, retract = 340,
+  return { at = { 740 * math.cos(angle) + (rail or 0), 740 * math.sin(angle), 900 }, rpy = { roll or 0, 0, degrees }, retract = 340,
            slots = 2, pitch = 30, rail = rail }
 end
 
 local two = { kind = "TRZ", transit = 520, arms = { { heading = 0 }, { heading = 180, height = 10 } }, theta = { min = -720, max = 720 } }
 local flips = { kind = "TRZY", transit = 520, rail = {}, flip = { seconds = 2 }, theta = { min = -720, max = 720 } }
-local is_two = params.robot == "two"
+local tilts = { kind = "TRZY", transit = 520, tilt = {}, theta = { min = -720, max = 720 } }
+local is_two, is_tilting = params.robot == "two", params.robot == "tilts"
+local has_rail = not is_two and not is_tilting
 
 return {
   collision = true, look_ahead = true,
-  robot = is_two and two or flips,
+  robot = is_two and two or is_tilting and tilts or flips,
   grippers = is_two and { { name = "LO", arm = 1 }, { name = "UP", arm = 2 } } or { { name = "LO" } },
   stations = {
-    A = around(0, not is_two and 500 or nil), B = around(90, not is_two and -300 or nil),
-    C = around(180, not is_two and -300 or nil), D = around(-70, not is_two and 0 or nil),
+    A = around(0, has_rail and 500 or nil), B = around(90, has_rail and -300 or nil, is_tilting and 1.5 or nil),
+    C = around(180, has_rail and -300 or nil), D = around(-70, has_rail and 0 or nil),
   },
   study = { placement = { dx = 0.05, dy = 0.05 } },
   wafers = { { name = "W1", station = "A", slot = 1 }, { name = "W2", station = "B", slot = 1 } },

@@ -1,5 +1,6 @@
 /* Ways of two arms, on a rail, with a flip: random ones keep all limits and the circle at each millisecond, end exactly, and are
- * near what no way can beat. By via points a rail is passed, too. */
+ * near what no way can beat. By via points a rail is passed, too, and so are points of an elbow and of two arms. */
+#include <complex.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -47,10 +48,14 @@ static void usual_robot(void) {
     robot.second = SECOND;
 }
 
+/* R is an elbow's angle. */
+static bool bends;
+
 static wh_real_t random_place(size_t axis) {
     static const double most[COUNT] = {3, 900, 1300, 2, 800, 3.1, 900};
     static const double least[COUNT] = {-3, 300, 600, -2, -800, 0, 300};
-    return WH_REAL(wh_test_uniform(least[axis], most[axis]));
+    return bends && axis == WH_AXIS_R ? WH_REAL(wh_test_uniform(-2.8, 2.8))
+                                      : WH_REAL(wh_test_uniform(least[axis], most[axis]));
 }
 
 static void random_way(void) {
@@ -205,6 +210,11 @@ static void bad_ways_change_nothing(void **state) {
     robot = sound;
     robot.second = COUNT;
     assert_int_equal(wh_way_plan_polar(&way, &robot, from, to, reach), WH_STATUS_OUT_OF_RANGE);
+    robot = sound;
+    robot.links[0] = 400;
+    assert_int_equal(wh_way_plan_polar(&way, &robot, from, to, reach), WH_STATUS_OUT_OF_RANGE);
+    robot.links[1] = 400;
+    assert_int_equal(wh_way_plan_polar(&way, &robot, from, to, reach), WH_STATUS_OUT_OF_RANGE);
     assert_memory_equal(&way, &good, sizeof way);
 }
 
@@ -233,12 +243,70 @@ static void a_rail_passes_a_point(void **state) {
     assert_int_equal(wh_via_plan_polar(&via, &robot, begin, &point, 1, end), WH_STATUS_OUT_OF_RANGE);
 }
 
+/* How far apart an arm's end is at two places, of a SCARA, or of the polar arm with this R. */
+static double between_ends(const wh_real_t a[], const wh_real_t b[], size_t arm) {
+    double complex ends[2];
+    const wh_real_t *const q[2] = {a, b};
+    for (int i = 0; i < 2; ++i) {
+        const double complex along = cexp((double complex)I * (double)q[i][WH_AXIS_THETA]);
+        const double complex bent = cexp((double complex)I * (double)q[i][WH_AXIS_R]);
+        ends[i] = (double)q[i][RAIL];
+        ends[i] += robot.links[0] > 0 ? along * ((double)robot.links[0] + (double)robot.links[1] * bent)
+                                      : along * (double)q[i][arm];
+    }
+    return hypot(cabs(ends[0] - ends[1]), (double)a[WH_AXIS_Z] - (double)b[WH_AXIS_Z]);
+}
+
+/* Of random ways by one point that can be cut short: where the second leg begins, and where the first one ends, each arm's
+ * end is within the blend. Returns how many such ways there were. */
+static int pass_points(int ways) {
+    static wh_via_t via;
+    int blended = 0;
+    for (int i = 0; i < ways; ++i) {
+        wh_via_point_t point = {{0}, WH_REAL(wh_test_decades(10, 300))};
+        memset(from, 0, sizeof from);
+        memset(to, 0, sizeof to);
+        for (size_t axis = 0; axis < COUNT; ++axis) {
+            from[axis] = random_place(axis);
+            point.q[axis] = random_place(axis);
+            to[axis] = random_place(axis);
+        }
+        assert_int_equal(wh_via_plan_polar(&via, &robot, from, &point, 1, to), WH_OK);
+        const wh_real_t ends[] = {via.begin[1], via.end[0]};
+        for (int end = 0; end < 2 && via.begin[1] < via.end[0]; ++end) {
+            wh_real_t q[WH_CARRIER_AXES];
+            wh_via_at(&via, ends[end], q);
+            assert_true(between_ends(q, point.q, WH_AXIS_R) <= (double)point.blend + 100 * NEAR);
+            assert_true(robot.second == 0 ||
+                        between_ends(q, point.q, SECOND) <= (double)point.blend + 100 * NEAR);
+            ++blended;
+        }
+    }
+    return blended / 2;
+}
+
+static void ends_of_all_arms_pass_within_the_blend(void **state) {
+    (void)state;
+    usual_robot();
+    assert_true(pass_points(WAYS) > WAYS / 2);
+    usual_robot();
+    robot.second = 0;
+    robot.links[0] = 400;
+    robot.links[1] = 350;
+    robot.limits[WH_AXIS_R] = robot.limits[WH_AXIS_THETA];
+    bends = true;
+    const int blended = pass_points(WAYS);
+    bends = false;
+    assert_true(blended > WAYS / 2);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ways_of_all_axes_keep_limits_and_circle),
         cmocka_unit_test(two_arms_are_near_their_bound),
         cmocka_unit_test(bad_ways_change_nothing),
         cmocka_unit_test(a_rail_passes_a_point),
+        cmocka_unit_test(ends_of_all_arms_pass_within_the_blend),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
