@@ -43,9 +43,11 @@ static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
     for (size_t g = 0; is_order(layout, latches) && g < run->state.gripper_count; ++g) {
         const bool is_on_robot = layout->machine.mounts[g].axis == WH_NONE;
         if (is_on_robot && run->state.grippers[g].wafer != WH_NONE) {
+            const int32_t station = layout->beams[latches->first].station;
             run->passes[g] = (wh_pass_t){.order = {WH_LATCH_ARM, latches->first, latches->count},
-                                         .station = layout->beams[latches->first].station,
+                                         .station = station,
                                          .gripper = (int32_t)g,
+                                         .believed = wh_pass_station(layout, station, (int32_t)g),
                                          .number = latches->number,
                                          .before = latches->number - 1,
                                          .seq = run->state.seq,

@@ -75,12 +75,15 @@ static bool turns_in_slot(const wh_layout_t *layout, size_t robot) {
 }
 
 /* The slot as it lies if its station has been moved by the numbers { x, y, z, yaw } at this stack index, mm
- * and rad: yaw turns it about the vertical through slot 1, or `in_slot`, about the slot's z there. */
-static void move_station(lua_State *L, int shift, const wh_station_t *place, bool in_slot,
+ * and rad: yaw turns it about the vertical through slot 1 as the robot was taught that, or of a robot that
+ * tilts, about the slot's z there. */
+static void move_station(lua_State *L, int shift, const wh_layout_t *layout, size_t station, size_t robot,
                          wh_pose_t *base_from_slot) {
     wh_real_t by[4] = {0};
     wh_mcs_read_numbers(L, shift, by, 4);
-    const wh_pose_t first = wh_station_slot(place, 1);
+    const bool in_slot = turns_in_slot(layout, robot);
+    wh_pose_t first = wh_station_slot(&layout->places[station], 1);
+    (void)take_approach(layout, station, robot, &first);
     const wh_mat3_t turn = wh_mat3_about_z(by[3]);
     const wh_mat3_t *R = &base_from_slot->R;
     wh_mat3_t turned = *R;
@@ -100,7 +103,7 @@ wh_pose_t wh_mcs_believed_station(lua_State *L, int shift, const wh_mcs_t *mcs, 
     wh_pose_t believed = place->base_from_station;
     believed.r = wh_vec3_add(&believed.r, &aside);
     if (lua_istable(L, shift)) {
-        move_station(L, shift, place, turns_in_slot(mcs->layout, robot), &believed);
+        move_station(L, shift, mcs->layout, station, robot, &believed);
     }
     return believed;
 }
@@ -164,7 +167,7 @@ static int find_slot(lua_State *L) {
         wh_trial_cell_teach(mcs->local.trial, (size_t)station, robot, way.rail, &base_from_slot);
     }
     if (lua_istable(L, 8)) {
-        move_station(L, 8, place, turns_in_slot(mcs->layout, robot), &base_from_slot);
+        move_station(L, 8, mcs->layout, (size_t)station, robot, &base_from_slot);
     }
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];

@@ -78,20 +78,32 @@ static void push_centring(lua_State *L, const wh_mcs_t *mcs) {
     lua_setfield(L, -2, "candidates");
 }
 
-wh_vec3_t wh_mcs_beams_aside(const wh_mcs_t *mcs, size_t station, int32_t gripper) {
+/* Where the robot of this gripper takes the beams of a station to stand. They have gone along with a station
+ * that a host has moved by the shift at this stack index; its field `beams`, { x, y } in base, mm, is how far
+ * TEACH has found them beside that. In a trial they are drawn, too. */
+static wh_pose_t believed_beams(lua_State *L, int shift, const wh_mcs_t *mcs, int32_t station,
+                                int32_t gripper) {
     const size_t robot = mcs->layout->machine.mounts[gripper].robot;
-    const wh_vec3_t told = wh_layout_aside(mcs->layout, station, robot);
-    const wh_vec3_t drawn = wh_mcs_drawn_aside(mcs, station, robot);
-    return wh_vec3_add(&told, &drawn);
+    const wh_vec3_t drawn = wh_mcs_drawn_aside(mcs, (size_t)station, robot);
+    wh_pose_t believed = wh_mcs_believed_station(L, shift, mcs, (size_t)station, robot);
+    believed.r = wh_vec3_add(&believed.r, &drawn);
+    if (lua_istable(L, shift) && lua_getfield(L, shift, "beams") == LUA_TTABLE) {
+        wh_real_t beside[2] = {0};
+        wh_mcs_read_numbers(L, lua_gettop(L), beside, 2);
+        believed.r.x += beside[0];
+        believed.r.y += beside[1];
+    }
+    return believed;
 }
 
-void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper) {
+void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper,
+                const wh_pose_t *believed) {
     wh_pass_t *pass = &mcs->pass;
     wh_pass_free(pass);
     *pass = (wh_pass_t){.order = order,
                         .station = station,
                         .gripper = gripper,
-                        .aside = wh_mcs_beams_aside(mcs, (size_t)station, gripper),
+                        .believed = *believed,
                         .before = pass->number,
                         .number = pass->number,
                         .seq = pass->seq,
@@ -110,15 +122,16 @@ static wh_latch_order_t read_pass(lua_State *L, const wh_mcs_t *mcs, int32_t *st
     return order;
 }
 
-/* native.arm_beams(station, gripper): from the end of the next slice on the beams that this gripper passes on
- * its way to the station latch what crosses them, and its way is remembered. What was collected before is
- * gone. */
+/* native.arm_beams(station, gripper, shift): from the end of the next slice on the beams that this gripper
+ * passes on its way to the station latch what crosses them, and its way is remembered. Of a station that a
+ * host has moved, see native.shift. What was collected before is gone. */
 static int arm_beams(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
     int32_t gripper = 0;
     const wh_latch_order_t order = read_pass(L, mcs, &station, &gripper);
-    wh_mcs_arm(mcs, order, station, gripper);
+    const wh_pose_t believed = believed_beams(L, 3, mcs, station, gripper);
+    wh_mcs_arm(mcs, order, station, gripper, &believed);
     return 0;
 }
 
@@ -151,16 +164,16 @@ static int centre(lua_State *L) {
     return 1;
 }
 
-/* native.beam(station, gripper): { x, y } in base, mm: where the first beam is that this gripper passes on
- * its way to the station, at the height of slot 1, as motion control believes; and its number there, from
- * 1. */
+/* native.beam(station, gripper, shift): { x, y } in base, mm: where the first beam is that this gripper
+ * passes on its way to the station, at the height of slot 1, as motion control believes; and its number
+ * there, from 1. Of a station that a host has moved, see native.shift. */
 static int push_beam(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
     int32_t gripper = 0;
     const wh_latch_order_t order = read_pass(L, mcs, &station, &gripper);
-    const wh_vec3_t aside = wh_mcs_beams_aside(mcs, (size_t)station, gripper);
-    const wh_beam_t beam = wh_pass_beam(mcs->layout, order.first, &aside);
+    const wh_pose_t believed = believed_beams(L, 3, mcs, station, gripper);
+    const wh_beam_t beam = wh_pass_beam(mcs->layout, order.first, &believed);
     lua_createtable(L, 0, 3);
     wh_lua_set_number(L, "x", beam.x);
     wh_lua_set_number(L, "y", beam.y);

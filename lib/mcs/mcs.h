@@ -263,6 +263,7 @@ struct wh_mcs {
     bool limits_missed;          /* the run fails if the simulator misses more slices than `most_missed` */
     uint32_t stopped_axes;       /* bits: it ends commands that have one of these, WH_MCS_ALL any */
     uint32_t stop_slice_axes;    /* likewise, of the STOP that comes at `stop_slice` */
+    bool stop_is_asked;          /* that one: by an operator, not by stop_in */
     uint32_t held_axes;          /* bits: what the running command has, while there are no tasks */
     int callers[WH_MCS_CALLERS]; /* of the running command's line, the lines that called it; 0: no more */
     int64_t most_missed;

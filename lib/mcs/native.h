@@ -61,13 +61,10 @@ void wh_mcs_free_lanes(wh_mcs_t *mcs);
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
 void wh_mcs_free_turns(wh_mcs_turns_t *turns);
 
-/* How far beside where the layout has them, in base, mm, motion control takes a station's beams to stand for
- * the robot of this gripper: as far as that was taught the station beside. */
-wh_vec3_t wh_mcs_beams_aside(const wh_mcs_t *mcs, size_t station, int32_t gripper);
-
-/* From the end of the next slice on these beams latch, and this gripper's way is remembered. What was
- * collected before is gone. */
-void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper);
+/* From the end of the next slice on these beams latch, and this gripper's way is remembered. The beams are
+ * taken to stand as this base_from_station says. What was collected before is gone. */
+void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper,
+                const wh_pose_t *believed);
 
 /* The first `count` numbers of the list at this absolute stack index; raises if one is none. */
 void wh_mcs_read_numbers(lua_State *L, int list, wh_real_t numbers[], size_t count);

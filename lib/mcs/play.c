@@ -69,7 +69,7 @@ const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes) {
         mcs->stop_slice = INT64_MAX;
     }
     mcs->stop_requested = false;
-    return requested ? "by a request" : "by stop_in";
+    return requested || mcs->stop_is_asked ? "by a request" : "by stop_in";
 }
 
 __attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
@@ -228,9 +228,9 @@ static int play(lua_State *L) {
     return 2;
 }
 
-/* native.stop_in(seconds, mechanism): a STOP of that mechanism, nil: of all, comes at the first slice at or
- * after so many simulated seconds from now; seconds nil: none comes. False if there is no such mechanism.
- * With one there must be tasks. */
+/* native.stop_in(seconds, mechanism, asked): a STOP of that mechanism, nil: of all, comes at the first slice
+ * at or after so many simulated seconds from now; seconds nil: none comes. True for `asked`: an operator has
+ * said STOP. False if there is no such mechanism. With one there must be tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     uint32_t axes = WH_MCS_ALL;
@@ -239,6 +239,7 @@ static int stop_in(lua_State *L) {
         return 1;
     }
     mcs->stop_slice_axes = axes;
+    mcs->stop_is_asked = lua_toboolean(L, 3);
     if (lua_isnoneornil(L, 1)) {
         mcs->stop_slice = INT64_MAX;
         return 0;

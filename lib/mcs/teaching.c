@@ -130,7 +130,8 @@ static int push_block(lua_State *L) {
 }
 
 /* native.touched(): { closed = if the switch that was armed is closed now, latched = if it has closed since,
- * missed = latches that no state brought }. */
+ * missed = latches that no state brought, skipped = if slices were lost meanwhile, so that nobody knows where
+ * the ball was }. */
 static int push_touched(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_pass_t *pass = &mcs->pass;
@@ -140,6 +141,7 @@ static int push_touched(lua_State *L) {
     wh_lua_set_boolean(L, "closed", (mcs->state.physics->latches.broken & bit) != 0);
     wh_lua_set_boolean(L, "latched", pass->latch_count > 0 && pass->latches[0].edge == WH_CROSSING_IN);
     wh_lua_set_integer(L, "missed", pass->missed);
+    wh_lua_set_boolean(L, "skipped", pass->skipped);
     return 1;
 }
 
@@ -181,8 +183,9 @@ static int arm_touch(lua_State *L) {
     int32_t station = 0;
     (void)block_of(L, mcs, &station);
     const size_t face = (size_t)wh_mcs_index(L, 2, WH_BLOCK_FACES);
-    wh_mcs_arm(mcs, wh_layout_face_at(mcs->layout, (size_t)station, face), station,
-               mcs->layout->probe.gripper);
+    const int32_t gripper = mcs->layout->probe.gripper;
+    const wh_pose_t believed = wh_pass_station(mcs->layout, station, gripper);
+    wh_mcs_arm(mcs, wh_layout_face_at(mcs->layout, (size_t)station, face), station, gripper, &believed);
     return 0;
 }
 
@@ -195,7 +198,7 @@ static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pas
     const wh_layout_beam_t *beam = &layout->beams[first];
     wh_teach_guess_t guess = wh_teach_guess_at(believed, beam->x, beam->y);
     if (layout->doors[first].kind == WH_DOOR_LIGHT) {
-        guess.beam = wh_pass_beam(layout, first, &pass->aside);
+        guess.beam = wh_pass_beam(layout, first, &pass->believed);
     }
     guess.sd_beam = SD_BEAM;
     guess.sd_place = SD_PLACE;

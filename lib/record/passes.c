@@ -59,11 +59,17 @@ void wh_pass_free(wh_pass_t *pass) {
 
 /* ---------------------------------------------------------------------------------------------- crossings */
 
-wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_vec3_t *aside) {
+wh_pose_t wh_pass_station(const wh_layout_t *layout, int32_t station, int32_t gripper) {
+    const size_t robot = layout->machine.mounts[gripper].robot;
+    const wh_vec3_t aside = wh_layout_aside(layout, (size_t)station, robot);
+    wh_pose_t base_from_station = layout->places[station].base_from_station;
+    base_from_station.r = wh_vec3_add(&base_from_station.r, &aside);
+    return base_from_station;
+}
+
+wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_pose_t *base_from_station) {
     const wh_layout_beam_t *of = &layout->beams[beam];
-    wh_pose_t base_from_station = layout->places[of->station].base_from_station;
-    base_from_station.r = wh_vec3_add(&base_from_station.r, aside);
-    return wh_beam_at(&base_from_station, of->x, of->y, of->low, of->high);
+    return wh_beam_at(base_from_station, of->x, of->y, of->low, of->high);
 }
 
 /* Where the blade was as a latch's beam changed. False if that is not known. */
@@ -79,7 +85,7 @@ static bool find_crossing(const wh_pass_t *pass, const wh_layout_t *layout, cons
         return false;
     }
     const wh_slice_motion_t motion = wh_slice_motion_between(&pass->places[slice], &pass->places[slice + 1]);
-    const wh_beam_t line = wh_pass_beam(layout, latch->beam, &pass->aside);
+    const wh_beam_t line = wh_pass_beam(layout, latch->beam, &pass->believed);
     found->time = ((double)pass->armed_seq + time) * slice_s;
     found->crossing.beam = latch->beam;
     found->crossing.edge = latch->edge;

@@ -11,11 +11,12 @@
 #include "../layout/layout.h"
 #include "../sim/slice.h"
 
-/* Read only, but for what it begins with: order, station, gripper, aside, seq, number, before and goes_on. */
+/* Read only, but for what it begins with: order, station, gripper, believed, seq, number, before and
+ * goes_on. */
 typedef struct {
     wh_latch_order_t order; /* count 0: none was armed */
     int32_t station, gripper;
-    wh_vec3_t aside;         /* the beams are believed so far beside where the layout has them, in base, mm */
+    wh_pose_t believed;      /* base_from_station by which the beams are taken to stand */
     int64_t seq;             /* of the last state that was heard */
     uint32_t number, before; /* of the last arming that was heard of, now and when this one was ordered */
     int64_t armed_seq;       /* the slice whose command carried the order; 0: none yet */
@@ -46,8 +47,12 @@ void wh_pass_stand(wh_pass_t *pass, int64_t seq, const wh_pose_t *base_from_grip
 /* Forgets the places. */
 void wh_pass_free(wh_pass_t *pass);
 
-/* A beam of the layout, as motion control believes in it, so far `aside`. */
-wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_vec3_t *aside);
+/* base_from_station by which this gripper's robot takes the station's beams to stand: as the layout has it, and
+ * as far beside as that robot was taught the station. */
+wh_pose_t wh_pass_station(const wh_layout_t *layout, int32_t station, int32_t gripper);
+
+/* A beam of the layout, of a station that is taken to stand there. */
+wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_pose_t *base_from_station);
 
 /* Each latch as a crossing, with what motion control knows of delays taken off. Returns how many there are;
  * `missed` is how many latches have none. */

@@ -65,10 +65,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
 }
 
-void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *centring) {
+bool wh_record_is_teaching(const wh_record_t *record, int32_t command) {
     static const char teach[] = "TEACH ";
-    const char *text = centring->command != WH_NONE ? record->commands[centring->command].text : "";
-    if (strncmp(text, teach, strlen(teach)) == 0) {
+    return command != WH_NONE && strncmp(record->commands[command].text, teach, strlen(teach)) == 0;
+}
+
+void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *centring) {
+    if (wh_record_is_teaching(record, centring->command)) {
         return;
     }
     if (record->centring_count == WH_RECORD_CENTRINGS) {

@@ -97,9 +97,9 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     wh_command_record_t *command = &recorder->record->commands[recorder->running];
     command->end_s = end_s;
     command->error = error;
-    if (error == WH_OK) {
+    if (error == WH_OK && !wh_record_is_teaching(recorder->record, recorder->running)) {
         count_puts(recorder, wafers);
-    } else {
+    } else if (error != WH_OK) {
         command->message = wh_text_copy(message);
     }
     recorder->running = WH_NONE;

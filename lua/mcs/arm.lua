@@ -160,7 +160,7 @@ return function(native, lookup, centring, tasks, alarms)
   end
 
   -- With several robots a command's text says which.
-  local function with_robot(text, needs)
+  function arm.with_robot(text, needs)
     if not needs or not needs.robot or needs.unclear or not lookup.has_several() then
       return text
     end
@@ -189,7 +189,7 @@ return function(native, lookup, centring, tasks, alarms)
   -- `needs`: what of the cell it must have for itself, see arm.needs; nil: nothing.
   function arm.run(needs, text, action, ...)
     local word, task = text:match("^[%u_]+"), tasks.current()
-    text = with_robot(text, needs)
+    text = arm.with_robot(text, needs)
     alarms.refuse(word)
     native.begin(text)
     local state = arm.state()

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, table = ipairs, math, table
 
-return function(native, lookup)
+return function(native, lookup, stations)
   local centring = {}
 
   -- What the last pass told, for scripts; nil before one.
@@ -22,7 +22,8 @@ return function(native, lookup)
   -- The way into a station begins.
   function centring.begin(target)
     if target.centre then
-      native.arm_beams(lookup.station(target.station).index, target.gripper)
+      local station = lookup.station(target.station)
+      native.arm_beams(station.index, target.gripper, stations.shift(station, target.robot))
     end
   end
 

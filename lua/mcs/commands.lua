@@ -4,12 +4,12 @@
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
 return function(native, patterns, lookup, alarms)
-  local centring = native.module("mcs/centring.lua")(native, lookup)
+  local stations = native.module("mcs/stations.lua")(native, lookup)
+  local centring = native.module("mcs/centring.lua")(native, lookup, stations)
   local tasks = native.module("mcs/tasks.lua")(native, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup, centring, tasks, alarms)
   local mechanisms = native.module("mcs/mechanisms.lua")(native, patterns, lookup, arm)
   local align = native.module("mcs/align.lua")(native, patterns, lookup, arm, mechanisms)
-  local stations = native.module("mcs/stations.lua")(native, lookup)
   local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms, stations)
 
   function lookup.bound()
@@ -22,8 +22,9 @@ return function(native, patterns, lookup, alarms)
 
   lookup.phase, lookup.last_robot = arm.phase, arm.last_robot
 
+  local slot_map = native.module("mcs/slot_map.lua")(native)
   local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring,
-    alarms)
+    alarms, slot_map)
 
   ----------------------------------------------------------------------------------------------- single moves
 
@@ -71,7 +72,7 @@ return function(native, patterns, lookup, alarms)
   commands.calibrate = native.module("mcs/calibration.lua")(native, patterns, lookup, arm, targets, align,
     commands.carry)
   commands.carry = nil
-  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets, stations)
+  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets, stations, slot_map)
 
   -- station("A"): where the axes stand in its slot 1, degrees and mm.
   function commands.station(name, options)
@@ -80,7 +81,9 @@ return function(native, patterns, lookup, alarms)
 
   -- set_station("A", { theta = , r = , z = , yaw = }): it lies where the gripper would be then.
   function commands.set_station(name, axes)
-    arm.run(nil, lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.standing)), stations.set, name, axes)
+    local text = lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.standing))
+    local options = type(axes) == "table" and axes or {}
+    arm.run(nil, arm.with_robot(text, arm.needs(true, name, options)), stations.set, name, axes)
   end
 
   local function valve(gripper, level)
@@ -268,12 +271,9 @@ return function(native, patterns, lookup, alarms)
     arm.stop()
   end
 
-  local keep_slots = commands.keep_slots
-  commands.keep_slots = nil
-
   -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
   function commands.keep()
-    local put_slots_back, put_found_back, put_broken_back = keep_slots(), align.keep(), alarms.keep()
+    local put_slots_back, put_found_back, put_broken_back = slot_map.keep(), align.keep(), alarms.keep()
     local put_arm_back, is_arm_as_was = arm.keep()
     local put_stations_back, are_stations_as_were = stations.keep()
     return function()

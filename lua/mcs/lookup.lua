@@ -200,7 +200,12 @@ return function(native, errors)
   -- to. They must not contradict each other.
   local function said_robot(options)
     local gripper = options.gripper ~= nil and native.layout.grippers[lookup.gripper(options.gripper)]
-    local robot = options.robot ~= nil and lookup.robot(options.robot) or lookup.bound()
+    local bound, named = lookup.bound(), options.robot ~= nil and lookup.robot(options.robot)
+    local robot = named or bound
+    if named and bound and named ~= bound then
+      local text = "robot: %s (expected %s or none: the word is that robot's)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.robot), native.layout.robots[bound].name))
+    end
     if gripper and gripper.robot and robot and gripper.robot ~= robot then
       local text = "gripper: %s (expected one on %s)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.gripper), native.layout.robots[robot].name))
@@ -220,6 +225,9 @@ return function(native, errors)
       return 1
     elseif station and station.robot then
       return station.robot
+    end
+    if station_name ~= nil and not station then
+      lookup.station(station_name)
     end
     local text = "%s (expected robot \"NAME\", robot = or gripper =: %s)"
     local what = station and ("%s is served by several"):format(station.name) or "the command names none"

@@ -149,16 +149,26 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tokens.pairs(list)
   end
 
+  -- The gripper that a command means, asked for when that was first answered: a CONTINUE later need not name a robot.
+  local function asker(arguments, options)
+    local gripper
+    return function()
+      gripper = gripper or effector_for(arguments, options)
+      return gripper
+    end
+  end
+
   local function get(arguments, options)
+    local gripper = asker(arguments, options)
     return carried(function()
-      return { { "wafer", native.held(effector_for(arguments, options)) } }
+      return { { "wafer", native.held(gripper()) } }
     end, commands.get, arguments[1], arguments[2], options)
   end
 
   local function put(arguments, options)
-    local held, before = held_wafers(), commands.centring()
+    local held, before, gripper = held_wafers(), commands.centring(), asker(arguments, options)
     return carried(function()
-      local list, seen = { { "wafer", held[effector_for(arguments, options)] } }, commands.centring()
+      local list, seen = { { "wafer", held[gripper()] } }, commands.centring()
       if seen and seen ~= before then
         list[2], list[3], list[4] = { "dx", seen.dx }, { "dy", seen.dy }, { "sd", seen.sd }
       end

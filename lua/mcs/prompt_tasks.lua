@@ -109,7 +109,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     if not is_any_alive() then
       return false
     end
-    commands.stop_in(0)
+    native.stop_in(0, nil, true)
     for _, number in ipairs(numbers()) do
       pcall(commands.join, begun[number].handle)
     end

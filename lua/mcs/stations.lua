@@ -149,17 +149,24 @@ return function(native, lookup)
 
   local function set(name, fields)
     local station, robot, gripper = find(name, lookup.table("axes", fields))
-    local axes = set_axes(fields, station, robot, gripper)
-    move(station, robot, gripper, native.shift(station.index, robot, gripper, axes, true))
+    local axes, before = set_axes(fields, station, robot, gripper), stations.shift(station, robot)
+    local shift = native.shift(station.index, robot, gripper, axes, true)
+    shift.beams = before and before.beams
+    move(station, robot, gripper, shift)
   end
 
   stations.read, stations.set = read, set
 
-  -- What TEACH found for a robot: slot 1 is there in base, mm, and its way in leads in that direction, rad.
-  function stations.learn(station, robot, at, heading)
+  -- What TEACH found for a robot: slot 1 is there in base, mm, and its way in leads in that direction, rad; by a beam,
+  -- the first one of those that `beam.gripper` passes, at its x and y.
+  function stations.learn(station, robot, at, heading, beam)
     local place = native.slot(station.index, 1, 0, 0, 0, 0, robot, nil, true)
-    move(station, robot, station.by[robot],
-      { at[1] - place.x, at[2] - place.y, at[3] - place.z, heading - place.heading })
+    local shift = { at[1] - place.x, at[2] - place.y, at[3] - place.z, heading - place.heading }
+    if beam then
+      local along = native.beam(station.index, beam.gripper, shift)
+      shift.beams = { beam.x - along.x, beam.y - along.y }
+    end
+    move(station, robot, station.by[robot], shift)
   end
 
   -- A function that makes all as it is now, and one that says if it still is.

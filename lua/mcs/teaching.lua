@@ -7,7 +7,7 @@
 -- Kept, for a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm, targets, stations)
+return function(native, patterns, lookup, arm, targets, stations, slot_map)
   -- How far from where the wafer is expected the blade looks for it, mm, and in what steps.
   local SEARCH, STEP = 0.35, 0.01
   -- Through the beam: how fast, and how far before and behind a rim, mm.
@@ -87,8 +87,8 @@ return function(native, patterns, lookup, arm, targets, stations)
     local place, projz, gripper = target.place, native.layout.tolerance.projz, target.gripper
     local bottom = target.offset - target.stroke
     local begin = math.max(bottom, -projz - SEARCH)
-    go(target, place.x - target.retract * place.dir_x, place.y - target.retract * place.dir_y, place.z + bottom,
-      place.heading)
+    play { to = { x = place.x - target.retract * place.dir_x, y = place.y - target.retract * place.dir_y,
+                  z = place.z + bottom, heading = place.heading, gripper = gripper }, target = target, where = "in front of" }
     play { line = along(place, target.retract), enters = target, target = target, where = "on the way into" }
     play { line = { 0, 0, begin - bottom }, speed = target.pickup_speed }
     play { valves = { [gripper] = 0 } }
@@ -116,7 +116,7 @@ return function(native, patterns, lookup, arm, targets, stations)
 
   -- What crosses the beams while this plays.
   local function watch(station, target, action)
-    native.arm_beams(station.index, target.gripper)
+    native.arm_beams(station.index, target.gripper, stations.shift(station, target.robot))
     play { dwell = 2 * native.layout.slice }
     action()
     play { dwell = 0.01 }
@@ -311,7 +311,8 @@ return function(native, patterns, lookup, arm, targets, stations)
     local yaw = target.finds_yaw and find_yaw(station, target, beam, solved) or nil
     local result = result_of(station, target.robot, guess, at, yaw)
     result.sd, result.beam = { solved.sd_x, solved.sd_y, STEP / math.sqrt(12) }, { solved.beam_x, solved.beam_y }
-    return { result, yaw }
+    local stands = { gripper = target.gripper, x = beam.x + solved.beam_x, y = beam.y + solved.beam_y }
+    return { result, yaw, stands }
   end
 
   -- Where it was taken from: on a blade that draws wafers onto its pads it lies lower.
@@ -341,19 +342,21 @@ return function(native, patterns, lookup, arm, targets, stations)
     if native.sensor(target.gripper) then
       native.fail("WAFER_ON_GRIPPER", "TEACH takes the wafer in slot 1")
     end
+    slot_map.forget(target)
     local z, felt = feel(target)
     carry_out(target)
-    local beam = native.beam(station.index, target.gripper)
+    local beam = native.beam(station.index, target.gripper, stations.shift(station, target.robot))
     local guess, believed = native.begin_teaching(station.index, stations.shift(station, robot), target.gripper)
     target.turned = turned_by(target.place, believed)
     local good, result = pcall(by_beam, station, target, beam, guess, z + (guess.r[3] - believed.r[3]))
     if native.sensor(target.gripper) then
       put_back(name, target, z, felt)
+      slot_map.note_put(target)
     end
     if not good then
       error(result, 0)
     end
-    return result[1], result[2]
+    return result[1], result[2], result[3]
   end
 
   local function teach(name, options, by, toucher)
@@ -371,10 +374,10 @@ return function(native, patterns, lookup, arm, targets, stations)
     end
     local before = native.slot(station.index, 1, 0, 0, 0, 0, robot, stations.shift(station, robot), true)
     local action = by == "touch" and by_touch or with_wafer
-    local result, yaw = action(name, station, robot, finds_yaw)
+    local result, yaw, beam = action(name, station, robot, finds_yaw)
     if options and options.keep then
       local heading = lookup.has_several() and before.heading + (yaw or 0) or math.rad(result.rpy[3])
-      stations.learn(station, robot, result.at, heading)
+      stations.learn(station, robot, result.at, heading, beam)
     end
     return result
   end

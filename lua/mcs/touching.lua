@@ -81,6 +81,8 @@ return function(native, patterns, lookup, arm, targets)
       fail(block, place.face, ("nothing was felt within %.10g mm of it"):format(REACH - BEFORE))
     elseif native.touched().missed > 0 or not native.add_touch(station.index, place.face) then
       native.fail("TOO_FEW_SAMPLES", "the latch of a touch was lost on its way")
+    elseif native.touched().skipped then
+      native.fail("TOO_FEW_SAMPLES", "slices were lost while the probe felt for a face")
     end
     go(block, from, SPEED)
     if native.touched().closed then
@@ -116,7 +118,8 @@ return function(native, patterns, lookup, arm, targets)
     local c, s = math.cos(place.heading), math.sin(place.heading)
     local over = in_base(block, { 0, 0, block.at[3] + block.radius + ABOVE })
     play { to = { x = place.x - target.retract * place.dir_x, y = place.y - target.retract * place.dir_y,
-                  z = over[3] - ball[3], heading = place.heading, gripper = block.gripper } }
+                  z = over[3] - ball[3], heading = place.heading, gripper = block.gripper },
+           target = target, where = "in front of" }
     local first = in_base(block, { block.at[1] - block.size[1] / 2, 0, 0 })
     local x, y = place.x - target.retract * place.dir_x, place.y - target.retract * place.dir_y
     local ahead = (first[1] - x - c * ball[1] + s * ball[2]) * place.dir_x

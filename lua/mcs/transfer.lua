@@ -4,10 +4,8 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets, align, centring, alarms)
+return function(native, patterns, lookup, arm, targets, align, centring, alarms, slot_map)
   local transfer = {}
-
-  local slot_map = native.module("mcs/slot_map.lua")(native)
 
   ------------------------------------------------------------------------------------------------ GET and PUT
 
@@ -372,8 +370,6 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms)
   function transfer.map(station, options)
     return arm.move(arm.needs(true, station, options), lookup.command("MAP", station), map, station, options)
   end
-
-  transfer.keep_slots = slot_map.keep
 
   -------------------------------------------------------------------------------------------------- rehearsal
 

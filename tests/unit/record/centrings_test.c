@@ -222,6 +222,7 @@ static void latches_without_places_are_missed(void **state) {
     wh_pass_t pass = {.order = wh_layout_beams_at(layout, 0), .armed_seq = 10, .goes_on = true, .seq = 30};
     wh_pose_t place = wh_pose_identity();
     pass.station = layout->beams[0].station;
+    pass.believed = wh_pass_station(layout, pass.station, 0);
     pass.order = wh_layout_beams_at(layout, (size_t)pass.station);
     for (int64_t seq = 10; seq < 30; ++seq) {
         if (seq != 20) {
