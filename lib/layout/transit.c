@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "../math/trig.h"
 #include "outline.h"
@@ -201,6 +202,30 @@ bool wh_transit_leaves(const wh_layout_t *layout, size_t robot, const wh_real_t 
         }
     }
     return leaves;
+}
+
+bool wh_transit_corner(const wh_layout_t *layout, size_t robot, const wh_real_t from[],
+                       const wh_real_t point[], const wh_real_t to[], wh_real_t reach[WH_POLAR_ARMS]) {
+    if (!(layout->robots[robot].transit > 0) ||
+        !(turns(layout, robot, from, point) || turns(layout, robot, point, to))) {
+        return false;
+    }
+    /* Yaw as it may be with a part of either leg done. */
+    wh_real_t low[WH_CARRIER_AXES] = {0};
+    wh_real_t high[WH_CARRIER_AXES] = {0};
+    const wh_real_t before = from[WH_AXIS_YAW] - point[WH_AXIS_YAW];
+    const wh_real_t after = to[WH_AXIS_YAW] - point[WH_AXIS_YAW];
+    size_t first = 0;
+    const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, &first);
+    const size_t count = carrier ? carrier->axis_count : WH_ROBOT_AXES;
+    memcpy(low, from, count * sizeof *from);
+    memcpy(high, to, count * sizeof *to);
+    low[WH_AXIS_YAW] = point[WH_AXIS_YAW] - wh_real_max(-before, 0) - wh_real_max(-after, 0);
+    high[WH_AXIS_YAW] = point[WH_AXIS_YAW] + wh_real_max(before, 0) + wh_real_max(after, 0);
+    for (size_t arm = 0; arm < WH_POLAR_ARMS; ++arm) {
+        reach[arm] = wh_transit_reach(layout, robot, arm, low, high);
+    }
+    return true;
 }
 
 /* ---------------------------------------------------------------------------------------------- segments */

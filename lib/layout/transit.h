@@ -37,6 +37,12 @@ wh_real_t wh_transit_least(const wh_layout_t *layout, size_t robot, const wh_rea
 bool wh_transit_leaves(const wh_layout_t *layout, size_t robot, const wh_real_t from[], const wh_real_t to[],
                        wh_transit_t *transit);
 
+/* True if the robot has a transit, and turns, or goes along its rail, on its way to a point or from there.
+ * Fills in the largest R of each arm for all that yaw may be while one of these legs runs into the other.
+ * Cost as above. */
+bool wh_transit_corner(const wh_layout_t *layout, size_t robot, const wh_real_t from[],
+                       const wh_real_t point[], const wh_real_t to[], wh_real_t reach[WH_POLAR_ARMS]);
+
 /* Makes a segment of kind AXES that begins at these axes one of kind WAY, if a robot leaves its transit in
  * it. */
 void wh_transit_keep(const wh_layout_t *layout, const wh_real_t from[WH_AXES], wh_segment_t *segment);

@@ -131,6 +131,25 @@ static void check_legs(lua_State *L, wh_mcs_t *mcs, size_t robot, const wh_segme
     }
 }
 
+/* Where the robot turns before a point or behind it, the arm is within the circle before it may go on. */
+static void limit_corners(wh_mcs_t *mcs, size_t robot, const wh_segment_t *segment) {
+    const wh_layout_t *layout = mcs->layout;
+    size_t first = 0;
+    (void)wh_machine_carrier(&layout->machine, robot, &first);
+    const wh_real_t *from = &mcs->track.axes[first];
+    for (size_t i = 0; i < segment->point_count; ++i) {
+        wh_via_point_t *point = &mcs->via_points[i];
+        const bool is_last = i + 1 == segment->point_count;
+        const wh_real_t *to = is_last ? &segment->target[first] : mcs->via_points[i + 1].q;
+        memset(point->reach, 0, sizeof point->reach);
+        if (wh_transit_corner(layout, robot, from, point->q, to, point->reach)) {
+            point->reach[0] = wh_real_max(point->reach[0], WH_SLACK_MM);
+            point->reach[1] = wh_real_max(point->reach[1], WH_SLACK_MM);
+        }
+        from = point->q;
+    }
+}
+
 /* A point at the top of the stack: the robot's own axes in order, and `blend`. */
 static void read_point(lua_State *L, wh_via_point_t *point, size_t axis_count) {
     for (size_t axis = 0; axis < axis_count; ++axis) {
@@ -165,6 +184,7 @@ static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
     }
     lua_settop(L, 1);
     check_legs(L, mcs, robot, segment);
+    limit_corners(mcs, robot, segment);
     return true;
 }
 

@@ -153,8 +153,20 @@ static bool is_near(const corner_t *corner, bool is_second) {
     return is_end_near(corner, q, WH_AXIS_R) && (second == 0 || is_end_near(corner, q, second));
 }
 
+/* Both profiles go one way: while they overlap R is at most beyond the point by what the first has left when
+ * the second begins, and by what the second has done when the first ends. */
+static bool is_within_reach(const corner_t *corner, size_t arm, size_t axis) {
+    const wh_profile_t *first = &corner->first[axis];
+    const wh_real_t left = wh_profile_position(first, first->duration - corner->overlap) - first->distance;
+    const wh_real_t done = wh_profile_position(&corner->second[axis], corner->overlap);
+    const wh_real_t most = corner->point->q[axis] + wh_real_max(left, 0) + wh_real_max(done, 0);
+    return !(corner->point->reach[arm] > 0) || most <= corner->point->reach[arm];
+}
+
 static bool fits(const corner_t *corner) {
-    bool good = is_near(corner, false) && is_near(corner, true);
+    const size_t second = corner->robot->second;
+    bool good = is_near(corner, false) && is_near(corner, true) && is_within_reach(corner, 0, WH_AXIS_R) &&
+                (second == 0 || is_within_reach(corner, 1, second));
     for (size_t axis = 0; good && axis < corner->robot->axis_count; ++axis) {
         good = axis_keeps_limits(corner, axis);
     }
@@ -213,7 +225,7 @@ static bool are_finite(const wh_via_t *via) {
 static bool are_blends(const wh_via_point_t points[], size_t count) {
     bool good = count > 0 && count <= WH_VIA_POINTS;
     for (size_t i = 0; good && i < count; ++i) {
-        good = points[i].blend >= 0;
+        good = points[i].blend >= 0 && points[i].reach[0] >= 0 && points[i].reach[1] >= 0;
     }
     return good;
 }

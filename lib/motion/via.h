@@ -28,6 +28,9 @@ WH_REFUSE_PACKING(via);
 typedef struct {
     wh_real_t q[WH_CARRIER_AXES]; /* rad, mm */
     wh_real_t blend;              /* mm; 0: the arm stops there */
+    /* By arm: its R is at most this while one leg runs into the next, mm; 0: it may be anywhere. Not of a
+     * SCARA. */
+    wh_real_t reach[WH_POLAR_ARMS];
 } wh_via_point_t;
 
 /* A planned way. Written by wh_via_plan and wh_via_plan_polar only; reading its fields is fine. Times are s
@@ -42,7 +45,7 @@ typedef struct {
 /* Plans the way from axes `from` by these points to axes `to`, at rest at both ends. The robot must pass
  * wh_robot_validate, all points wh_robot_check_travel. Errors, *via then unchanged:
  *   WH_STATUS_NULL_ARGUMENT
- *   WH_STATUS_OUT_OF_RANGE  no point, more than WH_VIA_POINTS, or a blend below 0
+ *   WH_STATUS_OUT_OF_RANGE  no point, more than WH_VIA_POINTS, or a blend or a reach below 0
  *   WH_STATUS_NOT_FINITE
  *   WH_STATUS_BAD_LIMITS    see wh_profile_plan
  * Cost: up to 100 us a point. */

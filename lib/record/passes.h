@@ -47,8 +47,8 @@ void wh_pass_stand(wh_pass_t *pass, int64_t seq, const wh_pose_t *base_from_grip
 /* Forgets the places. */
 void wh_pass_free(wh_pass_t *pass);
 
-/* base_from_station by which this gripper's robot takes the station's beams to stand: as the layout has it, and
- * as far beside as that robot was taught the station. */
+/* base_from_station by which this gripper's robot takes the station's beams to stand: as the layout has it,
+ * and as far beside as that robot was taught the station. */
 wh_pose_t wh_pass_station(const wh_layout_t *layout, int32_t station, int32_t gripper);
 
 /* A beam of the layout, of a station that is taken to stand there. */

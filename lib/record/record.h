@@ -139,7 +139,8 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
 
-/* By the command's number, WH_NONE: none. A TEACH seeks beams and puts back the wafer that it took: neither counts. */
+/* By the command's number, WH_NONE: none. A TEACH seeks beams and puts back the wafer that it took: neither
+ * counts. */
 bool wh_record_is_teaching(const wh_record_t *record, int32_t command);
 
 /* Not one of a TEACH. */

@@ -36,7 +36,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     local place, gripper = target.place, target.gripper
     play { valves = { [gripper] = 1 } }
     play { line = { 0, 0, place.z + bottom - native.gripper_pose(gripper).r[3] } }
-    play { line = along(place, -target.retract), leaves = true }
+    play { line = along(place, -target.retract), leaves = true, target = target, where = "on the way out of" }
     native.fail(name, why)
   end
 
@@ -111,7 +111,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     local place = target.place
     play { line = { 0, 0, place.z + target.offset - native.gripper_pose(target.gripper).r[3] },
            speed = target.pickup_speed }
-    play { line = along(place, -target.retract), leaves = true }
+    play { line = along(place, -target.retract), leaves = true, target = target, where = "on the way out of" }
   end
 
   -- What crosses the beams while this plays.

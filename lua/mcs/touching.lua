@@ -135,7 +135,7 @@ return function(native, patterns, lookup, arm, targets)
     local over = in_base(block, { 0, 0, block.at[3] + block.radius + ABOVE })
     play { line = { 0, 0, math.max(over[3] - block.ball[3] - pose.r[3], 0) } }
     play { line = { place.x - target.retract * place.dir_x - pose.r[1], place.y - target.retract * place.dir_y - pose.r[2], 0 },
-           leaves = true }
+           leaves = true, target = target, where = "on the way out of" }
   end
 
   -- Where motion control has been told that the station is, and what all touches tell: see native.solve_teaching.

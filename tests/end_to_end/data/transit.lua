@@ -1,4 +1,4 @@
--- Within a circle: with two arms, on a rail with a blade that turns over, or with a column that tilts.
+-- Within a circle: with two arms, on a rail with a blade that turns over, with a column that tilts, or by points.
 cell "transit_layout.lua"
 if params.robot == "two" then
   get("A", 1, { gripper = "LO" })
@@ -17,7 +17,7 @@ if params.robot == "two" then
   home()
   expect_offset("W1", "C", 1, 0, 0, 0.5)
   expect_offset("W2", "D", 1, 0, 0, 0.5)
-elseif params.robot == "tilts" then
+elseif params.robot ~= "flips" then
   get("A", 1)
   put("C", 1)
   get("B", 1)

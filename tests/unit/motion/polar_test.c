@@ -222,7 +222,7 @@ static void bad_ways_change_nothing(void **state) {
 static void a_rail_passes_a_point(void **state) {
     (void)state;
     static wh_via_t via;
-    wh_via_point_t point = {{0, 400, 900, 0, 500, 0, 300}, 60};
+    wh_via_point_t point = {.q = {0, 400, 900, 0, 500, 0, 300}, .blend = 60};
     usual_robot();
     const wh_real_t begin[WH_CARRIER_AXES] = {0, 400, 900, 0, 0, 0, 300};
     const wh_real_t end[WH_CARRIER_AXES] = {1, 400, 900, 0, 500, 0, 300};
@@ -239,6 +239,9 @@ static void a_rail_passes_a_point(void **state) {
     }
     assert_true(nearest <= 60.3);
     assert_true(turned <= 60 + 0.3 && turned > 1);
+    point.reach[1] = -1;
+    assert_int_equal(wh_via_plan_polar(&via, &robot, begin, &point, 1, end), WH_STATUS_OUT_OF_RANGE);
+    point.reach[1] = 0;
     robot.rail = COUNT;
     assert_int_equal(wh_via_plan_polar(&via, &robot, begin, &point, 1, end), WH_STATUS_OUT_OF_RANGE);
 }
@@ -257,13 +260,24 @@ static double between_ends(const wh_real_t a[], const wh_real_t b[], size_t arm)
     return hypot(cabs(ends[0] - ends[1]), (double)a[WH_AXIS_Z] - (double)b[WH_AXIS_Z]);
 }
 
+/* While one leg runs into the other no arm is beyond the point's reach. */
+static void assert_reach_kept(const wh_via_t *via, const wh_via_point_t *point) {
+    const wh_real_t overlap = via->end[0] - via->begin[1];
+    for (int k = 0; point->reach[0] > 0 && overlap > 0 && k <= 50; ++k) {
+        wh_real_t q[WH_CARRIER_AXES];
+        wh_via_at(via, via->begin[1] + overlap * WH_REAL(k) / 50, q);
+        assert_true((double)q[WH_AXIS_R] <= (double)point->reach[0] + 100 * NEAR);
+        assert_true((double)q[SECOND] <= (double)point->reach[1] + 100 * NEAR);
+    }
+}
+
 /* Of random ways by one point that can be cut short: where the second leg begins, and where the first one ends, each arm's
  * end is within the blend. Returns how many such ways there were. */
 static int pass_points(int ways) {
     static wh_via_t via;
     int blended = 0;
     for (int i = 0; i < ways; ++i) {
-        wh_via_point_t point = {{0}, WH_REAL(wh_test_decades(10, 300))};
+        wh_via_point_t point = {.blend = WH_REAL(wh_test_decades(10, 300))};
         memset(from, 0, sizeof from);
         memset(to, 0, sizeof to);
         for (size_t axis = 0; axis < COUNT; ++axis) {
@@ -271,7 +285,12 @@ static int pass_points(int ways) {
             point.q[axis] = random_place(axis);
             to[axis] = random_place(axis);
         }
+        if (robot.second > 0 && i % 2 == 0) {
+            point.reach[0] = point.q[WH_AXIS_R] + WH_REAL(wh_test_uniform(1, 100));
+            point.reach[1] = point.q[SECOND] + WH_REAL(wh_test_uniform(1, 100));
+        }
         assert_int_equal(wh_via_plan_polar(&via, &robot, from, &point, 1, to), WH_OK);
+        assert_reach_kept(&via, &point);
         const wh_real_t ends[] = {via.begin[1], via.end[0]};
         for (int end = 0; end < 2 && via.begin[1] < via.end[0]; ++end) {
             wh_real_t q[WH_CARRIER_AXES];

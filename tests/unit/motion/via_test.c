@@ -176,7 +176,7 @@ static void a_track_goes_by_points_that_it_may_reach(void **state) {
     wh_track_t track;
     assert_int_equal(wh_track_init(&track, &machine, 1000), WH_OK);
     wh_segment_t segment = wh_track_blank(&track);
-    wh_via_point_t point = {{1, 400, 950, 0}, 50};
+    wh_via_point_t point = {.q = {1, 400, 950, 0}, .blend = 50};
     segment.kind = WH_SEGMENT_VIA;
     segment.target[WH_AXIS_R] = 700;
     segment.points = &point;
