@@ -213,6 +213,10 @@ static const char *prepare(const char *path) {
     if (of_file) {
         return of_file;
     }
+    if (strcmp(path, "stations.A.via[1].forearm") == 0) {
+        return "cell.stations.A.beams, cell.stations.A.block, cell.stations.A.via[1].r = nil "
+               "cell.robot = { kind = 'SCARA', links = { 450, 450 } } ";
+    }
     if (strcmp(path, "stations.A.via[1].rail") == 0) {
         return "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { rail = {} } ";
     }
