@@ -276,8 +276,8 @@ typedef struct {
 } rests_t;
 
 /* Two places of a link that moves with a body may differ by more than the end-effector from the robot's:
- * each is off by as much as that one, plus its reach of up to 2000 mm times the angle that is allowed, 3e-6 mm
- * together, and in opposite directions. What does not move with the body is off by far more. */
+ * each is off by as much as that one, plus its reach of up to 2000 mm times the angle that is allowed. That
+ * is 3e-6 mm, and may be in opposite directions. What does not move with the body is off by far more. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     const wh_real_t room = 10;
     const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);

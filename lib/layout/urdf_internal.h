@@ -1,5 +1,5 @@
-/* What the comparison of a URDF with its robot (urdf.c) and the search for its joints' extremes (urdf_limits.c)
- * share. */
+/* What the comparison of a URDF with its robot (urdf.c) shares with the search for its joints' extremes
+ * (urdf_limits.c). */
 #ifndef WH_LAYOUT_URDF_INTERNAL_H
 #define WH_LAYOUT_URDF_INTERNAL_H
 

@@ -51,32 +51,42 @@ static void take_back(const search_t *search, wh_real_t axes[]) {
     }
 }
 
-/* Moves one of the robot's axes, within its travel. */
-static void shift(const search_t *search, size_t axis, wh_real_t part, wh_real_t axes[]) {
+/* Sets one of the robot's axes, or the end of its travel. */
+static void set_axis(const search_t *search, size_t axis, wh_real_t to, wh_real_t axes[]) {
     const size_t at = search->robot.first + axis;
     const wh_travel_t *travel = wh_machine_travel(&search->layout->machine, at);
-    const wh_real_t to = wh_real_max(axes[at] + part * (travel->max - travel->min), travel->min);
-    axes[at] = to > travel->max ? travel->max : to;
+    axes[at] = to > travel->max ? travel->max : wh_real_max(to, travel->min);
 }
 
-/* Goes by parts of the axes' travels. True, and *best is there, if that is more extreme. */
+static wh_real_t length_of(const search_t *search, size_t axis) {
+    const wh_travel_t *travel = wh_machine_travel(&search->layout->machine, search->robot.first + axis);
+    return travel->max - travel->min;
+}
+
+/* True, and *best is there, if the joint's value at these axes is more extreme. */
+static bool take_better(const search_t *search, wh_urdf_extreme_t *at, wh_urdf_extreme_t *best) {
+    wh_real_t sources[WH_URDF_SOURCES];
+    wh_real_t stretched[WH_URDF_ARMS];
+    take_back(search, at->axes);
+    wh_urdf_sources(search->map, search->layout, at->axes, sources, stretched);
+    at->value = wh_urdf_joint(search->map, search->link, sources);
+    if (!wh_urdf_is_reached(search->map, stretched) ||
+        !(search->sign * at->value > search->sign * best->value)) {
+        return false;
+    }
+    *best = *at;
+    return true;
+}
+
+/* Goes by parts of the axes' travels. */
 static bool try_step(const search_t *search, const size_t axes[], size_t count, const wh_real_t way[],
                      wh_real_t part, wh_urdf_extreme_t *best) {
     wh_urdf_extreme_t at = *best;
-    wh_real_t sources[WH_URDF_SOURCES];
-    wh_real_t stretched[WH_URDF_ARMS];
     for (size_t i = 0; i < count; ++i) {
-        shift(search, axes[i], part * way[i], at.axes);
+        const wh_real_t from = at.axes[search->robot.first + axes[i]];
+        set_axis(search, axes[i], from + part * way[i] * length_of(search, axes[i]), at.axes);
     }
-    take_back(search, at.axes);
-    wh_urdf_sources(search->map, search->layout, at.axes, sources, stretched);
-    at.value = wh_urdf_joint(search->map, search->link, sources);
-    if (!wh_urdf_is_reached(search->map, stretched) ||
-        !(search->sign * at.value > search->sign * best->value)) {
-        return false;
-    }
-    *best = at;
-    return true;
+    return take_better(search, &at, best);
 }
 
 static bool is_radial(const search_t *search, int32_t source) {
@@ -107,8 +117,8 @@ static size_t list_axes(const search_t *search, size_t axes[WAY_AXES]) {
     return source >= WH_URDF_FOLD || (folds && is_radial(search, source)) ? WAY_AXES : 1;
 }
 
-/* Ways to go, in steps of each axis: along each axis, along R and yaw at once, and along yaw at the largest R,
- * so that R follows where the links just reach: an angle changes steeply there. */
+/* Ways to go, in steps of each axis: along each axis, along R and yaw at once, and along yaw at the largest
+ * R, so that R follows where the links just reach: an angle changes steeply there. */
 #define FAR 1e12
 
 static const wh_real_t ways[][WAY_AXES] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0},   {0, -1, 0},
@@ -126,11 +136,31 @@ static bool look_around(const search_t *search, const size_t axes[], size_t coun
     return moved;
 }
 
+/* An angle of the links may be largest at several places: looks at R and yaw evenly, where the other axes are
+ * at their best. */
+static void look_over(const search_t *search, const size_t axes[], wh_urdf_extreme_t *best) {
+    enum { PLACES = 32 };
+    for (int i = 0; i <= PLACES * (PLACES + 2); ++i) {
+        const wh_real_t parts[2] = {(wh_real_t)(i % (PLACES + 1)) / PLACES,
+                                    (wh_real_t)(i / (PLACES + 1)) / PLACES};
+        wh_urdf_extreme_t at = *best;
+        for (size_t k = 0; k < 2; ++k) {
+            const size_t axis = search->robot.first + axes[k];
+            const wh_real_t least = wh_machine_travel(&search->layout->machine, axis)->min;
+            set_axis(search, axes[k], least + parts[k] * length_of(search, axes[k]), at.axes);
+        }
+        (void)take_better(search, &at, best);
+    }
+}
+
 /* A compass search: from a quarter of the travels, by halves. */
 static void go_on(const search_t *search, wh_urdf_extreme_t *best) {
     size_t axes[WAY_AXES];
     const size_t count = list_axes(search, axes);
     wh_real_t part = WH_REAL(0.25);
+    if (count > 1) {
+        look_over(search, axes, best);
+    }
     for (int halves = 0; count > 0 && halves < 28; ++halves) {
         bool moved = true;
         for (int sweeps = 0; moved && sweeps < 6; ++sweeps) {
