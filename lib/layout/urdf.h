@@ -77,10 +77,10 @@ wh_real_t wh_urdf_joint(const wh_urdf_map_t *map, int32_t link, const wh_real_t 
 /* Looks at home, at both ends of each axis of the map's robot, and at places spread evenly over its travels;
  * other robots are at home. From the places with a limited joint's least and largest value a search goes on
  * to the joint's extremes: for an angle of the links, or R of an arm that folds, first over an even grid of R
- * and yaw, then along the axes by steps from a quarter of their travels down to 1e-9 of them. Angles of the links
- * count their full turns. The layout's machine, arms and the arms' lengths must be read. Cost: some 10 ms for
- * each robot of the layout, and 5 ms for each limited joint that follows an angle of the links, 0.1 ms for
- * another one; bounded by the number of joints. */
+ * and yaw, then along the axes by steps from a quarter of their travels down to 1e-9 of them. Angles of the
+ * links count their full turns. The layout's machine, arms and the arms' lengths must be read. Cost: some 10
+ * ms for each robot of the layout, and 5 ms for each limited joint that follows an angle of the links, 0.1 ms
+ * for another one; bounded by the number of joints. */
 void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urdf_findings_t *findings);
 
 /* Takes a shape from its link's frame to the body's, all to 1e-9 mm. */
