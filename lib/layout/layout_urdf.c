@@ -239,16 +239,16 @@ static wh_real_t beyond(wh_real_t difference, wh_real_t rounding) {
     return difference <= rounding ? 0 : difference;
 }
 
-static void refuse_difference(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
+static void refuse_difference(const urdf_t *urdf, const wh_urdf_findings_t *found) {
     char axes[256];
-    describe_axes(urdf, findings->axes, axes, sizeof axes);
+    describe_axes(urdf, found->axes, axes, sizeof axes);
     wh_reader_refuse(
         urdf->reader, "urdf", urdf->name,
-        "\"%s\" where the end-effector is, to %g mm; at %s it is %.9g mm and %.9g degrees off: at "
+        "\"%s\" where the end-effector is, to %g mm and %g rad; at %s it is %.9g mm and %.9g degrees off: at "
         "(%.9g, %.9g, %.9g), not at (%.9g, %.9g, %.9g)",
-        tool_name(urdf, findings->arm), WH_URDF_SAME_MM, axes, beyond(findings->mm, WH_URDF_SAME_MM),
-        wh_deg_from_rad(beyond(findings->rad, WH_URDF_SAME_RAD)), findings->is.x, findings->is.y,
-        findings->is.z, findings->should.x, findings->should.y, findings->should.z);
+        tool_name(urdf, found->arm), WH_URDF_SAME_MM, WH_URDF_SAME_RAD, axes,
+        beyond(found->mm, WH_URDF_SAME_MM), wh_deg_from_rad(beyond(found->rad, WH_URDF_SAME_RAD)),
+        found->is.x, found->is.y, found->is.z, found->should.x, found->should.y, found->should.z);
 }
 
 static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
@@ -274,7 +274,7 @@ static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findin
 
 /* ---------------------------------------------------------------------------------------------- the parts */
 
-/* A mesh's path: beside the URDF, or in one of the packages. */
+/* A mesh's path: from the URDF's folder, absolute, or from that of one of the packages. */
 static void find_mesh(const urdf_t *urdf, const char *mesh, char *path, size_t size) {
     static const char package[] = "package://";
     static const char file[] = "file://";
@@ -293,10 +293,10 @@ static void find_mesh(const urdf_t *urdf, const char *mesh, char *path, size_t s
         wh_reader_leave(reader);
         wh_layout_path(place, sizeof place, urdf->layout->path, folder);
         (void)snprintf(path, size, "%s%s", place, rest + length);
-    } else if (strncmp(mesh, file, sizeof file - 1) == 0) {
+    } else if (strncmp(mesh, file, sizeof file - 1) == 0 && mesh[sizeof file - 1] == '/') {
         (void)snprintf(path, size, "%s", mesh + sizeof file - 1);
     } else if (strstr(mesh, "://")) {
-        wh_reader_refuse(reader, "urdf", mesh, "a mesh beside %s, file:// or package://NAME/FILE",
+        wh_reader_refuse(reader, "urdf", mesh, "a mesh beside %s, file:///PATH or package://NAME/FILE",
                          urdf->path);
     } else {
         wh_layout_path(path, size, urdf->path, mesh);

@@ -6,18 +6,12 @@
 #include "../math/trig.h"
 #include "arms.h"
 #include "axes.h"
+#include "urdf_internal.h"
 
 /* ---------------------------------------------------------------------------------------------- the robot */
 
-/* A map's robot: its carrier, or null, its axes among the machine's, and the first of its arms. */
-typedef struct {
-    const wh_carrier_t *carrier;
-    size_t first, count;
-    size_t arm;
-} robot_t;
-
-static robot_t robot_of(const wh_urdf_map_t *map, const wh_layout_t *layout) {
-    robot_t robot;
+wh_urdf_robot_t wh_urdf_robot(const wh_urdf_map_t *map, const wh_layout_t *layout) {
+    wh_urdf_robot_t robot;
     robot.carrier = wh_machine_carrier(&layout->machine, map->robot, &robot.first);
     robot.count = robot.carrier ? robot.carrier->axis_count : WH_ROBOT_AXES;
     robot.arm = 0;
@@ -27,7 +21,7 @@ static robot_t robot_of(const wh_urdf_map_t *map, const wh_layout_t *layout) {
     return robot;
 }
 
-static bool is_scara(const robot_t *robot) {
+static bool is_scara(const wh_urdf_robot_t *robot) {
     return robot->carrier && robot->carrier->chain.kind == WH_CHAIN_SCARA;
 }
 
@@ -115,7 +109,7 @@ static wh_real_t outwards(const wh_urdf_map_t *map, size_t number, wh_real_t hea
 }
 
 void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *layout, wh_arm_t *arm) {
-    const robot_t robot = robot_of(map, layout);
+    const wh_urdf_robot_t robot = wh_urdf_robot(map, layout);
     const wh_carrier_t *carrier = wh_layout_arm(layout, robot.arm + number, NULL);
     const wh_real_t heading = carrier ? carrier->chain.arm_heading : 0;
     const wh_real_t folded = outwards(map, number, heading, arm->right_handed ? -1 : 1);
@@ -125,14 +119,17 @@ void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *lay
 
 /* -------------------------------------------------------------------------------------------- the sources */
 
-/* How far a body's x is turned from another's, in that one's plane. */
-static wh_real_t turn_between(const wh_pose_t *from, const wh_pose_t *to) {
+/* How far a body's x is turned from another's, in that one's plane: of all full turns that nearest to an
+ * angle. */
+static wh_real_t turn_between(const wh_pose_t *from, const wh_pose_t *to, wh_real_t near) {
     const wh_pose_t turned = wh_pose_relative(from, to);
-    return wh_atan2(turned.R.m[1][0], turned.R.m[0][0]);
+    const wh_real_t turn = wh_rad_from_deg(360);
+    const wh_real_t angle = wh_atan2(turned.R.m[1][0], turned.R.m[0][0]);
+    return angle + turn * rint((near - angle) / turn);
 }
 
 /* Only theta, R and yaw tell how the links lie: the others are left at 0. */
-static void find_angles(const robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
+static void find_angles(const wh_urdf_robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
                         wh_links_t *links) {
     static const char *const names[] = {"theta", "r", "yaw", "r2"};
     wh_real_t few[WH_AXES] = {0};
@@ -144,8 +141,7 @@ static void find_angles(const robot_t *robot, const wh_layout_t *layout, const w
     wh_links_at(links, layout, few);
 }
 
-/* The robot's axis that moves arm `number` of a polar robot out. */
-static size_t radial_axis(const robot_t *robot, size_t number) {
+size_t wh_urdf_radial_axis(const wh_urdf_robot_t *robot, size_t number) {
     return robot->first + (number == 0 ? (size_t)WH_AXIS_R : robot->count - 1);
 }
 
@@ -156,10 +152,35 @@ static wh_real_t stretch_of(const wh_pose_t bodies[], const wh_arm_t *arm) {
     return wh_vec3_norm(&out) / (2 * arm->link);
 }
 
-/* Writes how much each arm is stretched: above 1 the links do not reach, near 0 and 1 rounding turns them. */
-static void find_sources(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
-                         wh_real_t sources[], wh_real_t stretched[]) {
-    const robot_t robot = robot_of(map, layout);
+wh_real_t wh_urdf_axis(const wh_urdf_robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
+                       size_t axis) {
+    const size_t at = robot->first + axis;
+    return wh_axis_exists(&layout->machine, at) ? axes[at] : 0;
+}
+
+/* The angles of a polar arm's links. Shoulder and wrist turn on with theta and yaw: from these and the links'
+ * own fold they are apart by the direction of the wrist, seen from the shoulder, which is less than half a
+ * turn. */
+static void find_turns(const wh_urdf_robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
+                       size_t number, const wh_pose_t bodies[], wh_real_t angles[]) {
+    const wh_arm_t *arm = wh_layout_arm_lengths(layout, (size_t)layout->arms[robot->arm].robot);
+    const wh_carrier_t *carrier = wh_layout_arm(layout, robot->arm + number, NULL);
+    const wh_real_t side = arm->right_handed ? -1 : 1;
+    const wh_real_t fold = side * wh_acos(stretch_of(bodies, arm));
+    const wh_real_t heading = carrier ? carrier->chain.arm_heading : 0;
+    const wh_real_t out = axes[wh_urdf_radial_axis(robot, number)];
+    angles[WH_URDF_FOLD] = side * wh_acos((out - arm->reach) / (2 * arm->link));
+    angles[WH_URDF_SHOULDER] =
+        turn_between(&bodies[WH_ARM_BASE], &bodies[WH_ARM_UPPER],
+                     wh_urdf_axis(robot, layout, axes, WH_AXIS_THETA) + heading + fold);
+    angles[WH_URDF_ELBOW] = turn_between(&bodies[WH_ARM_UPPER], &bodies[WH_ARM_FOREARM], -2 * fold);
+    angles[WH_URDF_WRIST] = turn_between(&bodies[WH_ARM_FOREARM], &bodies[WH_ARM_HAND],
+                                         wh_urdf_axis(robot, layout, axes, WH_AXIS_YAW) + fold);
+}
+
+void wh_urdf_sources(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
+                     wh_real_t sources[], wh_real_t stretched[]) {
+    const wh_urdf_robot_t robot = wh_urdf_robot(map, layout);
     const wh_arm_t *arm = wh_layout_arm_lengths(layout, map->robot);
     wh_links_t links;
     memset(sources, 0, WH_URDF_SOURCES * sizeof sources[0]);
@@ -169,24 +190,27 @@ static void find_sources(const wh_urdf_map_t *map, const wh_layout_t *layout, co
     }
     for (size_t i = 0; i < map->arm_count; ++i) {
         const wh_pose_t *bodies = &links.bodies[(robot.arm + i) * WH_ARM_BODIES];
-        wh_real_t *angles = &sources[i * WH_URDF_ANGLES];
         stretched[i] = is_scara(&robot) ? WH_REAL(0.5) : stretch_of(bodies, arm);
         if (!is_scara(&robot)) {
-            const wh_real_t out = axes[radial_axis(&robot, i)];
-            const wh_real_t fold = wh_acos((out - arm->reach) / (2 * arm->link));
-            angles[WH_URDF_FOLD] = arm->right_handed ? -fold : fold;
-            angles[WH_URDF_SHOULDER] = turn_between(&bodies[WH_ARM_BASE], &bodies[WH_ARM_UPPER]);
-            angles[WH_URDF_ELBOW] = turn_between(&bodies[WH_ARM_UPPER], &bodies[WH_ARM_FOREARM]);
-            angles[WH_URDF_WRIST] = turn_between(&bodies[WH_ARM_FOREARM], &bodies[WH_ARM_HAND]);
+            find_turns(&robot, layout, axes, i, bodies, &sources[i * WH_URDF_ANGLES]);
         }
     }
+}
+
+bool wh_urdf_is_reached(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
+    bool reached = true;
+    for (size_t i = 0; i < map->arm_count; ++i) {
+        reached = reached && !(map->folds[i] && stretched[i] > 1 + WH_REAL(1e-12));
+    }
+    return reached;
 }
 
 /* ------------------------------------------------------------------------------------- the configurations */
 
 /* Home, then the ends of each axis with the others at home, then multiples of square roots of primes, whose
  * fractions lie evenly. */
-static void configure(const robot_t *robot, const wh_machine_t *machine, size_t number, wh_real_t axes[]) {
+static void configure(const wh_urdf_robot_t *robot, const wh_machine_t *machine, size_t number,
+                      wh_real_t axes[]) {
     static const wh_real_t primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
     memset(axes, 0, WH_AXES * sizeof axes[0]);
     wh_machine_home(machine, axes);
@@ -213,7 +237,8 @@ static void compare_effector(const wh_pose_t *effector, const wh_real_t axes[], 
         squares += entry * entry;
     }
     const wh_real_t mm = wh_vec3_norm(&off);
-    const wh_real_t rad = wh_real_sqrt(squares / 2);
+    const wh_real_t sine = wh_real_sqrt(squares / 8); /* of half the angle between them */
+    const wh_real_t rad = 2 * wh_atan2(sine, wh_real_sqrt(wh_real_max(1 - sine * sine, 0)));
     const wh_real_t before = wh_real_max(findings->mm / WH_URDF_SAME_MM, findings->rad / WH_URDF_SAME_RAD);
     if (!(wh_real_max(mm / WH_URDF_SAME_MM, rad / WH_URDF_SAME_RAD) <= before)) {
         findings->arm = arm;
@@ -227,7 +252,7 @@ static void compare_effector(const wh_pose_t *effector, const wh_real_t axes[], 
 
 static void compare_effectors(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
                               const wh_pose_t base_from_links[], wh_urdf_findings_t *findings) {
-    const robot_t robot = robot_of(map, layout);
+    const wh_urdf_robot_t robot = wh_urdf_robot(map, layout);
     for (size_t i = 0; i < map->arm_count; ++i) {
         wh_pose_t effector;
         if (i == 0) {
@@ -236,34 +261,6 @@ static void compare_effectors(const wh_urdf_map_t *map, const wh_layout_t *layou
             robot.carrier->second->forward(robot.carrier->second, &axes[robot.first], &effector);
         }
         compare_effector(&effector, axes, i, &base_from_links[map->tools[i]], findings);
-    }
-}
-
-/* An angle of the links counts modulo full turns. */
-static bool is_beyond(const wh_urdf_map_t *map, int32_t link, wh_real_t *value) {
-    const wh_urdf_link_t *joint = &map->file->links[link];
-    const wh_real_t slack = WH_REAL(1e-6);
-    int32_t driver = link;
-    while (map->file->links[driver].mimics >= 0) {
-        driver = map->file->links[driver].mimics;
-    }
-    const int32_t source = map->drives[driver].source;
-    if (source > WH_URDF_FOLD && source != WH_URDF_FOLD_2) {
-        const wh_real_t turn = wh_rad_from_deg(360);
-        *value -= turn * rint((*value - (joint->least + joint->most) / 2) / turn);
-    }
-    return joint->is_limited && !(*value >= joint->least - slack && *value <= joint->most + slack);
-}
-
-static void check_joints(const wh_urdf_map_t *map, const wh_real_t axes[], const wh_real_t sources[],
-                         wh_urdf_findings_t *findings) {
-    for (int32_t i = 1; findings->beyond < 0 && i < (int32_t)map->file->link_count; ++i) {
-        wh_real_t value = wh_urdf_joint(map, i, sources);
-        if (map->file->links[i].motion != WH_URDF_FIXED && is_beyond(map, i, &value)) {
-            findings->beyond = i;
-            findings->beyond_value = value;
-            memcpy(findings->beyond_axes, axes, sizeof findings->beyond_axes);
-        }
     }
 }
 
@@ -278,11 +275,15 @@ typedef struct {
     wh_pose_t body_from_link[WH_URDF_LINKS][WH_URDF_ARMS * WH_ARM_BODIES];
 } rests_t;
 
+/* Two places of a link that moves with a body may differ by more than the end-effector from the robot's:
+ * each is off by as much as that one, plus its reach of up to 2000 mm times the angle that is allowed. That
+ * is 3e-6 mm, and may be in opposite directions. What does not move with the body is off by far more. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
+    const wh_real_t room = 10;
     const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);
-    bool same = wh_vec3_norm(&off) <= WH_URDF_SAME_MM;
+    bool same = wh_vec3_norm(&off) <= room * WH_URDF_SAME_MM;
     for (size_t i = 0; same && i < 9; ++i) {
-        same = wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) <= WH_URDF_SAME_RAD;
+        same = wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) <= room * WH_URDF_SAME_RAD;
     }
     return same;
 }
@@ -325,15 +326,6 @@ void wh_urdf_shape_place(const wh_pose_t *body_from_link, wh_convex_t *convex) {
     convex->half.z = rounded(convex->half.z, per_mm);
 }
 
-/* What the links of an arm that folds do not reach is not looked at. */
-static bool is_reached(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
-    bool reached = true;
-    for (size_t i = 0; i < map->arm_count; ++i) {
-        reached = reached && !(map->folds[i] && stretched[i] > 1);
-    }
-    return reached;
-}
-
 static bool is_clear(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
     bool clear = true;
     for (size_t i = 0; i < map->arm_count; ++i) {
@@ -343,11 +335,12 @@ static bool is_clear(const wh_urdf_map_t *map, const wh_real_t stretched[]) {
 }
 
 void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urdf_findings_t *findings) {
-    const robot_t robot = robot_of(map, layout);
+    const wh_urdf_robot_t robot = wh_urdf_robot(map, layout);
     const wh_chain_t *chain = robot.carrier ? &robot.carrier->chain : NULL;
     const wh_pose_t root = chain && chain->is_placed ? chain->base_from_robot : wh_pose_identity();
     const size_t first_body = robot.arm * WH_ARM_BODIES;
     rests_t rests = {.is_first = true, .body_count = map->arm_count * WH_ARM_BODIES};
+    wh_urdf_extremes_t extremes = {0};
     memset(findings, 0, sizeof *findings);
     findings->beyond = -1;
     for (size_t number = 0; number < WH_URDF_CONFIGURATIONS; ++number) {
@@ -357,8 +350,8 @@ void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urd
         wh_pose_t poses[WH_URDF_LINKS];
         wh_links_t links;
         configure(&robot, &layout->machine, number, axes);
-        find_sources(map, layout, axes, sources, stretched);
-        if (!is_reached(map, stretched)) {
+        wh_urdf_sources(map, layout, axes, sources, stretched);
+        if (!wh_urdf_is_reached(map, stretched)) {
             continue;
         }
         ++findings->reached;
@@ -367,11 +360,14 @@ void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urd
             poses[i] = wh_pose_compose(&root, &poses[i]);
         }
         compare_effectors(map, layout, axes, poses, findings);
-        check_joints(map, axes, sources, findings);
+        wh_urdf_note_extremes(map, axes, sources, &extremes);
         if (is_clear(map, stretched)) {
             wh_links_at(&links, layout, axes);
             watch(&rests, poses, map->file->link_count, &links.bodies[first_body]);
         }
     }
     choose_bodies(&rests, layout, first_body, map->file->link_count, findings);
+    if (findings->reached > 0) {
+        wh_urdf_check_limits(map, layout, &extremes, findings);
+    }
 }

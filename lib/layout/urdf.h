@@ -12,7 +12,7 @@
 #include "links.h"
 #include "urdf_file.h"
 
-/* The URDF's end-effector may be so far from the robot's, mm and rad: rounding. */
+/* The URDF's end-effector may be so far from the robot's, mm, and so far turned from it, rad: rounding. */
 #define WH_URDF_SAME_MM 1e-6
 #define WH_URDF_SAME_RAD 1e-9
 
@@ -26,9 +26,9 @@
  * second arm come behind those of the first. */
 enum {
     WH_URDF_FOLD = WH_CARRIER_AXES, /* between the line to the wrist and the upper arm; right_handed: < 0 */
-    WH_URDF_SHOULDER,               /* of the upper arm against the foot's x */
+    WH_URDF_SHOULDER,               /* of the upper arm against the foot's x; turns on with theta */
     WH_URDF_ELBOW,                  /* of the forearm against the upper arm; stretched: 0 */
-    WH_URDF_WRIST,                  /* of the hand against the forearm */
+    WH_URDF_WRIST,                  /* of the hand against the forearm; turns on with yaw */
     WH_URDF_FOLD_2,
     WH_URDF_SOURCES = WH_URDF_FOLD_2 + WH_URDF_FOLD_2 - WH_URDF_FOLD
 };
@@ -58,7 +58,7 @@ typedef struct {
     wh_real_t mm, rad;
     wh_real_t axes[WH_AXES];
     wh_vec3_t is, should;
-    /* a joint beyond its limits: the link that it carries, or -1, the value and the axes there */
+    /* a joint beyond its limits: the link that it carries, or -1, its farthest value and the axes there */
     int32_t beyond;
     wh_real_t beyond_value;
     wh_real_t beyond_axes[WH_AXES];
@@ -75,8 +75,12 @@ void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *lay
 wh_real_t wh_urdf_joint(const wh_urdf_map_t *map, int32_t link, const wh_real_t sources[]);
 
 /* Looks at home, at both ends of each axis of the map's robot, and at places spread evenly over its travels;
- * other robots are at home. The layout's machine, arms and the arms' lengths must be read. Cost: some 10 ms
- * for each robot of the layout. */
+ * other robots are at home. From the places with a limited joint's least and largest value a search goes on
+ * to the joint's extremes: for an angle of the links, or R of an arm that folds, first over an even grid of R
+ * and yaw, then along the axes by steps from a quarter of their travels down to 1e-9 of them. Angles of the
+ * links count their full turns. The layout's machine, arms and the arms' lengths must be read. Cost: some 10
+ * ms for each robot of the layout, and 5 ms for each limited joint that follows an angle of the links, 0.1 ms
+ * for another one; bounded by the number of joints. */
 void wh_urdf_examine(const wh_urdf_map_t *map, const wh_layout_t *layout, wh_urdf_findings_t *findings);
 
 /* Takes a shape from its link's frame to the body's, all to 1e-9 mm. */

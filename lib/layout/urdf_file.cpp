@@ -35,6 +35,14 @@ struct reading_t {
     std::vector<const urdf::Link *> links; /* in the order of file->links */
 };
 
+/* The library takes what it cannot read as the format of a message: what it gets has this byte for each %. */
+const char percent = '\1';
+
+std::string with_percents(std::string text) {
+    std::replace(text.begin(), text.end(), percent, '%');
+    return text;
+}
+
 /* Writes the path and the formatted text into the message, and returns false. */
 bool refuse(const reading_t &reading, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -44,7 +52,7 @@ bool refuse(const reading_t &reading, const char *format, ...) {
     va_start(arguments, format);
     (void)std::vsnprintf(said, sizeof said, format, arguments);
     va_end(arguments);
-    const std::string all = std::string(reading.path) + ": " + said;
+    const std::string all = std::string(reading.path) + ": " + with_percents(said);
     wh_utf8_visible(reading.message, reading.size, all.c_str());
     return false;
 }
@@ -76,30 +84,42 @@ bool read_text(const reading_t &reading, std::string &text) {
 /* liburdfdom's reader of XML takes text alone, and goes down one call for each element within another. */
 bool check_text(const reading_t &reading, const std::string &text) {
     const size_t tags = size_t(std::count(text.begin(), text.end(), '<'));
-    if (text.find('\0') != std::string::npos) {
-        return refuse(reading, "byte %zu is 0 (expected text)", text.find('\0'));
+    const size_t at = text.find_first_of(std::string{'\0', percent});
+    if (at != std::string::npos) {
+        return refuse(reading, "byte %zu is %d (expected text)", at, text[at]);
     }
     return tags <= WH_URDF_TAGS || refuse(reading, "%zu tags (expected at most %d)", tags, WH_URDF_TAGS);
 }
 
 /* ------------------------------------------------------------------------------------------- liburdfdom */
 
-/* Keeps the first error. */
+/* Keeps what the library cannot read. It goes on where a shape or a mass is wrong, without the rest of that
+ * link's shapes, and says so in two errors, of which the second names the link. How a link is painted
+ * counts for nothing here. */
 class listener_t : public console_bridge::OutputHandler {
   public:
     void log(const std::string &text, console_bridge::LogLevel level, const char *, int) override;
-    std::string first;
+    std::string error;
+
+  private:
+    bool names_link = false;
 };
 
 void listener_t::log(const std::string &text, console_bridge::LogLevel level, const char *, int) {
-    if (level == console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first.empty()) {
-        first = text;
+    const bool is_paint = text.compare(0, 9, "Material ") == 0;
+    if (level != console_bridge::CONSOLE_BRIDGE_LOG_ERROR || is_paint || names_link) {
+        return;
+    }
+    names_link = text.find(" for Link [") != std::string::npos;
+    if (error.empty() || names_link) {
+        error += (error.empty() ? "" : "; ") + text;
     }
 }
 
 /* The library's messages go to one listener of the whole process. */
 pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 
+/* Null, and why, also where the library made a model of a part of the text. */
 urdf::ModelInterfaceSharedPtr parse(const std::string &text, std::string &error) {
     listener_t listener;
     (void)pthread_mutex_lock(&one_at_a_time);
@@ -108,7 +128,10 @@ urdf::ModelInterfaceSharedPtr parse(const std::string &text, std::string &error)
     urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
     console_bridge::useOutputHandler(before);
     (void)pthread_mutex_unlock(&one_at_a_time);
-    error = listener.first.empty() ? "it is no URDF" : listener.first;
+    if (!listener.error.empty()) {
+        model.reset();
+    }
+    error = listener.error.empty() ? "it is no URDF" : listener.error;
     return model;
 }
 
@@ -132,7 +155,7 @@ bool copy_name(const reading_t &reading, const char *what, const std::string &na
     if (name.empty() || name.size() >= size) {
         return refuse(reading, "%s \"%s\" (expected 1 to %zu bytes)", what, name.c_str(), size - 1);
     }
-    std::memcpy(to, name.c_str(), name.size() + 1);
+    std::memcpy(to, with_percents(name).c_str(), name.size() + 1);
     return true;
 }
 
@@ -243,7 +266,7 @@ bool take_joint(const reading_t &reading, const urdf::Joint &joint, wh_urdf_link
 
 int32_t find_joint(const wh_urdf_file_t &file, const std::string &name) {
     for (size_t i = 1; i < file.link_count; ++i) {
-        if (name == file.links[i].joint) {
+        if (with_percents(name) == file.links[i].joint) {
             return int32_t(i);
         }
     }
@@ -334,6 +357,7 @@ bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t 
     if (!read_text(reading, text) || !check_text(reading, text)) {
         return false;
     }
+    std::replace(text.begin(), text.end(), '%', percent);
     const urdf::ModelInterfaceSharedPtr model = parse(text, error);
     return model ? take_model(reading, *model) : refuse(reading, "%s", error.c_str());
 }

@@ -56,8 +56,9 @@ typedef struct {
     size_t shape_count;
 } wh_urdf_file_t;
 
-/* False with *file undefined: the file cannot be read or is too large; liburdfdom refuses it; its joints
- * make no tree, or one is of another type; names are too long; counts are beyond the limits above. `message`
+/* False with *file undefined: the file cannot be read or is too large; liburdfdom refuses it, or a part of
+ * it other than how links are painted: a number that is none, a shape that it does not know; its joints make
+ * no tree, or one is of another type; names are too long; counts are beyond the limits above. `message`
  * then has one line that names the file, the link or joint, the value and what was expected. Sizes of shapes
  * are not looked at. */
 bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t size);

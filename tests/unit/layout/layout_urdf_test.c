@@ -12,6 +12,7 @@
 #include "layout/axes.h"
 #include "layout/layout.h"
 #include "layout/links.h"
+#include "layout/urdf_file.h"
 #include "math/trig.h"
 
 #define GRIPPERS "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, "
@@ -207,7 +208,7 @@ static void a_urdf_of_the_usual_arm_is_the_usual_arm(void **state) {
         (void)snprintf(fields, sizeof fields, "robot = { %s urdf = '%s', tool = 'ee', %s }, %s", robots[i][0],
                        path, joints, shapes);
         if (!robots[i][1]) {
-            expect_refused(fields, "where the end-effector is, to 1e-06 mm");
+            expect_refused(fields, "where the end-effector is, to 1e-06 mm and 1e-09 rad");
             assert_int_equal(unlink(path), 0);
             continue;
         }
@@ -254,12 +255,22 @@ static const char dented[] = "solid s\n"
             FACET("-206 -35 -22", "-206 35 -22", "0 0 0")
                 FACET("206 -35 -22", "206 35 -22", "0 0 0") "endsolid s\n";
 
-/* FOLDING with one text in place of another one, in a file. */
+static void replace(char *text, size_t size, const char *from, const char *to) {
+    static char rest[16384];
+    char *at = strstr(text, from);
+    assert_non_null(at);
+    (void)snprintf(rest, sizeof rest, "%s", at + strlen(from));
+    (void)snprintf(at, size - (size_t)(at - text), "%s%s", to, rest);
+}
+
+/* FOLDING with one text in place of another one, and a box in that of a MESH that is left, in a file. */
 static void write_folding(char path[WH_TEST_PATH], const char *from, const char *to) {
     static char text[16384];
-    const char *at = strstr(FOLDING, from);
-    assert_non_null(at);
-    (void)snprintf(text, sizeof text, "%.*s%s%s", (int)(at - FOLDING), FOLDING, to, at + strlen(from));
+    (void)snprintf(text, sizeof text, "%s", FOLDING);
+    replace(text, sizeof text, from, to);
+    if (strstr(text, "MESH")) {
+        replace(text, sizeof text, "MESH", "<box size='0.4 0.1 0.1'/>");
+    }
     write_file(path, "folding", text);
 }
 
@@ -337,7 +348,7 @@ static const struct {
      "\"hand\" (expected a link without shapes"},
     {"MESH", "<box size='1 1 1'/>",
      "tool = 'ee', joints = { lift = 'z', turn = 'theta', q3 = { axis = 'fold', offset = 1 } }",
-     "(expected \"ee\" where the end-effector is, to 1e-06 mm; at theta "},
+     "(expected \"ee\" where the end-effector is, to 1e-06 mm and 1e-09 rad; at theta "},
     {"MESH", "<box size='1 0 1'/>", DRIVEN, "one of link \"fore\": "},
     {"MESH", "<mesh filename='no_such.stl'/>", DRIVEN,
      "robot.urdf: \"no_such.stl\" (expected an STL mesh for link \"fore\": "},
@@ -346,6 +357,8 @@ static const struct {
     {"MESH", "<mesh filename='package://my/a.stl'/>", DRIVEN,
      "\"package://my/a.stl\" (expected packages = { [\"my\"] = \"FOLDER\" } beside urdf)"},
     {"MESH", "<mesh filename='http://my/a.stl'/>", DRIVEN, "\"http://my/a.stl\" (expected a mesh beside "},
+    {"MESH", "<mesh filename='file://a.stl'/>", DRIVEN,
+     "robot.urdf: \"file://a.stl\" (expected a mesh beside "},
     {"0.25 0 0", "1e308 0 0", DRIVEN, "joint \"flange\": origin inf 0 0 m (expected within 100 m)"},
     {"0.25 0 0", "0.25 0.002 0", DRIVEN, "it is 2 mm and 0 degrees off: at ("},
     {"<origin xyz='0.344 0 0'/>", "<origin xyz='0.345 0 0'/>", DRIVEN,
@@ -365,6 +378,9 @@ static const struct {
     {"<parent link='foot'/>", "<parent link='fore'/>", DRIVEN, "(expected a URDF file: "},
     {"<link name='ee'/>", "<link name='ee'/><link name='ee'/>", DRIVEN, "(expected a URDF file: "},
     {"</robot>", "", DRIVEN, "(expected a URDF file: "},
+    {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 0 3.141592653589793'", DRIVEN, "mm and 180 degrees off: at ("},
+    {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 1 0'", DRIVEN, "it is 0 mm and 57.2957795 degrees off: at ("},
+    {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 0 2e-9'", DRIVEN, " it is 0 mm and 1.14591"},
     {"<link name='table'/>",
      "<link name='table'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>", DRIVEN,
      "\"table\" moves with none of them"},
@@ -385,6 +401,73 @@ static void bad_urdfs(void **state) {
                    "or directory)");
     expect_refused("robot = { urdf = '/' }, " CELL, "/: it is no regular file");
     expect_refused("robot = { tool = 'ee' }, " CELL, "robot.tool: \"ee\" (expected nothing without urdf)");
+}
+
+/* What stands in place of a text of FOLDING, and what the message says of it. */
+static const struct {
+    const char *from, *to, *error;
+} unreadable[] = {
+    {"MESH", "<box size='nan 1 1'/>", "component [nan] to a double"},
+    {"MESH", "<box size='0,36 1 1'/>", "component [0,36] to a double"},
+    {"MESH", "<box size='1 1'/>", "2 elements but 3 expected"},
+    {"MESH", "<box size='1 %s%s%s%n 1'/>", "component [%s%s%s%n] to a double"},
+    {"MESH", "<box/>", "Box shape has no size attribute"},
+    {"MESH", "<cylinder radius='nan' length='1'/>", "radius [nan] is not a valid float"},
+    {"MESH", "<cylinder radius='1' length='1,5'/>", "length [1,5] is not a valid float"},
+    {"MESH", "<cylinder length='1'/>", "Cylinder shape must have both length and radius"},
+    {"MESH", "<sphere/>", "Sphere shape must have a radius attribute"},
+    {"MESH", "<sphere radius='1e400'/>", "radius [1e400] is not a valid float"},
+    {"MESH", "<sphere radius='0x1'/>", "radius [0x1] is not a valid float"},
+    {"MESH", "<capsule radius='1' length='1'/>", "Unknown geometry type 'capsule'"},
+    {"MESH", "", "Geometry tag contains no child element."},
+    {"MESH", "<mesh/>", "Mesh must contain a filename attribute"},
+    {"MESH", "<mesh filename='a.stl' scale='nan 1 1'/>", "component [nan] to a double"},
+    {"<geometry>MESH</geometry>", "", "Could not parse visual element for Link [fore]"},
+    {"xyz='0.172 0 -0.0875'", "xyz='0.172 inf -0.0875'", "component [inf] to a double"},
+    {"xyz='0.172 0 -0.0875'", "xyz='0.172 0 -0.0875' rpy='0 0x1 0'", "component [0x1] to a double"},
+    {"<link name='fore'>", "<link name='fore'><inertial/>", "Inertial element must have a mass element"},
+    {"<link name='fore'>", "<link name='fore'><collision><geometry><box size='a'/></geometry></collision>",
+     "component [a] to a double"},
+};
+
+/* A shape that cannot be read takes no other ones with it, and nothing comes in its place. */
+static void what_cannot_be_read_refuses_the_file(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof unreadable / sizeof unreadable[0]; ++i) {
+        char path[WH_TEST_PATH];
+        char message[1024];
+        static wh_urdf_file_t file;
+        write_folding(path, unreadable[i].from, unreadable[i].to);
+        assert_false(wh_urdf_read(path, &file, message, sizeof message));
+        assert_int_equal(unlink(path), 0);
+        if (strncmp(message, path, strlen(path)) != 0 || !strstr(message, unreadable[i].error) ||
+            !strstr(message, " element for Link [fore]")) {
+            fail_msg("\"%s\" in place of \"%s\": %s", unreadable[i].to, unreadable[i].from, message);
+        }
+    }
+}
+
+/* How a link is painted counts for nothing, and % is a letter like any other. */
+static void paint_and_percents_are_read(void **state) {
+    (void)state;
+    static const char *const paints[] = {"<material name='no such'/>",
+                                         "<material name='red'><color rgba='1 0 0 x'/></material>",
+                                         "<material name='red'><color rgba='1 0 0 1'/></material>"};
+    for (size_t i = 0; i < sizeof paints / sizeof paints[0]; ++i) {
+        static wh_urdf_file_t file;
+        char path[WH_TEST_PATH];
+        char message[1024] = "";
+        char shape[512];
+        (void)snprintf(shape, sizeof shape, "<geometry><mesh filename='100%%s.stl'/></geometry>%s",
+                       paints[i]);
+        write_folding(path, "<geometry>MESH</geometry>", shape);
+        if (!wh_urdf_read(path, &file, message, sizeof message)) {
+            fail_msg("%s", message);
+        }
+        assert_int_equal(unlink(path), 0);
+        assert_int_equal(file.shape_count, 4);
+        assert_string_equal(file.shapes[2].mesh, "100%s.stl");
+    }
 }
 
 /* ------------------------------------------------------------------------------------------ several robots */
@@ -758,6 +841,169 @@ static void a_link_of_one_robot_meets_the_blade_of_another(void **state) {
     assert_in_range(met, 20, 180);
 }
 
+/* ---------------------------------------------------------------------------------------- joints' limits */
+
+/* A usual arm of these lengths, whose joint has limits, rad; the robot has these travels, mm and degrees. */
+typedef struct {
+    double link, reach;
+    double theta[2], r[2], yaw[2];
+    bool right_handed;
+    double more; /* by which the first link is longer, mm */
+} limited_t;
+
+static const char *write_limited(const limited_t *arm, const char *joint, double least, double most,
+                                 char path[WH_TEST_PATH]) {
+    static const char *const names[4][3] = {
+        {"z", "foot", "lift"}, {"j1", "lift", "upper"}, {"j2", "upper", "fore"}, {"j3", "fore", "hand"}};
+    static char text[8192];
+    (void)snprintf(text, sizeof text,
+                   "<robot name='arm'><link name='foot'/><link name='lift'/><link name='ee'/>");
+    for (size_t i = 2; i < WH_ARM_BODIES; ++i) {
+        put(text, sizeof text,
+            "<link name='%s'><collision><geometry><sphere radius='0.03'/></geometry></collision></link>",
+            link_names[i]);
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        const bool is_it = strcmp(names[i][0], joint) == 0;
+        put(text, sizeof text,
+            "<joint name='%s' type='%s'><parent link='%s'/><child link='%s'/><origin xyz='%.17g 0 0'/>"
+            "<axis xyz='0 0 1'/><limit lower='%.17g' upper='%.17g' effort='1' velocity='1'/></joint>",
+            names[i][0], i == 0 ? "prismatic" : "revolute", names[i][1], names[i][2],
+            i < 2 ? 0 : (arm->link + (i == 2 ? arm->more : 0)) / 1000, is_it ? least : -99,
+            is_it ? most : 99);
+    }
+    put(text, sizeof text,
+        "<joint name='flange' type='fixed'><parent link='hand'/><child link='ee'/><origin xyz='%.17g 0 0'/>"
+        "</joint></robot>",
+        arm->reach / 1000);
+    return write_file(path, "limited", text);
+}
+
+static void limited_fields(char *fields, size_t size, const limited_t *arm, const char *path) {
+    (void)snprintf(
+        fields, size,
+        "robot = { urdf = '%s', tool = 'ee', joints = { z = 'z', j1 = 'shoulder', j2 = 'elbow', j3 = 'wrist' "
+        "}, theta = { min = %.17g, max = %.17g }, r = { min = %.17g, max = %.17g, home = %.17g }, yaw = { "
+        "min "
+        "= %.17g, max = %.17g } }, shapes = { arm = { right_handed = %s } }, collision = true, grippers = { "
+        "{ "
+        "name = 'EE' } }, stations = { F = { at = { 600, 0, 900 }, retract = 10 } }",
+        path, arm->theta[0], arm->theta[1], arm->r[0], arm->r[1], arm->r[0], arm->yaw[0], arm->yaw[1],
+        arm->right_handed ? "true" : "false");
+}
+
+static double limited_value(const limited_t *arm, size_t joint, double theta, double r, double yaw) {
+    const double x = r - arm->reach * cos(yaw);
+    const double y = -arm->reach * sin(yaw);
+    const double side = arm->right_handed ? -1 : 1;
+    const double fold = side * acos(hypot(x, y) / (2 * arm->link));
+    const double values[3] = {theta + atan2(y, x) + fold, -2 * fold, yaw - atan2(y, x) + fold};
+    return values[joint];
+}
+
+/* The extremes of a joint's value, rad, by a fine grid, its edge at the links' reach with it. */
+static void limited_extremes(const limited_t *arm, size_t joint, double extremes[2]) {
+    enum { STEPS = 4000 };
+    const double degree = acos(-1) / 180;
+    extremes[0] = HUGE_VAL;
+    extremes[1] = -HUGE_VAL;
+    for (int i = 0; i <= STEPS; ++i) {
+        const double yaw = degree * (arm->yaw[0] + (arm->yaw[1] - arm->yaw[0]) * i / STEPS);
+        const double aside = arm->reach * sin(yaw);
+        const double edge = arm->reach * cos(yaw) + sqrt(4 * arm->link * arm->link - aside * aside);
+        const double most = fmin(arm->r[1], edge);
+        for (int k = 0; k <= 200 && most >= arm->r[0]; ++k) {
+            const double r = k == 200 ? most : arm->r[0] + (most - arm->r[0]) * k / 200;
+            for (int end = 0; end < 2; ++end) {
+                const double value = limited_value(arm, joint, degree * arm->theta[end], r, yaw);
+                if (!isnan(value)) {
+                    extremes[0] = fmin(extremes[0], value);
+                    extremes[1] = fmax(extremes[1], value);
+                }
+            }
+        }
+    }
+}
+
+/* Limits beyond the extremes by so many degrees are kept, those that are nearer by as much are not. */
+static void expect_limits(const limited_t *arm, size_t joint, double by) {
+    static const char *const names[3] = {"j1", "j2", "j3"};
+    const double nearer = by * acos(-1) / 180;
+    double extremes[2];
+    limited_extremes(arm, joint, extremes);
+    for (int beyond = 0; beyond < 3; ++beyond) {
+        char path[WH_TEST_PATH];
+        char fields[2000];
+        char message[64];
+        const double least = extremes[0] + (beyond == 1 ? nearer : -nearer);
+        const double most = extremes[1] - (beyond == 2 ? nearer : -nearer);
+        limited_fields(fields, sizeof fields, arm, write_limited(arm, names[joint], least, most, path));
+        if (beyond == 0) {
+            (void)read_sound(fields);
+        } else {
+            (void)snprintf(message, sizeof message, "travels within the limits of joint \"%s\", ",
+                           names[joint]);
+            expect_refused(fields, message);
+        }
+        assert_int_equal(unlink(path), 0);
+    }
+}
+
+/* The shoulder goes on with theta, beyond half a turn: 84 degrees before it, at R = 300. */
+static void full_turns_count_in_limits(void **state) {
+    (void)state;
+    const double degree = acos(-1) / 180;
+    const limited_t arm = {360, 230, {-180, 180}, {300, 900}, {-1, 1}, false, 0};
+    char path[WH_TEST_PATH];
+    char fields[2000];
+    limited_fields(fields, sizeof fields, &arm, write_limited(&arm, "j1", -200 * degree, 200 * degree, path));
+    expect_refused(fields, "joint \"j1\", -200 to 200; at theta 180, r 300, z ");
+    assert_int_equal(unlink(path), 0);
+    limited_fields(fields, sizeof fields, &arm, write_limited(&arm, "j1", -180 * degree, 268 * degree, path));
+    (void)read_sound(fields);
+    assert_int_equal(unlink(path), 0);
+}
+
+static void limits_are_kept_between_the_configurations(void **state) {
+    (void)state;
+    static const limited_t arms[] = {
+        {360, 230, {-540, 540}, {300, 800}, {-60, 60}, false, 0},
+        {360, 230, {-100, 300}, {300, 800}, {-60, 20}, true, 0},
+        {351.5, 222.25, {-180, 180}, {310, 760}, {-170, 170}, false, 0},
+    };
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; ++i) {
+        for (size_t joint = 0; joint < 3; ++joint) {
+            expect_limits(&arms[i], joint, 1e-3);
+        }
+    }
+}
+
+static void limits_are_kept_where_the_links_just_reach(void **state) {
+    (void)state;
+    static const limited_t arms[] = {
+        {360, 230, {-180, 180}, {400, 1200}, {-90, 60}, false, 0},
+        {300, 280, {-180, 180}, {350, 1200}, {-10, 120}, true, 0},
+        {300, 150, {-180, 180}, {580, 700}, {-150, 150}, false, 0},
+        {321.3, 138.4, {-344, 404}, {214.5, 526.6}, {-84, 152}, true, 0},
+    };
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; ++i) {
+        for (size_t joint = 0; joint < 3; ++joint) {
+            expect_limits(&arms[i], joint, 0.1);
+        }
+    }
+}
+
+/* What the agreement allows is not taken for a link that moves otherwise. */
+static void rounding_of_a_length_is_no_other_motion(void **state) {
+    (void)state;
+    char path[WH_TEST_PATH];
+    char fields[2048];
+    const limited_t arm = {360, 230, {-180, 180}, {300, 900}, {-60, 60}, false, 0.9e-6};
+    limited_fields(fields, sizeof fields, &arm, write_limited(&arm, "j1", -99, 99, path));
+    (void)read_sound(fields);
+    assert_int_equal(unlink(path), 0);
+}
+
 /* --------------------------------------------------------------------------------------------- two arms */
 
 #define TWO_ARMS                                                                                             \
@@ -846,8 +1092,7 @@ static const char *const wrong_robots[][2] = {
     {"kind = 'TRZ', r = { min = 260, home = 300 }, urdf = 'lua/layouts/folding.urdf', tool = 'effector', "
      "joints = { lift = 'z', turn = { axis = 'theta', offset = 1 }, q3 = 'fold' }",
      "robots.A.urdf: \"lua/layouts/folding.urdf\" (expected \"effector\" where the end-effector is, to 1e-06 "
-     "mm; "
-     "at theta "},
+     "mm and 1e-09 rad; at theta "},
     {"at = { 0, 5, 0 }, kind = 'TRZ', r = { min = 260, home = 300 }, z = { max = 1500 }, urdf = "
      "'lua/layouts/folding.urdf', tool = 'effector', joints = { lift = 'z', turn = 'theta', q3 = 'fold' }",
      "robots.A.urdf: \"lua/layouts/folding.urdf\" (expected travels within the limits of joint \"lift\", 400 "
@@ -866,7 +1111,7 @@ static const char *const wrong_robots[][2] = {
      "= -1 } }",
      "moves with none of them (is the elbow on the other side? then shapes.arms.A.right_handed"},
     {TWO_ARMS TWO_TOOLS "joints = { lift = 'z', turn = 'theta', fold = 'fold', fold2 = 'fold' }",
-     "(expected \"effector 2\" where the end-effector is, to 1e-06 mm; at theta "},
+     "(expected \"effector 2\" where the end-effector is, to 1e-06 mm and 1e-09 rad; at theta "},
 };
 
 static void what_is_wrong_names_the_robot(void **state) {
@@ -885,6 +1130,12 @@ int main(void) {
         cmocka_unit_test(a_urdf_of_the_usual_arm_is_the_usual_arm),
         cmocka_unit_test(a_mesh_becomes_its_hull),
         cmocka_unit_test(bad_urdfs),
+        cmocka_unit_test(what_cannot_be_read_refuses_the_file),
+        cmocka_unit_test(paint_and_percents_are_read),
+        cmocka_unit_test(full_turns_count_in_limits),
+        cmocka_unit_test(limits_are_kept_between_the_configurations),
+        cmocka_unit_test(limits_are_kept_where_the_links_just_reach),
+        cmocka_unit_test(rounding_of_a_length_is_no_other_motion),
         cmocka_unit_test(each_robot_has_its_links_where_its_urdf_says),
         cmocka_unit_test(a_urdf_of_one_of_two_is_the_usual_cell),
         cmocka_unit_test(a_link_of_one_robot_meets_the_blade_of_another),
