@@ -79,7 +79,7 @@ LCM_FLAGS := -isystem $(B)/lcm
 package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>/dev/null))
 LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 # liburdfdom's pkg-config file may name /usr/include itself, which is to stay behind C++'s own folders.
-URDF_FLAGS := $(patsubst -I%,-idirafter %,$(shell $(PKG_CONFIG) --cflags urdfdom qhull_r 2>/dev/null))
+URDF_FLAGS := $(patsubst -I%,-idirafter %,$(shell $(PKG_CONFIG) --cflags urdfdom tinyxml qhull_r 2>/dev/null))
 PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols libedit zlib libzstd) $(URDF_FLAGS)
 # Eigen without its heap, which no matrix of ours needs: what throws or asks for C++'s own library is left out, and C links it.
 PROGRAM_CXX_FLAGS := -std=c++17 -fno-exceptions -fno-rtti $(BASE) $(NUMBER_WARNINGS) -DEIGEN_NO_MALLOC -DEIGEN_MPL2_ONLY $(call package_flags,eigen3)
@@ -94,7 +94,7 @@ MPI := $(firstword $(foreach name,ompi-c ompi,$(shell $(PKG_CONFIG) --exists $(n
 RANKS := $(if $(MPI),$(B)/waferhand_mpi.so)
 
 # liburdfdom is C++; C links it all the same.
-URDF_LIBS = -Wl,--as-needed $(shell $(PKG_CONFIG) --libs urdfdom qhull_r) -lstdc++ -Wl,--no-as-needed
+URDF_LIBS = -Wl,--as-needed $(shell $(PKG_CONFIG) --libs urdfdom tinyxml qhull_r) -lstdc++ -Wl,--no-as-needed
 # LCM's pkg-config file asks for GLib's headers, which its own do not need: hence -llcm.
 # Before libwaferhand.a, which it uses.
 COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed

@@ -15,9 +15,11 @@
 #include <unistd.h>
 
 #include <console_bridge/console.h>
+#include <tinyxml.h>
 #include <urdf_parser/urdf_parser.h>
 
 extern "C" {
+#include "../text/nearest.h"
 #include "../text/output.h"
 #include "../text/utf8.h"
 }
@@ -89,6 +91,62 @@ bool check_text(const reading_t &reading, const std::string &text) {
         return refuse(reading, "byte %zu is %d (expected text)", at, text[at]);
     }
     return tags <= WH_URDF_TAGS || refuse(reading, "%zu tags (expected at most %d)", tags, WH_URDF_TAGS);
+}
+
+/* ---------------------------------------------------------------------------------------------- elements */
+
+size_t count_children(const TiXmlElement &element) {
+    size_t count = 0;
+    for (const TiXmlElement *at = element.FirstChildElement(); at; at = at->NextSiblingElement()) {
+        ++count;
+    }
+    return count;
+}
+
+const char *name_of(const TiXmlElement &element) {
+    const char *name = element.Attribute("name");
+    return name ? name : "";
+}
+
+/* Of several shapes in one element liburdfdom takes the first, without a word. */
+bool check_shape(const reading_t &reading, const TiXmlElement &link, const TiXmlElement &shape) {
+    const TiXmlElement *geometry = shape.FirstChildElement("geometry");
+    const bool is_one =
+        geometry && !geometry->NextSiblingElement("geometry") && count_children(*geometry) == 1;
+    return is_one || refuse(reading, "line %d: link \"%s\": %s (expected one geometry in it, with one shape)",
+                            shape.Row(), name_of(link), shape.Value());
+}
+
+/* It passes over elements that it does not know: one of a name that is nearly a shape's was meant for one. */
+bool check_link(const reading_t &reading, const TiXmlElement &link) {
+    static const char *const known[] = {"collision", "visual"};
+    bool good = true;
+    for (const TiXmlElement *at = link.FirstChildElement(); good && at; at = at->NextSiblingElement()) {
+        const char *name = at->Value();
+        const char *nearest = wh_text_nearest(name, known, sizeof known / sizeof known[0]);
+        if (nearest && std::strcmp(nearest, name) != 0) {
+            good = refuse(reading,
+                          "line %d: link \"%s\": element \"%s\" (expected collision, visual or others; "
+                          "did you mean %s?)",
+                          at->Row(), name_of(link), name, nearest);
+        } else if (nearest) {
+            good = check_shape(reading, link, *at);
+        }
+    }
+    return good;
+}
+
+/* A text that is no XML is liburdfdom's to refuse. */
+bool check_elements(const reading_t &reading, const std::string &text) {
+    TiXmlDocument document;
+    document.Parse(text.c_str());
+    const TiXmlElement *robot = document.RootElement();
+    bool good = true;
+    for (const TiXmlElement *at = robot ? robot->FirstChildElement("link") : nullptr; good && at;
+         at = at->NextSiblingElement("link")) {
+        good = check_link(reading, *at);
+    }
+    return good;
 }
 
 /* ------------------------------------------------------------------------------------------- liburdfdom */
@@ -359,5 +417,8 @@ bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t 
     }
     std::replace(text.begin(), text.end(), '%', percent);
     const urdf::ModelInterfaceSharedPtr model = parse(text, error);
-    return model ? take_model(reading, *model) : refuse(reading, "%s", error.c_str());
+    if (!model) {
+        return refuse(reading, "%s", error.c_str());
+    }
+    return check_elements(reading, text) && take_model(reading, *model);
 }

@@ -447,6 +447,32 @@ static void what_cannot_be_read_refuses_the_file(void **state) {
     }
 }
 
+/* liburdfdom reads these as if what it does not take were not there. */
+static void what_it_passes_over_refuses_the_file(void **state) {
+    (void)state;
+    static const char *const over[][3] = {
+        {"MESH", "<sphere radius='1'/><box size='1 1 1'/>",
+         "link \"fore\": visual (expected one geometry in it, with one shape)"},
+        {"<geometry>MESH</geometry>",
+         "<geometry><sphere radius='1'/></geometry><geometry><box size='1 1 1'/></geometry>",
+         "link \"fore\": visual (expected one geometry"},
+        {"<link name='fore'>",
+         "<link name='fore'><colision><geometry><box size='1 1 1'/></geometry></colision>",
+         "link \"fore\": element \"colision\" (expected collision, visual or others; did you mean "
+         "collision?)"}};
+    for (size_t i = 0; i < sizeof over / sizeof over[0]; ++i) {
+        static wh_urdf_file_t file;
+        char path[WH_TEST_PATH];
+        char message[1024] = "";
+        write_folding(path, over[i][0], over[i][1]);
+        assert_false(wh_urdf_read(path, &file, message, sizeof message));
+        assert_int_equal(unlink(path), 0);
+        if (!strstr(message, over[i][2]) || !strstr(message, ": line ")) {
+            fail_msg("%s", message);
+        }
+    }
+}
+
 /* How a link is painted counts for nothing, and % is a letter like any other. */
 static void paint_and_percents_are_read(void **state) {
     (void)state;
@@ -1131,6 +1157,7 @@ int main(void) {
         cmocka_unit_test(a_mesh_becomes_its_hull),
         cmocka_unit_test(bad_urdfs),
         cmocka_unit_test(what_cannot_be_read_refuses_the_file),
+        cmocka_unit_test(what_it_passes_over_refuses_the_file),
         cmocka_unit_test(paint_and_percents_are_read),
         cmocka_unit_test(full_turns_count_in_limits),
         cmocka_unit_test(limits_are_kept_between_the_configurations),
