@@ -1,7 +1,7 @@
 /* A slice as a row of numbers, each with a name: what a table of slices has as its columns, and what two
  * recordings are compared by.
  *
- * In this order: each axis ("axis theta rad"); of each gripper its valve (0: open), its sensor (1: on), its
+ * In this order: each axis ("axis theta rad", or "axis 1" where only a message tells of the cell); of each gripper its valve (0: open), its sensor (1: on), its
  * vacuum (0 to 1), the wafer that it is measured against (record/counterpart.h) and, as absolute values, the
  * distances and the angle between the two (mm, mm, cosine), and in a cell with edge grips its plunger (s,
  * mm); of each wafer who holds it, where it is (mm, in base) and how it is turned (a unit quaternion), and in
