@@ -287,7 +287,8 @@ static json_t *run_to_json(const void *subject, size_t i) {
                     json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
     return wh_json_add(object,
                        "outside_valves taken_up skipped missed refused other_layout doubtful "
-                       "collisions_not_compared begins_in_part goes_on_from over hash outcome first_difference",
+                       "collisions_not_compared begins_in_part goes_on_from over hash outcome "
+                       "first_difference",
                        json_integer(run->outside_valves), json_integer(run->taken_up),
                        json_integer(run->skipped), json_integer(run->missed), json_integer(run->refused),
                        json_integer(run->is_other_layout ? run->homeless : 0), json_integer(run->doubtful),

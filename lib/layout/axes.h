@@ -24,7 +24,8 @@ bool wh_layout_is_scara(const wh_layout_t *layout, size_t robot);
 wh_travel_t wh_axis_reach(const wh_machine_t *machine, size_t robot);
 
 /* The same as wh_axis_turns, true for a chuck, and false for what moves a stage, pins or a door. Any axis of
- * the machine. Of an axis of which nobody knows (axes_untold) true: curves are then fine enough for either. */
+ * the machine. True for an axis of which nobody knows (axes_untold): curves are then fine
+ * enough for either unit. */
 bool wh_layout_axis_turns(const wh_layout_t *layout, size_t axis);
 
 /* Its unit in recordings, "rad" or "mm"; null: the layout was not told which. Any axis of the machine. */

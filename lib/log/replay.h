@@ -10,8 +10,8 @@
  * slices differ.
  *
  * A run may go on from a state of an earlier one, as after RESTORE at the prompt. If a slice of this number,
- * with this hash and of this layout, was replayed before and found to be as recorded, nothing is missing. Else
- * the slices before it were passed over. Which states these are must be known before the replay, by
+ * with this hash and of this layout, was replayed before and found to be as recorded, nothing is missing.
+ * Else the slices before it were passed over. Which states these are must be known before the replay, by
  * wh_replay_look_ahead: so it remembers a hash for each run, however long the log is.
  *
  * What was passed over, and why, is counted: nothing of ours is left out in silence. Not compared are events
@@ -41,8 +41,8 @@ typedef struct {
 
 typedef struct {
     int64_t run;
-    bool is_begun;       /* it has commands or states */
-    bool begins_in_part; /* of the recording: its first slices are in another file */
+    bool is_begun;        /* it has commands or states */
+    bool begins_in_part;  /* of the recording: its first slices are in another file */
     int64_t goes_on_from; /* the run whose state of slice `first_slice` it begins with; 0: none */
     uint64_t layout_hash;
     int64_t first_slice, last_slice; /* stepped or taken over */
@@ -159,9 +159,9 @@ typedef struct {
 
     const wh_replay_cell_t *cell; /* of the current run, whose slices go through: */
     wh_protocol_server_t server;
-    wh_replay_run_t *run;   /* null before the first */
+    wh_replay_run_t *run;               /* null before the first */
     const wh_replay_return_t *returned; /* how the run begins, until its first state has come; else null */
-    waferhand_command last; /* a block's last slice, while its whole state may follow: */
+    waferhand_command last;             /* a block's last slice, while its whole state may follow: */
     bool has_last, last_differs;
     bool part_begins;          /* a later part of a recording, before its first state */
     bool is_synchronous;       /* the server is at `seq` of the run */

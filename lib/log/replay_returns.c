@@ -39,8 +39,8 @@ static void look_at_state(wh_replay_return_t *entry, const void *data, size_t si
         return;
     }
     if (message.status == WH_OK && message.check != 0) {
-        const bool returns = message.seq > 1 && message.seq <= WH_LINK_SLICES &&
-                             message.seq <= entry->first_command;
+        const bool returns =
+            message.seq > 1 && message.seq <= WH_LINK_SLICES && message.seq <= entry->first_command;
         entry->is_begun = true;
         entry->seq = returns ? message.seq : 0;
         entry->hash = (uint64_t)message.hash;

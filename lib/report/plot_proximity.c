@@ -108,12 +108,9 @@ typedef struct {
     bool is_speed;
 } axis_panel_t;
 
-static const axis_panel_t axis_panels[] = {{"position (mm)", "mm", false},
-                                           {"position (\u00b0)", "rad", false},
-                                           {"position (mm or rad)", "", false},
-                                           {"speed (mm/s)", "mm", true},
-                                           {"speed (\u00b0/s)", "rad", true},
-                                           {"speed (mm/s or rad/s)", "", true}};
+static const axis_panel_t axis_panels[] = {
+    {"position (mm)", "mm", false}, {"position (\u00b0)", "rad", false}, {"position (mm or rad)", "", false},
+    {"speed (mm/s)", "mm", true},   {"speed (\u00b0/s)", "rad", true},   {"speed (mm/s or rad/s)", "", true}};
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
