@@ -146,6 +146,10 @@ static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
     if (run->begins_in_part) {
         printf("  begins in the part before this one of its recording\n");
     }
+    if (run->goes_on_from != 0) {
+        printf("  goes on from slice %" PRId64 " of run %016" PRIx64 "\n", run->first_slice,
+               (uint64_t)run->goes_on_from);
+    }
     print_outcome(run);
     print_counts(run, wh_reading_lacks_end(replay, run));
     print_difference(replay, run);
@@ -283,11 +287,13 @@ static json_t *run_to_json(const void *subject, size_t i) {
                     json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
     return wh_json_add(object,
                        "outside_valves taken_up skipped missed refused other_layout doubtful "
-                       "collisions_not_compared begins_in_part over hash outcome first_difference",
+                       "collisions_not_compared begins_in_part goes_on_from over hash outcome "
+                       "first_difference",
                        json_integer(run->outside_valves), json_integer(run->taken_up),
                        json_integer(run->skipped), json_integer(run->missed), json_integer(run->refused),
                        json_integer(run->is_other_layout ? run->homeless : 0), json_integer(run->doubtful),
                        json_integer(run->collisions), json_boolean(run->begins_in_part),
+                       run->goes_on_from != 0 ? wh_json_hash((uint64_t)run->goes_on_from) : json_null(),
                        json_boolean(run->over), wh_json_hash(run->hash), outcome_to_json(run),
                        difference_to_json(run), NULL);
 }

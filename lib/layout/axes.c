@@ -88,11 +88,14 @@ static int32_t find_door(const wh_machine_t *machine, size_t axis) {
 
 bool wh_layout_axis_turns(const wh_layout_t *layout, size_t axis) {
     const wh_machine_t *machine = &layout->machine;
-    if (axis < wh_machine_robot_axes(machine)) {
-        return wh_axis_turns(machine, axis);
-    }
     if (find_door(machine, axis) != WH_NONE) {
         return false;
+    }
+    if (layout->axes_untold) {
+        return true;
+    }
+    if (axis < wh_machine_robot_axes(machine)) {
+        return wh_axis_turns(machine, axis);
     }
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         if (is_axis_of(&machine->mounts[g], axis)) {
@@ -100,6 +103,15 @@ bool wh_layout_axis_turns(const wh_layout_t *layout, size_t axis) {
         }
     }
     return true;
+}
+
+/* True if the layout was not told what this axis moves. */
+static bool is_untold(const wh_layout_t *layout, size_t axis) {
+    return layout->axes_untold && find_door(&layout->machine, axis) == WH_NONE;
+}
+
+const char *wh_layout_axis_unit(const wh_layout_t *layout, size_t axis) {
+    return is_untold(layout, axis) ? NULL : wh_layout_axis_turns(layout, axis) ? "rad" : "mm";
 }
 
 /* With several robots, whose axis it is. */
@@ -119,6 +131,10 @@ static void name_robot_axis(const wh_layout_t *layout, size_t axis, char *name, 
 }
 
 void wh_layout_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
+    if (is_untold(layout, axis)) {
+        (void)snprintf(name, size, "axis %zu", axis + 1);
+        return;
+    }
     if (axis < wh_machine_robot_axes(&layout->machine)) {
         name_robot_axis(layout, axis, name, size);
         return;

@@ -24,13 +24,17 @@ bool wh_layout_is_scara(const wh_layout_t *layout, size_t robot);
 wh_travel_t wh_axis_reach(const wh_machine_t *machine, size_t robot);
 
 /* The same as wh_axis_turns, true for a chuck, and false for what moves a stage, pins or a door. Any axis of
- * the machine. */
+ * the machine. True for an axis of which nobody knows (axes_untold): curves are then fine
+ * enough for either unit. */
 bool wh_layout_axis_turns(const wh_layout_t *layout, size_t axis);
+
+/* Its unit in recordings, "rad" or "mm"; null: the layout was not told which. Any axis of the machine. */
+const char *wh_layout_axis_unit(const wh_layout_t *layout, size_t axis);
 
 /* Its name in tables, pages and recordings: R and Z of the usual robot with capitals. Any axis of the
  * machine: of a chuck's it is its gripper's, with the word chuck, of the others with stage x, stage y,
  * pins or flipper, of a door's the door's with the word door; with several robots its robot's name comes
- * first. */
+ * first. Of an axis of which nobody knows it is axis 1, axis 2 and so on, by its place in a command. */
 void wh_layout_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
 
 /* Its name as commands have it, wh_axis_name; with several robots wh_layout_name_axis. Returns `name` or a

@@ -210,6 +210,7 @@ typedef struct {
     int64_t slice_us;
     wh_physics_t physics; /* vacuum, pads, faults at the start */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
+    bool axes_untold;     /* made of a message, which does not tell what an axis moves, but for doors */
     size_t robot_count;
     wh_layout_robot_t *robots;           /* sorted by name */
     wh_carrier_t carrier;                /* the first one's, unless machine.carrier is null */

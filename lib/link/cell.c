@@ -572,6 +572,7 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
     layout->station_count = (size_t)cell->station_count;
     layout->wafer_count = (size_t)cell->wafer_count;
     layout->path = wh_text_copy(cell->layout);
+    layout->axes_untold = true;
     layout->stations = wh_array_new(layout->station_count, sizeof *layout->stations);
     layout->places = wh_array_new(layout->station_count, sizeof *layout->places);
     layout->wafers = wh_array_new(layout->wafer_count, sizeof *layout->wafers);

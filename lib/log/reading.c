@@ -26,11 +26,12 @@ const wh_reading_loss_t wh_reading_losses[WH_REPLAY_LOSSES] = {
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-/* The cell is told once a second, so a recording may begin before it. */
-static void find_first_cell(FILE *file, wh_log_t *log, wh_replay_t *replay) {
+/* The cell is told once a second, so a recording may begin before it. And how runs begin must be known. */
+static void look_ahead(FILE *file, wh_log_t *log, wh_replay_t *replay) {
     wh_log_open(log, file);
-    while (replay->cell_count == 0 && wh_log_next_event(log)) {
-        if (strcmp(log->channel, WH_CHANNEL_CELL) == 0) {
+    while (wh_log_next_event(log)) {
+        wh_replay_look_ahead(replay, log->channel, log->data, log->size);
+        if (replay->cell_count == 0 && strcmp(log->channel, WH_CHANNEL_CELL) == 0) {
             wh_replay_event(replay, log->channel, log->data, log->size);
         }
     }
@@ -46,7 +47,7 @@ static void find_first_cell(FILE *file, wh_log_t *log, wh_replay_t *replay) {
 void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading) {
     wh_log_result_t result;
     memset(reading, 0, sizeof *reading);
-    find_first_cell(file, log, replay);
+    look_ahead(file, log, replay);
     wh_log_open(log, file);
     while ((result = wh_log_next(log)) == WH_LOG_EVENT || result == WH_LOG_DAMAGED) {
         if (result == WH_LOG_DAMAGED) {

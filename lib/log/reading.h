@@ -36,8 +36,8 @@ typedef enum {
 /* One word: same, differs, unusable, incomplete, cut. */
 const char *wh_reading_word(wh_reading_verdict_t verdict);
 
-/* Replays the file from its beginning. `replay` is as wh_replay_t says, `log` the caller's memory, which the
- * caller closes. */
+/* Replays the file from its beginning, after a look at all of it for the cell and for how runs begin.
+ * `replay` is as wh_replay_t says, `log` the caller's memory, which the caller closes. */
 void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading);
 
 /* Room for why a log is not the same. */

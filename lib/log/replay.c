@@ -48,7 +48,9 @@ static void begin_run(wh_replay_t *replay, wh_replay_run_t *run, const wh_replay
     replay->run = run;
     run->is_begun = true;
     run->layout_hash = cell->hash;
-    replay->seq = replay->last_pending = 0;
+    replay->returned = wh_replay_find_return(replay, run->run);
+    replay->seq = replay->returned ? replay->returned->seq - 1 : 0;
+    replay->last_pending = 0;
     replay->is_synchronous = replay->is_unsure = false;
     if (replay->cell != cell) {
         wh_protocol_server_close(&replay->server);
@@ -153,15 +155,32 @@ static void skip_to(wh_replay_t *replay, int64_t seq) {
     replay->run->skipped += replay->part_begins ? 0 : seq - replay->seq;
 }
 
+/* The first state of a run: true if it is one that was replayed before. Else all slices before it are passed
+ * over. */
+static bool returns_to(wh_replay_t *replay, int64_t seq, bool is_restored) {
+    const wh_replay_return_t *returned = replay->returned;
+    replay->returned = NULL;
+    if (returned && is_restored && returned->seq == seq && returned->hash == replay->run->hash) {
+        replay->run->goes_on_from = returned->of;
+        return true;
+    }
+    replay->run->skipped += returned ? returned->seq - 1 : 0;
+    return false;
+}
+
 /* A state whose command, or one before it, is not in the log. */
 static void take_up(wh_replay_t *replay, int64_t seq) {
     const wh_replay_slot_t *slot = slot_of(replay, seq);
     waferhand_state message;
     if (wh_link_decode_state(slot->state, slot->size, &message)) {
-        skip_to(replay, seq);
-        if (wh_replay_restore(replay, &message)) {
+        const bool is_restored = wh_replay_restore(replay, &message);
+        const bool returns = returns_to(replay, seq, is_restored);
+        if (!returns) {
+            skip_to(replay, seq);
+        }
+        if (is_restored) {
             replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
-            replay->run->taken_up += replay->part_begins ? 0 : 1;
+            replay->run->taken_up += replay->part_begins || returns ? 0 : 1;
             replay->part_begins = false;
             wh_replay_tell(replay, slot->has_command ? &slot->command : NULL, &message);
         } else {

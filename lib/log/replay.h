@@ -9,6 +9,11 @@
  * again, as over a lossy network, is passed over. Of each run the first difference is named, and how many
  * slices differ.
  *
+ * A run may go on from a state of an earlier one, as after RESTORE at the prompt. If a slice of this number,
+ * with this hash and of this layout, was replayed before and found to be as recorded, nothing is missing.
+ * Else the slices before it were passed over. Which states these are must be known before the replay, by
+ * wh_replay_look_ahead: so it remembers a hash for each run, however long the log is.
+ *
  * What was passed over, and why, is counted: nothing of ours is left out in silence. Not compared are events
  * of the collision check, since messages do not tell shapes. WAFERHAND_MCS and WAFERHAND_REQUEST have no
  * check: the digest of a recording that was closed vouches for them.
@@ -36,8 +41,9 @@ typedef struct {
 
 typedef struct {
     int64_t run;
-    bool is_begun;       /* it has commands or states */
-    bool begins_in_part; /* of the recording: its first slices are in another file */
+    bool is_begun;        /* it has commands or states */
+    bool begins_in_part;  /* of the recording: its first slices are in another file */
+    int64_t goes_on_from; /* the run whose state of slice `first_slice` it begins with; 0: none */
     uint64_t layout_hash;
     int64_t first_slice, last_slice; /* stepped or taken over */
     int64_t compared;                /* slices whose state was compared */
@@ -81,6 +87,16 @@ typedef enum {
 typedef struct {
     uint64_t count, first; /* how many, and the byte of the first one */
 } wh_replay_count_t;
+
+/* How a run begins in the log: if it is with a state of a later slice than the first one, with which. */
+typedef struct {
+    int64_t run;
+    bool is_begun;         /* it has a state, or slices in a block */
+    int64_t first_command; /* the lowest number of a command before that */
+    int64_t seq;           /* 0: it begins otherwise */
+    uint64_t hash, layout_hash;
+    int64_t of; /* the run that had the same state, once that was replayed; 0: none yet */
+} wh_replay_return_t;
 
 /* A command and a state of the same slice. */
 typedef struct {
@@ -128,6 +144,8 @@ typedef struct {
     wh_replay_cell_t cells[WH_REPLAY_CELLS];
     size_t cell_count;
 
+    wh_replay_return_t returns[WH_REPLAY_RUNS];
+    size_t return_count;
     wh_replay_run_t runs[WH_REPLAY_RUNS];
     size_t run_count;
     uint64_t runs_left_out;    /* beyond WH_REPLAY_RUNS */
@@ -141,8 +159,9 @@ typedef struct {
 
     const wh_replay_cell_t *cell; /* of the current run, whose slices go through: */
     wh_protocol_server_t server;
-    wh_replay_run_t *run;   /* null before the first */
-    waferhand_command last; /* a block's last slice, while its whole state may follow: */
+    wh_replay_run_t *run;               /* null before the first */
+    const wh_replay_return_t *returned; /* how the run begins, until its first state has come; else null */
+    waferhand_command last;             /* a block's last slice, while its whole state may follow: */
     bool has_last, last_differs;
     bool part_begins;          /* a later part of a recording, before its first state */
     bool is_synchronous;       /* the server is at `seq` of the run */
@@ -150,6 +169,10 @@ typedef struct {
     int64_t seq, last_pending; /* the last slice that went through; the last one that waits */
     wh_replay_slot_t slots[WH_REPLAY_WINDOW];
 } wh_replay_t;
+
+/* One event of the log, before the first one goes through wh_replay_event: notes how its run begins. Cost:
+ * linear in the runs. */
+void wh_replay_look_ahead(wh_replay_t *replay, const char *channel, const void *data, size_t size);
 
 /* One event of the log; those of other channels are ignored, unless they have a message of ours. */
 void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size);

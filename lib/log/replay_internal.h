@@ -47,6 +47,12 @@ void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t h
 void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                                size_t size);
 
+/* The slice that went through last is as recorded: a later run may go on from it. */
+void wh_replay_pass_slice(wh_replay_t *replay);
+
+/* How a run begins, if it is with a state that an earlier one had; else null. */
+const wh_replay_return_t *wh_replay_find_return(wh_replay_t *replay, int64_t run);
+
 /* A command that the simulator took and the replay refuses, or the other way round. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed);
 

@@ -429,6 +429,9 @@ void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const
     if (step(replay, command, find_valves(command, message, told))) {
         const bool same = is_same(replay, message, bytes, size, &difference);
         known = count_compared(replay, message->seq, same ? NULL : &difference);
+        if (same) {
+            wh_replay_pass_slice(replay);
+        }
     } else {
         wh_replay_differ_in_status(replay->run, message->seq, WH_OK, replay->server.room.message.status);
     }
@@ -464,6 +467,9 @@ void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t h
     replay->has_last = true;
     replay->last_differs = hash != run->hash;
     replay->is_synchronous = count_compared(replay, command->seq, replay->last_differs ? &difference : NULL);
+    if (!replay->last_differs) {
+        wh_replay_pass_slice(replay);
+    }
 }
 
 void wh_replay_step_alone(wh_replay_t *replay, const waferhand_command *command) {

@@ -104,9 +104,10 @@ wh_slice_field_t wh_slice_field_name(const wh_layout_t *layout, size_t i, char n
     const size_t grippers = each * layout->machine.gripper_count;
     if (i < axes) {
         char axis[WH_NAME_SIZE + 8];
+        const char *unit = wh_layout_axis_unit(layout, axis_of(layout, i));
         wh_layout_name_axis(layout, axis_of(layout, i), axis, sizeof axis);
-        (void)snprintf(name, WH_SLICE_FIELD_NAME, "axis %s %s", axis,
-                       wh_layout_axis_turns(layout, axis_of(layout, i)) ? "rad" : "mm");
+        (void)snprintf(name, WH_SLICE_FIELD_NAME, "%s%s%s%s", unit ? "axis " : "", axis, unit ? " " : "",
+                       unit ? unit : "");
         return WH_FIELD_NUMBER;
     }
     if (i < axes + grippers) {

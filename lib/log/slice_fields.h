@@ -1,13 +1,13 @@
 /* A slice as a row of numbers, each with a name: what a table of slices has as its columns, and what two
  * recordings are compared by.
  *
- * In this order: each axis ("axis theta rad"); of each gripper its valve (0: open), its sensor (1: on), its
- * vacuum (0 to 1), the wafer that it is measured against (record/counterpart.h) and, as absolute values, the
- * distances and the angle between the two (mm, mm, cosine), and in a cell with edge grips its plunger (s,
- * mm); of each wafer who holds it, where it is (mm, in base) and how it is turned (a unit quaternion), and in
- * a cell with faces 1 if it is face down. Where there are faces, edge grips or passive pads, then how the
- * face that looks at its gripper lies in the gripper's frame: dx and dy (mm) and the turn of its x (deg), and
- * in a cell with faces 1 if that is its front.
+ * In this order: each axis ("axis theta rad", or "axis 1" where only a message tells of the cell); of each
+ * gripper its valve (0: open), its sensor (1: on), its vacuum (0 to 1), the wafer that it is measured against
+ * (record/counterpart.h) and, as absolute values, the distances and the angle between the two (mm, mm,
+ * cosine), and in a cell with edge grips its plunger (s, mm); of each wafer who holds it, where it is (mm, in
+ * base) and how it is turned (a unit quaternion), and in a cell with faces 1 if it is face down. Where there
+ * are faces, edge grips or passive pads, then how the face that looks at its gripper lies in the gripper's
+ * frame: dx and dy (mm) and the turn of its x (deg), and in a cell with faces 1 if that is its front.
  *
  * What is not known, or not there, is NaN: axes that a log does not tell, what a gripper is measured by if
  * nothing is near it, the plunger of one that has none, and how a wafer is held that nobody holds.

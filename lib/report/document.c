@@ -95,7 +95,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
 
 /* -------------------------------------------------------------------------------------------------- names */
 
-/* Null is what is not known: a chuck's travel, or any value of a log without its layout. */
+/* Null is what is not known: a chuck's travel, or the unit and any value of a log without its layout. */
 static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
     const wh_layout_t *layout = document->signals->layout;
     const wh_machine_t *machine = &layout->machine;
@@ -106,7 +106,7 @@ static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t
     wh_layout_name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
     put_text(text, "name", name);
-    wh_json_text_string(text, "unit", wh_layout_axis_turns(layout, axis) ? "rad" : "mm");
+    put_text(text, "unit", wh_layout_axis_unit(layout, axis));
     put_exact(text, "low", travel.max > travel.min ? travel.min : HUGE_VAL);
     put_exact(text, "high", travel.max > travel.min ? travel.max : HUGE_VAL);
     put_exact(text, "speed", speed > 0 ? speed : HUGE_VAL);
@@ -369,8 +369,11 @@ static sums_t sum_up(const wh_signals_t *signals) {
         }
     }
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        count(&sums, &signals->axes[axis],
-              wh_layout_axis_turns(signals->layout, axis) ? &sums.rad : &sums.mm);
+        const wh_path_t *curve = &signals->axes[axis];
+        count(&sums, curve, wh_layout_axis_turns(signals->layout, axis) ? &sums.rad : &sums.mm);
+        if (!wh_layout_axis_unit(signals->layout, axis)) { /* it may be of mm as well */
+            sums.mm = fmax(curve->list.tolerance, sums.mm);
+        }
     }
     return sums;
 }

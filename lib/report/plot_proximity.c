@@ -104,17 +104,18 @@ void wh_plots_proximity(wh_plots_t *plots) {
 
 typedef struct {
     const char *label;
-    bool turns, is_speed;
+    const char *unit; /* of the axes; empty: such as nobody knows */
+    bool is_speed;
 } axis_panel_t;
 
-static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
-                                           {"position (\u00b0)", true, false},
-                                           {"speed (mm/s)", false, true},
-                                           {"speed (\u00b0/s)", true, true}};
+static const axis_panel_t axis_panels[] = {
+    {"position (mm)", "mm", false}, {"position (\u00b0)", "rad", false}, {"position (mm or rad)", "", false},
+    {"speed (mm/s)", "mm", true},   {"speed (\u00b0/s)", "rad", true},   {"speed (mm/s or rad/s)", "", true}};
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
-    return signals->axes[axis].list.count > 0 && panel->turns == wh_layout_axis_turns(signals->layout, axis);
+    const char *unit = wh_layout_axis_unit(signals->layout, axis);
+    return signals->axes[axis].list.count > 0 && strcmp(panel->unit, unit ? unit : "") == 0;
 }
 
 /* How many curves a panel shows, and between which values. */
@@ -152,8 +153,9 @@ static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_
     fprintf(plot->script, "set key width %d\n", range.curves > 2 ? -2 : 0);
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         if (is_in(signals, axis, panel)) {
+            const bool turns = strcmp(panel->unit, "rad") == 0;
             const wh_plot_curves_t curve = {
-                {&signals->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
+                {&signals->axes[axis]}, 1, turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
             char name[WH_NAME_SIZE + 8];
             wh_layout_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");

@@ -57,13 +57,14 @@
             why: 'No gripper came near a wafer, or the document does not hold how near.' };
     }
 
-    /* One panel for the axes in mm, one for those that turn. */
+    /* One panel for the axes in mm, one for those that turn, and one for those whose unit nobody knows. */
     function axisPanel(doc, unit, speed) {
         const factor = unit === 'rad' ? DEGREES : 1;
-        const shown = (unit === 'rad' ? '\u00b0' : 'mm') + (speed ? '/s' : '');
+        const per = speed ? '/s' : '';
+        const shown = { rad: `\u00b0${per}`, mm: `mm${per}` }[unit] || `mm${per} or rad${per}`;
         const curves = [];
         doc.tracks.axes.forEach((track, i) => {
-            const axis = doc.names.axes[i] || { name: `axis ${i + 1}`, unit: 'mm' };
+            const axis = doc.names.axes[i] || { name: `axis ${i + 1}`, unit: null };
             if (axis.unit === unit && some(track)) {
                 curves.push(Object.assign(smooth(track, speed, factor), { name: axis.name, colour: i, unit: shown,
                     decimals: speed ? 2 : 3, bounds: bounds(axis, factor, speed) }));
@@ -82,7 +83,7 @@
     }
 
     function axes(doc) {
-        const panels = [['mm', false], ['rad', false], ['mm', true], ['rad', true]]
+        const panels = [['mm', false], ['rad', false], [null, false], ['mm', true], ['rad', true], [null, true]]
             .map(([unit, speed]) => axisPanel(doc, unit, speed)).filter((panel) => panel.curves.length > 0);
         return { id: 'axes', title: 'Axes', panels, why: 'The document holds no positions of axes.' };
     }

@@ -804,6 +804,147 @@ static void a_log_that_is_not_closed_is_cut(void **state) {
     }
 }
 
+/* -------------------------------------------------------------------------------- back to an earlier state */
+
+#define AGAIN (RUN + 1)
+/* The slice whose state the second run goes on from: farther than commands wait for a state. */
+#define SAVED (WH_REPLAY_WINDOW + 50)
+
+/* An event of a log in memory. */
+typedef struct {
+    const char *channel;
+    uint8_t *data;
+    size_t size;
+} event_t;
+
+static event_t events[4 * SAVED];
+static size_t event_count;
+
+static void keep_event(const char *channel, const uint8_t *data, size_t size) {
+    event_t *event = &events[event_count++];
+    *event = (event_t){channel, malloc(size), size};
+    assert_non_null(event->data);
+    memcpy(event->data, data, size);
+}
+
+static void keep_slice(int64_t run, int64_t seq) {
+    waferhand_command message = command(seq);
+    message.run = run;
+    const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);
+    wh_link_seal(bytes, (size_t)size);
+    keep_event(WH_CHANNEL_COMMAND, bytes, (size_t)size);
+    (void)wh_protocol_server_command(&server, &message, NULL);
+    keep_event(WH_CHANNEL_STATE, server.encoded, server.encoded_size);
+}
+
+/* A run, and a second one that goes on from a state of the first, which it has had from its slice SAVED; the
+ * event of that state in the second run. */
+static size_t keep_two_runs(void) {
+    event_count = 0;
+    waferhand_state saved = {0};
+    for (int64_t seq = 1; seq <= SAVED + 20; ++seq) {
+        keep_slice(RUN, seq);
+        if (seq == SAVED) {
+            assert_true(wh_link_decode_state(server.encoded, server.encoded_size, &saved));
+        }
+    }
+    saved.run = AGAIN;
+    assert_int_equal(wh_protocol_server_restore(&server, &saved), WH_SERVER_RESTORED);
+    (void)waferhand_state_decode_cleanup(&saved);
+    waferhand_command message = command(SAVED);
+    message.run = AGAIN;
+    const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);
+    wh_link_seal(bytes, (size_t)size);
+    keep_event(WH_CHANNEL_COMMAND, bytes, (size_t)size);
+    keep_event(WH_CHANNEL_STATE, server.encoded, server.encoded_size);
+    const size_t at = event_count - 1;
+    for (int64_t seq = SAVED + 1; seq <= SAVED + 30; ++seq) {
+        keep_slice(AGAIN, seq);
+    }
+    return at;
+}
+
+/* Replays all of them but some. */
+static void replay_without(size_t from, size_t to) {
+    wh_replay_close(&replay);
+    memset(&replay, 0, sizeof replay);
+    tell_cell();
+    for (size_t i = 0; i < event_count; ++i) {
+        if (i < from || i >= to) {
+            wh_replay_look_ahead(&replay, events[i].channel, events[i].data, events[i].size);
+        }
+    }
+    for (size_t i = 0; i < event_count; ++i) {
+        if (i < from || i >= to) {
+            wh_replay_event(&replay, events[i].channel, events[i].data, events[i].size);
+        }
+    }
+    wh_replay_end(&replay);
+    assert_int_equal(replay.run_count, 2);
+}
+
+static void let_events_go(void) {
+    for (size_t i = 0; i < event_count; ++i) {
+        free(events[i].data);
+    }
+    event_count = 0;
+}
+
+static void a_run_that_goes_on_from_an_earlier_state_is_whole(void **state) {
+    (void)state;
+    (void)keep_two_runs();
+    replay_without(0, 0);
+    const wh_replay_run_t *again = &replay.runs[1];
+    assert_int_equal(replay.runs[0].compared, SAVED + 20);
+    assert_int_equal(again->goes_on_from, RUN);
+    assert_int_equal(again->first_slice, SAVED);
+    assert_int_equal(again->compared, 30);
+    assert_int_equal(again->differing + again->skipped + again->taken_up + again->unanswered, 0);
+    assert_true(again->hash == wh_protocol_server_hash(&server));
+    let_events_go();
+}
+
+/* The state is missing; so is that of the earlier run; so are slices of the later one behind it. */
+static void what_goes_on_from_no_known_state_has_lost_slices(void **state) {
+    (void)state;
+    const size_t begins = keep_two_runs();
+    replay_without(begins, begins + 1);
+    assert_int_equal(replay.runs[1].goes_on_from, 0);
+    assert_int_equal(replay.runs[1].skipped, SAVED + 1);
+    assert_int_equal(replay.runs[1].taken_up, 1);
+    const size_t earlier = 2 * (SAVED - 5);
+    replay_without(earlier, earlier + 20);
+    assert_true(replay.runs[0].skipped > 0);
+    assert_int_equal(replay.runs[1].goes_on_from, 0);
+    assert_int_equal(replay.runs[1].skipped, SAVED);
+    assert_int_equal(replay.runs[1].taken_up, 1);
+    replay_without(begins + 1, begins + 7);
+    assert_int_equal(replay.runs[1].goes_on_from, RUN);
+    assert_int_equal(replay.runs[1].skipped, 4);
+    assert_int_equal(replay.runs[1].taken_up, 1);
+    let_events_go();
+}
+
+/* A state of the same number that no slice had is none to go on from. */
+static void another_state_of_the_same_slice_is_no_earlier_one(void **state) {
+    (void)state;
+    const size_t begins = keep_two_runs();
+    const size_t other = 2 * SAVED + 1; /* of the slice behind it, told to be this one's */
+    waferhand_state message;
+    assert_true(wh_link_decode_state(events[other].data, events[other].size, &message));
+    message.run = AGAIN;
+    message.seq = SAVED;
+    message.utime = 1000 * SAVED;
+    assert_int_equal(waferhand_state_encode(bytes, 0, (int)sizeof bytes, &message), events[begins].size);
+    wh_link_seal(bytes, events[begins].size);
+    memcpy(events[begins].data, bytes, events[begins].size);
+    (void)waferhand_state_decode_cleanup(&message);
+    replay_without(0, 0);
+    assert_int_equal(replay.runs[1].goes_on_from, 0);
+    assert_true(replay.runs[1].skipped >= SAVED);
+    let_events_go();
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_same, set_up, tear_down),
@@ -828,6 +969,9 @@ int main(void) {
         cmocka_unit_test_setup_teardown(an_unknown_version_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_changed_cell_is_no_difference, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_log_that_is_not_closed_is_cut, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_that_goes_on_from_an_earlier_state_is_whole, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_goes_on_from_no_known_state_has_lost_slices, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(another_state_of_the_same_slice_is_no_earlier_one, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
