@@ -51,9 +51,10 @@ return function(native)
     end
     native.layout = native.cell(path)
     for name, station in pairs(native.layout.stations) do
-      reach.check(station, function(slot, _, reason)
-        local message = "%s: stations.%s: slot %d (expected one in reach: %s)"
-        error(message:format(native.layout.path, name, slot, reason), 0)
+      reach.check(station, function(slot, _, reason, robot)
+        local message = "%s: stations.%s%s: slot %d (expected one in reach: %s)"
+        local by = lookup.has_several() and ".by." .. native.layout.robots[robot].name or ""
+        error(message:format(native.layout.path, name, by, slot, reason), 0)
       end)
     end
     native.connect()

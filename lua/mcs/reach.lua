@@ -36,15 +36,16 @@ return function(native, transfer, flip_room)
     return #list > 0 and list or { station.effector }
   end
 
-  -- Calls found(slot, word, reason) for each slot at which a command of that word is refused: then a run
-  -- refuses the whole layout.
+  -- Calls found(slot, word, reason, robot) for each slot at which a command of that word is refused to that robot: then
+  -- a run refuses the whole layout.
   function reach.check(station, found)
     for _, gripper in ipairs(servers(station)) do
       for _, slot in ipairs(slots_of(station)) do
-        native.reach(station.index, slot, native.layout.grippers[gripper].robot)
+        local robot = native.layout.grippers[gripper].robot
+        native.reach(station.index, slot, robot)
         local word, problem = rehearse(station.name, slot, gripper)
         if problem then
-          found(slot, word, reason_of(problem))
+          found(slot, word, reason_of(problem), robot)
         end
       end
     end
