@@ -27,6 +27,9 @@ COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs w
 COUNTED = ["CFLAGS=-O0 -g1 --coverage -fprofile-update=atomic", "LDFLAGS=--coverage"]
 # Compiled as the Makefile does it, so that a compiler's cache may have it; but linking is quicker without lines.
 PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
+# In CI warnings are errors: a change that the compiler warns of does not pass there.
+STRICT = [*PLAIN, "B=build/strict", "WERROR=1"]
+COMPILER = "a warning of the compiler"
 CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
 CHECKED = ["B=build/sanitize", f"CFLAGS={CHECKED}", f"CXXFLAGS={CHECKED}", *PLAIN,
            "EXTRA= -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all"]
@@ -224,6 +227,10 @@ class Lane:
         subprocess.run(["strip", "--strip-debug", "-o", bare, self.tree.place(target)], check=True)
         return bytes_of(bare)
 
+    def is_refused(self, source):
+        """Does the compiler warn of the source as it is now?"""
+        return not self.tree.make(STRICT, [f"build/strict/obj/{os.path.splitext(source)[0]}.o"])
+
     def status(self, test):
         """What the test ends with, the source being as it is now: None if it does not end in time."""
         program = test if is_end_to_end(test) else f"build/sanitize/{test}"
@@ -244,6 +251,8 @@ class Lane:
 
     def killer_of(self, source, text, tests):
         """The first of the tests that fails, "" if none does, and which passed: fewer than all when its time was over."""
+        if self.is_refused(source):
+            return COMPILER, []
         end, passed = time.monotonic() + TESTS_S * patience(), []
         for test in tests:
             if time.monotonic() > end:
