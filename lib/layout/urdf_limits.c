@@ -82,7 +82,7 @@ static bool take_better(const search_t *search, wh_urdf_extreme_t *at, wh_urdf_e
 static bool try_step(const search_t *search, const size_t axes[], size_t count, const wh_real_t way[],
                      wh_real_t part, wh_urdf_extreme_t *best) {
     wh_urdf_extreme_t at = *best;
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < count && i < WAY_AXES; ++i) {
         const wh_real_t from = at.axes[search->robot.first + axes[i]];
         set_axis(search, axes[i], from + part * way[i] * length_of(search, axes[i]), at.axes);
     }
@@ -141,8 +141,9 @@ static bool look_around(const search_t *search, const size_t axes[], size_t coun
 static void look_over(const search_t *search, const size_t axes[], wh_urdf_extreme_t *best) {
     enum { PLACES = 32 };
     for (int i = 0; i <= PLACES * (PLACES + 2); ++i) {
-        const wh_real_t parts[2] = {(wh_real_t)(i % (PLACES + 1)) / PLACES,
-                                    (wh_real_t)(i / (PLACES + 1)) / PLACES};
+        const int column = i % (PLACES + 1);
+        const int row = i / (PLACES + 1);
+        const wh_real_t parts[2] = {(wh_real_t)column / PLACES, (wh_real_t)row / PLACES};
         wh_urdf_extreme_t at = *best;
         for (size_t k = 0; k < 2; ++k) {
             const size_t axis = search->robot.first + axes[k];
