@@ -336,16 +336,21 @@ return function(native, lookup, centring, tasks, alarms)
     return point
   end
 
-  -- The number of points that a robot has at a station, nil: of none.
+  -- The list of a robot's points at a station; empty for no station, nil.
   local function vias_of(robot, station)
     return station and native.layout.stations[station].vias[robot] or {}
+  end
+
+  -- True if the robot has points where it stands in front of or goes to: then it comes in by them.
+  local function has_points(robot, front, station)
+    return (not front or front.station ~= station) and #vias_of(robot, front and front.station) + #vias_of(robot, station) > 0
   end
 
   -- A robot's points between where it stands in front of and where it goes, or none: back along those of the one, then
   -- along those of the other. Both are { station, gripper }, or nil for elsewhere; `there` the axes where it ends.
   local function vias_between(robot, front, goal, there)
     local here, points, own = native.axes(), { robot = robot }, native.layout.robots[robot]
-    if front and goal and front.station == goal.station then
+    if not has_points(robot, front, goal and goal.station) then
       return nil
     end
     local back = vias_of(robot, front and front.station)
@@ -355,12 +360,7 @@ return function(native, lookup, centring, tasks, alarms)
     for _, via in ipairs(vias_of(robot, goal and goal.station)) do
       points[#points + 1] = via_point(via, own, goal.gripper, there)
     end
-    return #points > 0 and points or nil
-  end
-
-  -- True if the robot has points where it stands in front of or goes to: then it comes in by them.
-  local function has_points(robot, front, station)
-    return (not front or front.station ~= station) and #vias_of(robot, front and front.station) + #vias_of(robot, station) > 0
+    return points
   end
 
   -- The same of the robot's way home.

@@ -31,12 +31,16 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper }, stays = stays }
   end
 
+  local function leave(target)
+    play { line = along(target.place, -target.retract), leaves = true, target = target, where = "on the way out of" }
+  end
+
   -- Out of the station with an open mind: nothing was learnt.
   local function withdraw(target, bottom, name, why)
     local place, gripper = target.place, target.gripper
     play { valves = { [gripper] = 1 } }
     play { line = { 0, 0, place.z + bottom - native.gripper_pose(gripper).r[3] } }
-    play { line = along(place, -target.retract), leaves = true, target = target, where = "on the way out of" }
+    leave(target)
     native.fail(name, why)
   end
 
@@ -111,7 +115,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     local place = target.place
     play { line = { 0, 0, place.z + target.offset - native.gripper_pose(target.gripper).r[3] },
            speed = target.pickup_speed }
-    play { line = along(place, -target.retract), leaves = true, target = target, where = "on the way out of" }
+    leave(target)
   end
 
   -- What crosses the beams while this plays.
