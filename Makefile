@@ -1,44 +1,60 @@
-# Waferhand: the commands that people type. What is made from what stands in lib/build/build.mk and
-# tests/tests.mk, the checks in tests/check/check.mk, the packages in *.packages of lib/build and tests.
+# Waferhand: the commands that people type. lib/build/build.mk and tests/tests.mk have the rules, tests/check/check.mk has the
+# checks, and *.packages of lib/build and tests list the packages.
 #
 # Settings, as in `make CC=clang WERROR=1`:
-#   CC CXX CFLAGS CXXFLAGS LDFLAGS  as usual; EXTRA is appended to every compiler call
+#   CC CXX CPPFLAGS CFLAGS CXXFLAGS LDFLAGS  as usual, taken as they are; EXTRA is appended to every compiler call
 #   FLOAT=1    the library's number is float instead of double
 #   WITHOUT="sweep index"   the library has no swept checking, no index over the wafers, or neither
-#   SHARED=1   libwaferhand.so is installed, too; COLLISION=1 for install-library: so is collision, over libccd
-#   WERROR=1   warnings are errors (so they are where CI is set)
+#   SHARED=1   the shared libraries are installed, too
+#   COLLISION=1  install-library installs collision, too; it needs libccd
+#   FOR="run test"  whose packages `make deps` installs: run, test, check, bench, verify, manual, spy, view, browser
+#   CCACHE=    does not use ccache, which is otherwise used if it is there
+#   WERROR=1   warnings are errors (always so if CI is set)
 #   V=1        shows the commands; 0 switches off what 1 switches on, and is the default
 #   B=build    the folder to build in, as in `make library B=build/m7 CC=arm-none-eabi-gcc CFLAGS=...`
-#   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things; the first two without blanks
+#   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things; PREFIX and LIBDIR without blanks
+#
+# Only `make deps`, `make run` and `make test` install packages, with apt-get. Every other command prints the one line that would
+# install what is missing, and stops.
 
-# Commands run one after the other, the builds that they start in parallel: `make -j run test` would else
-# have two makes at work in build/.
+# Commands run one after the other; the builds that they start are parallel. Otherwise `make -j run test` would have two makes
+# at work in build/.
 .NOTPARALLEL:
 
 NEED = @CC='$(CC)' lib/build/need
+DEPS = $(NEED) --install
 JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
+# Another compiler than Debian's own, such as a target's, brings its own headers.
+COMPILER = $(if $(filter cc gcc,$(CC)),$(NEED) library $(if $(COLLISION),collision))
 BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/build/build.mk
 
-# Invariants (WH_ASSERT, WH_ASSERT_CONSISTENT) are on as well; -O1, for these builds are the slow ones.
-SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' CXXFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' \
+# Invariants (WH_ASSERT, WH_ASSERT_CONSISTENT) are on as well. These builds are the slow ones, hence -O1 and no debug
+# information but line numbers.
+SANITIZE = CFLAGS='-O1 -g1 -DWH_DEBUG -DWH_DEBUG_TABLE' CXXFLAGS='-O1 -g1 -DWH_DEBUG -DWH_DEBUG_TABLE' \
            EXTRA='$(EXTRA) -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all'
 
 include lib/build/switches.mk tests/tests.mk
 
-# Checks that need tools of their own; tests/README.md says which claim is checked by which of them.
-CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
-PART := $(CORE_PARTS) wp coverage mutation host_mutation
+# These checks need tools of their own; tests/README.md says which claim each of them checks.
+CORE_PARTS := symbols footprint instructions bits on_target eva fuzz configurations
+PART := $(CORE_PARTS) same_bits builds analysers wp random long long_counts coverage mutation host_mutation
 
-.PHONY: all library shared install-library run spy view test quick bench check verify-core verify install uninstall clean help
+.PHONY: all deps library shared manual install-library run spy view test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
 	$(BUILD) all
 
 library: ## build/libwaferhand.a alone: needs nothing but a C compiler, of any target
+	$(COMPILER)
 	$(BUILD) library
 
-run: all ## plays the two examples of the paper
+deps: ## installs the packages that `make` needs, or those of FOR="run test"
+	$(DEPS) $(or $(FOR),run)
+
+run: ## plays the two examples of the paper; installs what is missing for it
+	$(DEPS) run
+	$(BUILD) program
 	@for script in 01_transfer 02_prealigner; do \
 	    build/waferhand run "lua/examples/$$script.lua" || exit; \
 	done
@@ -53,16 +69,16 @@ view: all ## shows a cell live in a web browser: fetches Drake's viewer, says wh
 	@lib/view/fetch
 	@lib/view/start
 
-test: ## every test: plain, under sanitizers, in float, and end to end
-	$(NEED) run test $(if $(CI),browser)
+test: ## every test: plain, under sanitizers, in float, and end to end; installs what is missing for it
+	$(DEPS) run test $(if $(CI),browser)
 	$(BUILD) all tests
-	$(BUILD) B=build/sanitize $(SANITIZE) tests program
+	$(BUILD) B=build/sanitize $(SANITIZE) sanitized-tests program
 	$(BUILD) B=build/float FLOAT=1 library-tests
-	@tests/run $(TESTS:%=build/%) $(TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
+	@tests/run $(TESTS:%=build/%) $(SANITIZED_TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
 
 quick: ## the plain unit and property tests alone, for while you work
 	$(NEED) run test
-	$(BUILD) tests
+	$(BUILD) unit-tests
 	@tests/run $(TESTS:%=build/%)
 
 bench: ## how fast, against peers in the same process: minutes. BENCH=step for one subject or row, JSON=1
@@ -71,11 +87,12 @@ bench: ## how fast, against peers in the same process: minutes. BENCH=step for o
 	$(BUILD) all bench
 	@tests/bench/run $(if $(JSON),--json)
 
+# In CI, warnings are errors in the trees that `make test` builds, so these trees are not built twice. Clang's warnings come
+# from its own logs.
 check: ## format, warnings as errors, static analysis
 	$(NEED) run test check $(if $(CI),browser)
-	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
-	$(BUILD) B=build/check/clang CC=clang CXX=clang++ WERROR=1 tests
-	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
+	$(BUILD) $(if $(CI),B=build/float,B=build/check/float CC=gcc WERROR=1) FLOAT=1 library
+	$(BUILD) $(if $(CI),,B=build/check CC=gcc CXX=g++ WERROR=1) all tests check
 
 verify-core: ## what must never rot: bits on targets, no allocation, stack, sizes, proofs of no error, 60 s of fuzzing each
 	-$(NEED) run test verify
@@ -83,9 +100,14 @@ verify-core: ## what must never rot: bits on targets, no allocation, stack, size
 
 verify: ## all of it, hours; goes on where it was stopped. PART="wp mutation" for some
 	-$(NEED) run test verify
-	@RESUME=1 FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) FUZZ_SEED=$(or $(FUZZ_SEED),0) tests/verify/run $(PART)
+	@RESUME=1 EVA=all BITS=all FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) FUZZ_SEED=$(or $(FUZZ_SEED),0) tests/verify/run $(PART)
+
+manual: ## all manuals as one site with a search, in build/manual, read from disk; make install takes it along
+	$(NEED) manual
+	@lib/build/site build/manual && echo 'build/manual/index.html'
 
 shared: ## build/libwaferhand.so alone
+	$(COMPILER)
 	$(BUILD) shared
 
 install: ## all of it into PREFIX, below DESTDIR
@@ -94,6 +116,7 @@ install: ## all of it into PREFIX, below DESTDIR
 	$(BUILD) install
 
 install-library: ## the library alone: needs nothing but a C compiler. SHARED=1 COLLISION=1 add theirs
+	$(COMPILER)
 	$(BUILD) install-library $(if $(COLLISION),install-collision)
 
 uninstall: ## takes away what install put there
@@ -103,6 +126,6 @@ clean: ## removes build/
 	rm -rf build
 
 help: ## this list, and the settings
-	@sed -n 's/^\([a-z-]*\):.*## /make \1\t/p' Makefile | expand -t 18
+	@sed -n 's/^\([a-z-]*\):.*## /make \1\t/p' Makefile | expand -t 22
 	@echo
-	@sed -n 's/^# \(Settings,.*\)/\1/p; s/^#   /  /p' Makefile
+	@sed -n 's/^# \(Settings,.*\)/\1/p; s/^#   /  /p; /^# Only/,/^$$/ { s/^# Only/\n&/; s/^\(\n*\)# /\1/p }' Makefile

@@ -5,7 +5,7 @@
 
 #include "angle_internal.h"
 
-/* So many samples whose rim is beyond the line's ends are no chance. */
+/* With this number of samples whose rim is beyond the line's ends it is no chance. */
 #define BEYOND 5
 
 wh_align_limits_t wh_align_limits_default(void) {
@@ -28,7 +28,8 @@ static wh_status_t check(const wh_sensor_t *sensor, const wh_rim_t *nominal,
     return status == WH_OK ? wh_rim_validate(nominal, NULL) : status;
 }
 
-/* Samples that do not see the rim though nothing hides it: the circle leaves the line there. */
+/* Counts samples that do not see the rim though nothing hides it, because the circle leaves the line
+ * there. */
 static bool is_off_sensor(const wh_rim_scan_t *scan, const wh_sensor_t *sensor, const wh_rim_ray_t *rays,
                           const wh_circle_t *circle) {
     size_t beyond = 0;
@@ -74,8 +75,9 @@ static wh_status_t find_marks(const wh_rim_scan_t *scan, const wh_rim_ray_t *ray
                               wh_align_result_t *result) {
     const wh_flat_shape_t *shapes = nominal->flats;
     if (nominal->notch.depth > 0) {
-        const wh_status_t status = wh_notch_find(scan, rays, &result->circle, &nominal->notch,
-                                                 nominal->transmission > 0, &result->notch);
+        const wh_status_t status =
+            wh_notch_find(scan, rays, &result->circle, &nominal->notch, nominal->transmission > 0,
+                          &result->notch, &result->notch_seen);
         if (status == WH_OK) {
             turn_by(result, WH_ALIGN_MARK_NOTCH, result->notch.direction, nominal->notch.direction,
                     result->notch.sd_direction);

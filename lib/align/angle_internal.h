@@ -1,5 +1,5 @@
-/* Angles in double, also where the library's own numbers are floats: within the room. On a rim of 150 mm a
- * float's sine is off by 10 um. */
+/* Angles in double, even if the library's own numbers are floats; internal to the room. On a rim of 150 mm
+ * a float's sine has an error of 10 um. */
 #ifndef WH_ALIGN_ANGLE_INTERNAL_H
 #define WH_ALIGN_ANGLE_INTERNAL_H
 
@@ -15,12 +15,12 @@ static inline bool wh_align_is_finite(double x) {
     return x - x == 0;
 }
 
-/* The nearest whole number; |x| below 1e15. */
+/* The nearest whole number, for |x| below 1e15. */
 static inline double wh_align_nearest(double x) {
     return (double)(int64_t)(x < 0 ? x - 0.5 : x + 0.5);
 }
 
-/* The same direction from -pi to pi. */
+/* Converts a direction to -pi to pi. */
 static inline double wh_align_wrap(double angle) {
     if (angle > -WH_ALIGN_PI && angle <= WH_ALIGN_PI) {
         return angle;
@@ -29,7 +29,7 @@ static inline double wh_align_wrap(double angle) {
 }
 
 #if defined(WH_FLOAT)
-/* Series up to x^15 and x^16, below pi / 4: to 1e-15. */
+/* Series up to x^15 and x^16, for angles below pi / 4; exact to 1e-15. */
 static inline void wh_align_sin_cos(double angle, double *sine, double *cosine) {
     const double wrapped = wh_align_wrap(angle);
     const double quarter = wh_align_nearest(wrapped * (2 / WH_ALIGN_PI));
@@ -48,7 +48,7 @@ static inline void wh_align_sin_cos(double angle, double *sine, double *cosine) 
     *cosine = turned == 0 ? c : turned == 1 ? -s : turned == 2 ? -c : s;
 }
 
-/* A float's, and what remains of the angle. */
+/* A float's result, and the rest of the angle. */
 static inline double wh_align_atan2(double y, double x) {
     const double angle = (double)wh_atan2((wh_real_t)y, (wh_real_t)x);
     double s;

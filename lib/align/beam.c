@@ -1,15 +1,16 @@
-/* Conservative advancement: from each instant as far as no body can have reached or left the beam. */
+/* Conservative advancement: it moves from each instant as far as no body can have reached or left the
+ * beam. */
 #include "beam.h"
 
 #include "angle_internal.h"
 
 /* The least cosine between the beam and a body's normal. */
 #define LEAST_COSINE 0.5
-/* A rim comes nearer by at most this much a mm of way: the steepest chip. */
+/* A rim approaches by at most this much for each mm of way: the steepest chip. */
 #define STEEPEST 5
 /* Longer than any slice. */
 #define EVER 1e9
-/* Steps as long as it takes, then steps of a part of the slice. */
+/* The largest number of free steps; after them each step is this part of the slice. */
 #define STEPS 2000
 #define SHORTEST 1e-6 /* mm */
 #define EXACT 1e-10   /* mm */
@@ -99,7 +100,7 @@ wh_slice_motion_t wh_slice_motion_between(const wh_pose_t *begin, const wh_pose_
         motion.angle = -1;
         return motion;
     }
-    /* w is root / 2. A float's rotation is none to the last digit, so the length is taken out. */
+    /* w is root / 2. A float's rotation is never exact, so the length is divided out. */
     const double root = sqrt(square);
     const double length = sqrt(square + (x * x + y * y + z * z) / square);
     motion.w = root / length;
@@ -162,7 +163,7 @@ static ray_t line_in_body(const wh_beam_t *beam, const wh_shade_t *shade, double
     return line;
 }
 
-/* Where the line meets the plane z = 0: x and y there, and z is how far along the line. */
+/* The point where the line meets the plane z = 0: x and y there, and z is the distance along the line. */
 static point_t meet(const ray_t *line) {
     const double t = -line->from.z / line->along.z;
     const point_t at = {line->from.x + t * line->along.x, line->from.y + t * line->along.y, t};
@@ -171,7 +172,8 @@ static point_t meet(const ray_t *line) {
 
 /* --------------------------------------------------------------------------------------- near and inside */
 
-/* How far the beam is from breaking, mm, above 0; or below 0, how far from getting free: at least. */
+/* A lower bound of the distance to a change, mm: above 0 until the beam breaks, below 0 until it becomes
+ * free. */
 static double rim_distance(const wh_rim_t *rim, const point_t *at) {
     const double distance = sqrt(at->x * at->x + at->y * at->y);
     if (distance > rim->radius) {
@@ -214,8 +216,8 @@ static double distance_at(const wh_beam_t *beam, const wh_shade_t *shade, double
     return aside > outside ? aside : outside;
 }
 
-/* The way of the beam through the body's plane in the whole slice, mm, at most; EVER if that is not known, 0
- * if nothing moves; negative: the body breaks no beam in this slice. */
+/* The largest way of the beam through the body's plane in the whole slice, mm. It is EVER if that is not
+ * known, 0 if nothing moves; negative: the body breaks no beam in this slice. */
 static double way_of(const wh_beam_t *beam, const wh_shade_t *shade) {
     const wh_slice_motion_t *motion = &shade->motion;
     const ray_t first = line_in_body(beam, shade, 0);
@@ -234,8 +236,8 @@ static double way_of(const wh_beam_t *beam, const wh_shade_t *shade) {
     const double dy = (double)motion->end->r.y - (double)motion->begin->r.y;
     const double dz = (double)motion->end->r.z - (double)motion->begin->r.z;
     const double travel = sqrt(dx * dx + dy * dy + dz * dz);
-    /* A body's point moves by the travel and the turn about the gripper. The place where the beam meets the
-     * plane is off that by as much over the plane's cosine, which the turn makes less. */
+    /* A body's point moves by the travel, and by the turn about the gripper. The place where the beam meets
+     * the plane moves by that divided by the plane's cosine, which the turn reduces. */
     const wh_pose_t *inner = shade->gripper_from_wafer;
     const point_t at = meet(&first);
     const double arm =
@@ -252,8 +254,8 @@ typedef struct {
     const wh_shade_t *shades;
     size_t count;
     double ways[WH_SHADES];
-    double longest; /* of the ways that are known */
-    double least;   /* the shortest step, a part of the slice */
+    double longest; /* of the known ways */
+    double least;   /* the shortest step, as a part of the slice */
 } look_t;
 
 static look_t look_begin(const wh_beam_t *beam, const wh_shade_t *shades, size_t count) {
@@ -269,7 +271,7 @@ static look_t look_begin(const wh_beam_t *beam, const wh_shade_t *shades, size_t
     return look;
 }
 
-/* For which part of the slice the beam stays free, above 0, or broken, below 0; at least. */
+/* The least part of the slice for which the beam stays free, above 0, or broken, below 0. */
 static double holds(const look_t *look, double part) {
     double broken = 0;
     double clear = EVER;
@@ -291,7 +293,7 @@ static double holds(const look_t *look, double part) {
     return any ? -broken : clear;
 }
 
-/* Between two instants of which the second alone is after the change. */
+/* Bisects between two instants; only the second is after the change. */
 static double bisect(const look_t *look, double first, double last, bool broken) {
     const double exact = look->longest > 0 ? EXACT / look->longest : 0;
     double before = first;

@@ -1,4 +1,5 @@
-/* Centres and radii of all scans, and Gauss and Newton's steps of the errors that explain them. */
+/* Fits the centres and radii of all scans, and finds the errors that explain them by Gauss and Newton's
+ * steps. */
 #include "calibration.h"
 
 #include "angle_internal.h"
@@ -7,15 +8,16 @@
 
 #define UNKNOWNS 6
 #define STEPS 12
-/* A step that moves no centre at an eccentricity of 10 mm by more than this is the last one, mm. */
+/* The last step is one that moves no centre, at an eccentricity of 10 mm, by more than this, mm. */
 #define STILL 1e-9
-/* In the end a sample may be on a circle and off it in turn, which moves the centre by less than this, mm. */
+/* At the end a sample may alternate between on and off the circle, which moves the centre by less than
+ * this, mm. */
 #define IN_TURN 2e-4
 #define ECCENTRIC 10
-/* A circle's own standard deviation is not below this, mm: its shape is not known better. */
+/* The least standard deviation of a circle, mm: its shape is not known better. */
 #define LEAST_SD 2e-5
 
-/* What the solution is made of. */
+/* The data of the solution. */
 typedef struct {
     const wh_sensor_t *sensor;
     double radius;
@@ -50,7 +52,7 @@ static wh_status_t check_scan(const wh_calibration_scan_t *scan) {
     return scan->count <= WH_SENSOR_SAMPLES ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* The wafer was moved far enough, and turned at speeds that differ. */
+/* True if the wafer was moved far enough, and turned at different speeds. */
 static bool tells_all(const task_t *task) {
     const wh_calibration_scan_t *first = &task->scans[0];
     double way = 0;
@@ -67,7 +69,7 @@ static bool tells_all(const task_t *task) {
     return sqrt(way) >= WH_CALIBRATION_WAY && speed >= WH_CALIBRATION_SPEED;
 }
 
-/* All but the scans themselves. */
+/* Checks everything but the scans themselves. */
 static wh_status_t check_numbers(const task_t *task) {
     wh_status_t status = wh_sensor_validate(task->sensor, NULL);
     if (status == WH_OK) {
@@ -97,7 +99,7 @@ static double inner_end(const wh_sensor_t *sensor) {
     return sensor->middle - sensor->length / 2;
 }
 
-/* The circle of a scan from which the errors are taken off. */
+/* Fits the circle of a scan after subtracting the errors. */
 static wh_status_t fit_corrected(const task_t *task, const wh_calibration_scan_t *scan,
                                  const wh_sensor_error_t *error, wh_circle_t *circle) {
     const double inner = inner_end(task->sensor);
@@ -113,7 +115,7 @@ static wh_status_t fit_corrected(const task_t *task, const wh_calibration_scan_t
     return wh_circle_fit(&corrected, task->rays, circle);
 }
 
-/* How many scans are of this one's place, which share its way's error. */
+/* The number of scans of this one's place; they share the error of its way. */
 static double sharers(const task_t *task, const wh_calibration_scan_t *scan) {
     double count = 0;
     for (size_t i = 0; i < task->count; ++i) {
@@ -128,8 +130,8 @@ static void add(wh_normal_t *normal, const double *by, double off, double square
     *mismatch += off * off / square;
 }
 
-/* Three equations of a scan: its centre's x and y, its radius. Unknown are, in this order, the first centre's
- * x and y, offset, gain, latency, zero, each as what is still to be added. */
+/* Three equations of a scan: its centre's x and y, its radius. The unknowns are, in this order, the first
+ * centre's x and y, offset, gain, latency, zero, each as the remaining correction. */
 static void add_scan(const task_t *task, const wh_calibration_scan_t *scan, const wh_circle_t *circle,
                      const wh_calibration_t *now, wh_normal_t *normal, double *mismatch) {
     const double x = now->x + scan->way_x;
@@ -150,7 +152,7 @@ static double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-/* One step; how far it moved a centre at most. */
+/* Takes one step; `moved` receives the largest motion of a centre. */
 static wh_status_t step(task_t *task, wh_calibration_t *now, wh_normal_t *normal, double *moved) {
     double fastest = 0;
     wh_normal_begin(normal, UNKNOWNS);

@@ -1,5 +1,5 @@
-/* Each circle that three crossings agree on gathers the crossings that fit it; the cheapest explanation of
- * all crossings wins, if no other comes near to its price. */
+/* Each circle that three crossings agree on collects the crossings that fit it. The cheapest explanation of
+ * all crossings wins, if no other has nearly as low a cost. */
 #include "centring.h"
 
 #include "angle_internal.h"
@@ -7,25 +7,25 @@
 #include "mismatch_internal.h"
 #include "solve_internal.h"
 
-/* Explanations that are kept: maximal sets of crossings, of which few agree. */
+/* The number of explanations that are kept: they are maximal sets of crossings, and few sets agree. */
 #define GUESSES 12
 #define STEPS 25
-/* What it costs, in squared deviations, to leave out a crossing for the notch, a further one for the same
- * notch, and one for no reason; an explanation that is dearer by MARGIN is none: 1 : 8,000. */
+/* The cost, in squared deviations, of leaving out a crossing for the notch, a further one for the same
+ * notch, and one without reason. An explanation that costs more by MARGIN is rejected: 1 : 8,000. */
 #define COST_NOTCH 8
 #define COST_SAME_NOTCH 2
 #define COST_OTHER 30
 #define MARGIN 18
-/* A crossing joins a circle if it is at most so many deviations off. */
+/* A crossing joins a circle if its distance is at most this number of deviations. */
 #define GATE 5
-/* The beam goes through the rim at no smaller sine than this, for the deviation's sake. */
+/* For the deviation the sine between beam and rim counts at least as this. */
 #define LEAST_SINE 0.1
-/* A radius that nothing confirms is likely up to so many of its deviations. */
+/* A radius without confirmation counts as likely up to this number of its deviations. */
 #define LIKELY 3
 /* The least standard deviation of a crossing, mm. */
 #define LEAST_SD 1e-6
 
-/* A circle and who is on it: bit i for crossing i. */
+/* A circle and its members: bit i for crossing i. */
 typedef struct {
     uint32_t members;
     int32_t used;
@@ -42,11 +42,11 @@ typedef struct {
     size_t guess_count;
 } search_t;
 
-/* How a crossing stands to a circle. */
+/* The relation of a crossing to a circle. */
 typedef struct {
-    double off;      /* outside of the circle */
+    double off;      /* distance outside of the circle */
     double x, y;     /* direction from the centre */
-    double variance; /* of `off`, without the circle's own */
+    double variance; /* of `off`, without the circle's own variance */
     bool fits_edge;
 } stand_t;
 
@@ -66,7 +66,7 @@ static stand_t stand(const search_t *search, const guess_t *guess, size_t i) {
     return s;
 }
 
-/* The square of how many deviations it is off, the circle's own counted. */
+/* The square of its distance in deviations, including the circle's own. */
 static double strangeness(const guess_t *guess, const stand_t *s) {
     const double at[3] = {s->x, s->y, 1};
     double variance = s->variance;
@@ -84,7 +84,7 @@ static bool has(const guess_t *guess, size_t i) {
 
 /* ----------------------------------------------------------------------------------------------- the fit */
 
-/* A step of Gauss and Newton; how far it went, or a negative number. */
+/* Takes a step of Gauss and Newton; returns its length, or a negative number. */
 static double step(const search_t *search, guess_t *guess, wh_normal_t *normal) {
     const wh_centring_t *known = search->known;
     wh_normal_begin(normal, known->sd_radius > 0 ? 3 : 2);
@@ -114,7 +114,7 @@ static double step(const search_t *search, guess_t *guess, wh_normal_t *normal) 
     return fabs(normal->right[0]) + fabs(normal->right[1]) + fabs(dr);
 }
 
-/* From where the guess stands to the best circle for its members; false if there is none within reach. */
+/* Moves the guess to the best circle for its members; false if there is none within reach. */
 static bool fit(const search_t *search, guess_t *guess) {
     const wh_centring_t *known = search->known;
     wh_normal_t normal;
@@ -143,7 +143,7 @@ static double direction_of(const stand_t *s) {
     return wh_align_atan2(s->y, s->x);
 }
 
-/* Whether the notch, of which the direction is known, may be there. */
+/* True if the notch's direction is known, and the notch may be there. */
 static bool in_notch_arc(const search_t *search, const stand_t *s) {
     const wh_centring_t *known = search->known;
     if (!known->notch_known || known->notch_width == 0) {
@@ -153,7 +153,7 @@ static bool in_notch_arc(const search_t *search, const stand_t *s) {
     return aside <= known->notch_width / (2 * known->radius) + 3 * known->sd_notch;
 }
 
-/* Whether it is as far inside of the circle as a notch may be. */
+/* True if its distance inside the circle fits a notch. */
 static bool is_in_notch(const search_t *search, const stand_t *s) {
     const wh_centring_t *known = search->known;
     if (known->notch_known) {
@@ -162,7 +162,7 @@ static bool is_in_notch(const search_t *search, const stand_t *s) {
     return known->notch_width > 0 && s->off < 0 && s->off >= -known->notch_depth;
 }
 
-/* The crossing that is left out and furthest in, where a notch may be; false if there is none. */
+/* Finds the left-out crossing that is furthest in, where a notch may be; false if there is none. */
 static bool find_notch(const search_t *search, const guess_t *guess, stand_t *deepest) {
     bool found = false;
     for (size_t i = 0; i < search->count; ++i) {
@@ -175,8 +175,8 @@ static bool find_notch(const search_t *search, const guess_t *guess, stand_t *de
     return found;
 }
 
-/* What each crossing is to this circle, and what that costs. Left out for the notch is the one that is
- * furthest in, and with it those within the notch's width of it. */
+/* Gives each crossing its use for this circle, and returns the cost. For the notch it leaves out the
+ * crossing that is furthest in, and those within the notch's width of it. */
 static double explain(const search_t *search, const guess_t *guess, wh_crossing_use_t use[WH_CROSSINGS]) {
     stand_t deepest = {0, 1, 0, 0, false};
     const bool notched = find_notch(search, guess, &deepest);
@@ -198,7 +198,7 @@ static double explain(const search_t *search, const guess_t *guess, wh_crossing_
 
 /* -------------------------------------------------------------------------------------------- the search */
 
-/* The least strange crossing that may join; false if there is none. */
+/* The crossing with the least distance that may join; false if there is none. */
 static bool next_member(const search_t *search, const guess_t *guess, size_t *next) {
     double least = GATE * GATE;
     bool found = false;
@@ -213,7 +213,7 @@ static bool next_member(const search_t *search, const guess_t *guess, size_t *ne
     return found;
 }
 
-/* Takes in one crossing after the other, as long as they all fit one circle. */
+/* Adds one crossing after the other, while they all fit one circle. */
 static void gather(const search_t *search, guess_t *guess) {
     size_t next = 0;
     while (next_member(search, guess, &next)) {
@@ -227,7 +227,7 @@ static void gather(const search_t *search, guess_t *guess) {
     }
 }
 
-/* Whether all members are what they say, and the centre is where it may be. */
+/* True if all members fit, and the centre is within reach. */
 static bool is_sound(const search_t *search, const guess_t *guess) {
     const wh_centring_t *known = search->known;
     const double dx = guess->x - known->x;
@@ -244,7 +244,7 @@ static bool is_sound(const search_t *search, const guess_t *guess) {
     return true;
 }
 
-/* Whether an explanation has all of these crossings already. */
+/* True if an explanation already has all of these crossings. */
 static bool is_known(const search_t *search, uint32_t members) {
     for (size_t k = 0; k < search->guess_count; ++k) {
         if ((members & ~search->guesses[k].members) == 0) {
@@ -254,7 +254,7 @@ static bool is_known(const search_t *search, uint32_t members) {
     return false;
 }
 
-/* With all places taken the dearest makes room. */
+/* If all places are taken, the most expensive one is replaced. */
 static void keep(search_t *search, const guess_t *guess) {
     size_t place = search->guess_count;
     if (place < GUESSES) {
@@ -324,8 +324,8 @@ static void tell(const search_t *search, const guess_t *guess, wh_centre_t *cent
     (void)explain(search, guess, centre->use);
 }
 
-/* The other explanations that cost little more than the best. Those within `agree` widen its deviations; of
- * those beyond the cheapest is told, or null. */
+/* The other explanations that cost little more than the best one. Those within `agree` enlarge its
+ * deviations; of the others the cheapest is returned, or null. */
 static const guess_t *find_rival(const search_t *search, const guess_t *best, wh_centre_t *centre) {
     const guess_t *rival = NULL;
     double widest[3] = {0, 0, 0};
@@ -351,7 +351,7 @@ static const guess_t *find_rival(const search_t *search, const guess_t *best, wh
     return rival;
 }
 
-/* The two crossings of three that are one beam's, and the third. */
+/* Finds the two crossings of three that belong to one beam, and the third. */
 static void find_pair(const search_t *search, const guess_t *guess, size_t of[3]) {
     size_t count = 0;
     for (size_t i = 0; i < search->count && count < 3; ++i) {
@@ -374,7 +374,7 @@ static double not_below(double value, double least) {
     return value < 0 ? (value > -least ? -least : value) : (value < least ? least : value);
 }
 
-/* How far the centre would be elsewhere with a radius that has grown less, if a beam stood elsewhere. */
+/* The shift of the centre if the radius had not changed by `grown` but a beam stood at another place. */
 static void doubt(const search_t *search, const guess_t *guess, double grown, double *dx, double *dy) {
     size_t of[3] = {0, 0, 0};
     find_pair(search, guess, of);
@@ -383,18 +383,19 @@ static void doubt(const search_t *search, const guess_t *guess, double grown, do
     const stand_t c = stand(search, guess, of[2]);
     const wh_crossing_t *third = &search->crossings[of[2]];
     const double by = grown / not_below(a.x * b.y - a.y * b.x, LEAST_SINE);
-    const double x = by * (b.y - a.y); /* the third one's beam does */
+    const double x = by * (b.y - a.y); /* if the third crossing's beam does */
     const double y = by * (a.x - b.x);
     const double least = LEAST_SINE * sqrt(third->vx * third->vx + third->vy * third->vy);
     const double time = (grown - c.x * x - c.y * y) / not_below(c.x * third->vx + c.y * third->vy, least);
-    const double far_x = x + time * third->vx; /* the pair's does, along the way */
+    const double far_x = x + time * third->vx; /* if the pair's beam does, along the way */
     const double far_y = y + time * third->vy;
     const bool farther = far_x * far_x + far_y * far_y > x * x + y * y;
     *dx = farther ? far_x : x;
     *dy = farther ? far_y : y;
 }
 
-/* Nothing contradicts three crossings and a radius that is not exact: it must be likely by itself. */
+/* Three crossings and an inexact radius cannot contradict each other, so the radius must be likely by
+ * itself. */
 static bool is_likely(const search_t *search, const guess_t *guess, wh_centre_t *centre) {
     const double sd = search->known->sd_radius;
     const double grown = guess->radius - search->known->radius;

@@ -1,4 +1,4 @@
-/* Fields held against their ranges, the first wrong one kept: within the room. */
+/* Compares fields with their ranges and keeps the first wrong one; internal to the room. */
 #ifndef WH_ALIGN_CHECK_INTERNAL_H
 #define WH_ALIGN_CHECK_INTERNAL_H
 
@@ -14,7 +14,7 @@ static inline wh_field_check_t wh_field_check_begin(void) {
     return begun;
 }
 
-/* Keeps the first finding; NaN is below each least value and above each greatest. */
+/* Keeps the first finding; NaN counts as below each least value and above each greatest. */
 static inline void wh_field_check(wh_field_check_t *check, const char *name, int32_t index, double value,
                                   double least, double most) {
     if (check->status == WH_OK && !(value >= least && value <= most)) {

@@ -5,36 +5,39 @@
 #include "rays_internal.h"
 #include "solve_internal.h"
 
-/* The start: circles through three of at most so many samples, and the one with the least median is taken. */
+/* The start: circles through three samples of at most this number; the one with the least median is
+ * taken. */
 #define START_SAMPLES 96
 #define START_CIRCLES 48
-/* Steps from there on the same samples, at most. */
+/* The most steps from there on the same samples. */
 #define SETTLING 10
-/* Steps with the weights as they stand, at most. */
+/* The most steps with constant weights. */
 #define STEPS 6
-/* Tukey's weight is 0 from so many standard deviations on; of normal noise it then sees this part of the
- * mean square. */
+/* Tukey's weight is 0 from this number of standard deviations on; for normal noise it then sees this part
+ * of the mean square. */
 #define CUT 6
 #define MEAN_SQUARE_SEEN 0.8924
 /* The least weight of all samples together. */
 #define LEAST_WEIGHT 12
 /* The least standard deviation of a sample, mm. */
 #define LEAST_SCATTER 1e-5
-/* Blocks of neighbouring samples; their squares tell more than noise from so many times noise's on. */
+/* Blocks of neighbouring samples. Their squares show more than noise from this multiple of noise on. */
 #define BLOCKS 24
 #define CHANCE 2
 /* A shape of the rim that a bow or a saddle may leave, root mean square, mm. */
 #define SHAPE 0.03
-/* Noise spreads the pixels if at least this part of the samples is off by more than so many of them. */
+/* Noise spreads the pixels if at least this part of the samples deviates by more than this number of
+ * them. */
 #define SPREAD 0.02
 #define BEYOND 1.25
-/* So many neighbours of a sample off the circle do not count. */
+/* This number of neighbours of a sample off the circle does not count. */
 #define NEIGHBOURS 2
 
 /* ---------------------------------------------------------------------------------- is it a scan at all */
 
 static bool is_point(const wh_rim_point_t *point) {
     return wh_align_is_finite(point->angle) && fabs(point->angle) < 1e5 &&
+           (unsigned)point->sight <= WH_SIGHT_COVERED &&
            (point->sight != WH_SIGHT_RIM || (point->radius >= 1 && point->radius <= 1e3));
 }
 
@@ -49,7 +52,8 @@ static bool is_ordered(const wh_rim_scan_t *scan) {
     return sign * (points[scan->count - 1].angle - points[0].angle) < WH_ALIGN_TURN;
 }
 
-/* False if one is no point; else how many see the rim, and whether their radii differ. */
+/* Returns false if one is not a valid point. It counts those that see the rim, and finds whether their
+ * radii differ. */
 static bool look_through(const wh_rim_scan_t *scan, size_t *seen, bool *differ) {
     double least = 1e9;
     double most = 0;
@@ -68,10 +72,22 @@ static bool look_through(const wh_rim_scan_t *scan, size_t *seen, bool *differ) 
     return true;
 }
 
-static wh_status_t check_scan(const wh_rim_scan_t *scan, size_t *seen) {
-    if (scan->count > WH_SENSOR_SAMPLES || !(scan->offset >= -1 && scan->offset <= 1) ||
-        !(scan->pixel >= 0 && scan->pixel <= 0.1)) {
+static bool are_apart(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays) {
+    const wh_extent_t points = {scan->points, scan->count * sizeof *scan->points};
+    return !wh_extents_overlap(points, (wh_extent_t){rays, scan->count * sizeof *rays});
+}
+
+static bool is_in_range(const wh_rim_scan_t *scan) {
+    return scan->count <= WH_SENSOR_SAMPLES && scan->offset >= -1 && scan->offset <= 1 && scan->pixel >= 0 &&
+           scan->pixel <= 0.1;
+}
+
+static wh_status_t check_scan(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, size_t *seen) {
+    if (!is_in_range(scan)) {
         return WH_STATUS_OUT_OF_RANGE;
+    }
+    if (!are_apart(scan, rays)) {
+        return WH_STATUS_OVERLAP;
     }
     bool differ = false;
     if (!look_through(scan, seen, &differ)) {
@@ -93,13 +109,13 @@ double wh_circle_radius(const wh_circle_t *circle, double offset, double cosine,
 
 /* ---------------------------------------------------------------------------------------------- the start */
 
-/* Their places in the scan. */
+/* Places of the start's samples in the scan. */
 typedef struct {
     size_t count;
     uint16_t index[START_SAMPLES];
 } start_t;
 
-/* An even share of those that see the rim. */
+/* Chooses an even share of the samples that see the rim. */
 static start_t choose_samples(const wh_rim_scan_t *scan, size_t seen) {
     start_t chosen;
     chosen.count = 0;
@@ -118,13 +134,13 @@ static start_t choose_samples(const wh_rim_scan_t *scan, size_t seen) {
     return chosen;
 }
 
-/* Where a sample's rim is, chuck's frame. */
+/* The place of a sample's rim, chuck's frame. */
 static void place(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, size_t i, double *x, double *y) {
     *x = scan->points[i].radius * rays[i].cosine - scan->offset * rays[i].sine;
     *y = scan->points[i].radius * rays[i].sine + scan->offset * rays[i].cosine;
 }
 
-/* False if the three are nearly on a line, or the circle leaves out the axis. */
+/* Returns false if the three are nearly on a line, or the circle does not enclose the axis. */
 static bool through_three(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const size_t index[3],
                           wh_circle_t *circle) {
     double x[3];
@@ -150,7 +166,7 @@ static bool through_three(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, c
     return circle->x * circle->x + circle->y * circle->y < circle->radius * circle->radius / 4;
 }
 
-/* The k-th smallest of the first `count` residuals; they change their places. */
+/* The k-th smallest of the first `count` residuals; it reorders them. */
 static double kth_residual(wh_rim_ray_t *rays, size_t count, size_t k) {
     size_t low = 0;
     size_t high = count - 1;
@@ -183,7 +199,7 @@ static double kth_residual(wh_rim_ray_t *rays, size_t count, size_t k) {
     return rays[k].residual;
 }
 
-/* The median of how far the chosen samples are from a circle; residuals are used as memory. */
+/* The median distance of the chosen samples from a circle; residuals are used as memory. */
 static double median_off(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *chosen,
                          const wh_circle_t *circle) {
     for (size_t k = 0; k < chosen->count; ++k) {
@@ -195,7 +211,7 @@ static double median_off(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const st
     return kth_residual(rays, chosen->count, chosen->count * 2 / 5);
 }
 
-/* Three that are far from each other, other ones each time. */
+/* Chooses three that are far from each other, and different ones each time. */
 static void choose_three(const start_t *chosen, size_t turn, size_t index[3]) {
     const size_t count = chosen->count;
     const size_t first = turn * 37;
@@ -206,7 +222,7 @@ static void choose_three(const start_t *chosen, size_t turn, size_t index[3]) {
     index[2] = chosen->index[third % count];
 }
 
-/* The best circle, and its median; false if there is none. */
+/* Finds the best circle, and its median; false if there is none. */
 static bool start(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *chosen, wh_circle_t *circle,
                   double *median) {
     *median = 1e9;
@@ -227,15 +243,15 @@ static bool start(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *
 
 /* -------------------------------------------------------------------------------------------------- steps */
 
-/* The sums of one pass, their solution, and what it tells. */
+/* The sums of one pass, their solution, and its results. */
 typedef struct {
     wh_normal_t normal;
-    double weights; /* their sum */
+    double weights; /* the sum of the weights */
     double squares; /* weight times square, before the step */
-    double step;    /* how far the centre or the radius moved, at most */
+    double step;    /* the largest motion of the centre or the radius */
 } pass_t;
 
-/* Tukey's; 0 stays 0. */
+/* Tukey's weight; 0 stays 0. */
 static double weight_of(double residual, double cut) {
     const double part = residual / cut;
     const double rest = 1 - part * part;
@@ -248,7 +264,7 @@ static void begin(pass_t *pass) {
     pass->squares = 0;
 }
 
-/* One sample more, with the weight that its residual has under `cut`, or (0) the one that stands there. */
+/* Adds one sample, with the weight of its residual under `cut`, or (0) its present weight. */
 static inline void add(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, size_t i, const wh_circle_t *circle,
                        double cut, pass_t *pass) {
     wh_rim_ray_t *ray = &rays[i];
@@ -280,7 +296,7 @@ static inline void add(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, size_t i, 
     pass->squares += w * residual * residual;
 }
 
-/* The step that the sums tell; false if they tell no circle. The squares are then those after the step. */
+/* Takes the step of the sums; false if they give no circle. The squares are then those after the step. */
 static bool step(wh_circle_t *circle, pass_t *pass) {
     const double right[3] = {pass->normal.right[0], pass->normal.right[1], pass->normal.right[2]};
     if (!(pass->weights > LEAST_WEIGHT) || !wh_normal_solve(&pass->normal)) {
@@ -296,7 +312,7 @@ static bool step(wh_circle_t *circle, pass_t *pass) {
     return circle->x * circle->x + circle->y * circle->y < circle->radius * circle->radius / 4;
 }
 
-/* A step by all that see the rim. */
+/* Takes a step by all samples that see the rim. */
 static bool step_all(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t *circle, double cut,
                      pass_t *pass) {
     begin(pass);
@@ -308,7 +324,7 @@ static bool step_all(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t 
     return step(circle, pass);
 }
 
-/* A step by the start's samples, all of them. */
+/* Takes a step by all of the start's samples. */
 static bool step_chosen(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *chosen,
                         wh_circle_t *circle, double cut) {
     pass_t pass;
@@ -329,14 +345,15 @@ static double scatter_of(const wh_rim_scan_t *scan, const pass_t *pass) {
     return square > least * least ? sqrt(square) : least;
 }
 
-/* From the median of the amounts, were it normal. Of a wafer in the middle most samples may count the same
- * pixels, and a circle through them has no median at all: what is within half a pixel is not known. */
+/* The scatter from the median of the magnitudes, assuming a normal distribution. With a wafer in the middle
+ * most samples may count equal pixels, and a circle through them has no median at all: a value within half
+ * a pixel is not known. */
 static double scatter_from(const wh_rim_scan_t *scan, double median) {
     const double least = scan->pixel / 2 + LEAST_SCATTER;
     return 1.907 * median > least ? 1.907 * median : least;
 }
 
-/* A sample that is off the circle does not count any more, nor do its neighbours. */
+/* A sample off the circle no longer counts, nor do its neighbours. */
 static void mask(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, double cut) {
     size_t after = 0;
     for (size_t i = 0; i < scan->count; ++i) {
@@ -355,7 +372,7 @@ static void mask(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, double cut) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-/* What counts of the chosen samples moves the circle as long as their median sinks. */
+/* The counting samples of those chosen move the circle while their median falls. */
 static void settle(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t *chosen, wh_circle_t *circle,
                    double *median) {
     bool sinks = true;
@@ -370,12 +387,12 @@ static void settle(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, const start_t 
         }
     }
     for (size_t k = 0; k < chosen->count; ++k) {
-        rays[k].residual = 0; /* which was memory for the medians */
+        rays[k].residual = 0; /* it was memory for the medians */
         rays[chosen->index[k]].weight = 1;
     }
 }
 
-/* The start's circle becomes the fit's; the last pass and the scatter are handed on. */
+/* Turns the start's circle into the fit's; passes on the last pass and the scatter. */
 static bool refine(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t *circle, double median,
                    pass_t *pass) {
     const double first = scatter_from(scan, median);
@@ -391,7 +408,7 @@ static bool refine(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t *c
         if (!step_all(scan, rays, circle, 0, pass)) {
             return false;
         }
-        if (pass->step < 1e-7) { /* the next one would be of its square */
+        if (pass->step < 1e-7) { /* the next step would be about its square */
             return true;
         }
     }
@@ -402,8 +419,8 @@ static double root_of(double square) {
     return sqrt(square > 0 ? square : 0);
 }
 
-/* Sums of independent residuals have squares as large as the sum of the residuals' squares. By how many times
- * the sums of blocks have larger ones: 1 as long as that may be chance. */
+/* Sums of independent residuals have squares as large as the sum of the residuals' squares. Returns the
+ * factor by which the sums of blocks have larger ones: 1 as long as that may be chance. */
 static double inflation_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, size_t used) {
     const size_t size = used / BLOCKS + 1;
     double together = 0;
@@ -425,10 +442,10 @@ static double inflation_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, 
     return times > CHANCE * apart ? times / apart : 1;
 }
 
-/* Where noise does not spread the pixels, rounding goes with the rim: what it adds to the square of a
- * sample's deviation. Of e cos(a), rounded to p, the error has a first harmonic of 2 p / pi times Bessel's J1
- * of 2 pi e / p and its multiples: up to 0.37 p, and p sqrt(p / e) / 5 of a large e. A third of its square
- * counts. */
+/* The rounding's share in the square of a sample's deviation. Where noise does not spread the pixels,
+ * rounding follows the rim. The error of e cos(a), rounded to p, has a first harmonic of 2 p / pi times
+ * Bessel's J1 of 2 pi e / p and its multiples: up to 0.37 p, and p sqrt(p / e) / 5 for a large e. A third
+ * of its square counts. */
 static double rounding_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, const wh_circle_t *circle) {
     size_t off = 0;
     for (size_t i = 0; i < scan->count; ++i) {
@@ -442,13 +459,13 @@ static double rounding_of(const wh_rim_scan_t *scan, const wh_rim_ray_t *rays, c
     return part * scan->pixel * scan->pixel / 3 * (double)circle->used / 2;
 }
 
-/* What remains is no noise: the circle is of something else, such as a rim and a flat. */
+/* The residuals are not noise: the circle is of something else, such as a rim and a flat. */
 static bool has_shape(const wh_circle_t *circle) {
     const double size = (double)circle->used / BLOCKS + 1;
     return circle->scatter * circle->scatter * (circle->inflation - 1) > SHAPE * SHAPE * size;
 }
 
-/* What the last step left out: how far the samples that do not count are off, too. */
+/* Completes the last step: also gives the residuals of samples that do not count. */
 static void complete(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t *circle) {
     circle->used = 0;
     for (size_t i = 0; i < scan->count; ++i) {
@@ -481,7 +498,7 @@ wh_status_t wh_circle_fit(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circ
         return WH_STATUS_NULL_ARGUMENT;
     }
     wh_circle_t fit = {0};
-    const wh_status_t status = check_scan(scan, &fit.seen);
+    const wh_status_t status = check_scan(scan, rays, &fit.seen);
     if (status != WH_OK) {
         return status;
     }

@@ -1,10 +1,11 @@
-/* A flat's chord by Gauss and Newton's steps, and which of the nominal flats it is. */
+/* Fits a flat's chord by Gauss and Newton's steps, and finds the nominal flat that it is. */
 #include "angle_internal.h"
 #include "marks.h"
 #include "rays_internal.h"
 #include "solve_internal.h"
 
-/* A chord's length may be off the nominal one by so much, mm, and two flats' directions from each other. */
+/* The largest deviation of a chord's length from the nominal one, mm, and of the angle between two
+ * flats. */
 #define LENGTH_OFF 3.5
 #define DIRECTION_OFF (5 * WH_ALIGN_PI / 180)
 /* Samples next to a flat's ends do not count. */
@@ -27,7 +28,7 @@ static size_t place_of(const wh_rim_scan_t *scan, const wh_dent_t *dent, size_t 
     return (dent->first + k) % scan->count;
 }
 
-/* The middle of the dent, and as high as a chord between its ends. */
+/* Begins with the middle of the dent, and the height of a chord between its ends. */
 static void begin(const wh_scanned_t *of, const wh_dent_t *dent, chord_t *chord) {
     const wh_rim_ray_t *first = &of->rays[dent->first];
     const wh_rim_ray_t *last = &of->rays[place_of(of->scan, dent, dent->count - 1)];
@@ -81,7 +82,7 @@ static bool step(const wh_scanned_t *of, const wh_dent_t *dent, double cut, chor
     return chord->height > 0 && chord->height < of->circle->radius;
 }
 
-/* A chord, and most of the dent is on it. */
+/* Fits a chord; true if most of the dent is on it. */
 static bool fit(const wh_scanned_t *of, const wh_dent_t *dent, chord_t *chord) {
     static const double cuts[] = {2, 1, 0.3};
     const double last = CUT * of->circle->scatter;
@@ -114,7 +115,7 @@ static wh_flat_t tell(const wh_scanned_t *of, const chord_t *chord) {
 
 /* ------------------------------------------------------------------------------------------------ which */
 
-/* Which nominal flat it is; WH_RIM_FLATS if none, or more than one could be. */
+/* The nominal flat with this length; WH_RIM_FLATS if none fits, or more than one could. */
 static size_t which(const wh_flat_shape_t *nominal, double length) {
     size_t found = WH_RIM_FLATS;
     for (size_t f = 0; f < WH_RIM_FLATS; ++f) {
@@ -128,7 +129,7 @@ static size_t which(const wh_flat_shape_t *nominal, double length) {
     return found;
 }
 
-/* A dent so wide is a flat or something else of its size, and no chip. */
+/* A dent of this width is a flat or something else of its size, and no chip. */
 static bool is_wide(const wh_scanned_t *of, const wh_flat_shape_t *nominal, const wh_dent_t *dent) {
     double least = 1e9;
     for (size_t f = 0; f < WH_RIM_FLATS; ++f) {
@@ -145,7 +146,7 @@ static bool agree(const wh_flat_shape_t *nominal, const wh_flat_t *flats) {
     return fabs(wh_align_wrap(flats[1].direction - flats[0].direction - wanted)) <= DIRECTION_OFF;
 }
 
-/* What was found, and whether nothing contradicts it. */
+/* The flats found, and whether anything contradicts them. */
 typedef struct {
     wh_flat_t flats[WH_RIM_FLATS];
     size_t count;

@@ -2,10 +2,10 @@
 
 #include "angle_internal.h"
 
-/* What is farther from the median is light that fell through, mm. */
+/* A point farther from the median is light that fell through, mm. */
 #define APART 0.2
 
-/* The radii of the points that see the rim, in order; returns how many. */
+/* The sorted radii of the points that see the rim; returns their number. */
 static size_t sort_radii(const wh_rim_point_t points[], size_t count, double radii[WH_MERGE_TURNS]) {
     size_t seen = 0;
     for (size_t i = 0; i < count; ++i) {

@@ -1,11 +1,12 @@
-/* What is the same for each fit: the sines of a scan, and its dents. */
+/* The parts common to all fits: the sines of a scan, and its dents. */
 #include "rays_internal.h"
 
 #include "angle_internal.h"
 
 /* ---------------------------------------------------------------------------------------------- the sines */
 
-/* Sine and cosine of a step of at most SMALL_STEP turn the ray before; every FRESH rays both are new. */
+/* Sine and cosine of a step of at most SMALL_STEP turn the ray before; every FRESH rays both are computed
+ * again. */
 #define SMALL_STEP 0.02
 #define FRESH 32
 
@@ -35,12 +36,12 @@ void wh_rays_begin(const wh_rim_scan_t *scan, wh_rim_ray_t *rays) {
 
 #define LEAST_DEPTH 0.05
 #define DEVIATIONS 6
-/* From one sample to the next a mark is not deeper by more than this. */
+/* A mark's depth grows by at most this from one sample to the next. */
 #define STEEP 0.5
-/* Samples on the circle, or that do not see the rim, that do not part a dent. */
+/* This number of samples on the circle, or without a view of the rim, does not split a dent. */
 #define BRIDGE 2
 
-/* A run while it is gone through. */
+/* A run during the walk. */
 typedef struct {
     wh_dents_t *found;
     wh_dent_t dent;
@@ -72,7 +73,7 @@ static double depth_of(const wh_scanned_t *of, size_t i) {
     return depth < most ? depth : most;
 }
 
-/* A sample more that belongs to the dent. */
+/* Adds a sample that belongs to the dent. */
 static void lengthen(walk_t *walk, const wh_scanned_t *of, size_t i) {
     if (walk->dent.count == 0) {
         walk->dent.first = i;
@@ -100,7 +101,7 @@ static void meet(walk_t *walk, const wh_scanned_t *of, size_t i, double least) {
     }
 }
 
-/* A run may go on from the last sample to the first: the walk begins behind samples on the circle. */
+/* A run may continue from the last sample to the first, so the walk begins after samples on the circle. */
 static size_t begin_at(const wh_scanned_t *of) {
     size_t on = 0;
     for (size_t i = 0; i < of->scan->count; ++i) {

@@ -1,4 +1,5 @@
-/* The outline by pieces, each where a ray from the centre meets it, and a line's way out of it. */
+/* The outline in pieces, each at the place where a ray from the centre meets it, and the point where a line
+ * leaves it. */
 #include "rim.h"
 
 #include <string.h>
@@ -32,11 +33,11 @@ wh_rim_t wh_rim_nominal(double radius) {
 /* ------------------------------------------------------------------------------------------- the notch */
 
 /* One half of a notch in the frame of its axis: x outwards, y >= 0 across. The flank begins at the apex,
- * where both would meet, and goes along (cosine, sine). */
+ * where both flanks would meet, and goes along (cosine, sine). */
 typedef struct {
     double cosine, sine;
-    double apex;          /* x; y is 0 */
-    double bottom_centre; /* x; y is 0 */
+    double apex;          /* its x; y is 0 */
+    double bottom_centre; /* its x; y is 0 */
     double low, high;     /* the straight part of the flank, from the apex */
     double corner_x, corner_y;
 } outline_t;
@@ -48,7 +49,8 @@ static outline_t notch_outline(const wh_rim_t *rim) {
     o.bottom_centre = rim->radius - notch->depth + notch->bottom;
     o.apex = o.bottom_centre - notch->bottom / o.sine;
     o.low = notch->bottom * o.cosine / o.sine;
-    /* The corner's centre is `corner` off the flank and off the circle, inside the wafer. */
+    /* The corner's centre has the distance `corner` from the flank and from the circle, inside the
+     * wafer. */
     const double reach = rim->radius - notch->corner;
     const double along = o.apex * o.cosine;
     const double x = o.apex - notch->corner * o.sine;
@@ -60,7 +62,7 @@ static outline_t notch_outline(const wh_rim_t *rim) {
     return o;
 }
 
-/* How far to the left of the ray (cosine, sine) the point lies, times its distance. */
+/* The point's distance to the left of the ray (cosine, sine), times its distance. */
 static double left_of(double cosine, double sine, double x, double y) {
     return cosine * y - sine * x;
 }
@@ -136,19 +138,19 @@ double wh_rim_height(const wh_rim_t *rim, double direction) {
     return rim->bow + rim->saddle * c;
 }
 
-/* A radius that rises as z = h (r / R)^2 is shorter by 2 h^2 / (3 R) seen from above. */
+/* A radius that rises as z = h (r / R)^2 looks shorter by 2 h^2 / (3 R) from above. */
 double wh_rim_radius(const wh_rim_t *rim, double direction) {
     const double radius = flat_out_radius(rim, direction);
     const double height = wh_rim_height(rim, direction);
     return height == 0 ? radius : radius - 2 * height * height / (3 * rim->radius);
 }
 
-/* A line that begins where it is next to the axis, seen from the wafer's centre and e1. */
+/* A line that begins at its point nearest to the axis, seen from the wafer's centre and e1. */
 typedef struct {
     double x, y, cosine, sine;
 } line_t;
 
-/* How far outside of the rim the line's point is. */
+/* The distance of the line's point outside of the rim. */
 static double outside(const wh_rim_t *rim, const line_t *line, double distance) {
     const double x = line->x + distance * line->cosine;
     const double y = line->y + distance * line->sine;

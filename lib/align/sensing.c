@@ -3,7 +3,7 @@
 #include "angle_internal.h"
 #include "check_internal.h"
 
-/* What is drawn for a sample, by name. */
+/* Names of the random numbers for a sample. */
 #define DRAW_NOISE UINT32_C(0x534E0001)
 #define DRAW_GLASS UINT32_C(0x534E0002)
 #define DRAW_DEPTH UINT32_C(0x534E0003)
@@ -56,7 +56,7 @@ double wh_sensor_angle(const wh_sensor_t *sensor, int64_t k) {
     return (double)divide_up(k * sensor->encoder, sensor->samples) * (WH_ALIGN_TURN / sensor->encoder);
 }
 
-/* The first sample that is due after this turn, or at it. */
+/* The first sample that is due at this turn or after it. */
 static int64_t first_from(const wh_sensor_t *sensor, double turn, bool after) {
     int64_t k = (int64_t)wh_align_nearest(turn * (sensor->samples / WH_ALIGN_TURN)) - 2;
     while (wh_sensor_angle(sensor, k) < turn || (after && wh_sensor_angle(sensor, k) <= turn)) {
@@ -67,7 +67,7 @@ static int64_t first_from(const wh_sensor_t *sensor, double turn, bool after) {
 
 size_t wh_sensor_due(const wh_sensor_t *sensor, double from, double to, int64_t *first) {
     const bool up = to >= from;
-    /* Up: above `from` to `to`. Down: below `from` to `to`. */
+    /* Up: above `from`, up to `to`. Down: below `from` to `to`. */
     const int64_t low = first_from(sensor, up ? from : to, up);
     const int64_t end = first_from(sensor, up ? to : from, up);
     if (end <= low) {
@@ -88,7 +88,7 @@ static bool is_hidden(const wh_sensor_t *sensor, double look) {
     return false;
 }
 
-/* Where on the line the wafer ends, from the line's inner end. */
+/* The place where the wafer ends on the line, from the line's inner end. */
 static double dark_length(const wh_sensor_t *sensor, const wh_rim_t *rim, const wh_placement_t *placement,
                           double look) {
     const double inner = sensor->middle - sensor->length / 2 + sensor->error.zero;
@@ -138,7 +138,7 @@ wh_rim_point_t wh_sensor_point(const wh_sensor_t *sensor, const wh_sensor_error_
     point.sight = sample <= 0                          ? WH_SIGHT_NOTHING
                   : sample >= wh_sensor_pixels(sensor) ? WH_SIGHT_COVERED
                                                        : WH_SIGHT_RIM;
-    /* A sample counts whole pixels, so the rim is half a pixel further out on average. */
+    /* A sample counts whole pixels, so on average the rim is half a pixel further out. */
     point.radius = sensor->middle - sensor->length / 2 + error->zero +
                    (sample + 0.5) * sensor->pixel * (1 + error->gain);
     return point;

@@ -1,13 +1,13 @@
-/* What a line sensor beside a chuck sees of a wafer's rim while the chuck turns, and what that says.
+/* A line sensor beside a chuck: its readings of a wafer's rim while the chuck turns, and their meaning.
  *
- * The sensor's line lies in the chuck's plane. It points away from the chuck's axis and is dark as far as the
- * wafer reaches: a sample is the number of dark pixels from its inner end. Sample k is due when the chuck has
- * turned by wh_sensor_angle(k), whatever k's sign; so a turn can begin anywhere and go either way, and who
- * steps it slice by slice gets the same samples for any length of slice.
+ * The sensor's line lies in the chuck's plane. It points away from the chuck's axis and is dark as far as
+ * the wafer extends: a sample is the number of dark pixels from its inner end. Sample k is due when the
+ * chuck has turned by wh_sensor_angle(k), for either sign of k. So a turn can begin anywhere and go in
+ * either direction, and stepping it slice by slice gives equal samples for any length of slice.
  *
  * The chuck's frame turns with the chuck and the wafer. At turn 0 it is the station's frame, in which the
- * sensor stands. Lengths in mm, angles in rad, seen from above. No heap, no state; the same bits everywhere:
- * noise is drawn by name and number (math/deviate.h).
+ * sensor is fixed. Lengths are in mm, angles in rad, seen from above. It uses no heap and no state, and has
+ * equal bits on every machine: noise is drawn by name and number (math/deviate.h).
  */
 #ifndef WH_ALIGN_SENSING_H
 #define WH_ALIGN_SENSING_H
@@ -23,29 +23,29 @@ WH_REFUSE_PACKING(sensing);
 /* The most samples of a turn. */
 #define WH_SENSOR_SAMPLES 36000
 
-/* What is not quite as the drawing says: as it truly is, or as a calibration believes. */
+/* Deviations from the drawing: the true ones, or those that a calibration assumes. */
 typedef struct {
-    double offset;  /* the line passes the axis at this distance, to the left of where it points, -1 to 1 */
+    double offset;  /* the line passes the axis at this distance, to the left of its direction, -1 to 1 */
     double zero;    /* its inner end is this much farther out, -1 to 1 */
     double gain;    /* its pixels are longer by this part of their length, -0.01 to 0.01 */
-    double latency; /* a sample is taken this long after the encoder says so, s, -0.001 to 0.001 */
+    double latency; /* a sample is taken this much later than the encoder's signal, s, -0.001 to 0.001 */
 } wh_sensor_error_t;
 
-/* A part of the chuck's frame, counter-clockwise from a direction. */
+/* A part of the chuck's frame, counter-clockwise from `from`. */
 typedef struct {
     double from;  /* -2 pi to 2 pi */
     double width; /* above 0, up to 2 pi */
 } wh_arc_t;
 
 typedef struct {
-    double direction; /* in which the line points from the axis, station's frame, -2 pi to 2 pi */
-    double middle;    /* of the line, from the axis: the nominal wafer's radius, 10 to 300 */
+    double direction; /* direction of the line from the axis, station's frame, -2 pi to 2 pi */
+    double middle;    /* middle of the line, from the axis: the nominal wafer's radius, 10 to 300 */
     double length;    /* 2 to 100, at most twice the middle */
     double pixel;     /* 0.001 to 0.1 */
     int32_t samples;  /* in a turn, 90 to WH_SENSOR_SAMPLES */
-    int32_t encoder;  /* counts in a turn, samples to 1e7: a sample waits for a count; 0: no steps */
+    int32_t encoder;  /* counts in a turn, samples to 1e7: a sample waits for a count; 0: continuous */
     double noise;     /* of one sample, standard deviation, 0 to 0.1 */
-    double tilt;      /* of the light out of the upright, outwards going up, -0.5 to 0.5 */
+    double tilt;      /* of the light against the vertical, outwards going up, -0.5 to 0.5 */
     wh_sensor_error_t error;
     wh_arc_t hidden[WH_SENSOR_ARCS]; /* a carrier covers the line here */
     int32_t hidden_count;            /* 0 to WH_SENSOR_ARCS */
@@ -55,21 +55,21 @@ typedef struct {
 typedef struct {
     double turn;      /* of the chuck, by its encoder, |turn| up to 1e4 */
     double speed;     /* of the chuck, rad/s, |speed| up to 100 */
-    wh_trial_t trial; /* names the noise: seed, and which scan this is */
-    uint32_t index;   /* which sample of the scan */
+    wh_trial_t trial; /* names the noise: seed, and the scan */
+    uint32_t index;   /* number of the sample in the scan */
 } wh_glance_t;
 
-/* What a sample tells. */
+/* The kind of a sample's reading. */
 typedef enum WH_FOUR_BYTES {
     WH_SIGHT_RIM,     /* the rim is between the ends of the line */
     WH_SIGHT_NOTHING, /* no pixel is dark: the rim is further in, or there is no wafer */
     WH_SIGHT_COVERED  /* all are dark: the rim is further out, or something else covers the line */
 } wh_sight_t;
 
-/* One sample as the estimate takes it. */
+/* One sample as the estimate uses it. */
 typedef struct {
-    double angle;  /* in which the line looks, chuck's frame */
-    double radius; /* along the line to the rim, from next to the axis; of WH_SIGHT_RIM only */
+    double angle;  /* direction of the line, chuck's frame */
+    double radius; /* to the rim, along the line from next to the axis; WH_SIGHT_RIM only */
     wh_sight_t sight;
 } wh_rim_point_t;
 
@@ -77,32 +77,34 @@ typedef struct {
  * noise, nothing hidden. Nothing is checked. */
 wh_sensor_t wh_sensor_nominal(double wafer_radius) WH_SYMBOL(wh_sensor_nominal);
 
-/* WH_OK; else `bad`, which may be null, tells the first wrong field as wh_rim_validate does. */
+/* Returns WH_OK; otherwise `bad`, which may be null, gives the first wrong field, as for
+ * wh_rim_validate. */
 wh_status_t wh_sensor_validate(const wh_sensor_t *sensor, wh_bad_field_t *bad) WH_SYMBOL(wh_sensor_validate);
 
-/* The pixels of the line: what a covered one counts. The functions below take a sensor that
- * wh_sensor_validate accepts and numbers within the ranges above; nothing is checked. */
+/* The number of pixels of the line: the reading of a covered one. wh_sensor_validate must accept the sensor
+ * for the functions below, and numbers must be within the ranges above; nothing is checked. */
 int32_t wh_sensor_pixels(const wh_sensor_t *sensor) WH_SYMBOL(wh_sensor_pixels);
 
 /* The chuck's turn at which sample k is due: k / samples of a turn, at the first count of the encoder from
- * there on. |k| up to 1e9. */
+ * there on. |k| is up to 1e9. */
 double wh_sensor_angle(const wh_sensor_t *sensor, int64_t k) WH_SYMBOL(wh_sensor_angle);
 
-/* How many samples are due on the chuck's way from a turn, which itself is past, up to another, which counts.
- * *first is the first of them in the order of time: going up they are first, first + 1, ..., going down
- * first, first - 1, .... With none *first is unchanged. */
+/* The number of samples that are due on the chuck's way from a turn, which is excluded, to another, which
+ * is included. *first is the earliest of them: going up they are first, first + 1, ..., going down first,
+ * first - 1, .... If there are none *first is unchanged. */
 size_t wh_sensor_due(const wh_sensor_t *sensor, double from, double to, int64_t *first)
     WH_SYMBOL(wh_sensor_due);
 
-/* The sample: dark pixels, 0 to wh_sensor_pixels. `placement` is the wafer's in the chuck's frame. Glass
- * (rim->transmission t) is seen with the noise divided by 1 - t, and in a part t / 20 of the samples light
- * falls through it somewhere, so that the sample ends there. Cost: wh_rim_distance, and 100 ns for noise. */
+/* The sample: dark pixels, 0 to wh_sensor_pixels. `placement` is the wafer's, in the chuck's frame. Glass
+ * (rim->transmission t) is seen with the noise divided by 1 - t. In a part t / 20 of the samples light
+ * falls through it at some place, and the sample ends there. Cost: wh_rim_distance, and 100 ns for
+ * noise. */
 int32_t wh_sensor_read(const wh_sensor_t *sensor, const wh_rim_t *rim, const wh_placement_t *placement,
                        const wh_glance_t *glance) WH_SYMBOL(wh_sensor_read);
 
-/* A sample as a point, with the errors that a calibration believes in (null: none) taken off; the offset
- * stays in, for the estimate takes it. Of the sensor it looks at direction, middle, length and pixel, and of
- * the glance at turn and speed: what a controller knows. */
+/* A sample as a point, minus the errors that a calibration assumes (null: none). The offset stays in,
+ * because the estimate takes it. It uses the sensor's direction, middle, length and pixel, and the glance's
+ * turn and speed: values that a controller knows. */
 wh_rim_point_t wh_sensor_point(const wh_sensor_t *sensor, const wh_sensor_error_t *believed,
                                const wh_glance_t *glance, int32_t sample) WH_SYMBOL(wh_sensor_point);
 

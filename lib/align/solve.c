@@ -22,7 +22,7 @@ void wh_normal_add(wh_normal_t *normal, const double *derivatives, double residu
     }
 }
 
-/* The upper triangle becomes U with U^T U = matrix; U^-1 replaces it. */
+/* The upper triangle becomes U with U^T U = matrix; then U^-1 replaces it. */
 static bool invert_factor(wh_normal_t *n) {
     for (size_t i = 0; i < n->terms; ++i) {
         double rest = n->matrix[i][i];
@@ -61,7 +61,8 @@ bool wh_normal_solve(wh_normal_t *normal) {
     if (!invert_factor(normal)) {
         return false;
     }
-    /* The inverse is U^-1 U^-T. Row i is written after it was read: entries (i, j >= i) need rows i and j. */
+    /* The inverse is U^-1 U^-T. Row i is written after it was read, because entries (i, j >= i) need rows i
+     * and j. */
     for (size_t i = 0; i < normal->terms; ++i) {
         for (size_t j = i; j < normal->terms; ++j) {
             double sum = 0;

@@ -1,4 +1,4 @@
-/* Normal equations of a few unknowns: within the room. */
+/* Normal equations of a few unknowns; internal to the room. */
 #ifndef WH_ALIGN_SOLVE_INTERNAL_H
 #define WH_ALIGN_SOLVE_INTERNAL_H
 
@@ -18,8 +18,8 @@ void wh_normal_begin(wh_normal_t *normal, size_t terms) WH_SYMBOL(wh_normal_begi
 void wh_normal_add(wh_normal_t *normal, const double *derivatives, double residual, double weight)
     WH_SYMBOL(wh_normal_add);
 
-/* By Cholesky's factors: `right` becomes the solution and `matrix`, whole, the inverse. False, and numbers of
- * no meaning, if the matrix is not safely positive. */
+/* By Cholesky's factors: `right` becomes the solution and `matrix`, whole, the inverse. Returns false, and
+ * numbers without meaning, if the matrix is not safely positive. */
 bool wh_normal_solve(wh_normal_t *normal) WH_SYMBOL(wh_normal_solve);
 
 #endif

@@ -1,4 +1,4 @@
-/* Gauss and Newton on six unknowns, the guess among the measurements. */
+/* Gauss and Newton's method for six unknowns; the guess counts among the measurements. */
 #include "teaching.h"
 
 #include "angle_internal.h"
@@ -20,7 +20,7 @@ typedef struct {
     double m[3][3];
 } matrix_t;
 
-/* The fit as it stands: the station's frame by rows, and the shifts. */
+/* The present state of the fit: the station's frame by rows, and the shifts. */
 typedef struct {
     const wh_teach_guess_t *guess;
     double unknown[UNKNOWNS];
@@ -29,7 +29,7 @@ typedef struct {
     vector_t r;
 } fit_t;
 
-/* What a measurement says: by how much it is off, and how that goes with the unknowns. */
+/* The residual of a measurement, and its derivatives by the unknowns. */
 typedef struct {
     double off;
     double slope[UNKNOWNS];
@@ -75,7 +75,7 @@ static double dot(const vector_t *a, const vector_t *b) {
     return a->v[0] * b->v[0] + a->v[1] * b->v[1] + a->v[2] * b->v[2];
 }
 
-/* The station's frame with the shifts as they stand: turned about base's z through its origin. */
+/* The station's frame with the present shifts: turned about base's z through its origin. */
 static void place_station(fit_t *fit) {
     const matrix_t R = matrix_of(&fit->guess->base_from_station.R);
     double s;
@@ -109,7 +109,7 @@ static row_t touch(const fit_t *fit, const wh_teach_measurement_t *m) {
     return row;
 }
 
-/* Where in the gripper's plane the beam is, and how that goes with the beam's x and y. */
+/* The beam's place in the gripper's plane, and its derivatives by the beam's x and y. */
 static bool meet(const fit_t *fit, const wh_pose_t *gripper, double at[2], double slope[2][2]) {
     const wh_beam_t *beam = &fit->guess->beam;
     const vector_t place = vector_of(&gripper->r);
@@ -131,7 +131,8 @@ static bool meet(const fit_t *fit, const wh_pose_t *gripper, double at[2], doubl
     return true;
 }
 
-/* The centre of what was taken, in the gripper's frame, and how that goes with the station's x, y, z, yaw. */
+/* The centre of the taken part, in the gripper's frame, and its derivatives by the station's x, y, z,
+ * yaw. */
 static void carried(const fit_t *fit, const wh_teach_measurement_t *m, double centre[2], double slope[2][4]) {
     const vector_t inner = {{m->x, m->y, 0}};
     const vector_t arm = turn(&fit->R, &inner);
@@ -183,7 +184,7 @@ static bool look(const fit_t *fit, const wh_teach_measurement_t *m, row_t *row) 
 
 /* ----------------------------------------------------------------------------------------------- the fit */
 
-/* Adds what is off: the slopes' signs are turned, for the step is to undo it. */
+/* Adds a residual; the slopes' signs are inverted, because the step must undo it. */
 static void add(wh_normal_t *normal, const row_t *row, double sd) {
     double derivatives[UNKNOWNS];
     for (size_t k = 0; k < UNKNOWNS; ++k) {
@@ -296,7 +297,8 @@ static void tell(const fit_t *fit, wh_taught_t *taught) {
     taught->beam_y = fit->unknown[5];
 }
 
-/* As many deviations are left as there are measurements: the guess of each unknown is one, too. */
+/* The number of remaining deviations equals the number of measurements, because the guess of each unknown
+ * also counts as one. */
 static wh_status_t solve(const wh_teach_guess_t *guess, const wh_teach_measurement_t *measurements,
                          size_t count, wh_taught_t *taught) {
     fit_t fit = {.guess = guess};

@@ -2,9 +2,10 @@
 
 #include "check_internal.h"
 
-/* What is not over the face is so far from it, mm. */
+/* The distance of a ball that is not over the face, mm. */
 #define ASIDE 1e9
-/* A switch stays as it is so far beyond where it changes: the place of a change is rounded. */
+/* A switch keeps its state up to this distance beyond its change, because the place of a change is
+ * rounded. */
 #define PLAY 1e-9
 
 wh_status_t wh_touch_validate(const wh_touch_face_t *touch) {
@@ -33,7 +34,8 @@ wh_status_t wh_touch_validate(const wh_touch_face_t *touch) {
     return found.status;
 }
 
-/* A ball against a face: outside of it, its own radius taken off, and from its middle along both edges. */
+/* A ball against a face: its distance outside of it less its radius, and its distances from the middle
+ * along both edges. */
 typedef struct {
     double gap, along, aside;
 } ball_t;
@@ -61,7 +63,7 @@ static bool is_over(const wh_touch_face_t *touch, const ball_t *at) {
     return fabs(at->along) <= touch->along && fabs(at->aside) <= touch->aside;
 }
 
-/* For a switch that was closed or open before. */
+/* The state of a switch that was closed or open before. */
 static bool is_closed(const wh_touch_face_t *touch, const ball_t *at, double early, bool was) {
     return at->gap <= (was ? early + PLAY : early - PLAY) && is_over(touch, at);
 }

@@ -11,21 +11,7 @@
 
 #include "../text/output.h"
 
-/* The path of a file that is not there: its folder's, without links, and its name. False if the folder is not
- * there. */
-static bool resolve(const char *path, char resolved[PATH_MAX]) {
-    char folder[PATH_MAX];
-    char whole[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    const int length = slash ? (int)(slash - path) + 1 : 0;
-    (void)snprintf(folder, sizeof folder, "%.*s.", length, path);
-    if (!realpath(folder, whole)) {
-        return false;
-    }
-    return snprintf(resolved, PATH_MAX, "%s/%s", whole, slash ? slash + 1 : path) < PATH_MAX;
-}
-
-/* What is written there is gone in any case. */
+/* Output to the null device is lost in any case. */
 static bool is_null_device(const struct stat *one) {
     struct stat null;
     return stat("/dev/null", &null) == 0 && S_ISCHR(one->st_mode) && one->st_rdev == null.st_rdev;
@@ -38,10 +24,11 @@ static bool is_same_file(const char *a, const char *b) {
     if (stat(a, &one) == 0) {
         return !is_null_device(&one) && wh_output_is_one_file(a, b);
     }
-    return stat(b, &one) != 0 && resolve(a, first) && resolve(b, second) && strcmp(first, second) == 0;
+    return stat(b, &one) != 0 && wh_output_resolve(a, first) && wh_output_resolve(b, second) &&
+           strcmp(first, second) == 0;
 }
 
-/* An input that is a pipe or a terminal is another end of it. */
+/* An input that is a pipe or a terminal is only the other end of it. */
 static bool is_standard_output(const wh_named_file_t *file) {
     struct stat one;
     struct stat two;
@@ -54,8 +41,8 @@ static bool is_open(const struct stat *status, int fd) {
     return fstat(fd, &there) == 0 && there.st_dev == status->st_dev && there.st_ino == status->st_ino;
 }
 
-/* To open a pipe waits for a reader. What a shell hands over as /dev/fd/N has no name in a folder, and is
- * open as standard output is. */
+/* Opening a pipe waits for a reader. A pipe that a shell hands over as /dev/fd/N has no name in a folder, and
+ * is open already, like standard output. */
 static bool waits_for_reader(const char *path) {
     struct stat status;
     char whole[PATH_MAX];

@@ -10,11 +10,11 @@
 
 enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2, WH_EXIT_NO_ANSWER = 5 };
 
-/* What each --help says of it. */
+/* The words of each --help about the exit status. */
 #define WH_HELP_EXIT "Exit status: see the manual page, waferhand(1), EXIT STATUS."
 
-/* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be
- * made. */
+/* True if all output has been printed; else reports it on standard error. `status` is 0 if the output could
+ * be made. */
 static inline bool wh_app_is_printed(int status) {
     const bool printed = status == 0 && fflush(stdout) == 0 && !ferror(stdout);
     if (!printed) {

@@ -10,7 +10,7 @@ static void record_messages(wh_broadcast_t *broadcast, const waferhand_command *
     wh_recording_message(&broadcast->record, WH_CHANNEL_STATE, server->encoded, server->encoded_size);
 }
 
-/* Steps the command for a record of slices alone: of most slices no message is made. */
+/* Steps the command for a record of slices alone: most slices need no message. */
 static wh_status_t record(wh_broadcast_t *broadcast, const waferhand_command *message, wh_state_t *state) {
     wh_protocol_server_t *server = &broadcast->simulation->server;
     const wh_protocol_server_result_t result = wh_protocol_server_command(server, message, NULL);
@@ -72,7 +72,7 @@ static void begin_run(wh_broadcast_t *broadcast) {
     broadcast->control.identity = broadcast->identity;
 }
 
-/* The run before stays as it is until this one can be. */
+/* The earlier run stays as it is until this one can begin. */
 static bool open_simulation(wh_broadcast_t *broadcast, const wh_layout_t *layout) {
     wh_sim_process_t *before = broadcast->simulation;
     wh_sim_process_t *simulation = &broadcast->rooms[broadcast->layouts % 2];
@@ -92,7 +92,13 @@ static bool open_simulation(wh_broadcast_t *broadcast, const wh_layout_t *layout
 
 static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     wh_broadcast_t *broadcast = broadcast_of(user);
-    if (!open_simulation(broadcast, mcs->layout)) {
+    const wh_layout_t *layout = wh_mcs_layout(mcs);
+    if (layout->wafer_count > WH_LINK_WAFERS) {
+        fprintf(stderr, "%s: %zu wafers (expected at most %d, for messages and recordings carry no more)\n",
+                layout->path, layout->wafer_count, WH_LINK_WAFERS);
+        return NULL;
+    }
+    if (!open_simulation(broadcast, layout)) {
         return NULL;
     }
     begin_run(broadcast);
@@ -100,7 +106,7 @@ static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     return &broadcast->link;
 }
 
-/* A byte before the first slice, behind it the state as it would come. */
+/* A byte before the first slice; behind it stands the state as it would arrive. */
 static size_t save(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]) {
     wh_protocol_server_t *server = &broadcast_of(user)->simulation->server;
     if (server->seq == 0) {
@@ -128,7 +134,7 @@ static bool put_back(wh_broadcast_t *broadcast, const uint8_t bytes[], size_t si
     return is_taken;
 }
 
-/* Another run begins: the one before is over. */
+/* Another run begins: the earlier one is over. */
 static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_state_t *state) {
     wh_broadcast_t *broadcast = broadcast_of(user);
     if (size == 1) {
@@ -149,11 +155,12 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
     return WH_OK;
 }
 
-/* Of a script's run: its layout goes with it. */
-static void finished(void *user, const wh_mcs_t *mcs) {
+/* Once a script's run has ended its layout is freed with it. */
+static void tell_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news,
+                      const wh_command_record_t *command) {
     wh_broadcast_t *broadcast = broadcast_of(user);
-    wh_mcs_process_partners(&broadcast->control).finished(user, mcs);
-    if (broadcast->simulation) {
+    wh_mcs_process_partners(&broadcast->control).tell(user, mcs, news, command);
+    if (news == WH_MCS_FINISHED && broadcast->simulation) {
         wh_sim_process_rest(broadcast->simulation);
     }
 }
@@ -183,15 +190,10 @@ bool wh_broadcast_open(wh_broadcast_t *broadcast, const char *program, const wh_
 wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast) {
     const wh_mcs_partners_t told = wh_mcs_process_partners(&broadcast->control);
     return (wh_mcs_partners_t){.connect = connect_simulation,
-                               .watch = told.watch,
                                .save = save,
                                .restore = restore,
+                               .tell = tell_news,
                                .turn = told.turn,
-                               .expected = told.expected,
-                               .cycle = told.cycle,
-                               .edge = told.edge,
-                               .centring = told.centring,
-                               .finished = finished,
                                .user = told.user};
 }
 

@@ -1,19 +1,17 @@
 /* waferhand budget SCRIPT */
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "../print/budget_print.h"
 #include "../study/budget_player.h"
 #include "../study/study_play.h"
 #include "../text/array.h"
-#include "../text/clock.h"
-#include "../text/guard.h"
 #include "../text/interrupt.h"
 #include "../text/nearest.h"
 #include "apart.h"
 #include "app.h"
 #include "run_arguments.h"
+#include "teller.h"
 
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
@@ -23,7 +21,8 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"station", 0, "NAME", "Of this station alone, others stand where they were taught; may be given again",
+    {"station", 0, "NAME",
+     "Look at this station alone; the others stand where they were taught. May be given again",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, stations)},
     {"limit", 0, "MM", "How far x, y and z may be off at most (default 100)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, limit_mm), 0.001, WH_ERRORS_MOST_MM},
@@ -60,54 +59,13 @@ static const wh_command_line_t command_line = {
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script)};
 
-/* ----------------------------------------------------------------------------------------------- progress */
-
-/* A file or a pipe gets a line every so many seconds, a terminal one that changes. */
-#define LINE_S 10
-
-typedef struct {
-    FILE *terminal; /* null: standard error is none */
-    double told;    /* s */
-} teller_t;
-
-static void tell_in_lines(teller_t *teller, const char *text) {
-    const double now = wh_clock_seconds();
-    if (now - teller->told >= LINE_S) {
-        fprintf(stderr, "waferhand budget: %s\n", text);
-        teller->told = now;
-    }
-}
-
-static void tell(void *user, const char *what, size_t done, size_t total) {
-    teller_t *teller = user;
-    char text[100];
-    if (total > 0) {
-        (void)snprintf(text, sizeof text, "%zu of %zu %s", done, total, what);
-    } else {
-        (void)snprintf(text, sizeof text, "%zu %s", done, what);
-    }
-    if (teller->terminal) {
-        fprintf(teller->terminal, "\r\033[K%s", text);
-        fflush(teller->terminal);
-    } else {
-        tell_in_lines(teller, text);
-    }
-}
-
-static void clear(FILE *out) {
-    if (out) {
-        fputs("\r\033[K", out);
-        fflush(out);
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------ finding */
 
 static int32_t thousandths(double value) {
     return (int32_t)lround(value * WH_BUDGET_UNIT);
 }
 
-/* So many names are told. */
+/* The most names that are told. */
 #define TOLD 20
 
 static void tell_no_station(const wh_layout_t *layout, const char *name) {
@@ -128,7 +86,7 @@ static void tell_no_station(const wh_layout_t *layout, const char *name) {
     free(names);
 }
 
-/* Marks the stations that were named. False, and standard error says so, if there is none of a name. */
+/* Marks the stations that were named. False, with a line on standard error, if a name has no station. */
 static bool choose_stations(const arguments_t *arguments, const wh_layout_t *layout, bool wanted[]) {
     for (size_t i = 0; i < arguments->stations.count; ++i) {
         const int32_t station = wh_layout_find_station(layout, arguments->stations.items[i]);
@@ -141,8 +99,12 @@ static bool choose_stations(const arguments_t *arguments, const wh_layout_t *lay
     return true;
 }
 
+static void tell(void *user, const char *what, size_t done, size_t total) {
+    wh_teller_tell(user, what, done, total);
+}
+
 static int find(const arguments_t *arguments, const wh_study_t *study, const bool wanted[]) {
-    teller_t teller = {isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL, wh_clock_seconds()};
+    wh_teller_t teller;
     const wh_style_t style = wh_style_of(stdout);
     const wh_budget_options_t how = {
         .threads = wh_study_threads((size_t)arguments->threads),
@@ -157,8 +119,9 @@ static int find(const arguments_t *arguments, const wh_study_t *study, const boo
     wh_budget_t budget;
     int status = WH_EXIT_USAGE;
     wh_interrupt_catch();
+    wh_teller_begin(&teller, "budget");
     const bool found = wh_budget_find(&budget, study, &how);
-    clear(teller.terminal);
+    wh_teller_end(&teller);
     if (found || budget.incomplete) {
         const int printed = arguments->run.json ? wh_budget_print_json(&budget, stdout)
                                                 : wh_budget_print_table(&budget, stdout, &style);
@@ -168,7 +131,7 @@ static int find(const arguments_t *arguments, const wh_study_t *study, const boo
     return status;
 }
 
-/* A script that fails where nothing is off has no budget. */
+/* A script that fails without any error has no budget. */
 static bool passes_without_errors(const wh_study_t *study) {
     wh_budget_why_t why;
     if (study->nominal.record.ok) {

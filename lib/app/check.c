@@ -30,7 +30,9 @@ static void check(const void *given, struct argp_state *state) {
     }
 }
 
-static const wh_option_table_t tables[] = {{wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {{wh_log_options, offsetof(arguments_t, log), NULL, NULL},
+                                           {wh_log_more_options, offsetof(arguments_t, log.more), NULL, NULL},
+                                           {0}};
 
 static const wh_command_line_t command_line = {
     .name = "check",
@@ -43,15 +45,15 @@ static const wh_command_line_t command_line = {
     .operands = 2,
     .check = check};
 
-/* What the checks see of the run. */
+/* The run as the checks see it. */
 typedef struct {
     const char *path; /* of the checks */
     wh_log_run_t run;
     json_t *result; /* the record, as `run --json` has it */
-    /* Each slice has what is other than in the one before; each KEY-th one has all. */
+    /* Each slice has the values that differ from those of the slice before; each KEY-th one has all. */
     struct {
         int64_t seq;
-        size_t changes; /* so many, of it and of all before it */
+        size_t changes; /* the number of changes of it and of all slices before it */
     } * slices;
     size_t count, capacity;
     struct {
@@ -66,7 +68,7 @@ typedef struct {
 
 /* --------------------------------------------------------------------------------------------- the slices */
 
-/* So far apart are slices of which all is kept. */
+/* The distance between slices whose values are all kept. */
 #define KEY 256
 
 static void add_change(checked_t *checked, size_t field, double value) {
@@ -96,7 +98,7 @@ static void keep(void *user, const wh_layout_t *layout, const double axes[], con
     checked->slices[checked->count++].changes = checked->change_count;
 }
 
-/* All of slice number `index` of those that are kept. */
+/* All values of slice number `index` among those that are kept. */
 static const double *values_of(checked_t *checked, size_t index) {
     const size_t key = index - index % KEY;
     for (size_t i = key > 0 ? checked->slices[key - 1].changes : 0; i < checked->slices[index].changes; ++i) {
@@ -126,7 +128,7 @@ static checked_t *checked_of(lua_State *L) {
     return lua_touserdata(L, lua_upvalueindex(1));
 }
 
-/* What is given too much may be meant to count: nobody looks at it. */
+/* Refuses surplus arguments: the author may think that they count, but nothing reads them. */
 static void refuse_surplus(lua_State *L, const char *name, int most) {
     if (lua_gettop(L) > most) {
         luaL_error(L, "%s: %d arguments (expected at most %d)", name, lua_gettop(L), most);
@@ -220,9 +222,8 @@ static void push_kinds(lua_State *L, const checked_t *checked) {
     }
 }
 
-/* { kind = , wafer = , gripper = , last = }: of each the names that there are, as keys, and when the run
- * ends. It is called `events`
- * until the function of that name has taken it. */
+/* { kind = , wafer = , gripper = , last = , list = }: the existing names of each, as keys, the end of the run,
+ * and what makes a list of a table. It is called `events` until the function of that name has taken it. */
 static void push_names(lua_State *L, const checked_t *checked) {
     const wh_layout_t *layout = checked->run.cell.layout;
     lua_createtable(L, 0, 3);
@@ -240,6 +241,8 @@ static void push_names(lua_State *L, const checked_t *checked) {
     lua_setfield(L, -2, "gripper");
     lua_pushnumber(L, wh_log_run_end(&checked->run));
     lua_setfield(L, -2, "last");
+    lua_pushcfunction(L, wh_check_make_list);
+    lua_setfield(L, -2, "list");
     lua_setglobal(L, "events");
 }
 
@@ -259,7 +262,7 @@ static int set_up(lua_State *L) {
     return 0;
 }
 
-/* events{kind = , wafer = , gripper = , from = , to = }: those that have all of it, in order. */
+/* events{kind = , wafer = , gripper = , from = , to = }: the events that match all of it, in order. */
 static const char events_text[] =
     "local known = { kind = 'string', wafer = 'string', gripper = 'string', from = 'number', to = 'number' "
     "}\n"
@@ -301,7 +304,7 @@ static const char events_text[] =
     "      insert(found, event)\n"
     "    end\n"
     "  end\n"
-    "  return found\n"
+    "  return names.list(found)\n"
     "end\n";
 
 static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox_result_t *result) {
@@ -388,5 +391,6 @@ int wh_app_check(int argc, char **argv) {
     const int status = arguments.paths.count == 2 ? check_log(&arguments) : WH_EXIT_USAGE;
     wh_option_list_free(&arguments.paths);
     wh_option_list_free(&arguments.log.parameters);
+    wh_option_list_free(&arguments.log.more.then);
     return status;
 }

@@ -6,10 +6,10 @@
 
 #include <lauxlib.h>
 
-/* So many characters of names are told of a table that has more. */
+/* The most characters of names that are told for a table. */
 #define MOST_TOLD 500
 
-/* What objects may have and may not, by a name that all of their kind have. */
+/* The fields that objects of a kind may lack; `mark` is a name that all objects of the kind have. */
 typedef struct {
     const char *mark;
     const char *names[14];
@@ -53,7 +53,7 @@ static const char *push_told(lua_State *L, const char *const names[], size_t cou
     return lua_tostring(L, -1);
 }
 
-/* Names stay in the tables that they are keys of. */
+/* The names stay alive in the tables whose keys they are. */
 static const char *push_names(lua_State *L, int table, int more) {
     enum { MOST = 256 };
     const char *names[MOST];
@@ -65,8 +65,8 @@ static const char *push_names(lua_State *L, int table, int more) {
 
 /* ------------------------------------------------------------------------------------------------- strict */
 
-/* Of a table whose field is nil: upvalue 1 has the fields that are nil rightly. A name that is none of
- * them is an error. */
+/* Runs when a table's field is nil. Upvalue 1 holds the fields that may be nil; any other name is an
+ * error. */
 static int find_absent(lua_State *L) {
     lua_pushvalue(L, 2);
     if (lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
@@ -96,15 +96,19 @@ static const char *push_item_names(lua_State *L, lua_Integer count) {
     return push_told(L, names, found);
 }
 
-/* Of a list without such an item. */
+/* Runs when a list has no such item: an error. */
 static int find_item(lua_State *L) {
     const lua_Integer count = (lua_Integer)lua_rawlen(L, 1);
     const char *names = push_item_names(L, count);
+    if (count == 0) {
+        return luaL_error(L, "%s: there is no such item of the list (expected none: it is empty)",
+                          luaL_tolstring(L, 2, NULL));
+    }
     return luaL_error(L, "%s: there is no such item of the list (expected a number from 1 to %I%s%s)",
                       luaL_tolstring(L, 2, NULL), (LUAI_UACINT)count, names[0] ? ", of " : "", names);
 }
 
-/* A list of ours is read as it is: its end is where a loop ends. */
+/* Our lists are read without the metamethod, so a loop ends at the list's end. */
 static int next_item(lua_State *L) {
     const lua_Integer i = luaL_checkinteger(L, 2) + 1;
     lua_pushinteger(L, i);
@@ -132,6 +136,17 @@ static void set_lookup(lua_State *L) {
     lua_setmetatable(L, -2);
 }
 
+int wh_check_make_list(lua_State *L) {
+    lua_settop(L, 1);
+    lua_pushcfunction(L, find_item);
+    set_lookup(L);
+    (void)lua_getmetatable(L, -1);
+    lua_pushliteral(L, "list");
+    lua_setfield(L, -2, "__name");
+    lua_pop(L, 1);
+    return 1;
+}
+
 void wh_check_make_strict(lua_State *L) {
     lua_pushcclosure(L, find_absent, 1);
     set_lookup(L);
@@ -145,17 +160,13 @@ void wh_check_set_name(lua_State *L, const char *name) {
 /* ------------------------------------------------------------------------------------------------- values */
 
 static void push_list(lua_State *L, const json_t *list) {
+    lua_pushcfunction(L, wh_check_make_list);
     lua_createtable(L, (int)json_array_size(list), 0);
     for (size_t i = 0; i < json_array_size(list); ++i) {
         wh_check_push(L, json_array_get(list, i));
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
-    lua_pushcfunction(L, find_item);
-    set_lookup(L);
-    (void)lua_getmetatable(L, -1);
-    lua_pushliteral(L, "list");
-    lua_setfield(L, -2, "__name");
-    lua_pop(L, 1);
+    lua_call(L, 1, 1);
 }
 
 static void set_optional(lua_State *L, const json_t *object) {

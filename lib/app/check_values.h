@@ -1,4 +1,4 @@
-/* What a file of checks sees of a recorded run: its JSON as Lua tables that know their names. */
+/* A recorded run for a file of checks: its JSON as Lua tables that know their names. */
 #ifndef WH_APP_CHECK_VALUES_H
 #define WH_APP_CHECK_VALUES_H
 
@@ -6,15 +6,18 @@
 #include <lua.h>
 
 /* Pushes a value; null is nil. A field that an object of its kind never has, and a place behind a list's
- * end, raise an error that names what there is: nil would make many an expectation true. Raises if
- * memory runs out. */
+ * end, raise an error that lists the valid ones: with nil many expectations would be true. Raises if memory
+ * runs out. */
 void wh_check_push(lua_State *L, json_t *value);
 
-/* Lua's ipairs, which ends such a list where it ends. */
+/* A function for Lua: makes its argument, a table, such a list, and returns it. */
+int wh_check_make_list(lua_State *L);
+
+/* Like Lua's ipairs, and ends at the end of such a list. */
 int wh_check_ipairs(lua_State *L);
 
-/* The table below the one at the top has those fields alone that it has now, and those that are the keys of
- * the one at the top, which is taken off. */
+/* Fixes the fields of the table below the top one: it has only its present fields and the keys of the top
+ * table, which is popped. */
 void wh_check_make_strict(lua_State *L);
 
 /* Puts a name into the set at the top. */

@@ -8,7 +8,7 @@
 #include "../link/mcs_process.h"
 #include "../text/options.h"
 
-/* What ends the noun behind a count. */
+/* The ending of the noun behind a count. */
 #define WH_PLURAL(count) ((count) == 1 ? "" : "s")
 
 /* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
@@ -28,7 +28,7 @@ typedef struct {
 /* The options of `run`, `sim` and `mcs` about a recording. */
 extern const wh_option_t wh_record_options[];
 
-/* Of their table: refuses what does not go together. */
+/* The check of their table: refuses options that do not go together. */
 void wh_record_arguments_check(const void *arguments, struct argp_state *state);
 
 /* The recording's file, null if none was given, and the `option` that gives it. */

@@ -26,7 +26,7 @@ static const wh_command_line_t command_line = {
     .operand = "transcript",
     .operand_variable = offsetof(arguments_t, path)};
 
-/* What the transcript's heads say of the run. */
+/* The run that the transcript's heads describe. */
 typedef struct {
     const char *layout;
     const char **parameters;
@@ -63,14 +63,14 @@ static bool read_heads(const wh_transcript_t *played, heads_t *heads) {
     return heads->layout || refuse(played, 1, "no layout (expected a head: layout \"FILE\")");
 }
 
-/* What the port of this head stands for, as a head `mechanism "NAME"` behind it says; null: there is none. */
+/* The mechanism of the port of this head, from a head `mechanism "NAME"` behind it; null: there is none. */
 static const char *mechanism_of(const wh_transcript_t *played, size_t port) {
     const bool is_named =
         port + 1 < played->head_count && strcmp(played->heads[port + 1].name, "mechanism") == 0;
     return is_named ? played->heads[port + 1].text : NULL;
 }
 
-/* Each port's dialect, as `port "NAME FILE"` says. */
+/* Adds each port's dialect, from `port "NAME FILE"`. */
 static bool add_ports(wh_host_t *host) {
     const wh_transcript_t *played = host->played;
     for (size_t i = 0; i < played->head_count; ++i) {
@@ -95,7 +95,7 @@ static bool add_ports(wh_host_t *host) {
     return true;
 }
 
-/* All entries are of ports that there are, and there is something to be compared. */
+/* Checks that all entries name existing ports, and that there is something to compare. */
 static bool check_entries(const wh_host_t *host) {
     const wh_transcript_t *played = host->played;
     bool is_any_heard = false;
@@ -117,11 +117,11 @@ static int play(wh_host_t *host) {
     wh_transcript_t *played = host->played;
     wh_session_t *session = host->session;
     const bool same = wh_host_converse(host);
-    if (wh_stop_requested && !same && !host->is_different) {
+    if (wh_stop_requested && !same && !played->is_different) {
         (void)snprintf(played->message, sizeof played->message, "interrupted: no difference up to here");
     }
     printf("%s%sslices: %" PRId64 ", hash %016" PRIx64 "\n", same ? "same; " : played->message,
-           same ? "" : "\n", session->mcs.track.slice, session->mcs.link->hash(session->mcs.link));
+           same ? "" : "\n", wh_session_slice(session), wh_session_hash(session));
     return !wh_app_is_printed(0) ? WH_EXIT_USAGE : same ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 

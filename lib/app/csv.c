@@ -1,10 +1,10 @@
 /* waferhand csv LOG */
+#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "../log/slice_fields.h"
-#include "../print/lines_print.h"
-#include "../text/array.h"
+#include "../print/slices_csv.h"
+#include "../text/output.h"
 #include "apart.h"
 #include "app.h"
 #include "log_arguments.h"
@@ -16,17 +16,18 @@ typedef struct {
     const char *output;
 } arguments_t;
 
-static const wh_option_t options[] = {
-    {"output", 'o', "FILE", "Write the table into FILE (default: standard output)", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, output)},
-    {"every", 0, "N", "Of the slices from --from on every N-th alone (default 1)", WH_OPTION_COUNT,
-     .variable = offsetof(arguments_t, every), .least = 1},
-    {0}};
+static const wh_option_t options[] = {{"output", 'o', "FILE",
+                                       "Write the table into FILE (default: standard output)", WH_OPTION_TEXT,
+                                       .variable = offsetof(arguments_t, output)},
+                                      {"every", 0, "N", "Write every N-th slice from --from on (default 1)",
+                                       WH_OPTION_COUNT, .variable = offsetof(arguments_t, every), .least = 1},
+                                      {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_log_window_options, offsetof(arguments_t, window), NULL, wh_log_window_check},
     {wh_log_options, offsetof(arguments_t, log), NULL, NULL},
+    {wh_log_more_options, offsetof(arguments_t, log.more), NULL, NULL},
     {0}};
 
 static const wh_command_line_t command_line = {
@@ -40,55 +41,81 @@ static const wh_command_line_t command_line = {
 
 typedef struct {
     const arguments_t *arguments;
+    const wh_log_run_t *run;
     FILE *out;
-    double *values;
-    int64_t first; /* the slice that every N-th is counted from; 0: none yet */
+    wh_slices_csv_t csv;
+    wh_slice_row_t row;
+    bool has_begun, is_refused; /* the latter: a parameter is given that nobody reads */
+    int64_t first;              /* the slice that every N-th is counted from; 0: no row yet */
 } table_t;
+
+/* Larger blocks than stdio's own are written faster. */
+#define BLOCK (1 << 16)
 
 static void on_slice(void *user, const wh_layout_t *layout, const double axes[], const wh_state_t *state,
                      uint64_t hash) {
     table_t *table = user;
     const arguments_t *arguments = table->arguments;
     (void)hash;
-    if (!table->values) {
-        table->values = wh_array_new(wh_slice_field_count(layout), sizeof *table->values);
-        wh_slices_csv_head(layout, table->out);
+    if (!table->has_begun) { /* the log's layout is known from here on */
+        table->has_begun = true;
+        table->is_refused = !wh_log_arguments_check_set(table->run, NULL);
     }
-    if (!wh_log_window_has(&arguments->window, (double)(state->seq * layout->slice_us) / 1e6)) {
+    if (table->is_refused ||
+        !wh_log_window_has(&arguments->window, (double)(state->seq * layout->slice_us) / 1e6)) {
         return;
     }
-    table->first = table->first > 0 ? table->first : state->seq;
+    if (table->first == 0) {
+        table->first = state->seq;
+        wh_slices_csv_open(&table->csv, layout, table->out);
+    }
     if ((uint64_t)(state->seq - table->first) % (arguments->every > 0 ? arguments->every : 1) == 0) {
-        wh_slice_fields(layout, axes, state, table->values);
-        wh_slices_csv_row(layout, state->seq, table->values, table->out);
+        wh_slice_row_take(&table->row, layout, axes, state);
+        wh_slices_csv_row(&table->csv, state->seq, table->row.values);
     }
 }
 
-/* The table is made beside its place: of a log that turns out to be none nothing is printed. */
-static bool copy(void *user, FILE *out) {
-    table_t *table = user;
-    char block[1 << 14];
-    size_t size = 0;
-    rewind(table->out);
-    while ((size = fread(block, 1, sizeof block, table->out)) > 0) {
-        if (fwrite(block, 1, size, out) != size) {
-            return false;
-        }
+/* Reads the log, and writes the rows while it does so; nothing before the first row, so that a log that is
+ * refused prints nothing. False, and standard error says why, if there is nothing to show. */
+static bool write_rows(table_t *table, FILE *out, wh_log_run_t *run) {
+    const arguments_t *arguments = table->arguments;
+    table->out = out;
+    (void)setvbuf(out, NULL, _IOFBF, BLOCK);
+    if (!wh_log_arguments_read(&arguments->log, on_slice, table, run) || table->is_refused ||
+        !wh_log_window_begins_in(&arguments->window, run)) {
+        return false;
     }
-    return !ferror(table->out);
+    if (table->first == 0) {
+        wh_slices_csv_open(&table->csv, run->cell.layout, table->out);
+    }
+    return true;
 }
 
-static int write_table(const arguments_t *arguments, table_t *table, const wh_log_run_t *run) {
-    if (fflush(table->out) != 0 || ferror(table->out)) {
-        perror("waferhand csv: no room for the table");
-        return WH_EXIT_USAGE;
+static bool write_file(table_t *table, wh_log_run_t *run) {
+    const char *path = table->arguments->output;
+    wh_output_t output = {0};
+    if (!wh_output_open(&output, path)) {
+        wh_output_tell("--output", path, errno);
+        return false;
     }
-    if (!wh_file_write("--output", arguments->output, copy, table, NULL)) {
-        return WH_EXIT_USAGE;
+    const bool is_written = write_rows(table, output.file, run) && wh_file_is_free("--output", path);
+    if (!is_written) {
+        wh_output_drop(&output);
+    } else if (!wh_output_commit(&output)) {
+        wh_output_tell("--output", path, errno);
+        return false;
     }
-    if (!arguments->output && !wh_app_is_printed(copy(table, stdout) ? 0 : -1)) {
-        return WH_EXIT_USAGE;
+    return is_written;
+}
+
+static bool write_table(table_t *table, wh_log_run_t *run) {
+    if (table->arguments->output) {
+        return write_file(table, run);
     }
+    return write_rows(table, stdout, run) && wh_app_is_printed(0);
+}
+
+static int judge(const arguments_t *arguments, const wh_log_run_t *run) {
     if (!run->cell.is_whole) {
         fprintf(stderr, "%s: %s: what the log itself does not tell of the cell is left out, or empty\n",
                 arguments->log.path, run->cell.note);
@@ -98,28 +125,20 @@ static int write_table(const arguments_t *arguments, table_t *table, const wh_lo
 
 int wh_app_csv(int argc, char **argv) {
     static wh_log_run_t run;
-    arguments_t arguments = {.window = {0, HUGE_VAL}};
+    arguments_t arguments = {.log.only_slices = true, .window = {0, HUGE_VAL}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     const wh_named_file_t named[] = {{"the log", arguments.log.path, false},
                                      {"the layout", arguments.log.layout, false},
                                      {"--output", arguments.output, true}};
-    table_t table = {.arguments = &arguments};
+    table_t table = {.arguments = &arguments, .run = &run};
     int status = WH_EXIT_USAGE;
-    if (!wh_files_are_apart(named, 3, !arguments.output)) {
-        return status;
+    if (wh_files_are_apart(named, 3, !arguments.output) && write_table(&table, &run)) {
+        status = judge(&arguments, &run);
     }
-    table.out = tmpfile();
-    if (!table.out) {
-        perror("waferhand csv: no room for the table");
-        return status;
-    }
-    if (wh_log_arguments_read(&arguments.log, on_slice, &table, &run) &&
-        wh_log_arguments_check_set(&run, NULL) && wh_log_window_begins_in(&arguments.window, &run)) {
-        status = write_table(&arguments, &table, &run);
-    }
+    wh_slices_csv_close(&table.csv);
     wh_log_run_close(&run);
-    free(table.values);
-    (void)fclose(table.out);
+    wh_slice_row_free(&table.row);
     wh_option_list_free(&arguments.log.parameters);
+    wh_option_list_free(&arguments.log.more.then);
     return status;
 }

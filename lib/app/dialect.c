@@ -35,9 +35,9 @@ static bool does(const wh_dialect_t *dialect, const wh_word_t *word) {
     return false;
 }
 
-/* True if the controller could: an ACKN only where one is awaited. */
+/* True if the controller could do the word: an ACKN only where one is awaited. */
 static bool is_its_own(const wh_dialect_t *dialect, const wh_word_t *word) {
-    return word->kind != WH_WORD_LOCAL && (word->kind != WH_WORD_ACKN || dialect->ackn_s > 0) &&
+    return word->kind != WH_WORD_LOCAL && (word->kind != WH_WORD_ACKN || dialect->timing.ackn_s > 0) &&
            wh_mechanism_does(dialect->mechanism, word);
 }
 
@@ -63,14 +63,14 @@ static void print_commands(const wh_dialect_t *dialect, bool of_simulation) {
     end_list(count);
 }
 
-/* What a command can answer: of motion, of motion control and of its link, but for what only a script or
- * firmware meets. */
+/* True for a status with which a command can answer: those of motion, of motion control and of its link,
+ * without those that only a script or firmware meets. */
 static bool is_answered(wh_status_t status) {
     static const wh_status_t ranges[][2] = {{WH_STATUS_BAD_VALVE, WH_STATUS_BAD_VALVE},
                                             {WH_STATUS_RUN_OVER, WH_STATUS_RUN_OVER},
                                             {WH_STATUS_BAD_LIMITS, WH_STATUS_BAD_SCAN},
                                             {WH_STATUS_NO_ANSWER, WH_STATUS_NOT_TOUCHED},
-                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_DOOR_TIMEOUT}};
+                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_WRONG_SLOT}};
     bool is_answered = false;
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; ++i) {
         is_answered = is_answered || (status >= ranges[i][0] && status <= ranges[i][1]);
@@ -91,7 +91,7 @@ static void print_errors(const wh_dialect_t *dialect) {
     end_list(count);
 }
 
-/* A host cannot tell these apart, and raises but the first of them by the code. */
+/* A host cannot tell these apart; the code raises only the first of them. */
 static void print_shared(const wh_dialect_t *dialect) {
     int count = 0;
     fputs("codes of several errors:", stdout);

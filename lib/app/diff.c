@@ -13,11 +13,12 @@
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
+#include "log_arguments.h"
 
 /* The newest of results. */
 #define FORMAT 2
 
-/* Of what differs at the end so many are told one by one. */
+/* The most differences at the end that are told one by one. */
 #define MOST_TOLD 20
 
 typedef struct {
@@ -49,7 +50,8 @@ static const wh_command_line_t command_line = {
     .operand_variable = offsetof(arguments_t, paths),
     .operands = 2};
 
-/* What is no matter of the run: how long it took, where files lie, what program it was. */
+/* The fields that do not belong to the run itself: how long it took, where files lie, which program made
+ * it. */
 static const char *const aside[] = {"wall_s",  "script", "layout", "title", "reproduce",
                                     "version", "source", "log",    NULL};
 
@@ -58,7 +60,7 @@ typedef struct {
     int64_t slice; /* 0: it has none */
     double time_s; /* NaN: none differs in time */
     char *field, *values[2];
-    json_t *end;                        /* a list of what differs at no certain time: field, a, b */
+    json_t *end;                        /* a list of differences without a certain time: field, a, b */
     size_t end_count;                   /* all of them */
     bool has_other_layout;              /* the first of them: the layouts' hashes */
     int64_t common, differing, only[2]; /* slices */
@@ -80,7 +82,7 @@ static void set_first(result_t *result, const char *field, char *a, char *b) {
     result->values[1] = b;
 }
 
-/* What is not there is no null. */
+/* A missing value differs from null. */
 static json_t *shared(const json_t *value) {
     return value ? json_deep_copy(value) : json_string("not there");
 }
@@ -117,7 +119,7 @@ typedef struct {
     wh_log_digests_t digests;
 } side_t;
 
-/* There must be something to compare beside the format's number and what is put aside. */
+/* There must be something to compare besides the format's number and the fields that are left aside. */
 static bool is_result(json_t *root) {
     size_t members = json_object_size(root);
     for (size_t i = 0; aside[i]; ++i) {
@@ -130,6 +132,29 @@ static bool is_result(json_t *root) {
 static void leave_path(json_t *root) {
     json_t *scene = json_object_get(root, "scene");
     (void)json_object_del(json_array_get(json_object_get(scene, "scenes"), 0), "name");
+}
+
+/* True for the verdict on a log that has the whole of what it tells. */
+static bool is_whole(const char *verdict) {
+    return strcmp(verdict, wh_reading_word(WH_READING_SAME)) == 0 ||
+           strcmp(verdict, wh_reading_word(WH_READING_DIFFERS)) == 0;
+}
+
+/* A result may be that of a log: one that lacks something is never equal to another. */
+static bool is_of_whole_log(const side_t *side) {
+    const json_t *run = json_object_get(side->root, "run");
+    const json_t *log = json_object_get(json_is_object(run) ? run : side->root, "log");
+    const char *verdict = json_string_value(json_object_get(log, "verdict"));
+    const char *reason = json_string_value(json_object_get(log, "reason"));
+    if (verdict && !is_whole(verdict)) {
+        fprintf(stderr, "%s: %s: %s (expected the result of a whole log)\n", side->path, verdict,
+                reason ? reason : "no reason");
+    } else if (json_is_true(json_object_get(log, "is_part"))) {
+        fprintf(stderr, "%s: of a part of a recording (expected the result of a whole recording)\n",
+                side->path);
+        return false;
+    }
+    return !verdict || is_whole(verdict);
 }
 
 static bool read_json(side_t *side, FILE *file) {
@@ -147,7 +172,7 @@ static bool read_json(side_t *side, FILE *file) {
         fprintf(stderr, "%s: format: %lld (expected 1 to %d)\n", side->path, (long long)format, FORMAT);
         return false;
     }
-    return side->root && is_result(side->root);
+    return side->root && is_result(side->root) && is_of_whole_log(side);
 }
 
 static bool open_side(side_t *side) {
@@ -172,7 +197,7 @@ static bool open_side(side_t *side) {
     return read;
 }
 
-/* A log that lacks something is never the same as another. */
+/* A log that lacks something is never equal to another. */
 static bool read_log(side_t *side, size_t number) {
     wh_log_run_options_t wanted = {.path = side->path, .number = number};
     side->run = wh_array_new(1, sizeof *side->run);
@@ -181,15 +206,13 @@ static bool read_log(side_t *side, size_t number) {
         return false;
     }
     const char *verdict = side->run->worth.verdict;
-    if (strcmp(verdict, wh_reading_word(WH_READING_SAME)) != 0 &&
-        strcmp(verdict, wh_reading_word(WH_READING_DIFFERS)) != 0) {
+    if (!is_whole(verdict)) {
         fprintf(stderr, "%s: %s: %s (expected a whole log)\n", side->path, verdict, side->run->worth.reason);
         return false;
     }
-    if (wh_log_run_is_part(side->run)) {
-        fprintf(stderr,
-                "%s: part %d of a recording: the other parts are not read (expected a whole recording)\n",
-                side->path, (int)side->run->worth.part);
+    if (side->run->worth.is_part) {
+        fprintf(stderr, "%s: part %d of a recording: %s not read (expected a whole recording)\n", side->path,
+                (int)side->run->worth.part, wh_log_missing_parts(side->run));
         return false;
     }
     side->root = wh_record_to_json(&side->run->record);
@@ -209,7 +232,7 @@ static void close_side(side_t *side) {
 
 /* ------------------------------------------------------------------------------------------------ compare */
 
-/* How far the axes come is rehearsed where a script is played: of a log it is not known. */
+/* The reach of the axes is rehearsed when a script is played: for a log it is not known. */
 static void leave_reach(const side_t sides[2]) {
     const size_t counts[2] = {json_array_size(json_object_get(sides[0].root, "reach")),
                               json_array_size(json_object_get(sides[1].root, "reach"))};
@@ -229,8 +252,8 @@ static void compare_documents(const side_t sides[2], result_t *result) {
     }
 }
 
-/* What two layouts do may be the same, slice by slice: that they differ is told first of all. Of one whose
- * file is not there shapes and limits are not known. */
+/* Runs of two layouts may be equal, slice by slice, so a difference of the layouts is told first. If a
+ * layout's file is missing, its shapes and limits are not known. */
 static void compare_layouts(const side_t sides[2], result_t *result) {
     const wh_log_layout_t *a = &sides[0].run->cell;
     const wh_log_layout_t *b = &sides[1].run->cell;
@@ -390,7 +413,7 @@ static int print_json(const result_t *result) {
     return status;
 }
 
-/* What --data makes has the record in a member of its own. */
+/* A file of --data has the record in a member of its own. */
 static bool is_data(const side_t *side) {
     return json_object_get(side->root, "tracks") != NULL;
 }

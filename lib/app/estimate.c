@@ -28,14 +28,14 @@ typedef struct {
 
 #define DELAY                                                                                                \
     {                                                                                                        \
-        "delay", 0, NULL, "Of limits: also fit a delay that is the same in each time", WH_OPTION_FLAG,       \
+        "delay", 0, NULL, "For limits: also fit one delay, contained in each time", WH_OPTION_FLAG,          \
             .variable = offsetof(arguments_t, delay)                                                         \
     }
 
 #define SCALES                                                                                               \
     {                                                                                                        \
-        "scales", 0, NULL, "Of a robot: also fit what its axes' positions are to be multiplied by",          \
-            WH_OPTION_FLAG, .variable = offsetof(arguments_t, scales)                                        \
+        "scales", 0, NULL, "For a robot: also fit the factors of its axes' positions", WH_OPTION_FLAG,       \
+            .variable = offsetof(arguments_t, scales)                                                        \
     }
 
 static const wh_option_t frame_options[] = {JSON, {0}};
@@ -54,7 +54,7 @@ static int refuse(const wh_csv_t *csv, wh_status_t status) {
     return WH_EXIT_USAGE;
 }
 
-/* The exit status of what was printed, and told or not. */
+/* The exit status after printing an estimate, determined or not. */
 static int conclude(int printed, bool told) {
     if (!wh_app_is_printed(printed)) {
         return WH_EXIT_USAGE;
@@ -127,7 +127,7 @@ static void refuse_kind(const void *filled, struct argp_state *state) {
         .operand = "table", .operand_variable = offsetof(arguments_t, path)                                  \
     }
 
-/* The first is for what names none: it ends the program. */
+/* The first one is for a command line without a name: it ends the program. */
 static const struct {
     const char *name;
     wh_command_line_t line;

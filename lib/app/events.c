@@ -20,12 +20,12 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"wafer", 0, "NAME", "Of this wafer alone; may be given several times", WH_OPTION_LIST,
+    {"wafer", 0, "NAME", "Show events of this wafer alone; may be given several times", WH_OPTION_LIST,
      .variable = offsetof(arguments_t, wafers)},
-    {"kind", 0, "KIND", "Of this kind alone, such as picked; may be given several times", WH_OPTION_LIST,
-     .variable = offsetof(arguments_t, kinds)},
-    {"lcm", 0, NULL, "Of no log: as they happen, of the simulator that is heard over LCM, until Ctrl-C",
-     WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
+    {"kind", 0, "KIND", "Show events of this kind alone, such as picked; may be given several times",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, kinds)},
+    {"lcm", 0, NULL, "Show events live, from the simulator on LCM, until Ctrl-C", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
     {0}};
@@ -51,10 +51,15 @@ static void check_kinds(const void *given, struct argp_state *state) {
     }
 }
 
+/* True if an option is given that needs a log. */
+static bool is_of_log(const wh_log_arguments_t *log) {
+    return log->layout || log->number > 0 || log->parameters.count > 0 || log->more.is_alone ||
+           log->more.then.count > 0;
+}
+
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
-    const bool of_log =
-        arguments->log.layout || arguments->log.number > 0 || arguments->log.parameters.count > 0;
+    const bool of_log = is_of_log(&arguments->log);
     if (!arguments->lcm && !arguments->log.path) {
         argp_error(state, "of which log? (expected one, or --lcm)");
     } else if (arguments->lcm && (arguments->log.path || of_log)) {
@@ -68,6 +73,7 @@ static const wh_option_table_t tables[] = {
     {options, 0, NULL, check_kinds},
     {wh_log_window_options, offsetof(arguments_t, window), NULL, wh_log_window_check},
     {wh_log_options, offsetof(arguments_t, log), NULL, NULL},
+    {wh_log_more_options, offsetof(arguments_t, log.more), NULL, NULL},
     {0}};
 
 static const wh_command_line_t command_line = {
@@ -135,7 +141,7 @@ static bool on_cell(void *user, const wh_log_layout_t *cell) {
     return fits(user, cell, "simulator");
 }
 
-/* Whatever is asked for: what comes next is of another run. */
+/* The filter does not matter here: the next events belong to another run. */
 static bool on_run(void *user, int64_t number, int64_t utime) {
     (void)user;
     return wh_app_is_printed(
@@ -170,5 +176,6 @@ int wh_app_events(int argc, char **argv) {
     wh_option_list_free(&arguments.wafers);
     wh_option_list_free(&arguments.kinds);
     wh_option_list_free(&arguments.log.parameters);
+    wh_option_list_free(&arguments.log.more.then);
     return status;
 }

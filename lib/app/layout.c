@@ -8,6 +8,7 @@
 #include "apart.h"
 #include "app.h"
 #include "layout_arguments.h"
+#include "teller.h"
 #include "watch.h"
 
 /* -------------------------------------------------------------------------------------- what sim has, too */
@@ -71,7 +72,7 @@ static bool write_svg(void *check, FILE *out) {
     return wh_layout_print_svg(check, out) == 0;
 }
 
-/* Once the layout was read, so that all that it reads is known. */
+/* Checked after the layout is read, because then all files that it reads are known. */
 static bool is_apart(const arguments_t *arguments) {
     const wh_named_file_t named[] = {{"the layout", arguments->layout.path, false},
                                      {"--svg", arguments->svg, true}};
@@ -89,11 +90,20 @@ static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
     return check->wrong > 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
+static void tell(void *user, const char *what, size_t done, size_t total) {
+    wh_teller_tell(user, what, done, total);
+}
+
 /* Adds what a run would refuse. */
 static bool survey(const arguments_t *arguments, const wh_layout_t *layout, wh_feasibility_t *check) {
     wh_sandbox_result_t result;
     wh_survey_t *planned = wh_array_new(1, sizeof *planned);
+    wh_teller_t teller;
+    wh_teller_begin(&teller, "layout");
+    planned->tell = tell;
+    planned->user = &teller;
     const bool good = wh_survey_open(planned, arguments->layout.sandbox, layout, check, &result);
+    wh_teller_end(&teller);
     if (!good) {
         fprintf(stderr, "%s\n", result.message);
     }

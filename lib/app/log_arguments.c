@@ -17,6 +17,14 @@ const wh_option_t wh_log_options[] = {
      WH_OPTION_LIST, .variable = offsetof(wh_log_arguments_t, parameters)},
     {0}};
 
+const wh_option_t wh_log_more_options[] = {
+    {"alone", 0, NULL, "Read only this file of a recording in parts, not the parts that follow it",
+     WH_OPTION_FLAG, .variable = offsetof(wh_log_more_t, is_alone)},
+    {"then", 0, "LOG",
+     "Read this log behind it, as one with it: of a process that was started again; may be given again",
+     WH_OPTION_LIST, .variable = offsetof(wh_log_more_t, then)},
+    {0}};
+
 #define LATEST 1e9
 
 const wh_option_t wh_log_window_options[] = {
@@ -42,14 +50,22 @@ bool wh_log_window_begins_in(const wh_log_window_t *window, const wh_log_run_t *
     return window->from <= end;
 }
 
+void wh_log_more_take(const wh_log_more_t *more, wh_log_run_options_t *options) {
+    options->then = more->then.items;
+    options->then_count = more->then.count;
+    options->is_alone = more->is_alone;
+}
+
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
                            wh_log_run_t *run) {
-    const wh_log_run_options_t wanted = {
+    wh_log_run_options_t wanted = {
         .path = arguments->path,
         .number = (size_t)arguments->number,
         .layout = {arguments->layout, arguments->parameters.items, arguments->parameters.count},
+        .only_slices = arguments->only_slices,
         .listener = listener,
         .user = user};
+    wh_log_more_take(&arguments->more, &wanted);
     const bool read = wh_log_run_read(run, &wanted);
     if (!read) {
         fprintf(stderr, "%s\n", run->message);
@@ -82,13 +98,17 @@ bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks) {
     return true;
 }
 
+const char *wh_log_missing_parts(const wh_log_run_t *run) {
+    return run->replay.recording.first_part > 1 ? "the parts before it are" : "the next part is";
+}
+
 int wh_log_arguments_judge(const wh_log_arguments_t *arguments, const wh_log_run_t *run) {
     if (run->worth.reason[0] != '\0') {
         fprintf(stderr, "%s: %s: %s\n", arguments->path, run->worth.verdict, run->worth.reason);
     }
     if (wh_log_run_is_part(run)) {
-        fprintf(stderr, "%s: part %d of a recording: the other parts are not read\n", arguments->path,
-                (int)run->worth.part);
+        fprintf(stderr, "%s: part %d of a recording: %s not read\n", arguments->path, (int)run->worth.part,
+                wh_log_missing_parts(run));
     }
     return run->worth.reason[0] == '\0' && !wh_log_run_is_part(run) ? WH_EXIT_MET : WH_EXIT_FAILED;
 }

@@ -43,9 +43,20 @@ static void print_help(FILE *out) {
     for (size_t i = 0; i < SUBCOMMANDS; ++i) {
         fprintf(out, "  %-11s %s\n", subcommands[i].name, subcommands[i].purpose);
     }
-    fputs("\n  waferhand COMMAND --help    tells the options of a command\n"
-          "  waferhand --version         prints the version\n\n" WH_HELP_EXIT "\n",
-          out);
+    fputs(
+        "\n  waferhand COMMAND --help    tells the options of a command, and so does waferhand help COMMAND\n"
+        "  waferhand --version         prints the version\n\n" WH_HELP_EXIT "\n",
+        out);
+}
+
+/* `waferhand help` is `--help`, and `waferhand help COMMAND` is `COMMAND --help`. */
+static void take_help(int *argc, char *argv[]) {
+    static char option[] = "--help";
+    if (*argc >= 2 && strcmp(argv[1], "help") == 0) {
+        argv[1] = *argc >= 3 ? argv[2] : option;
+        argv[2] = *argc >= 3 ? option : argv[2];
+        *argc = *argc >= 3 ? 3 : 2;
+    }
 }
 
 static void refuse(const char *word) {
@@ -64,6 +75,7 @@ int main(int argc, char **argv) {
     wh_guard_stderr();
     argp_err_exit_status = WH_EXIT_USAGE;
     argp_program_version = "waferhand " WH_VERSION;
+    take_help(&argc, argv);
     if (argc < 2) {
         print_help(stderr);
         return WH_EXIT_USAGE;

@@ -12,7 +12,7 @@ typedef struct {
     wh_mcs_link_options_t link;
     const char *layout;
     double timeout_s;     /* 0: for ever */
-    uint64_t most_missed; /* NO_LIMIT: as many as it likes */
+    uint64_t most_missed; /* NO_LIMIT: any number */
 } arguments_t;
 
 #define NO_LIMIT UINT64_MAX
@@ -85,7 +85,7 @@ static const wh_command_line_t command_line = {
 
 /* --------------------------------------------------------------------------------------------- the prompt */
 
-/* What the prompt looks after besides its input. */
+/* The things that the prompt serves besides its input. */
 typedef struct {
     wh_mcs_link_t *link;
     wh_session_t *session;
@@ -115,7 +115,7 @@ static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
     attendance_t attendance = {link, session};
     const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, stop_waiting, &attendance};
     wh_prompt_t *prompt = wh_prompt_open(session, &watch);
-    link->control.last_beat_us = wh_node_clock_us(); /* what is piped in goes before the first beat */
+    link->control.last_beat_us = wh_node_clock_us(); /* piped input is executed before the first beat */
     link->node.listener = say;
     link->node.listener_user = prompt;
     const int status = wh_prompt_run(prompt);
@@ -124,10 +124,10 @@ static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
     return status;
 }
 
-/* A session's run has no expectations that would say it. */
+/* A session's run has no expectations that would report it. */
 static int judge_missed(const arguments_t *arguments, const wh_session_t *session, const wh_node_t *node,
                         int status) {
-    wh_link_t *link = session->mcs.link;
+    wh_link_t *link = wh_mcs_link(&session->mcs);
     if (arguments->most_missed == NO_LIMIT) {
         return status;
     }
@@ -169,6 +169,7 @@ static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
     link->control.script = run->script;
     arguments->run.recording = arguments->run.record ? &link->record : NULL;
     arguments->run.unwritten = &link->control.client.counters.unwritten;
+    arguments->run.disturbance = link->control.client.disturbance;
     run->partners = wh_mcs_process_partners(&link->control);
     run->limits_missed = arguments->most_missed != NO_LIMIT;
     run->most_missed = run->limits_missed ? (int64_t)arguments->most_missed : 0;
@@ -189,6 +190,9 @@ int wh_app_mcs(int argc, char **argv) {
     if (wh_run_files_are_apart(&arguments.run, arguments.layout) &&
         wh_mcs_link_open(&link, &arguments.link)) {
         status = arguments.layout ? run_prompt(&arguments, &link) : run_script(&arguments, &link);
+        if (status == WH_EXIT_MET && link.control.client.counters.disturbed > 0) {
+            status = WH_EXIT_FAILED;
+        }
         if (status == WH_EXIT_FAILED && link.control.ended_with == WH_STATUS_NO_ANSWER) {
             status = WH_EXIT_NO_ANSWER;
         }

@@ -18,9 +18,9 @@ typedef struct {
 static const wh_option_t options[] = {
     {"wafer", 0, "MM", "The wafers' diameter: 100, 125, 150, 200 or 300 (default)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.wafer), 100, 300, "100, 125, 150, 200 or 300"},
-    {"foups", 0, "N", "So many FOUPs, or cassettes below 200 mm (default 2)", WH_OPTION_WHOLE,
+    {"foups", 0, "N", "Number of FOUPs, or of cassettes below 200 mm (default 2)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS},
-    {"blades", 0, "N", "So many blades on the robot (default 1)", WH_OPTION_WHOLE,
+    {"blades", 0, "N", "Number of blades on the robot (default 1)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES},
     {"aligner", 0, NULL, "A prealigner, too", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, cell.aligner)},
@@ -51,7 +51,7 @@ static const wh_command_line_t command_line = {
     .about =
         "Makes the folder NAME with a cell to start from: a layout, a script that runs in it, and what "
         "editors that use the Lua language server need. At a terminal, without options, it asks what the "
-        "cell shall have. What is there is never overwritten.\v" WH_HELP_EXIT,
+        "cell shall have. Existing files are never overwritten.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "name",
     .operand_variable = offsetof(arguments_t, folder),

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../layout/layout.h"
 #include "../mcs/definitions.h"
 
 const uint64_t wh_new_cell_sizes[] = {100, 125, 150, 200, 300, 0};
@@ -69,8 +70,9 @@ static bool write_layout(const wh_new_cell_t *cell, FILE *out) {
             "  wafer = { diameter = %" PRIu64 " },\n"
             "  tolerance = \"strict\",\n"
             "  check = \"swept\", -- between slices, too\n"
-            "  seat = true, -- the vacuum draws a wafer onto the pads\n",
-            stack_of(cell), cell->wafer);
+            "  seat = true, -- the vacuum draws a wafer onto the pads\n"
+            "  placing = { drop = %g }, -- mm that a wafer bears to fall as it is let go\n",
+            stack_of(cell), cell->wafer, (double)WH_USUAL_DROP);
     fputs(cell->collision ? "  collision = true, -- look for collisions while stepping\n" : "", out);
     write_blades(cell, out);
     write_stations(cell, out);

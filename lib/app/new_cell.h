@@ -1,4 +1,4 @@
-/* The files of a cell to start from: a layout, a script that runs in it, and what editors need. */
+/* The files of a cell to start from: a layout, a script that runs in it, and files for editors. */
 #ifndef WH_APP_NEW_CELL_H
 #define WH_APP_NEW_CELL_H
 
@@ -8,7 +8,7 @@
 #define WH_NEW_FOUPS 4
 #define WH_NEW_BLADES 2
 
-/* What the cell has. */
+/* The parts of the cell. */
 typedef struct {
     uint64_t wafer; /* mm: a size that has a thickness and a pitch by default, see wh_new_cell_sizes */
     uint64_t foups;
@@ -22,8 +22,8 @@ extern const uint64_t wh_new_cell_sizes[];
 /* True if nothing is there yet; else standard error says so. */
 bool wh_new_cell_is_free(const char *folder);
 
-/* Makes the folder and its files; nothing that is there is written over. False, and standard error says why,
- * if one cannot be made; what was made by then stays. */
+/* Makes the folder and its files; existing files are not overwritten. False, and standard error says why, if
+ * one cannot be made; files that were made before stay. */
 bool wh_new_cell_make(const wh_new_cell_t *cell, const char *folder);
 
 #endif

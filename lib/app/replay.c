@@ -10,9 +10,11 @@
 #include "../text/style.h"
 #include "apart.h"
 #include "app.h"
+#include "log_arguments.h"
 
 typedef struct {
     const char *path;
+    wh_log_more_t more;
     bool json, lenient;
 } arguments_t;
 
@@ -20,11 +22,12 @@ static const wh_option_t options[] = {
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, json)},
     {"lenient", 0, NULL,
-     "Of a log that a lossy network fed: messages may be missing, late or garbage, and are only named",
+     "For a log from a lossy network: missing, late and damaged messages are named and do not fail it",
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lenient)},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, NULL}, {wh_log_more_options, offsetof(arguments_t, more), NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "replay",
@@ -36,9 +39,10 @@ static const wh_command_line_t command_line = {
     .operand = "file",
     .operand_variable = offsetof(arguments_t, path)};
 
-/* What was read. */
+/* The replay that was read. */
 typedef struct {
     const arguments_t *arguments;
+    const wh_log_files_t *files;
     const wh_replay_t *replay;
     const wh_reading_t *reading;
     wh_reading_verdict_t verdict;
@@ -47,7 +51,7 @@ typedef struct {
 
 /* --------------------------------------------------------------------------------------------- for people */
 
-/* Prints "  1 slice ..." or "  2 slices ..." unless it is none. */
+/* Prints "  1 slice ..." or "  2 slices ..." unless the count is 0. */
 static void print_counted(int64_t count, const char *one, const char *many) {
     if (count > 0) {
         printf("  %" PRId64 " %s\n", count, count == 1 ? one : many);
@@ -95,7 +99,7 @@ static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *r
            doubtful ? ", or the cell does: nothing vouches for it" : "");
 }
 
-/* Why the run failed: as motion control told, or what its counts leave. */
+/* Says why the run failed: the reason that motion control told, or the one that remains by its counts. */
 static void print_reason(const wh_replay_run_t *run) {
     if (run->reason) {
         char *reason = wh_style_printable(run->reason);
@@ -121,6 +125,8 @@ static void print_outcome(const wh_replay_run_t *run) {
         puts(run->unmet > 0 ? "  the run failed: an expectation was not met; the log does not tell its end"
                             : "  the log does not tell if the run passed");
     }
+    print_counted(wh_reading_lost_end(run), "slice before the run's end is not in the log",
+                  "slices before the run's end are not in the log");
     print_counted(wh_reading_lost_expectations(run), "expectation is not in the log",
                   "expectations are not in the log");
 }
@@ -155,12 +161,29 @@ static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
     print_difference(replay, run);
 }
 
-static void print_losses(const wh_replay_t *replay) {
+static void print_path(const wh_log_files_t *files, size_t file) {
+    char *path = wh_style_printable(files->paths[file]);
+    fputs(path, stdout);
+    free(path);
+}
+
+/* The place of a byte, and with several files the file that holds it. */
+static void print_place(const wh_log_files_t *files, size_t file, uint64_t at) {
+    printf("byte %" PRIu64, at);
+    if (files->count > 1) {
+        fputs(" of ", stdout);
+        print_path(files, file);
+    }
+}
+
+static void print_losses(const wh_replay_t *replay, const wh_log_files_t *files) {
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
         const wh_replay_count_t *loss = &replay->losses[i];
         if (loss->count > 0) {
-            printf("%" PRIu64 " %s, the first at byte %" PRIu64 "\n", loss->count,
-                   loss->count == 1 ? wh_reading_losses[i].one : wh_reading_losses[i].many, loss->first);
+            printf("%" PRIu64 " %s, the first at ", loss->count,
+                   loss->count == 1 ? wh_reading_losses[i].one : wh_reading_losses[i].many);
+            print_place(files, loss->file, loss->first);
+            putchar('\n');
         }
     }
     if (replay->proximities > 0) {
@@ -193,10 +216,15 @@ static void print_numbers(const wh_log_numbers_t *numbers) {
     }
 }
 
-/* What the recording says of itself. */
+/* Prints the recording's own description. */
 static void print_recording(const wh_replay_recording_t *recording) {
     if (recording->part > 1 || recording->closed == WH_RECORDING_GOES_ON) {
-        printf("part %d of recording %016" PRIx64 "%s\n", (int)recording->part, (uint64_t)recording->id,
+        const bool several = recording->first_part < recording->part;
+        printf("part%s %d", several ? "s" : "", (int)recording->first_part);
+        if (several) {
+            printf(" to %d", (int)recording->part);
+        }
+        printf(" of recording %016" PRIx64 "%s\n", (uint64_t)recording->id,
                recording->closed == WH_RECORDING_GOES_ON ? ", which goes on in the next part" : "");
     }
     if (recording->is_changed) {
@@ -204,21 +232,50 @@ static void print_recording(const wh_replay_recording_t *recording) {
     }
 }
 
-static void print_damage(const char *path, const wh_reading_t *reading) {
-    const char *where = reading->is_compressed ? " of what was decompressed" : "";
-    if (reading->broken > 0) {
-        printf("%s: damaged at byte %" PRIu64 ", within a compressed frame; %" PRIu64 " such %s\n", path,
-               reading->first_broken, reading->broken, reading->broken == 1 ? "place" : "places");
-    }
+static void print_damages(const wh_log_files_t *files, const wh_reading_t *reading, const char *where) {
     for (size_t i = 0; i < reading->damage_count && i < WH_READING_DAMAGES; ++i) {
-        printf("%s: damaged at byte %" PRIu64 "%s: %" PRIu64 " bytes are no event\n", path,
-               reading->damages[i].from, where, reading->damages[i].to - reading->damages[i].from);
+        const wh_reading_damage_t *damage = &reading->damages[i];
+        print_path(files, damage->file);
+        printf(": damaged at byte %" PRIu64 "%s: %" PRIu64 " bytes are no event\n", damage->from, where,
+               damage->to - damage->from);
     }
     if (reading->damage_count > WH_READING_DAMAGES) {
-        printf("%s: and %" PRIu64 " more times\n", path, reading->damage_count - WH_READING_DAMAGES);
+        print_path(files, 0);
+        printf(": and %" PRIu64 " more times\n", reading->damage_count - WH_READING_DAMAGES);
+    }
+}
+
+static void print_cuts(const wh_log_files_t *files, const wh_reading_t *reading, const char *where) {
+    for (size_t i = 0; i < reading->cut_count && i < WH_READING_DAMAGES; ++i) {
+        print_path(files, reading->cuts[i].file);
+        printf(": cut off at byte %" PRIu64 "%s; the next log goes on\n", reading->cuts[i].from, where);
     }
     if (reading->is_cut) {
-        printf("%s: cut off at byte %" PRIu64 "%s\n", path, reading->cut_at, where);
+        print_path(files, files->count - 1);
+        printf(": cut off at byte %" PRIu64 "%s\n", reading->cut_at, where);
+    }
+}
+
+static void print_damage(const wh_log_files_t *files, const wh_reading_t *reading) {
+    const char *where = reading->is_compressed ? " of what was decompressed" : "";
+    if (reading->broken > 0) {
+        print_path(files, 0);
+        printf(": damaged at byte %" PRIu64 ", within a compressed frame; %" PRIu64 " such %s\n",
+               reading->first_broken, reading->broken, reading->broken == 1 ? "place" : "places");
+    }
+    print_damages(files, reading, where);
+    print_cuts(files, reading, where);
+}
+
+/* Prints the facts about several files that a reader needs. */
+static void print_files(const result_t *result) {
+    const size_t unclosed = result->replay->open_files;
+    if (result->files->count > 1) {
+        printf("%zu files, read as one log\n", result->files->count);
+    }
+    if (unclosed > 0) {
+        printf("%zu of them %s not closed: nothing vouches for the texts in %s\n", unclosed,
+               unclosed == 1 ? "was" : "were", unclosed == 1 ? "it" : "them");
     }
 }
 
@@ -241,11 +298,10 @@ static int print_table(const result_t *result) {
         print_run(result->replay, &result->replay->runs[i]);
     }
     print_recording(&result->replay->recording);
-    print_losses(result->replay);
+    print_files(result);
+    print_losses(result->replay, result->files);
     print_numbers(&result->reading->numbers);
-    char *path = wh_style_printable(result->arguments->path);
-    print_damage(path, result->reading);
-    free(path);
+    print_damage(result->files, result->reading);
     printf("%s%s%s%s\n", verdicts[result->verdict], result->reason[0] ? ": " : "", result->reason,
            result->verdict == WH_READING_SAME && has_collisions(result->replay)
                ? ", but for what the collision check found, which was not compared"
@@ -286,11 +342,12 @@ static json_t *run_to_json(const void *subject, size_t i) {
                     json_integer(run->last_slice), json_integer(run->compared), json_integer(run->differing),
                     json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
     return wh_json_add(object,
-                       "outside_valves taken_up skipped missed refused other_layout doubtful "
+                       "outside_valves taken_up skipped lost_end missed refused other_layout doubtful "
                        "collisions_not_compared begins_in_part goes_on_from over hash outcome "
                        "first_difference",
                        json_integer(run->outside_valves), json_integer(run->taken_up),
-                       json_integer(run->skipped), json_integer(run->missed), json_integer(run->refused),
+                       json_integer(run->skipped), json_integer(wh_reading_lost_end(run)),
+                       json_integer(run->missed), json_integer(run->refused),
                        json_integer(run->is_other_layout ? run->homeless : 0), json_integer(run->doubtful),
                        json_integer(run->collisions), json_boolean(run->begins_in_part),
                        run->goes_on_from != 0 ? wh_json_hash((uint64_t)run->goes_on_from) : json_null(),
@@ -312,13 +369,15 @@ static json_t *damage_to_json(const void *subject, size_t i) {
 
 static void put_recording(const wh_replay_recording_t *recording, json_t *root) {
     const bool tells = recording->version > 0;
-    (void)wh_json_add(
-        root, "version id part closed goes_on program changed", json_integer(tells ? recording->version : 1),
-        tells ? wh_json_hash((uint64_t)recording->id) : json_null(),
-        tells ? json_integer(recording->part) : json_null(),
-        tells ? json_boolean(recording->closed != WH_RECORDING_BEGINS) : json_null(),
-        tells ? json_boolean(recording->closed == WH_RECORDING_GOES_ON) : json_null(),
-        tells ? wh_json_text(recording->program) : json_null(), json_boolean(recording->is_changed), NULL);
+    (void)wh_json_add(root, "version id first_part part closed goes_on program changed",
+                      json_integer(tells ? recording->version : 1),
+                      tells ? wh_json_hash((uint64_t)recording->id) : json_null(),
+                      tells ? json_integer(recording->first_part) : json_null(),
+                      tells ? json_integer(recording->part) : json_null(),
+                      tells ? json_boolean(recording->closed != WH_RECORDING_BEGINS) : json_null(),
+                      tells ? json_boolean(recording->closed == WH_RECORDING_GOES_ON) : json_null(),
+                      tells ? wh_json_text(recording->program) : json_null(),
+                      json_boolean(recording->is_changed), NULL);
 }
 
 static void put_losses(const wh_replay_t *replay, json_t *root) {
@@ -349,12 +408,18 @@ static void put_file(const wh_reading_t *reading, json_t *root) {
     wh_json_put(root, "cut_at", reading->is_cut ? json_integer((json_int_t)reading->cut_at) : json_null());
 }
 
+static json_t *path_to_json(const void *subject, size_t i) {
+    return wh_json_text(((const wh_log_files_t *)subject)->paths[i]);
+}
+
 static int print_json(const result_t *result) {
     json_t *root = wh_json_add(
         json_object(), "format ok verdict reason lenient file events", json_integer(2),
         json_boolean(result->verdict == WH_READING_SAME), wh_json_text(wh_reading_word(result->verdict)),
         wh_json_text(result->reason[0] ? result->reason : NULL), json_boolean(result->arguments->lenient),
         wh_json_text(result->arguments->path), json_integer((json_int_t)result->reading->events), NULL);
+    wh_json_put(root, "files", wh_json_list(path_to_json, result->files, result->files->count));
+    wh_json_put(root, "files_not_closed", json_integer((json_int_t)result->replay->open_files));
     put_recording(&result->replay->recording, root);
     put_losses(result->replay, root);
     put_file(result->reading, root);
@@ -369,8 +434,8 @@ static int print_json(const result_t *result) {
 static void print_unusable(const result_t *result) {
     const char *path = result->arguments->path;
     if (wh_reading_is_unknown(result->replay)) {
-        fprintf(stderr, "%s: a recording of version %d (expected 1 or %d)\n", path,
-                (int)result->replay->recording.version, WH_RECORDING_VERSION);
+        fprintf(stderr, "%s: a recording of version %d (expected 1, %d or %d)\n", path,
+                (int)result->replay->recording.version, WH_RECORDING_OLDEST, WH_RECORDING_VERSION);
         return;
     }
     fprintf(stderr,
@@ -388,29 +453,37 @@ static int print(const result_t *result) {
     return wh_app_is_printed(printed) ? (int)result->verdict : WH_EXIT_USAGE;
 }
 
-int wh_app_replay(int argc, char **argv) {
+static int replay_files(const arguments_t *arguments, const wh_log_files_t *files) {
     static wh_replay_t replay;
     static wh_log_t log;
-    arguments_t arguments = {0};
     wh_reading_t reading;
-    wh_options_parse(&command_line, argc, argv, &arguments);
-    const wh_named_file_t named = {"the log", arguments.path, false};
-    if (!wh_files_are_apart(&named, 1, true)) {
-        return WH_EXIT_USAGE;
-    }
-    const char *fault = NULL;
-    FILE *file = wh_log_file(arguments.path, &fault);
-    if (!file) {
-        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments.path, fault);
-        return WH_EXIT_USAGE;
-    }
     memset(&replay, 0, sizeof replay);
-    wh_reading_replay(file, &log, &replay, &reading);
+    wh_reading_replay(files, &log, &replay, &reading);
     wh_log_close(&log);
-    (void)fclose(file);
-    result_t result = {.arguments = &arguments, .replay = &replay, .reading = &reading};
-    result.verdict = wh_reading_judge(&replay, &reading, arguments.lenient, result.reason);
+    result_t result = {.arguments = arguments, .files = files, .replay = &replay, .reading = &reading};
+    result.verdict = wh_reading_judge(&replay, &reading, arguments->lenient, result.reason);
     const int status = print(&result);
     wh_replay_close(&replay);
+    return status;
+}
+
+int wh_app_replay(int argc, char **argv) {
+    arguments_t arguments = {0};
+    wh_log_files_t files;
+    char message[WH_LOG_FILES_MESSAGE];
+    int status = WH_EXIT_USAGE;
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    const wh_named_file_t named = {"the log", arguments.path, false};
+    const wh_log_names_t names = {arguments.path, arguments.more.then.items, arguments.more.then.count,
+                                  arguments.more.is_alone};
+    if (wh_files_are_apart(&named, 1, true)) {
+        if (wh_log_files_open(&files, &names, message)) {
+            status = replay_files(&arguments, &files);
+        } else {
+            fprintf(stderr, "%s\n", message);
+        }
+        wh_log_files_close(&files);
+    }
+    wh_option_list_free(&arguments.more.then);
     return status;
 }

@@ -8,7 +8,8 @@
 #include "watch.h"
 
 typedef struct {
-    wh_run_arguments_t run; /* run.run.script is RUN, whatever it is */
+    wh_run_arguments_t run; /* run.run.script is RUN, of any kind */
+    wh_log_more_t more;
     const char *layout;
     uint64_t number; /* 0: the last */
     bool watch;
@@ -16,15 +17,16 @@ typedef struct {
 
 static const wh_option_t options[] = {
     {"layout", 0, "FILE",
-     "Of a log: its layout's file, if it is not where the log says; another layout is refused",
+     "For a log: the file of its layout, if it is not where the log says; another layout is refused",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout)},
-    {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
+    {"run", 0, "N", "For a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
      .variable = offsetof(arguments_t, number), .least = 1},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
+    {wh_log_more_options, offsetof(arguments_t, more), NULL, NULL},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
@@ -60,10 +62,10 @@ static const wh_command_line_t command_line = {
 
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;
-    const wh_log_run_options_t wanted = {
-        .path = given->script,
-        .number = (size_t)arguments->number,
-        .layout = {arguments->layout, given->parameters, given->parameter_count}};
+    wh_log_run_options_t wanted = {.path = given->script,
+                                   .number = (size_t)arguments->number,
+                                   .layout = {arguments->layout, given->parameters, given->parameter_count}};
+    wh_log_more_take(&arguments->more, &wanted);
     if (!wh_log_run_read(run, &wanted)) {
         fprintf(stderr, "%s\n", run->message);
         return false;
@@ -86,7 +88,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
            wh_app_is_printed(wh_run_print(&arguments->run, &run->record));
 }
 
-/* What only a script has. */
+/* The first option that needs a script. */
 static const char *find_foreign(const wh_run_arguments_t *run) {
     return run->budget > 0         ? "--budget"
            : run->memory_mib > 0   ? "--memory"
@@ -131,9 +133,13 @@ static int report_script(arguments_t *arguments, bool is_text) {
                 arguments->run.run.script);
         return WH_EXIT_USAGE;
     }
-    if (arguments->layout || arguments->number > 0) {
-        fprintf(stderr, "%s: no LCM event log (expected one with %s)\n", arguments->run.run.script,
-                arguments->layout ? "--layout" : "--run");
+    const char *wanted = arguments->layout                ? "--layout"
+                         : arguments->number > 0          ? "--run"
+                         : arguments->more.is_alone       ? "--alone"
+                         : arguments->more.then.count > 0 ? "--then"
+                                                          : NULL;
+    if (wanted) {
+        fprintf(stderr, "%s: no LCM event log (expected one with %s)\n", arguments->run.run.script, wanted);
         return WH_EXIT_USAGE;
     }
     return arguments->watch ? wh_run_watch(&arguments->run, play, &arguments->run) : play(&arguments->run);
@@ -164,6 +170,7 @@ int wh_app_report(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     const int status = report(&arguments);
+    wh_option_list_free(&arguments.more.then);
     wh_run_arguments_free(&arguments.run);
     return status;
 }

@@ -20,7 +20,7 @@ static const wh_option_t options[] = {
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
-/* The errors are in the simulator of this process, and in nothing that is published or recorded of a run. */
+/* The errors are in the simulator of this process. Nothing of them is published or recorded. */
 static void check_errors(const arguments_t *arguments, struct argp_state *state) {
     const char *other = arguments->lcm             ? "--lcm"
                         : arguments->record.slices ? "--record"

@@ -122,7 +122,7 @@ const wh_option_t wh_run_error_options[] = {
      WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, errors)},
     {0}};
 
-/* What is before the last equals sign. */
+/* The length of the text before the last equals sign. */
 static size_t name_length(const char *error) {
     const char *equals = strrchr(error, '=');
     return equals ? (size_t)(equals - error) : strlen(error);
@@ -274,6 +274,11 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
                 arguments->run.script);
         return false;
     }
+    if (run->record.layout->tool) {
+        fprintf(stderr, "%s: nothing to show (expected robots with axes: here they are times alone)\n",
+                run->record.layout->path);
+        return false;
+    }
     if (!signals->layout) {
         wh_signals_begin(signals, run->record.layout, true);
     }
@@ -282,10 +287,13 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
-/* What a layout must be for its segments to be written: null if it is that. */
+/* The kind of layout whose segments can be written; null if the layout is of that kind. */
 static const char *segments_expect(const wh_layout_t *layout) {
     if (!layout) {
         return NULL;
+    }
+    if (layout->tool) {
+        return "robots with axes";
     }
     if (layout->machine.carrier) {
         return WH_AXES_USUAL;
@@ -301,15 +309,17 @@ static const char *segments_expect(const wh_layout_t *layout) {
     return wh_layout_has_loaded(layout) ? "a layout without `loaded`" : NULL;
 }
 
-/* False, and says so, for a run that would not be the same when it is played again. */
+/* False, with a message, for a run that would differ when it is played again. */
 static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
-    const char *expected = segments_expect(mcs->layout);
-    if (!arguments->segments_path || (!mcs->unplayed && !expected)) {
+    const wh_layout_t *layout = wh_mcs_layout(mcs);
+    const char *unplayed = wh_mcs_kept(mcs)->unplayed;
+    const char *expected = segments_expect(layout);
+    if (!arguments->segments_path || (!unplayed && !expected)) {
         return true;
     }
-    const bool is_unplayed = mcs->unplayed && !(mcs->layout && mcs->layout->machine.carrier);
+    const bool is_unplayed = unplayed && !(layout && layout->machine.carrier);
     fprintf(stderr, "--segments: %s: not written (expected %s%s)\n", arguments->segments_path,
-            is_unplayed ? "a script without " : "", is_unplayed ? mcs->unplayed : expected);
+            is_unplayed ? "a script without " : "", is_unplayed ? unplayed : expected);
     return false;
 }
 
@@ -322,8 +332,8 @@ static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run
            write_report(arguments, run, signals);
 }
 
-/* A script that ends with an error of its own: what came before is shown, if a slice did, and the error with
- * it. */
+/* Handles a script that ends with an error of its own: the run before it is shown, if it has a slice,
+ * together with the error. */
 static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                        wh_signals_t *signals) {
     fprintf(stderr, "%s\n", run->message);
@@ -335,8 +345,8 @@ static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_
     return WH_EXIT_USAGE;
 }
 
-/* A run of which the recording failed, or the valves were not written, is not told as good. Returns if it
- * failed so. */
+/* A run is not reported as good if its recording failed, or if the valves were not written. Returns true if
+ * it failed so. */
 static bool note_unwritten(const wh_run_arguments_t *arguments, wh_record_t *record) {
     char text[PATH_MAX + 100] = "";
     if (arguments->recording && !wh_recording_is_sound(arguments->recording)) {
@@ -344,6 +354,8 @@ static bool note_unwritten(const wh_run_arguments_t *arguments, wh_record_t *rec
                        arguments->record);
     } else if (arguments->unwritten && *arguments->unwritten > 0) {
         (void)snprintf(text, sizeof text, WH_OUTPUTS_UNWRITTEN, arguments->outputs);
+    } else if (arguments->disturbance) {
+        (void)snprintf(text, sizeof text, "%s", arguments->disturbance);
     }
     if (text[0] == '\0') {
         return false;

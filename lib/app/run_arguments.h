@@ -31,10 +31,13 @@ typedef struct {
     wh_option_list_t errors;   /* that the cell has: of wh_run_error_options */
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
-    const char *record, *outputs; /* what else is written, not by this; null: none */
+    const char *record, *outputs; /* files that others write; null: none */
     const char *record_option;    /* that gave `record` */
-    wh_recording_t *recording; /* that goes into `record`: a run that it does not keep has failed; or null */
-    const uint64_t *unwritten; /* how often `outputs` was not written: the same; null: nobody counts */
+    wh_recording_t *recording; /* that goes into `record`: if it does not keep the run, the run has failed; or
+                                * null */
+    const uint64_t *unwritten; /* how often `outputs` was not written: then likewise; null: nobody counts */
+    const char *disturbance;   /* why the run is not the requested one: then likewise; null, or empty: it
+                                * is */
     bool json;
     wh_record_sections_t sections; /* of the tables */
     bool quiet;                    /* print no tables, and nothing at all without `json` */
@@ -42,13 +45,13 @@ typedef struct {
     wh_run_files_t files;
 } wh_run_arguments_t;
 
-/* All options but those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
+/* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
 
-/* Why errors do not go with what tells of the cell. */
+/* The reason why errors do not go with options that describe the cell. */
 #define WH_RUN_ERRORS_ALONE "--error does not go with %s, which tells of the cell as its layout says"
 
-/* Errors that are given, for a run in this process: also into a wh_run_arguments_t. The check refuses one
+/* Options for given errors, for a run in this process: also into a wh_run_arguments_t. The check refuses one
  * that is given twice, and those beside --segments. */
 extern const wh_option_t wh_run_error_options[];
 void wh_run_errors_check(const void *filled, struct argp_state *state);
@@ -56,15 +59,15 @@ void wh_run_errors_check(const void *filled, struct argp_state *state);
 /* A wh_option_table_t's check of them. */
 void wh_run_arguments_check(const void *filled, struct argp_state *state);
 
-/* The option of a table that is wanted; null: none is. */
+/* The option of a wanted table; null: none is wanted. */
 const char *wh_run_table_wanted(const wh_run_arguments_t *arguments);
 
 /* Hands what was parsed on to `run`. */
 void wh_run_arguments_take(wh_run_arguments_t *arguments);
 void wh_run_arguments_free(wh_run_arguments_t *arguments);
 
-/* True if no output is the script, `input` (null: none), what a cell is described by, or another output; else
- * standard error says which. A recording that has failed has told that itself, and is left out. */
+/* True if no output is the script, `input` (null: none), a file that describes the cell, or another output;
+ * else standard error says which. A recording that has failed has reported that itself, and is left out. */
 bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input);
 
 /* Prints a record as the arguments want it: as JSON, as tables, or not at all. 0, or -1 if standard output
@@ -75,15 +78,15 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
  * a log. */
 char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
 
-/* Runs the script and prints what came of it. Returns the exit status. */
+/* Runs the script and prints its result. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
 
-/* wh_watch of a run that `act` makes of `user`. */
+/* Calls wh_watch for a run that `act` makes with `user`. */
 int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user);
 
-/* Writes those that are wanted, if any is, from a document that has source, record, signals and notes; the
- * rest is made of the arguments. Each file is there whole or as it was. False, with a line on standard error,
- * if one cannot be written. */
+/* Writes the wanted files, if any, from a document that has source, record, signals and notes; the arguments
+ * give the rest. Each file is then whole, or as it was before. False, with a line on standard error, if one
+ * cannot be written. */
 bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t *document);
 
 #endif

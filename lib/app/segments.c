@@ -7,15 +7,17 @@
 
 #include "../math/hash.h"
 #include "../text/array.h"
-#include "../text/json.h"
+#include "../text/digits.h"
 
 /* Room for a prefix: a file's name. */
 #define PREFIX_SIZE 256
 
-/* What is being written. */
+/* The state of writing. */
 typedef struct {
     FILE *out;
-    const wh_mcs_t *mcs;
+    const wh_record_t *record;
+    const wh_layout_t *layout; /* with a trial's errors */
+    const wh_mcs_kept_t *kept;
     char prefix[PREFIX_SIZE], upper[PREFIX_SIZE];
     char **lines; /* of the script; none if it cannot be read again */
     size_t line_count, line_capacity;
@@ -53,7 +55,7 @@ static void name_constants(writer_t *writer) {
 }
 
 static void read_lines(writer_t *writer) {
-    FILE *in = fopen(writer->mcs->script, "r");
+    FILE *in = fopen(writer->record->script, "r");
     char *line = NULL;
     size_t size = 0;
     while (in && getline(&line, &size, in) >= 0) {
@@ -80,8 +82,8 @@ static void free_lines(writer_t *writer) {
 
 /* With a point or an exponent: a whole number would be of another type. */
 static void write_real(FILE *out, wh_real_t value) {
-    char text[WH_JSON_DIGITS];
-    wh_json_digits(value, text);
+    char text[WH_DIGITS];
+    wh_digits(value, text);
     fprintf(out, "%s%s", text, strpbrk(text, ".en") ? "" : ".0");
 }
 
@@ -111,8 +113,8 @@ static void write_pose(FILE *out, const wh_pose_t *pose) {
     fputs("}", out);
 }
 
-/* An array with each item on lines of its own. C99 has no empty arrays: of none the first is written all the
- * same. */
+/* An array with each item on lines of its own. C99 has no empty arrays: without items the first one is
+ * written anyway. */
 static void write_array(const writer_t *writer, const char *type, const char *name, size_t count,
                         void (*write)(const writer_t *writer, size_t i)) {
     fprintf(writer->out, "static const %s %s_%s[] = {\n", type, writer->prefix, name);
@@ -142,7 +144,7 @@ static void write_robot(FILE *out, const wh_robot_t *robot) {
     fputs("},\n    ", out);
 }
 
-/* The rest of a mount. */
+/* Writes the rest of a mount. */
 static void write_slides(FILE *out, const wh_mount_t *mount) {
     static const char *const kinds[] = {"WH_MOUNT_CHUCK", "WH_MOUNT_STAGE", "WH_MOUNT_PINS",
                                         "WH_MOUNT_FLIPPER"};
@@ -156,7 +158,7 @@ static void write_slides(FILE *out, const wh_mount_t *mount) {
 }
 
 static void write_machine(const writer_t *writer) {
-    const wh_machine_t *machine = &writer->mcs->real->machine;
+    const wh_machine_t *machine = &writer->layout->machine;
     FILE *out = writer->out;
     fprintf(out, "static const wh_machine_t %s_machine = {\n", writer->prefix);
     write_robot(out, &machine->robot);
@@ -175,7 +177,7 @@ static void write_machine(const writer_t *writer) {
 
 /* ----------------------------------------------------------------------------------------------- segments */
 
-/* A line of the script without the blanks around it, and so that it ends no comment. */
+/* Writes a line of the script without the blanks around it, and in a form that cannot end a comment. */
 static void write_in_comment(FILE *out, const char *text) {
     size_t length = strlen(text);
     while (length > 0 && isspace((unsigned char)text[length - 1])) {
@@ -189,9 +191,9 @@ static void write_in_comment(FILE *out, const char *text) {
     }
 }
 
-/* What asked for the segments that follow: the script's line, and the command as an operator types it. */
+/* Writes the origin of the following segments: the script's line, and the command as an operator types it. */
 static void write_command(const writer_t *writer, int32_t index) {
-    const wh_record_t *record = writer->mcs->recorder.record;
+    const wh_record_t *record = writer->record;
     if (!wh_is_index(index, record->command_count)) {
         return;
     }
@@ -211,7 +213,7 @@ static void write_segment(const writer_t *writer, size_t index) {
         [WH_SEGMENT_DWELL] = "DWELL", [WH_SEGMENT_SENSOR] = "SENSOR", [WH_SEGMENT_WAY] = "WAY",
     };
     static const wh_kept_segment_t none = {.segment.kind = WH_SEGMENT_DWELL, .command = WH_NONE};
-    const wh_kept_segment_t *kept = writer->mcs->segment_count > 0 ? &writer->mcs->segments[index] : &none;
+    const wh_kept_segment_t *kept = writer->kept->segment_count > 0 ? &writer->kept->segments[index] : &none;
     const wh_segment_t *segment = &kept->segment;
     const wh_real_t values[] = {segment->speed, segment->acceleration, segment->seconds};
     FILE *out = writer->out;
@@ -262,7 +264,7 @@ static void write_fault(FILE *out, const wh_fault_t *fault) {
 
 static void write_kept_fault(const writer_t *writer, size_t i) {
     static const wh_played_fault_t none = {0};
-    const wh_played_fault_t *fault = writer->mcs->kept_fault_count > 0 ? &writer->mcs->kept_faults[i] : &none;
+    const wh_played_fault_t *fault = writer->kept->fault_count > 0 ? &writer->kept->faults[i] : &none;
     fprintf(writer->out, "    {%" PRId64 ", {%" PRId32 ", ", fault->seq, fault->request.index);
     write_fault(writer->out, &fault->request.fault);
     fputs("}}", writer->out);
@@ -272,7 +274,7 @@ static void write_kept_fault(const writer_t *writer, size_t i) {
 
 static void write_station(const writer_t *writer, size_t i) {
     static const wh_station_t none = {.slots = 1, .pitch = 1, .chuck = WH_NONE};
-    const wh_cell_t *cell = &writer->mcs->real->cell;
+    const wh_cell_t *cell = &writer->layout->cell;
     const wh_station_t *station = cell->count > 0 ? &cell->stations[i] : &none;
     fputs("    {", writer->out);
     write_pose(writer->out, &station->base_from_station);
@@ -283,7 +285,7 @@ static void write_station(const writer_t *writer, size_t i) {
 
 static void write_wafer(const writer_t *writer, size_t i) {
     const wh_pose_t none = wh_pose_identity();
-    const wh_layout_t *layout = writer->mcs->real;
+    const wh_layout_t *layout = writer->layout;
     fputs("    ", writer->out);
     write_pose(writer->out, layout->wafer_count > 0 ? &layout->start[i].base_from_wafer : &none);
 }
@@ -319,7 +321,7 @@ static void write_physics(FILE *out, const wh_physics_t *physics) {
 }
 
 static void write_cell(const writer_t *writer) {
-    const wh_cell_t *cell = &writer->mcs->real->cell;
+    const wh_cell_t *cell = &writer->layout->cell;
     fprintf(writer->out, "    {%s_stations, %zu, ", writer->prefix, cell->count);
     write_tolerance(writer->out, &cell->tolerance);
     fputs(", ", writer->out);
@@ -331,10 +333,10 @@ static void write_cell(const writer_t *writer) {
     fputs("},\n", writer->out);
 }
 
-/* A run without ways does not link what they need. */
-static const char *taker_of_ways(const wh_mcs_t *mcs) {
-    for (size_t i = 0; i < mcs->segment_count; ++i) {
-        if (mcs->segments[i].segment.kind == WH_SEGMENT_WAY) {
+/* A run without ways does not link the code for ways. */
+static const char *taker_of_ways(const wh_mcs_kept_t *kept) {
+    for (size_t i = 0; i < kept->segment_count; ++i) {
+        if (kept->segments[i].segment.kind == WH_SEGMENT_WAY) {
             return "wh_track_take_ways";
         }
     }
@@ -342,27 +344,27 @@ static const char *taker_of_ways(const wh_mcs_t *mcs) {
 }
 
 static void write_run(const writer_t *writer) {
-    const wh_mcs_t *mcs = writer->mcs;
+    const wh_layout_t *layout = writer->layout;
+    const wh_mcs_kept_t *kept = writer->kept;
     const char *prefix = writer->prefix;
     fprintf(writer->out,
             "enum { %s_WAFERS = %zu, %s_GRIPPERS = %zu };\n\nstatic const wh_played_t %s_run = {\n"
             "    &%s_machine, %s_segments, %zu, %s_faults, %zu, %s_wafers, %s_WAFERS, %" PRId64 ",\n",
-            writer->upper, mcs->real->wafer_count, writer->upper, mcs->real->machine.gripper_count, prefix,
-            prefix, prefix, mcs->segment_count, prefix, mcs->kept_fault_count, prefix, writer->upper,
-            mcs->layout->slice_us);
-    write_config(writer->out, &mcs->real->grasp);
-    write_physics(writer->out, &mcs->real->physics);
+            writer->upper, layout->wafer_count, writer->upper, layout->machine.gripper_count, prefix, prefix,
+            prefix, kept->segment_count, prefix, kept->fault_count, prefix, writer->upper, layout->slice_us);
+    write_config(writer->out, &layout->grasp);
+    write_physics(writer->out, &layout->physics);
     write_cell(writer);
     fprintf(writer->out, "    %" PRId64 ", UINT64_C(0x%016" PRIx64 "), %s};\n\n#endif\n",
-            mcs->recorder.record->slices, mcs->recorder.record->hash, taker_of_ways(mcs));
+            writer->record->slices, writer->record->hash, taker_of_ways(kept));
 }
 
-/* Several file names give one C name. So the guard tells the contents: the same file may come twice, and of
- * two files the second is an error. */
+/* Several file names give one C name. So the guard depends on the contents: one file may be included twice,
+ * but a second, different file is an error. */
 static void write_head(const writer_t *writer, uint64_t contents) {
     const char *upper = writer->upper;
     fputs("/* ", writer->out);
-    write_in_comment(writer->out, writer->mcs->script);
+    write_in_comment(writer->out, writer->record->script);
     fprintf(
         writer->out,
         " as waferhand " WH_VERSION " played it: see waferhand/sim/played.h.\n"
@@ -376,10 +378,10 @@ static void write_head(const writer_t *writer, uint64_t contents) {
 static void write_contents(writer_t *writer) {
     read_lines(writer);
     write_machine(writer);
-    write_array(writer, "wh_played_segment_t", "segments", writer->mcs->segment_count, write_segment);
-    write_array(writer, "wh_played_fault_t", "faults", writer->mcs->kept_fault_count, write_kept_fault);
-    write_array(writer, "wh_station_t", "stations", writer->mcs->real->cell.count, write_station);
-    write_array(writer, "wh_pose_t", "wafers", writer->mcs->real->wafer_count, write_wafer);
+    write_array(writer, "wh_played_segment_t", "segments", writer->kept->segment_count, write_segment);
+    write_array(writer, "wh_played_fault_t", "faults", writer->kept->fault_count, write_kept_fault);
+    write_array(writer, "wh_station_t", "stations", writer->layout->cell.count, write_station);
+    write_array(writer, "wh_pose_t", "wafers", writer->layout->wafer_count, write_wafer);
     write_run(writer);
     free_lines(writer);
 }
@@ -392,7 +394,7 @@ static uint64_t hash_bytes(const char *bytes, size_t size) {
     return hash;
 }
 
-/* The contents come first, for the head names their hash. */
+/* The contents come first, because the head names their hash. */
 static void write_all(writer_t *writer, FILE *out) {
     char *contents = NULL;
     size_t size = 0;
@@ -407,8 +409,10 @@ static void write_all(writer_t *writer, FILE *out) {
 
 bool wh_segments_write(void *segments, FILE *out) {
     const wh_segments_t *wanted = segments;
-    writer_t writer = {.mcs = wanted->mcs};
-    if (writer.mcs->layout) {
+    writer_t writer = {.record = wh_mcs_record(wanted->mcs),
+                       .layout = wh_mcs_true_layout(wanted->mcs),
+                       .kept = wh_mcs_kept(wanted->mcs)};
+    if (writer.layout) {
         name_prefix(&writer, wanted->path);
         name_constants(&writer);
         write_all(&writer, out);

@@ -17,7 +17,7 @@
 
 typedef struct {
     wh_layout_arguments_t layout;
-    wh_run_arguments_t run; /* of which the files alone are taken from the command line */
+    wh_run_arguments_t run; /* only its files come from the command line */
     wh_option_list_t dialects, mechanisms, tcp, pty;
     double rate; /* 0: not given */
     bool lockstep;
@@ -29,7 +29,7 @@ static const wh_option_t options[] = {
     {"dialect", 0, "FILE", "How the next port's controller talks: a Lua file, see lua/dialects/README.md",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, dialects)},
     {"mechanism", 0, "NAME",
-     "What the port of the dialect before it stands for: a robot or a station of the layout, such as an "
+     "The dialect before it speaks for this: a robot or a station of the layout, such as an "
      "aligner (default: what its dialect says, else the whole cell)",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, mechanisms)},
     {"tcp", 0, "ADDRESS:PORT",
@@ -84,7 +84,7 @@ static const wh_command_line_t command_line = {
 
 /* -------------------------------------------------------------------------------------------------- ports */
 
-/* Which argument of the command line it is, or is a part of. */
+/* The argument of the command line that it is, or belongs to. */
 static int place_of(int argc, char **argv, const char *item) {
     for (int i = 0; i < argc; ++i) {
         for (const char *c = argv[i];; ++c) {
@@ -106,8 +106,9 @@ static bool open_port(wh_host_t *host, const wh_host_port_t *port) {
     }
     const wh_controller_t *controller = host->controllers[host->count - 1];
     fprintf(stderr, "serve: %s, %s, at %s%s\n", controller->name, controller->dialect.name,
-            controller->port.place,
-            port->is_pty || controller->port.is_local ? "" : ": whoever reaches this machine can command it");
+            controller->line.port.place,
+            port->is_pty || controller->line.port.is_local ? ""
+                                                           : ": whoever reaches this machine can command it");
     return true;
 }
 
@@ -153,7 +154,7 @@ static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, 
 
 /* ------------------------------------------------------------------------------------------------ outputs */
 
-/* The first line, and what the run is: what `waferhand converse` plays it with. */
+/* Writes the first line and the description of the run, from which `waferhand converse` plays it. */
 static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
     wh_transcript_head_t *heads =
         wh_array_new(2 + arguments->layout.parameters.count + 2 * host->count, sizeof *heads);
@@ -215,7 +216,7 @@ static bool is_name(const char *name, const char *text, size_t size) {
     return strlen(name) == size && memcmp(name, text, size) == 0;
 }
 
-/* The counts of an earlier run, which go on. False if the file is none of ours. */
+/* The counts of an earlier run, which go on. False if the file is not one of ours. */
 static bool read_coverage(const char *path, uint64_t shown[]) {
     FILE *in = fopen(path, "re");
     char line[200];
@@ -246,7 +247,7 @@ static bool write_coverage(void *user, FILE *out) {
     return ferror(out) == 0;
 }
 
-/* Adds what stands there; false if it is no coverage. */
+/* Adds the counts of that text; false if it is no coverage. */
 static bool add_coverage(const char *path, uint64_t shown[]) {
     if (!path || read_coverage(path, shown)) {
         return true;
@@ -257,10 +258,27 @@ static bool add_coverage(const char *path, uint64_t shown[]) {
     return false;
 }
 
-/* Before the first client: at the end it would be too late. */
+/* This test runs before the first client: at the end it would be too late. */
 static bool check_coverage(const char *path) {
     uint64_t earlier[WH_HOST_NUMBERS] = {0};
     return add_coverage(path, earlier);
+}
+
+/* Tests before the first client if each output that is written at the end can be written. */
+static bool are_writable(const arguments_t *arguments) {
+    const wh_run_files_t *files = &arguments->run.files;
+    const struct {
+        const char *option, *path;
+    } outputs[] = {{"--report", files->page},
+                   {"--gltf", files->scene},
+                   {"--data", files->document},
+                   {"--svg", files->plots},
+                   {"--coverage", arguments->coverage}};
+    bool good = true;
+    for (size_t i = 0; good && i < sizeof outputs / sizeof outputs[0]; ++i) {
+        good = !outputs[i].path || wh_file_is_writable(outputs[i].option, outputs[i].path);
+    }
+    return good;
 }
 
 static bool keep_coverage(const wh_host_t *host, const char *path) {
@@ -286,7 +304,7 @@ static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signa
     }
     (void)fclose(out);
     arguments->run.command = command;
-    const wh_document_t document = {.source = "run", .record = &session->record, .signals = signals};
+    const wh_document_t document = {.source = "session", .record = &session->record, .signals = signals};
     const bool written = wh_run_files_write(&arguments->run, &document);
     free(command);
     return written;
@@ -303,22 +321,31 @@ static void say_counters(const wh_host_t *host) {
                 "serve: %s: %" PRIu64 " client%s, %" PRIu64 " frame%s, %" PRIu64 " bad, %" PRIu64
                 " repeated, %" PRIu64 " action%s, %" PRIu64 " busy, %" PRIu64 " without an ACKN, %" PRIu64
                 " mistake%s of the dialect\n",
-                controller->name, controller->port.counters.clients,
-                WH_PLURAL(controller->port.counters.clients), c->frames, WH_PLURAL(c->frames), c->bad,
+                controller->name, controller->line.port.counters.clients,
+                WH_PLURAL(controller->line.port.counters.clients), c->frames, WH_PLURAL(c->frames), c->bad,
                 c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
                 WH_PLURAL(c->mistakes));
+        if (controller->line.port.counters.idle > 0) {
+            fprintf(stderr, "serve: %s: %" PRIu64 " silent client%s closed\n", controller->name,
+                    controller->line.port.counters.idle,
+                    controller->line.port.counters.idle == 1 ? " was" : "s were");
+        }
     }
-    const int64_t slices = session->mcs.track.slice;
+    const int64_t slices = wh_session_slice(session);
     if (session->complaints > 0) {
         fprintf(stderr, "serve: the cell complained %" PRId64 " time%s, such as %s\n",
                 (int64_t)session->complaints, WH_PLURAL(session->complaints),
                 wh_event_name(host->last_complaint));
     }
+    if (session->unmet > 0) {
+        fprintf(stderr, "serve: %" PRId64 " PUT%s ended in another slot than was asked\n",
+                (int64_t)session->unmet, WH_PLURAL(session->unmet));
+    }
     fprintf(stderr, "serve: %" PRId64 " slice%s, hash %016" PRIx64 "\n", slices, WH_PLURAL(slices),
-            session->mcs.link->hash(session->mcs.link));
+            wh_session_hash(session));
 }
 
-/* What a run is kept of, and who watches it. */
+/* A served run: its session, host, signals and cell. */
 typedef struct {
     wh_session_t session;
     wh_host_t host;
@@ -358,7 +385,7 @@ static double rate_of(const arguments_t *arguments) {
     return arguments->lockstep ? 0 : rate;
 }
 
-/* Until the host is stopped; false if what was asked for could not be written. */
+/* Runs until the host is stopped; false if a requested file could not be written. */
 static bool run_host(served_t *served, arguments_t *arguments) {
     wh_host_run(&served->host);
     wh_mcs_finish(&served->session.mcs);
@@ -378,9 +405,9 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
     if (wh_run_files_wanted(&arguments->run.files)) {
         host->next = wh_run_listener(&served.signals);
     }
-    const bool good = check_coverage(arguments->coverage) && open_session(&served, arguments) &&
-                      open_ports(host, arguments, argc, argv) && open_transcript(host, arguments) &&
-                      run_host(&served, arguments);
+    const bool good = check_coverage(arguments->coverage) && are_writable(arguments) &&
+                      open_session(&served, arguments) && open_ports(host, arguments, argc, argv) &&
+                      open_transcript(host, arguments) && run_host(&served, arguments);
     return close_served(&served) && good ? WH_EXIT_MET : WH_EXIT_USAGE;
 }
 

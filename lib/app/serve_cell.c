@@ -44,7 +44,7 @@ static bool is_published(const wh_serve_cell_arguments_t *arguments) {
 static bool open_view(wh_serve_cell_t *cell) {
     cell->view.command = cell->broadcast.simulation->command;
     cell->shown = cell->broadcast.layouts;
-    return wh_app_open_view(&cell->view, &cell->broadcast.node, cell->host->session->mcs.layout);
+    return wh_app_open_view(&cell->view, &cell->broadcast.node, wh_session_layout(cell->host->session));
 }
 
 /* Called at least every 100 ms. A RESET has read the layout anew. */

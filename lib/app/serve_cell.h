@@ -1,5 +1,5 @@
-/* The cell that `serve` has hosts command: simulated in this process, with its messages published and
- * recorded or not, or by a simulator in another process over LCM. */
+/* The cell that hosts command through `serve`. This process simulates it, and may publish and record its
+ * messages; or a simulator in another process does, over LCM. */
 #ifndef WH_APP_SERVE_CELL_H
 #define WH_APP_SERVE_CELL_H
 
@@ -10,13 +10,13 @@
 typedef struct {
     wh_record_arguments_t record;
     const char *url;  /* null: the default */
-    double timeout_s; /* that the other simulator is waited for; 0: for ever */
+    double timeout_s; /* how long to wait for the other simulator; 0: for ever */
     bool lcm, view;
     bool sim; /* the simulator is another process */
 } wh_serve_cell_arguments_t;
 
 extern const wh_option_t wh_serve_cell_options[];
-/* Of their table: refuses what does not go together. */
+/* The check of their table: refuses options that do not go together. */
 void wh_serve_cell_check(const void *arguments, struct argp_state *state);
 
 /* All zero before it is opened. Must not be moved once opened. */
@@ -27,18 +27,18 @@ typedef struct {
     wh_mcs_link_t link;
     bool is_broadcast, is_linked; /* the broadcast is open, or the link */
     wh_viewer_t view;             /* without a node it is closed */
-    uint64_t shown;               /* which of the broadcast's layouts that is */
+    uint64_t shown;               /* the broadcast's layout that the view shows */
 } wh_serve_cell_t;
 
 /* Opens what the arguments ask for; `partners` are for the session of `host`, whose tick it takes. False,
- * with a line on standard error, if that cannot be. To be closed either way. */
+ * with a line on standard error, if that fails. To be closed either way. */
 bool wh_serve_cell_open(wh_serve_cell_t *cell, const wh_serve_cell_arguments_t *arguments, wh_host_t *host,
                         wh_mcs_partners_t *partners);
 
 /* Opens the view, if one is asked for, once the session has the layout. */
 bool wh_serve_cell_open_view(wh_serve_cell_t *cell);
 
-/* Both before the session is closed. The last is false if the recording failed, which standard error has
+/* Call both before the session is closed. The last is false if the recording failed, which standard error has
  * said. */
 void wh_serve_cell_close_view(wh_serve_cell_t *cell);
 bool wh_serve_cell_close(wh_serve_cell_t *cell);

@@ -21,7 +21,7 @@ typedef struct {
     wh_layout_arguments_t layout;
     wh_record_arguments_t record;
     const char *url, *outputs;
-    bool view, json, log_time;
+    bool view, json, log_time, one_sender;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -31,6 +31,9 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, outputs)},
     {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, view)},
+    {"one-sender", 0, NULL,
+     "Take commands from the process alone that began the run, until it is over or has been silent for 10 s",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, one_sender)},
     {"json", 0, NULL, "Print the counters as one JSON object at the end", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, json)},
     {"log-time", 0, NULL,
@@ -53,7 +56,7 @@ static const wh_command_line_t command_line = {.name = "sim",
                                                .operand = "layout",
                                                .operand_variable = offsetof(arguments_t, layout.path)};
 
-/* Datagrams that were no message of ours, or none of LCM. */
+/* Reports datagrams that were not our messages, or not of LCM. */
 static uint64_t count_garbage(const wh_sim_process_t *simulation) {
     return simulation->counters.garbage + simulation->node->receiver.dropped;
 }
@@ -93,14 +96,15 @@ static bool print_counters(const wh_sim_process_t *simulation) {
         count(c->unknown_run), count(c->other_layout), count(c->run_over), count(c->malformed), NULL);
     (void)wh_json_add(root, "restores restored restore_ignored restore_refused", count(c->restores),
                       count(c->restored), count(c->restore_ignored), count(c->restore_refused), NULL);
-    (void)wh_json_add(root, "missed garbage unsent silences", json_integer((json_int_t)server->missed),
-                      count(count_garbage(simulation)), count(simulation->counters.unsent),
-                      count(simulation->counters.silences), NULL);
+    (void)wh_json_add(root, "missed garbage unsent silences strangers",
+                      json_integer((json_int_t)server->missed), count(count_garbage(simulation)),
+                      count(simulation->counters.unsent), count(simulation->counters.silences),
+                      count(simulation->counters.strangers), NULL);
     const int status = wh_json_print(root, stdout);
     return wh_app_is_printed(status);
 }
 
-/* The file is looked at before each message, so that valves written before a command are in force for it. */
+/* The file is checked before each message, so that valves written before a command apply to it. */
 static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     if (outputs->count > 0 && (wh_outputs_update(outputs, wh_node_clock_us()) & WH_OUTPUTS_REPORTED) != 0) {
         char *report = wh_style_printable(outputs->report);
@@ -179,6 +183,7 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
         return WH_EXIT_USAGE;
     }
     served.view.command = simulation->command;
+    simulation->one_sender = arguments->one_sender;
     wh_node_say(node, "%s is ready, layout %016" PRIx64, layout->path,
                 simulation->server.identity.layout_hash);
     int handled = 0;

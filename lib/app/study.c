@@ -60,10 +60,10 @@ static const wh_option_t options[] = {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_run_files_options, offsetof(arguments_t, run.files),
-     "Of the one trial that --trial plays, and --report of a whole study:", NULL},
+     "For the one trial that --trial plays, and --report of a whole study:", NULL},
     {0}};
 
-/* Refuses what only many trials can have. */
+/* Refuses options that only many trials can have. */
 static void check_one(const arguments_t *arguments, struct argp_state *state) {
     const char *option = arguments->trials > 0          ? "--trials"
                          : arguments->state             ? "--state"
@@ -137,7 +137,7 @@ static bool write_page(void *user, FILE *out) {
     return written;
 }
 
-/* What cannot be written leaves the rest as it is: the trials may have taken long. */
+/* If one output cannot be written, the others still are: the trials may have taken long. */
 static int hand_on(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
     wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
     const wh_style_t style = wh_style_of(stdout);
@@ -167,7 +167,7 @@ static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_
     return status;
 }
 
-/* Before the trials are played: no output is the script, the layout, or what they read. */
+/* Checks before the trials are played that no output is the script, the layout, or a file that they read. */
 static bool are_free(const arguments_t *arguments) {
     return (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
            (!arguments->csv || wh_file_is_writable("--csv", arguments->csv)) &&

@@ -1,5 +1,8 @@
 /* waferhand test PATH... */
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "../text/array.h"
@@ -13,8 +16,8 @@ typedef struct {
     wh_option_list_t paths;
     uint64_t jobs;
     double timeout;
-    const char *junit;
-    bool tap;
+    const char *junit, *hashes, *shard;
+    bool tap, needs_expectations;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -26,6 +29,13 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, tap)},
     {"junit", 0, "FILE", "Also write the results as JUnit's XML", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, junit)},
+    {"hashes", 0, "FILE",
+     "Also write each script's hash, as run tells it, and its path, one a line: what diff compares",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, hashes)},
+    {"shard", 0, "I/N", "Play every Nth script alone, from the Ith on: N machines play all of them",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, shard)},
+    {"require-expectations", 0, NULL, "A script that expects nothing has failed", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, needs_expectations)},
     {"set", 0, "NAME=VALUE", "Hand each script a parameter, which each must read, as with run",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
     {"budget", 0, "N", "End a script after N steps: 1 each of Lua, 20 a slice (default 1e9)", WH_OPTION_REAL,
@@ -36,6 +46,29 @@ static const wh_option_t options[] = {
 
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
 
+/* Reads I/N, or 1/1 if nothing is given; false if it is not a valid share. */
+static bool read_shard(const char *text, size_t *part, size_t *parts) {
+    char *end = NULL;
+    *part = *parts = 1;
+    if (!text) {
+        return true;
+    }
+    *part = strtoul(text, &end, 10);
+    const char *slash = end;
+    *parts = *slash == '/' ? strtoul(slash + 1, &end, 10) : 0;
+    return text[strspn(text, "0123456789/")] == '\0' && *end == '\0' && *part >= 1 && *part <= *parts &&
+           *parts <= 9999;
+}
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    size_t part;
+    size_t parts;
+    if (!read_shard(arguments->shard, &part, &parts)) {
+        argp_error(state, "--shard: %s (expected I/N, such as 2/8, with 1 <= I <= N)", arguments->shard);
+    }
+}
+
 static const wh_command_line_t command_line = {
     .name = "test",
     .synopsis = "PATH...",
@@ -44,7 +77,8 @@ static const wh_command_line_t command_line = {
     .tables = tables,
     .operand = "script or folder",
     .operand_variable = offsetof(arguments_t, paths),
-    .operands = SIZE_MAX};
+    .operands = SIZE_MAX,
+    .check = check};
 
 /* ------------------------------------------------------------------------------------------------ results */
 
@@ -75,6 +109,20 @@ static bool write_junit(void *user, FILE *out) {
     return wh_test_print_junit(suite->results, suite->count, out);
 }
 
+/* Writes a line for each script that played to its end. */
+static bool write_hashes(void *user, FILE *out) {
+    const suite_t *suite = user;
+    for (size_t i = 0; i < suite->count; ++i) {
+        const wh_test_result_t *result = &suite->results[i];
+        if (result->verdict == WH_TEST_OK || result->verdict == WH_TEST_FAILED) {
+            fprintf(out, "%016" PRIx64 "  ", result->hash);
+            wh_style_put(out, result->path);
+            fputc('\n', out);
+        }
+    }
+    return fflush(out) == 0 && !ferror(out);
+}
+
 static int judge(const wh_test_result_t results[], size_t count, size_t scripts) {
     int status = WH_EXIT_MET;
     for (size_t i = 0; i < count; ++i) {
@@ -98,7 +146,8 @@ static int play(const arguments_t *arguments, const wh_test_found_t *found) {
                                                    : processors > 0    ? (size_t)processors
                                                                        : 1,
                                       .timeout_s = arguments->timeout > 0 ? arguments->timeout : 600,
-                                      .output = arguments->junit,
+                                      .outputs = {arguments->junit, arguments->hashes},
+                                      .needs_expectations = arguments->needs_expectations,
                                       .listener = on_result,
                                       .user = &printer};
     suite_t suite = {wh_array_new(found->count + 1, sizeof(wh_test_result_t)), found->count};
@@ -108,12 +157,14 @@ static int play(const arguments_t *arguments, const wh_test_found_t *found) {
     }
     if (wh_test_play(found->jobs, found->count, &wanted, suite.results)) {
         if (arguments->tap) {
-            wh_test_print_plan(printer.scripts, stdout);
+            wh_test_print_plan(suite.results, suite.count, printer.scripts, stdout);
         } else {
             wh_test_print_sum(suite.results, suite.count, stdout, &printer.style);
         }
         status = judge(suite.results, suite.count, printer.scripts);
-        if (!wh_file_write("--junit", arguments->junit, write_junit, &suite, NULL) || !wh_app_is_printed(0)) {
+        if (!wh_file_write("--junit", arguments->junit, write_junit, &suite, NULL) ||
+            !wh_file_write("--hashes", arguments->hashes, write_hashes, &suite, NULL) ||
+            !wh_app_is_printed(0)) {
             status = WH_EXIT_USAGE;
         }
     }
@@ -127,10 +178,23 @@ static bool are_apart(const arguments_t *arguments, const wh_test_found_t *found
     bool apart = true;
     for (size_t i = 0; apart && i < found->count; ++i) {
         const wh_named_file_t named[] = {{"the script", found->paths[i], false},
-                                         {"--junit", arguments->junit, true}};
-        apart = wh_files_are_apart(named, 2, true);
+                                         {"--junit", arguments->junit, true},
+                                         {"--hashes", arguments->hashes, true}};
+        apart = wh_files_are_apart(named, 3, true);
     }
     return apart;
+}
+
+/* Keeps only this machine's share of the scripts: every Nth of all that were found, in their order. */
+static void take_share(const arguments_t *arguments, wh_test_found_t *found) {
+    size_t part;
+    size_t parts;
+    size_t kept = 0;
+    (void)read_shard(arguments->shard, &part, &parts); /* which was checked with the arguments */
+    for (size_t i = part - 1; i < found->count; i += parts) {
+        found->jobs[kept++] = found->jobs[i];
+    }
+    found->count = kept;
 }
 
 int wh_app_test(int argc, char **argv) {
@@ -140,6 +204,7 @@ int wh_app_test(int argc, char **argv) {
     wh_run_arguments_take(&arguments.run);
     int status = WH_EXIT_USAGE;
     if (wh_test_find(&arguments.paths, &found) && are_apart(&arguments, &found)) {
+        take_share(&arguments, &found);
         status = play(&arguments, &found);
     }
     wh_test_found_free(&found);

@@ -1,4 +1,4 @@
-/* The scripts that are meant by files and folders. */
+/* Finds the scripts of given files and folders. */
 #ifndef WH_APP_TEST_FIND_H
 #define WH_APP_TEST_FIND_H
 
@@ -15,7 +15,7 @@ typedef struct {
 /* Adds one more; the path is copied. */
 void wh_test_found_add(wh_test_found_t *found, const char *path, bool was_found);
 
-/* Adds each file, and of each folder, and of its folders, each *.lua, in the order of their names' bytes.
+/* Adds each file, and each *.lua of a folder and of the folders in it, in the order of their names' bytes.
  * Hidden files and links to folders are left out. False, and standard error says why, if a path is not there
  * or a folder cannot be read. */
 bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);

@@ -13,12 +13,14 @@
 #include "../text/clock.h"
 #include "../text/output.h"
 
-/* What a script's process says when it has ended: fewer bytes than a pipe takes at once. */
+/* The message of a script's process when it has ended: fewer bytes than a pipe takes at once. */
 typedef struct {
     wh_test_verdict_t verdict;
-    bool reads_output;
+    size_t reads; /* the output that it reads, from 1; 0: none */
     uint64_t expectations, errors;
     double simulated_s;
+    uint64_t hash;
+    bool is_unlooked;
     char reason[WH_SANDBOX_MESSAGE_BYTES + 80];
 } told_t;
 
@@ -44,7 +46,7 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
-/* Waiting and switching valves is no motion. */
+/* Waiting and switching valves do not count as motion. */
 static bool has_moved(const wh_record_t *record) {
     const int64_t *shares = record->activity.shares;
     return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] > 0;
@@ -58,10 +60,11 @@ static uint64_t count_errors(const wh_record_t *record) {
     return errors;
 }
 
-static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, bool was_found, told_t *told) {
+static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, const wh_test_job_t *job,
+                  bool needs_expectations, told_t *told) {
     const wh_record_t *record = &run->record;
     if (outcome == WH_RUN_BAD_INPUT) {
-        told->verdict = was_found && run->is_no_script ? WH_TEST_PASSED_OVER : WH_TEST_BAD;
+        told->verdict = job->was_found && run->is_no_script ? WH_TEST_PASSED_OVER : WH_TEST_BAD;
         (void)snprintf(told->reason, sizeof told->reason, "%.1023s", run->message);
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
@@ -69,6 +72,9 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, b
     } else if (!has_moved(record) && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it moves nothing and expects nothing");
+    } else if (needs_expectations && record->expectation_count == 0) {
+        told->verdict = WH_TEST_FAILED;
+        (void)snprintf(told->reason, sizeof told->reason, "it expects nothing (--require-expectations)");
     }
 }
 
@@ -81,18 +87,23 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     options.script = job->path;
     options.limits.print_to = stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &options);
-    judge(&run, outcome, job->was_found, &told);
+    judge(&run, outcome, job, crew->options->needs_expectations, &told);
+    told.hash = run.record.hash;
     told.expectations = run.record.expectation_count;
     told.errors = count_errors(&run.record);
     told.simulated_s = run.record.simulated_s;
-    told.reads_output = crew->options->output && wh_output_is_kept(crew->options->output);
+    told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
+    for (size_t i = 0; i < WH_TEST_OUTPUTS; ++i) {
+        const char *output = crew->options->outputs[i];
+        told.reads = output && wh_output_is_kept(output) ? i + 1 : told.reads;
+    }
     (void)fflush(stdout);
     (void)fflush(stderr);
     const bool has_told = write(answer, &told, sizeof told) == (ssize_t)sizeof told;
     _exit(has_told ? 0 : 1);
 }
 
-/* The process's own: it ends with this one, and what it prints goes into a file. */
+/* Runs in the script's process: it ends with this one, and its output goes into a file. */
 static void settle(const crew_t *crew, const wh_test_job_t *job, int answer, FILE *output, pid_t parent) {
     const struct rlimit limit = {WH_TEST_OUTPUT_BYTES, WH_TEST_OUTPUT_BYTES};
     sigset_t none;
@@ -108,7 +119,7 @@ static void settle(const crew_t *crew, const wh_test_job_t *job, int answer, FIL
 
 /* --------------------------------------------------------------------------------------- from the outside */
 
-/* A file for what a script prints, and a pipe for what its process tells; null, and no pipe, if the system
+/* Makes a file for a script's output, and a pipe for its process's message; null, and no pipe, if the system
  * refuses. */
 static FILE *make_ends(int ends[2]) {
     FILE *output = pipe(ends) == 0 ? tmpfile() : NULL;
@@ -193,6 +204,8 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
         result->expectations = told->expectations;
         result->errors = told->errors;
         result->simulated_s = told->simulated_s;
+        result->hash = told->hash;
+        result->is_unlooked = told->is_unlooked;
     }
 }
 
@@ -210,9 +223,9 @@ static void end(crew_t *crew, player_t *player, int status) {
                                  .output = read_output(player->output),
                                  .wall_s = wh_clock_seconds() - player->begin};
     take_end(crew, player, status, has_told ? &told : NULL, result);
-    if (has_told && told.reads_output) {
+    if (has_told && told.reads > 0) {
         fprintf(stderr, "%s: %s reads it: it is not written (expected a file of its own)\n",
-                crew->options->output, result->path);
+                crew->options->outputs[told.reads - 1], result->path);
         crew->failed = true;
     }
     (void)close(player->answer);
@@ -223,7 +236,7 @@ static void end(crew_t *crew, player_t *player, int status) {
     tell(crew);
 }
 
-/* Takes what has ended, and ends what is late. The seconds until the next one is late. */
+/* Takes the results of ended scripts, and ends late ones. Returns the seconds until the next one is late. */
 static double look(crew_t *crew) {
     double wait = 1;
     for (size_t i = 0; i < crew->options->processes; ++i) {

@@ -17,18 +17,18 @@
 #include "../text/output.h"
 #include "app.h"
 
-/* After a first event it waits until nothing more comes for so long: saving is several steps. */
+/* After a first event it waits until no event comes for this time: saving has several steps. */
 #define SETTLE_MS 15
-/* A file that is not there may be about to be replaced: it is looked for again after so long. */
+/* A missing file may be about to be replaced: it is looked for again after this time. */
 #define MISSING_MS 150
 
-/* How a file stood when it was about to be read; all zero: it was not there. */
+/* The state of a file just before it was read; all zero: it was not there. */
 typedef struct {
     uint64_t device, number, size;
     int64_t changed_ns, modified_ns;
 } stand_t;
 
-/* What a process tells its parent of a file. */
+/* The message of a process to its parent about a file. */
 typedef struct {
     stand_t stand;
     char path[PATH_MAX];
@@ -37,10 +37,10 @@ typedef struct {
 typedef struct {
     const wh_watch_options_t *options;
     int events, signals; /* descriptors: inotify's, and of the signals */
-    int ear;             /* what the running process tells; -1: none */
+    int ear;             /* the descriptor of the running process's messages; -1: none */
     pid_t process;       /* 0: none runs */
-    double begin;        /* s: of what is carried out */
-    told_t *files;       /* that it has read so far */
+    double begin;        /* s: of the running command */
+    told_t *files;       /* the files that it has read so far */
     size_t file_count, file_capacity;
 } watch_t;
 
@@ -60,8 +60,8 @@ static stand_t stand_of(const char *path) {
     return stand;
 }
 
-/* Watches the folder that a file is in, and if the file is a link, the folder of what it leads to: an editor
- * may put a new file in its place. */
+/* Watches the folder of a file, and if the file is a link, the folder of its target: an editor may put a new
+ * file in its place. */
 static void watch_folder(const watch_t *watch, const char *path) {
     char folder[PATH_MAX];
     const char *slash = strrchr(path, '/');
@@ -153,7 +153,7 @@ static bool is_known(const watch_t *watch, const char *path) {
     return false;
 }
 
-/* Takes what was told; waits for it until the other end is closed. False at that end. */
+/* Takes a message; waits for one until the other end is closed. False at that end. */
 static bool hear(watch_t *watch) {
     told_t told;
     size_t size = 0;
@@ -180,7 +180,7 @@ static void stop_hearing(watch_t *watch) {
     }
 }
 
-/* What a killed process was about to put in an output's place: see wh_output_t. */
+/* Removes files that a killed process was about to put in an output's place: see wh_output_t. */
 static void remove_leftovers(const watch_t *watch, pid_t process) {
     for (size_t i = 0; i < watch->options->output_count; ++i) {
         const char *path = watch->options->outputs[i];
@@ -220,7 +220,7 @@ static void tell_end(const watch_t *watch, int status) {
     fprintf(stderr, " after %.2f s; %zu file%s watched until Ctrl-C\n", took, files, files == 1 ? "" : "s");
 }
 
-/* The process may have ended: what it told last is still heard. */
+/* The process may have ended: its last messages are still read. */
 static void look_for_end(watch_t *watch) {
     int status = 0;
     if (watch->process > 0 && waitpid(watch->process, &status, WNOHANG) == watch->process) {
@@ -237,7 +237,7 @@ static bool is_readable(int descriptor, int wait_ms) {
     return poll(&one, 1, wait_ms) > 0;
 }
 
-/* Takes all that has come from inotify, and waits until nothing more comes. */
+/* Takes all events from inotify, and waits until no more come. */
 static void drain(const watch_t *watch) {
     char events[4096] __attribute__((aligned(8)));
     while (is_readable(watch->events, SETTLE_MS) && read(watch->events, events, sizeof events) > 0) {
@@ -286,7 +286,8 @@ static bool go_on(watch_t *watch) {
         if (all[1].revents != 0) {
             drain(watch);
         }
-        /* Also if nothing was reported: a file may have been saved before its folder was watched. */
+        /* The check also runs if nothing was reported: a file may have been saved before its folder was
+         * watched. */
         if (!look_at_files(watch)) {
             return false;
         }
@@ -312,7 +313,7 @@ int wh_watch(const wh_watch_options_t *options) {
     (void)close(watch.events);
     (void)close(watch.signals);
     free(watch.files);
-    /* Who ends it may say so twice, to the process and to its group: the second finds nothing to end. */
+    /* The signal may come twice, to the process and to its group: the second one has nothing left to end. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);
     (void)sigprocmask(SIG_SETMASK, &before, NULL);

@@ -29,7 +29,7 @@ static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
 }
 
 /* Writes the numbers of a block of wafers. A wafer that cannot be sieved gets NaN, which leaves it to the
- * check. */
+ * full check. */
 static void put_block(const wh_batch_t *batch, size_t block) {
     const size_t first = block * WH_BATCH_LANES;
     const size_t count = smaller(batch->wafer_count - first, WH_BATCH_LANES);
@@ -67,9 +67,14 @@ wh_status_t wh_batch_init(wh_batch_t *batch, wh_pose_t *base_from_wafers, size_t
     if (!batch || (wafer_count != 0 && (!base_from_wafers || !numbers))) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    /* a division, for the product might not fit */
+    /* It divides, because the product might not fit. */
     if (wafer_count > INT32_MAX || number_count / 64 < WH_BATCH_LINES(wafer_count)) {
         return WH_STATUS_BAD_CAPACITY;
+    }
+    const wh_extent_t poses = {base_from_wafers, wafer_count * sizeof *base_from_wafers};
+    const wh_extent_t room = {numbers, WH_BATCH_NUMBERS(wafer_count) * sizeof *numbers};
+    if (wh_extents_overlap(poses, room)) {
+        return WH_STATUS_OVERLAP;
     }
     batch->base_from_wafers = base_from_wafers;
     batch->numbers = numbers;

@@ -1,14 +1,15 @@
-/* Shared within the batch: a sieve for wafers that may be ready. It never holds back one that is. */
+/* Shared within the batch: a sieve for wafers that may be ready. It passes every wafer that is ready. */
 #ifndef WH_BATCH_BATCH_INTERNAL_H
 #define WH_BATCH_BATCH_INTERNAL_H
 
 #include "batch.h"
 
-/* Numbers of a block of spheres, and of a block of wafers (as many for the origins as for n1), and the wafers
- * of a tile. A tile is 32 blocks: it stays in the nearest cache while grippers take turns. */
+/* Counts of numbers in a block of spheres, and in a block of wafers (once for the origins and once for n1),
+ * and the wafers of a tile. A tile is 32 blocks: it stays in the nearest cache while grippers take
+ * turns. */
 enum { WH_BATCH_SPHERES = 4 * WH_BATCH_LANES, WH_BATCH_BLOCK = 3 * WH_BATCH_LANES, WH_BATCH_TILE = 1024 };
 
-/* A run of blocks: where their numbers begin. */
+/* A run of blocks: the begins of their numbers. */
 typedef struct {
     const float *spheres;
     const float *origins;
@@ -16,7 +17,7 @@ typedef struct {
     size_t block_count; /* 1 to WH_BATCH_LANES */
 } wh_batch_tile_t;
 
-/* Holds back spheres whose centre is farther from (x, y, z) than radius + reach, and wafers whose origin is
+/* Rejects spheres whose centre is farther from (x, y, z) than radius + reach, and wafers whose origin is
  * farther than reach, or farther along n1 than limit. The comparisons let every NaN pass. */
 typedef struct {
     float x;
@@ -26,12 +27,13 @@ typedef struct {
     float limit;
 } wh_batch_sieve_t;
 
-/* True if a point, in mm, is so near to base's origin that squares fit into float. False for NaN. */
+/* True if a point, in mm, is so near to base's origin that its squares fit into float. Returns false for
+ * NaN. */
 static inline bool wh_batch_fits(const wh_vec3_t *r) {
     return wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z) < WH_REAL(1e15);
 }
 
-/* Where the wafers' origins begin, and where their n1 begin. */
+/* The begins of the wafers' origins and of their n1. */
 static inline size_t wh_batch_origins(size_t wafer_count) {
     return (wafer_count + WH_BATCH_TILE - 1) / WH_BATCH_TILE * WH_BATCH_SPHERES;
 }

@@ -20,9 +20,9 @@ static tile_t tile_at(const wh_batch_t *batch, size_t first) {
     return tile;
 }
 
-/* The region in which a ready wafer can be. Its pose is valid, so it is no farther away than both limits
- * together, plus a thousandth. Rounding adds, in units of float's last place, at most 3 of the gripper's
- * distance from base's origin and 14 of the limits: 4 and 16 are taken. */
+/* The region in which a ready wafer can be. The pose of a ready wafer is valid, so its distance is at most
+ * both limits together, plus a thousandth. Rounding adds, in units of float's last place, at most 3 of the
+ * gripper's distance from base's origin and 14 of the limits; the code uses 4 and 16. */
 static wh_batch_sieve_t sieve_around(const wh_vec3_t *r, const wh_tolerance_t *tolerance) {
     const wh_real_t limits = tolerance->projz + tolerance->projxy;
     const wh_real_t origin = wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z);
@@ -69,7 +69,7 @@ static size_t count_bits(uint32_t bits) {
     return count;
 }
 
-/* Finds the tile's ready wafers, one bit each; returns how many. */
+/* Finds the tile's ready wafers, one bit each; returns their number. */
 static size_t answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                      uint32_t *words) {
     const wh_batch_sieve_t sieve = sieve_around(&gripper->r, tolerance);
@@ -97,7 +97,7 @@ size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippe
     return ready;
 }
 
-/* Lists the first `capacity` ready wafers of the tile; returns how many there are. */
+/* Lists the first `capacity` ready wafers of the tile; returns their number. */
 static size_t list_tile(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                         int32_t *wafers, size_t capacity) {
     uint32_t words[WH_BATCH_LANES];

@@ -2,12 +2,12 @@
 
 #include "batch_internal.h"
 
-/* How far each of 32 is beyond the sieve: it passes if that is not above 0. */
+/* The distance of each of 32 beyond the sieve: it passes if that is not above 0. */
 typedef struct {
     float by[WH_BATCH_LANES];
 } beyond_t;
 
-/* Mostly all 32 are held back. A first loop finds that out, which compilers turn into code for several at a
+/* Usually all 32 are rejected. A first loop detects this; compilers turn it into code for several at a
  * time. */
 static uint32_t passed(const beyond_t *beyond) {
     uint32_t held_back = 0;

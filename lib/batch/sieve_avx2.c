@@ -55,8 +55,8 @@ AVX2 static inline uint32_t beyond_reach(const wh_batch_sieve_t *sieve, const fl
     return bits_of(dot(&d, &d) > sieve->reach * sieve->reach);
 }
 
-/* The inner loop if neighbours are not near each other. Written out, because compilers at -O2 do not unroll
- * it. */
+/* The inner loop if neighbours are not near each other. It is written out, because compilers at -O2 do not
+ * unroll it. */
 AVX2 static inline uint32_t near_origins(const wh_batch_sieve_t *sieve, const float *origins) {
     const uint32_t beyond = beyond_reach(sieve, origins) | beyond_reach(sieve, &origins[8]) << 8 |
                             beyond_reach(sieve, &origins[16]) << 16 | beyond_reach(sieve, &origins[24]) << 24;

@@ -1,6 +1,6 @@
-# The rooms of lib in the order of the data; each uses only the ones before it, which tests/check/rooms sees to.
-# Firmware: `make library` needs nothing but a C compiler.
+# The rooms of lib in the order in which data passes through them. A room uses only the rooms before it; tests/check/rooms
+# checks this. Firmware: `make library` needs nothing but a C compiler.
 LIBRARY_ROOMS := math grasp batch motion cell align sim
-# Over libccd, and in double only.
+# It uses libccd, and exists in double only.
 COLLISION_ROOM := collision
-HOST_ROOMS := text script layout record estimate mcs link host log view study report print app
+HOST_ROOMS := text flow script layout record estimate mcs link host log view study report print app

@@ -1,12 +1,12 @@
-/* What the cell says of a release, and how the wafer then comes to lie. */
+/* The cell's judgement of a release, and how the wafer then comes to lie. */
 #include "station.h"
 
 /* A wafer that is nearer to its slot's plane than this, mm, lies on it. */
 #define SUPPORT_TOUCH WH_REAL(1e-3)
 
-/* Finds what is below a wafer, the nearest slot's plane or base's floor, and how far; less than projz below a
- * plane the wafer is on it. A wafer that is in no slot, though it is no farther than half a pitch above that
- * plane, is so for its tilt. */
+/* Finds the support below a wafer, the nearest slot's plane or base's floor, and its distance. A wafer less
+ * than projz below a plane is on it. If a wafer is in no slot, although it is at most half a pitch above
+ * that plane, the reason is its tilt. */
 static void find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_event_t *said) {
     bool found = false;
     said->height = base_from_wafer->r.z;
@@ -25,7 +25,7 @@ static void find_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer
     }
 }
 
-/* True if a wafer lies in this very slot. A wafer that a blade holds over the slot only passes. */
+/* True if a wafer lies in exactly this slot. A wafer that a blade holds over the slot is only passing. */
 static bool occupies(const wh_cell_t *cell, const wh_wafer_t *wafer, const wh_place_t *place) {
     wh_place_t other;
     return (wafer->holder == WH_NONE || wafer->holder == cell->stations[place->station].chuck) &&
@@ -63,7 +63,7 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
     }
 }
 
-/* True, and reported, if it was let go in the air over its slot. */
+/* True if it was released in the air over its slot; it reports that. */
 static bool judge_drop(const wh_cell_t *cell, wh_event_list_t *list, size_t release,
                        const wh_place_t *place) {
     if (!(cell->drop > 0) || place->dz <= cell->drop) {
@@ -101,7 +101,8 @@ static void judge_release(const wh_cell_t *cell, const wh_grasp_t *table, wh_eve
                           size_t release) {
     const int32_t wafer = list->events[release].wafer;
     wh_place_t place;
-    if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place)) {
+    if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place) ||
+        !(place.dz > -cell->tolerance.projz)) {
         judge_unsupported(cell, table, list, release);
         return;
     }
@@ -130,7 +131,7 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
  * away. */
 static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
     const wh_vec3_t from = wh_mat3_column(R, 2);
-    const wh_vec3_t axis = wh_vec3_cross(&from, n); /* as long as the sine of the angle */
+    const wh_vec3_t axis = wh_vec3_cross(&from, n); /* its length is the sine of the angle */
     const wh_real_t share = 1 / (1 + wh_vec3_dot(&from, n));
     for (size_t column = 0; column < 3; ++column) {
         const wh_vec3_t v = wh_mat3_column(R, column);
@@ -152,12 +153,13 @@ static void lay_flat(const wh_cell_t *cell, wh_face_t lies_on, const wh_vec3_t *
     wh_face_frame(&face, cell->thickness, lies_on, pose);
 }
 
-/* Within the tolerance below its plane a wafer is on its support. */
+/* A wafer within the tolerance below its plane is on its support. */
 static bool is_supported(const wh_cell_t *cell, const wh_place_t *place) {
     return place->dz < 0 && place->dz > -cell->tolerance.projz;
 }
 
-/* From above its plane only if wafers settle; from below a support has stopped the wafer. */
+/* A wafer above its plane comes to lie only if wafers settle; a wafer below has been stopped by a
+ * support. */
 static bool comes_to_lie(const wh_cell_t *cell, const wh_place_t *place) {
     return place->dz > 0 ? cell->settle : is_supported(cell, place);
 }

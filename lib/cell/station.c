@@ -5,7 +5,7 @@
 
 #define MOST_SLOTS 1000
 
-/* False for NaN. */
+/* Returns false for NaN. */
 static bool is_limit(wh_real_t value, wh_real_t most) {
     return value >= 0 && value <= most;
 }
@@ -63,7 +63,7 @@ wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const w
     return place;
 }
 
-/* The face of a wafer that looks at the station's slots; of a front, its frame into `room`. */
+/* The face of a wafer towards the station's slots; for a front, its frame goes into `room`. */
 static wh_face_t face_seen(const wh_cell_t *cell, const wh_station_t *station,
                            const wh_pose_t *base_from_wafer, wh_pose_t *room) {
     if (!(cell->thickness > 0) ||
@@ -83,7 +83,7 @@ wh_place_t wh_cell_measure(const wh_cell_t *cell, const wh_station_t *station, i
     return place;
 }
 
-/* The slot whose plane is nearest to a height above slot 1. It compares before it converts: a height far away
+/* The slot whose plane is nearest to a height above slot 1. It compares before it converts: a large height
  * does not fit an integer. */
 static int32_t nearest_slot(const wh_station_t *station, wh_real_t height) {
     const wh_real_t position = height / station->pitch + WH_REAL(0.5);

@@ -41,7 +41,7 @@ static wh_pose_t level_towards(const wh_vec3_t *from, const wh_vec3_t *to, const
     return level_at(from, dx / length, dy / length);
 }
 
-/* The elbow: half-way to the wrist, and aside by what is missing to the link's length. */
+/* The elbow: half-way to the wrist, and sideways so that the links have their length. */
 static wh_vec3_t elbow_of(const wh_arm_t *arm, const wh_pose_t *base_from_shoulder, wh_real_t distance) {
     const wh_real_t half = distance / 2;
     const wh_real_t rest = arm->link * arm->link - half * half;
@@ -65,7 +65,7 @@ void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_p
 
 /* ---------------------------------------------------------------------------------------- of any kind */
 
-/* Base's view of the column's foot, and of its lift. */
+/* The column's foot and its lift, in base. */
 static void place_column(const wh_chain_t *chain, const wh_real_t q[], wh_pose_t bodies[]) {
     wh_pose_t foot = wh_pose_identity();
     foot.r.x = q[WH_CHAIN_RAIL];
@@ -89,7 +89,7 @@ static void tilt(const wh_real_t q[], wh_pose_t *plane) {
     plane->R = wh_mat3_multiply(&plane->R, &both);
 }
 
-/* The links in the plane that the column carries, the hand as it is there. */
+/* The links in the plane that the column carries, with the hand given in it. */
 static void place_scara(const wh_chain_t *chain, const wh_real_t q[], const wh_pose_t *hand,
                         wh_pose_t links[]) {
     wh_vec3_t at = wh_vec3(0, 0, hand->r.z);
@@ -130,7 +130,7 @@ void wh_arm_place_carrier(const wh_arm_t *arm, const wh_carrier_t *carrier, cons
     } else {
         wh_arm_place(arm, &hand, links);
     }
-    if (wh_real_abs(chain->height) > 0) { /* the hand alone is higher */
+    if (wh_real_abs(chain->height) > 0) { /* only the hand is higher */
         links[WH_ARM_UPPER].r.z -= chain->height;
         links[WH_ARM_FOREARM].r.z -= chain->height;
     }

@@ -1,6 +1,6 @@
 #include "gap_internal.h"
 
-/* `half` with the sign of d; 0 for 0, which is the middle of a face or of an edge. */
+/* `half` with the sign of d; 0 for 0, for the middle of a face or of an edge. */
 static wh_real_t towards(wh_real_t half, wh_real_t d) {
     if (d > 0) {
         return half;
@@ -29,8 +29,8 @@ static wh_status_t validate_sizes(const wh_convex_t *shape) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* What the points before span, and how far a point sticks out of it. `along`: the line, or the plane's
- * normal. */
+/* The kind of set that the earlier points span; it decides how far a point is outside of it. `along`: the
+ * line, or the plane's normal. */
 typedef enum { SPAN_POINT, SPAN_LINE, SPAN_PLANE } span_t;
 
 static wh_real_t stick_out(const wh_vec3_t *from, span_t span, const wh_vec3_t *along) {
@@ -38,7 +38,7 @@ static wh_real_t stick_out(const wh_vec3_t *from, span_t span, const wh_vec3_t *
     return span == SPAN_PLANE ? wh_real_abs(wh_vec3_dot(along, from)) : wh_vec3_norm(&aside);
 }
 
-/* The point that sticks out farthest, as seen from the first point. */
+/* The point farthest outside of the span, as seen from the first point. */
 static wh_vec3_t farthest_out(const wh_convex_t *mesh, span_t span, const wh_vec3_t *along, wh_real_t *most) {
     wh_vec3_t best = {0, 0, 0};
     *most = 0;
@@ -203,8 +203,8 @@ wh_real_t wh_convex_radius(const wh_convex_t *shape) {
     return wh_real_sqrt((beside + half->x) * (beside + half->x) + z * z);
 }
 
-/* How far a shape reaches from its centre along one of base's axes, given as that row of its rotation. Not
- * for meshes. */
+/* The reach of a shape from its centre along one of base's axes, given as that row of its rotation. It is
+ * not for meshes. */
 static wh_real_t reach_along(const wh_convex_t *shape, const wh_vec3_t *row) {
     const wh_vec3_t *half = &shape->half;
     const wh_real_t z = wh_real_abs(row->z) * half->z;

@@ -1,10 +1,10 @@
 /* Convex shapes: boxes, cylinders, capsules and convex meshes, each at its place in a body.
  *
- * A shape stands in its own frame. Its centre is at the origin (a mesh: wherever its points are); its axis,
- * if it has one, is z. Poses are those of the shape: base_from_shape = base_from_body * body_from_shape,
- * which the caller multiplies once for many questions. Units: mm. No function here keeps a reference to an
- * argument or allocates, and all are reentrant. Of libm they use only sqrt and fabs, so the bits are the same
- * everywhere. Double only.
+ * A shape has its own frame. Its centre is at the origin (a mesh: wherever its points are); its axis, if it
+ * has one, is z. Poses are those of the shape: base_from_shape = base_from_body * body_from_shape, which
+ * the caller multiplies once for many questions. Units: mm. No function here keeps a reference to an
+ * argument or allocates, and all are reentrant. They use only sqrt and fabs of libm, so the bits are equal
+ * on every machine. They exist in double only.
  */
 #ifndef WH_COLLISION_CONVEX_H
 #define WH_COLLISION_CONVEX_H
@@ -46,9 +46,9 @@ typedef struct {
  * more than WH_CONVEX_POINTS points, or flatter than WH_CONVEX_THINNEST. Cost: linear in the points. */
 wh_status_t wh_convex_validate(const wh_convex_t *shape) WH_SYMBOL(wh_convex_validate);
 
-/* A point of the shape (base) that lies farthest in a direction (base, of any length). If many do: the middle
- * of a box's or a cylinder's face or edge, the first of a mesh's points; for the zero direction some point of
- * the shape. Cost: 10 ns, for a mesh linear in its points. */
+/* A point of the shape (base) that lies farthest in a direction (base, of any length). If there are many:
+ * the middle of a box's or a cylinder's face or edge, the first of a mesh's points; for the zero direction
+ * any point of the shape. Cost: 10 ns, for a mesh linear in its points. */
 wh_vec3_t wh_convex_support(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t direction)
     WH_SYMBOL(wh_convex_support);
 

@@ -6,16 +6,16 @@
 #error "waferhand: needs a libccd in double precision"
 #endif
 
-/* Ten times what the hardest pairs need. */
+/* Ten times the need of the hardest pairs. */
 static const wh_gap_budget_t usual = {500, 2000};
 /* The most turns of the axis of a shallow overlap; each is a search of its own. */
 static const int turns = 30;
-/* Greater than any length here. */
+/* Larger than any length here. */
 static const wh_real_t far_away = 1e30;
 
 /* ------------------------------------------------------------------------------------------ along an axis */
 
-/* Returns the gap that the axis proves. `at`: the middle between the two points that are farthest along
+/* Returns the gap that the axis proves. `at` is the middle between the two points that are farthest along
  * it. */
 static wh_real_t along(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_vec3_t *at) {
     const wh_vec3_t back = wh_vec3_scale(-1, axis);
@@ -34,7 +34,7 @@ wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const
     return along(&pair, &axis, &at);
 }
 
-/* Keeps the axis if it proves more than the one before. */
+/* Keeps the axis if it proves more than the current one. */
 static void try_axis(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
     wh_vec3_t at;
     const wh_real_t lower = along(pair, axis, &at);
@@ -45,7 +45,7 @@ static void try_axis(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_gap_bo
     }
 }
 
-/* False for the zero vector and for one that is not finite. */
+/* Returns false for the zero vector and for one that is not finite. */
 static bool to_unit(wh_vec3_t *v) {
     const wh_real_t length = wh_vec3_norm(v);
     if (!(length > 0 && length < far_away)) {
@@ -92,15 +92,15 @@ static void try_easy_axes(const wh_gap_pair_t *pair, wh_gap_bounds_t *bounds) {
 
 /* ------------------------------------------------------------------------------------------------- libccd */
 
-/* A shape with some of its surface taken off, as libccd sees it. When the budget is spent, its points move
- * away from the other shape's: libccd has no bound of its own here, and then ends. */
+/* A shape with some thickness taken off its surface, as libccd sees it. When the budget is spent, its
+ * points move away from the other shape's. libccd has no bound of its own here; this ends its search. */
 typedef struct {
     wh_convex_t shape;
     const wh_pose_t *base_from_shape;
     wh_vec3_t centre;
     wh_real_t shrunk; /* the scale of a mesh about its centre */
     int *left;
-    wh_vec3_t *asked; /* the last direction; only for a */
+    wh_vec3_t *asked; /* the last direction, only for a */
 } core_t;
 
 static core_t core_of(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_real_t taken, int *left,
@@ -143,8 +143,8 @@ static void core_centre(const void *object, ccd_vec3_t *centre) {
     ccdVec3Set(centre, core->centre.x, core->centre.y, core->centre.z);
 }
 
-/* HIT if the cores overlap, CLEAR if not, UNDECIDED if `supports` calls were too few. `*asked`: the last
- * direction, which separates cores that are clear. */
+/* Returns HIT if the cores overlap, CLEAR if not, UNDECIDED if `supports` calls were too few. `*asked` is
+ * the last direction, which separates cores that are clear. */
 static wh_gap_state_t cores_overlap(const wh_gap_pair_t *pair, wh_real_t taken, int supports,
                                     wh_vec3_t *asked) {
     int left = supports;
@@ -166,9 +166,9 @@ static wh_gap_state_t cores_overlap(const wh_gap_pair_t *pair, wh_real_t taken, 
 
 /* ------------------------------------------------------------------------------------------------ contact */
 
-/* Turns the axis of a shallow overlap until it proves the least depth nearby. b is moved along the axis until
- * it is just clear; the axis between the nearest points is then never worse, for their distance is at most
- * that along the first axis. */
+/* Turns the axis of a shallow overlap until it proves the least depth nearby. b is moved along the axis
+ * until it is just clear. The axis between the nearest points is then never worse, because their distance
+ * is at most that along the first axis. */
 static void turn_axis(const wh_gap_pair_t *pair, int steps, wh_gap_bounds_t *bounds) {
     for (int turn = 0; turn < turns && bounds->lower < -WH_GAP_TOUCH; ++turn) {
         const wh_real_t before = bounds->lower;
@@ -184,8 +184,8 @@ static void turn_axis(const wh_gap_pair_t *pair, int steps, wh_gap_bounds_t *bou
     }
 }
 
-/* Asks libccd if two shapes overlap with `taken` mm off the surface of each. If an axis separates them, tries
- * that axis. */
+/* Asks libccd whether two shapes overlap with `taken` mm off the surface of each. If an axis separates
+ * them, tries that axis. */
 static wh_gap_state_t ask(const wh_gap_pair_t *pair, wh_real_t taken, int supports, wh_gap_bounds_t *bounds) {
     wh_vec3_t asked = {0, 0, 0};
     const wh_gap_state_t answer = cores_overlap(pair, taken, supports, &asked);
@@ -195,8 +195,8 @@ static wh_gap_state_t ask(const wh_gap_pair_t *pair, wh_real_t taken, int suppor
     return answer;
 }
 
-/* The state of two shapes if no axis yet proves a depth of at most WH_GAP_TOUCH: HIT, or CLEAR if an axis
- * proves it by now. */
+/* The state of two shapes if no axis proves a depth of at most WH_GAP_TOUCH yet: HIT, or CLEAR if an axis
+ * proves it now. */
 static wh_gap_state_t overlap(const wh_gap_pair_t *pair, const wh_gap_budget_t *budget,
                               wh_gap_bounds_t *bounds) {
     const bool mesh = pair->a->kind == WH_CONVEX_MESH || pair->b->kind == WH_CONVEX_MESH;

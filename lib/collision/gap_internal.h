@@ -1,12 +1,12 @@
-/* Shared by convex.c, gap.c and nearest.c. Not installed. */
+/* Shared by convex.c, gap.c and nearest.c. It is not installed. */
 #ifndef WH_COLLISION_GAP_INTERNAL_H
 #define WH_COLLISION_GAP_INTERNAL_H
 
 #include "gap.h"
 
-/* A shape is a kernel and all points within `round` mm of it. A capsule's kernel is a line; every other shape
- * is its own kernel. The nearest points of two kernels are found in a few steps; curved surfaces would need
- * many. */
+/* A shape is a kernel and all points within `round` mm of it. A capsule's kernel is a line; every other
+ * shape is its own kernel. The search finds the nearest points of two kernels in a few steps; curved
+ * surfaces would need many. */
 static inline wh_real_t wh_convex_round(const wh_convex_t *shape) {
     return shape->kind == WH_CONVEX_CAPSULE ? shape->half.x : 0;
 }
@@ -15,7 +15,7 @@ static inline wh_real_t wh_convex_round(const wh_convex_t *shape) {
 wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *direction)
     WH_SYMBOL(wh_convex_kernel_support);
 
-/* In the shape's frame, and within the shape: the mean of the points of a mesh, the origin of the others. */
+/* A point within the shape, in its frame: the mean of the points of a mesh, the origin of the others. */
 wh_vec3_t wh_convex_centre(const wh_convex_t *shape) WH_SYMBOL(wh_convex_centre);
 
 /* The two shapes. b is measured as if moved by `shift`. */
@@ -23,10 +23,10 @@ typedef struct {
     const wh_convex_t *a, *b;
     const wh_pose_t *base_from_a, *base_from_b;
     wh_vec3_t shift;
-    wh_gap_start_t *start; /* with which the search begins, and which it leaves; null: with nothing */
+    wh_gap_start_t *start; /* the points with which the search begins, and which it leaves; null: none */
 } wh_gap_pair_t;
 
-/* The bounds of a pair, lower <= signed gap <= upper, each with what proves it. */
+/* The bounds of a pair, lower <= signed gap <= upper, each with its proof. */
 typedef struct {
     wh_real_t lower, upper;
     wh_vec3_t axis; /* unit: lower = wh_gap_along it */
@@ -38,9 +38,9 @@ typedef struct {
     int steps, supports;
 } wh_gap_budget_t;
 
-/* Narrows `bounds`, starting with pair->start, else at their axis, until they are WH_GAP_TIGHT, or lower
- * is above `enough`, or no step helps any more. bounds->axis must be a unit vector; bounds->upper may be
- * infinite. */
+/* Narrows `bounds`. It starts with pair->start, otherwise at their axis. It ends when they are
+ * WH_GAP_TIGHT, or lower is above `enough`, or no step helps any more. bounds->axis must be a unit vector;
+ * bounds->upper may be infinite. */
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds)
     WH_SYMBOL(wh_nearest_bounds);
 

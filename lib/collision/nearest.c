@@ -6,14 +6,14 @@ typedef struct {
     wh_vec3_t on_a, between; /* in base */
 } pair_point_t;
 
-/* Up to four of them, with the weights by which they add up to the point nearest to the origin. */
+/* Up to four points, with the weights whose sum gives the point nearest to the origin. */
 typedef struct {
     pair_point_t points[4];
     wh_real_t weights[4];
     size_t count;
 } simplex_t;
 
-/* In the shape's frame. */
+/* The kernel's point, in the shape's frame. */
 static wh_vec3_t kernel_point(const wh_convex_t *shape, const wh_pose_t *pose, const wh_vec3_t *direction) {
     const wh_vec3_t d = wh_mat3_transform_back(&pose->R, direction);
     return wh_convex_kernel_support(shape, &d);
@@ -79,12 +79,12 @@ static bool weigh_tetrahedron(const wh_vec3_t *const p[4], wh_real_t weights[4])
 typedef struct {
     size_t count;
     size_t index[4];
-    wh_real_t weights[4]; /* they add up to 1 */
+    wh_real_t weights[4]; /* their sum is 1 */
     wh_vec3_t nearest;
     wh_real_t squared; /* the square of its distance */
 } part_t;
 
-/* False unless the nearest point lies within the points. */
+/* False unless the nearest point lies between the points. */
 static bool weigh(const simplex_t *simplex, part_t *part) {
     const wh_vec3_t *const any = &simplex->points[0].between;
     const wh_vec3_t *p[4] = {any, any, any, any};
@@ -128,9 +128,9 @@ static void choose(part_t *part, unsigned chosen, size_t last) {
     part->index[part->count++] = last;
 }
 
-/* Looks for the nearest point in each part that has the last point; the others were checked before. Skips
- * parts of a part whose own nearest point lies within it. The simplex becomes the best part. Returns its
- * squared distance. */
+/* Looks for the nearest point in each part that has the last point; the others were checked earlier. It
+ * skips parts of a part whose own nearest point lies within it. The simplex becomes the best part. Returns
+ * its squared distance. */
 static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
     if (simplex->count == 1) {
         simplex->weights[0] = 1;
@@ -194,8 +194,8 @@ static wh_vec3_t across(const simplex_t *simplex, const wh_vec3_t *nearest) {
     return wh_vec3_scale(part / squared, &normal);
 }
 
-/* The middle between the two surfaces, or of their overlap, given a unit axis between the points of the
- * kernels and their distance. */
+/* The middle between the two surfaces, or of their overlap. Given are a unit axis between the points of the
+ * kernels, and their distance. */
 static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis,
                         wh_real_t distance) {
     wh_vec3_t on_a = {0, 0, 0};
@@ -211,14 +211,14 @@ static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, con
     return wh_vec3_add(&on_a, &out);
 }
 
-/* Adds a point. Returns the distance of the nearest point of what is left. */
+/* Adds a point. Returns the distance of the nearest point of the rest. */
 static wh_real_t add(simplex_t *simplex, const pair_point_t *point, wh_vec3_t *nearest) {
     simplex->points[simplex->count++] = *point;
     return wh_real_sqrt(reduce(simplex, nearest));
 }
 
-/* Takes the simplex's nearest point over into upper bound and axis. False if it is not nearer than what
- * was known. */
+/* Takes the simplex's nearest point into upper bound and axis. Returns false if it is not nearer than the
+ * known one. */
 static bool narrow(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *nearest,
                    wh_real_t distance, wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
     const wh_real_t upper = distance - wh_convex_round(pair->a) - wh_convex_round(pair->b);
@@ -234,8 +234,8 @@ static bool narrow(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh
     return true;
 }
 
-/* The distance of the nearest point of all, if that lies within them, as it most often still does. Else as
- * if they had been found one after the other. */
+/* The distance of the nearest point of all points, if it lies within them, as it usually still does.
+ * Otherwise the points are added one after the other. */
 static wh_real_t add_all(simplex_t *simplex, const pair_point_t points[], size_t count, wh_vec3_t *nearest) {
     part_t part = {.count = count, .index = {0, 1, 2}};
     for (size_t i = 0; i < count; ++i) {
@@ -257,7 +257,7 @@ static wh_real_t add_all(simplex_t *simplex, const pair_point_t points[], size_t
     return distance;
 }
 
-/* Begins with the points that the last search ended with. Of shapes that meet by now they say nothing. */
+/* Begins with the final points of the last search. If the shapes meet now, those points say nothing. */
 static void begin(const wh_gap_pair_t *pair, simplex_t *simplex, wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
     const wh_gap_start_t *start = pair->start;
     pair_point_t points[3];

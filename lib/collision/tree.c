@@ -1,6 +1,6 @@
 #include "tree.h"
 
-/* Beyond any cell, but finite, so that differences stay numbers. */
+/* It is beyond any cell, but finite, so that differences stay numbers. */
 #define FAR WH_REAL(1e30)
 
 wh_box_t wh_box_empty(void) {
@@ -46,7 +46,8 @@ static uint64_t spread(uint64_t v) {
     return (v | v << 2) & 0x1249249249249249;
 }
 
-/* A coordinate on a raster of 2^21 steps of 1/16 mm about base's origin. Cells hardly extend beyond it. */
+/* A coordinate on a raster of 2^21 steps of 1/16 mm about base's origin. Cells hardly extend beyond this
+ * range. */
 static uint64_t raster(wh_real_t low, wh_real_t high) {
     const wh_real_t steps = 8 * (low + high) + WH_REAL(1048576);
     if (!(steps > 0)) {

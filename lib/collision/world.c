@@ -1,5 +1,5 @@
-/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and
- * world_pair.c. */
+/* A world's description and memory. world_move.c, world_near.c and world_pair.c have the work of a
+ * slice. */
 #include "world.h"
 
 #include <string.h>
@@ -105,9 +105,9 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
 
 /* ------------------------------------------------------------------------------------------------- memory */
 
-/* A block of memory that is shared out. Sizes are rounded up, so that the next one is aligned. */
+/* A block of memory that is divided. Sizes are rounded up, so that the next one is aligned. */
 typedef struct {
-    unsigned char *memory; /* null: its size is asked for */
+    unsigned char *memory; /* null: the caller asks for the size */
     size_t used;
 } block_t;
 
@@ -117,7 +117,7 @@ static void *take(block_t *block, size_t count, size_t size) {
     return begin;
 }
 
-/* Shares out what a world needs, the world itself first. It is blank but for its arrays. */
+/* Divides memory among what a world needs, the world itself first. Everything but its arrays is blank. */
 static void lay_out(const wh_world_config_t *config, block_t *block) {
     const size_t hanging = count_hanging(config);
     const size_t items = config->part_count - hanging + config->wafer_count;
@@ -207,7 +207,7 @@ static void set_up_movers(wh_world_t *world) {
     }
 }
 
-/* Movers that stand for a held wafer may meet anything, whichever wafer it is. */
+/* Movers for a held wafer may meet anything, because the wafer may be any. */
 static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mover_t *b) {
     return a->part != WH_NONE && b->part != WH_NONE &&
            (wh_world_is_known(world, a->part, b->part) ||
@@ -253,7 +253,7 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     set_up_pairs(world);
     const wh_look_t look = {world, input, NULL};
     wh_world_move(&look);
-    wh_world_move(&look); /* now `before` and `now` are the same */
+    wh_world_move(&look); /* `before` and `now` become equal */
     return world;
 }
 

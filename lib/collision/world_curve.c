@@ -1,9 +1,9 @@
-/* The smallest gaps over time. The judgement finds those of what moves, slice by slice. At a bin's end all
- * that is near and may count is measured again: also what has not moved in the bin. */
+/* The smallest gaps over time. The judgement finds those of moving parts, slice by slice. At a bin's end
+ * all near pairs that may count are measured again, also those that did not move in the bin. */
 #include "world_internal.h"
 
-/* Measures a pair, of which `slack` is left, unless that says that it does not count. What is found is
- * known from then on. The other one rests if `b` is null; then it is the item near->other. */
+/* Measures a pair, unless its remaining `slack` says that it does not count. The result is known from then
+ * on. If `b` is null, the other one rests and is the item near->other. */
 static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near, wh_real_t least[]) {
     wh_world_t *world = look->world;
     if (near->slack - (wh_world_gone(near, a, b) - near->since) > wh_world_most_of(near->worth, least)) {
@@ -29,7 +29,8 @@ static void measure(const wh_look_t *look, wh_mover_t *a, wh_mover_t *b, wh_pair
         wh_world_remember(near, a, b);
         wh_world_keep_clearance(look, kind, one, two, &gap);
     }
-    least[kind] = near->slack < least[kind] ? near->slack : least[kind];
+    const wh_real_t found = near->slack > 0 ? near->slack : 0;
+    least[kind] = found < least[kind] ? found : least[kind];
 }
 
 static void measure_rest(const wh_look_t *look, wh_mover_t *mover, wh_real_t least[]) {
@@ -50,7 +51,7 @@ static void measure_pair(const wh_look_t *look, wh_mover_pair_t *pair, wh_real_t
     }
 }
 
-/* Makes one bin of each two. */
+/* Makes one bin out of each two. */
 static void halve(wh_curves_t *curves) {
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         wh_real_t *gaps = curves->gaps[kind];
@@ -72,8 +73,8 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[], const wh_rea
     }
 }
 
-/* The gaps at a bin's end are those at the next one's begin: also of what does not move then. If they are
- * larger, pairs count that did not. */
+/* The gaps at a bin's end are those at the next one's begin, also for parts that do not move then. If they
+ * are larger, pairs count that did not count before. */
 static void begin_bin(wh_world_t *world, const wh_real_t now[]) {
     double more = 0;
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -98,7 +99,7 @@ void wh_world_copy_curves(const wh_world_t *world, wh_curves_t *curves) {
     }
 }
 
-/* If slices are lost, as in a free-running run, their bins show what came after them. */
+/* If slices are lost, as in a free run, their bins show the values after them. */
 void wh_world_draw_curves(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_curves_t *curves = &world->curves;

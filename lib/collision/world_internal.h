@@ -1,13 +1,15 @@
-/* Shared within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c),
- * the judgement of one pair (world_pair.c), what may touch what (world_rules.c). */
+/* Shared within the collision world: moving bodies (world_move.c), lists of near things (world_near.c), the
+ * judgement of one pair (world_pair.c), rules of contact (world_rules.c). */
 #ifndef WH_COLLISION_WORLD_INTERNAL_H
 #define WH_COLLISION_WORLD_INTERNAL_H
+
+#include <float.h>
 
 #include "gap.h"
 #include "world.h"
 
-/* How far beyond the range of clearances things are put on a moving part's list, mm; less if too many are
- * there. */
+/* The distance beyond the range of clearances within which things are on a moving part's list, mm; less if
+ * there are too many. */
 #define WH_NEAR_MARGIN WH_REAL(20.0)
 #define WH_NEAR_LEAST WH_REAL(0.1)
 #define WH_NEAR_CAPACITY 128
@@ -18,17 +20,29 @@
 /* A body that moves, at both ends of the slice. */
 typedef struct {
     wh_pose_t before, now; /* base_from_body */
-    bool has_gone;         /* in this slice */
-    wh_real_t way;         /* of its origin, mm */
-    wh_real_t turn;        /* about its origin, rad; an upper bound */
-    wh_real_t lean;        /* how much of that brings points 1 mm from the origin up or down, mm */
+    bool has_gone;         /* it moves in this slice */
+    wh_real_t way;         /* way of its origin, mm */
+    wh_real_t turn;        /* turn about its origin, rad; an upper bound */
+    wh_real_t lean;        /* the part of the turn that moves points 1 mm from the origin up or down, mm */
 } wh_body_t;
 
-/* The slack of pairs with what is not there: no way is as long, mm. */
+/* The slack of pairs with absent parts: no way is as long, mm. */
 #define WH_WORLD_NOWHERE WH_REAL(1e30)
 
-/* The ways that movers have gone are summed up twice: all of them, and those up and down. Arms turn and reach
- * at one height for most of the time. */
+/* The slack of a pair that overlaps, or about which nothing is known. Such a pair must still be judged,
+ * however far it moves and however sums of ways are rounded: a 0 would count as apart after an error of
+ * 1e-13 mm. */
+#define WH_WORLD_UNKNOWN WH_REAL(-1e30)
+
+/* Sums of ways are rounded upwards by this share, eight times the greatest error of a sum or a
+ * difference. */
+#define WH_WORLD_ROUNDING (4 * WH_REAL(DBL_EPSILON))
+/* A kept separation may be wrong by this much more with each slice, mm. It holds for parts within
+ * WH_GAP_FARTHEST. */
+#define WH_WORLD_BLUR WH_REAL(1e-9)
+
+/* The ways of movers are summed up twice: all ways, and those up and down. Arms turn and reach at one
+ * height for most of the time. */
 typedef enum WH_FOUR_BYTES { WH_GONE_ANYWHERE, WH_GONE_UPRIGHT, WH_GONE_WAYS } wh_gone_t;
 
 /* The clearances that a pair may count for. */
@@ -44,21 +58,21 @@ typedef enum WH_FOUR_BYTES {
     WH_WORTHS
 } wh_worth_t;
 
-/* A pair and its state: when its movers had gone `since` together, the gap was at least `slack`, and so was
- * the separation along `axis` (zero: none yet, and no slack above 0). */
+/* A pair and its state. When the sum of its movers' ways was `since`, the gap was at least `slack`, and so
+ * was the separation along `axis` (zero: none yet). A slack of 0 or above is never a guess. */
 typedef struct {
     int32_t other;    /* an item of the tree, or a mover */
-    wh_worth_t worth; /* which of world->worth */
-    wh_gone_t way;    /* by which the pair can come closer: UPRIGHT if the axis is */
+    wh_worth_t worth; /* index in world->worth */
+    wh_gone_t way;    /* the way by which the pair can come closer: UPRIGHT if the axis is */
     wh_real_t slack, since;
     wh_vec3_t axis;
-    wh_real_t parted; /* how far apart along the axis the two were at the end of this step of the world */
+    wh_real_t parted; /* the separation along the axis at the end of this step of the world */
     uint32_t step;    /* 0: not known */
-    wh_real_t exact;  /* `slack` was the gap when both had gone so far in any way; -1: it is a bound */
-    uint32_t again;   /* from this step on it is worth while to ask how far apart the two are by now */
+    wh_real_t exact;  /* `slack` was the gap when the sum of both ways was this; -1: it is a bound */
+    uint32_t again;   /* from this step on it is useful to compute the separation of the two again */
 } wh_pair_t;
 
-/* One part of a pair, as the judgement sees it. */
+/* One part of a pair, as the judgement uses it. */
 typedef struct {
     int32_t part;
     wh_part_kind_t kind;
@@ -67,7 +81,7 @@ typedef struct {
     const wh_body_t *body;         /* null: it rests */
     const wh_pose_t *before, *now; /* base_from_shape */
     wh_real_t motion, bulge;
-    wh_real_t gone; /* so far, in whatever way */
+    wh_real_t gone; /* its way so far, of any kind */
 } wh_side_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
@@ -75,19 +89,19 @@ typedef struct {
     int32_t part; /* WH_NONE: this gripper holds none */
     int32_t body; /* index in world->bodies */
     wh_part_kind_t kind;
-    int32_t arm;                  /* that it hangs on, or whose gripper holds it; WH_NONE: on none */
+    int32_t arm;                  /* the arm that it hangs on, or whose gripper holds it; WH_NONE: none */
     wh_pose_t before, now;        /* base_from_shape, if is_placed */
-    bool is_placed, was_placed;   /* someone has asked in this slice; in the one before */
-    wh_real_t radius;             /* of a ball about the body's origin that holds the part */
+    bool is_placed, was_placed;   /* it was needed in this slice; in the one before */
+    wh_real_t radius;             /* of a ball about the body's origin that contains the part */
     wh_real_t motion;             /* the most that a point of it moved in this slice, mm */
-    wh_real_t rise;               /* the same, up or down */
+    wh_real_t rise;               /* the most up or down */
     wh_real_t gone[WH_GONE_WAYS]; /* the sums of both */
-    wh_real_t bulge;              /* the most that a point left its straight way */
+    wh_real_t bulge;              /* the greatest distance of a point from its straight way */
     wh_pair_t *near;              /* things that rest, room for WH_NEAR_CAPACITY */
     size_t near_count;
-    wh_real_t reach; /* how much farther it may move before the list must be made again */
-    bool crowded;    /* more things are near than the list can hold */
-    wh_side_t side;  /* as it was asked for last */
+    wh_real_t reach; /* the way that it may still move before the list must be made again */
+    size_t crowd;    /* the number of near things, if they are more than the list can hold; otherwise 0 */
+    wh_side_t side;  /* as it was last asked for */
 } wh_mover_t;
 
 /* A pair of movers. */
@@ -96,14 +110,14 @@ typedef struct {
     wh_pair_t near;
 } wh_mover_pair_t;
 
-/* The wafer that a gripper let go last, until the gripper has gone sideways from there. */
+/* The wafer that a gripper released last, until the gripper has moved sideways from there. */
 typedef struct {
     int32_t wafer;
     wh_vec3_t at;
 } wh_left_t;
 
-/* With which the search for a pair's gap begins. Few pairs are near at a time: they share these, each its
- * own place by the numbers of its parts, and take turns where two have the same. */
+/* The start of the search for a pair's gap. Few pairs are near at a time, so they share these places. Each
+ * has its place by the numbers of its parts; two with one place take turns. */
 #define WH_WORLD_STARTS 256
 
 typedef struct {
@@ -111,81 +125,98 @@ typedef struct {
     wh_gap_start_t points;
 } wh_start_t;
 
-/* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
+/* Gaps are known better than to this, mm. A gap that is smaller by less than this is not a new minimum. */
 #define WH_SAME_GAP WH_REAL(1e-4)
 
 struct wh_world {
     const wh_world_config_t *config;
     size_t fixed_count; /* parts that hang on nothing. The tree's items are these, then the wafers */
     wh_tree_t tree;
-    wh_box_t *boxes;   /* of the tree's items, for building it */
-    wh_pose_t *wafers; /* base_from_wafer, as of the last slice */
-    wh_pose_t *shapes; /* of wafers that rest: base_from_shape */
-    uint32_t step;     /* this one, from 1 */
+    wh_box_t *boxes;   /* boxes of the tree's items, for building it */
+    wh_pose_t *wafers; /* base_from_wafer in the last slice */
+    wh_pose_t *shapes; /* of wafers at rest: base_from_shape */
+    uint32_t step;     /* the current one, from 1 */
     size_t set_down;   /* wafers set down since the tree was built */
-    /* of the arms, then the grippers', then of what each holds, then the doors' */
+    /* of the arms, then of the grippers, then of the wafers that they hold, then of the doors */
     wh_body_t bodies[WH_ARM_BODIES * WH_WORLD_ARMS + 2 * WH_WORLD_GRIPPERS + WH_WORLD_DOORS];
     wh_mover_t *movers;
     size_t mover_count;
     wh_mover_pair_t *pairs;
     size_t pair_count;
     wh_start_t starts[WH_WORLD_STARTS];
-    double *due; /* of each pair: when `gone` is that, something can come of it */
-    double gone; /* at least as far as any two movers have gone together, mm */
+    double *due; /* for each pair: it must be judged when `gone` has reached this value */
+    double gone; /* not less than the sum of the ways of any two movers, mm */
     wh_pair_t *near;
     int32_t held[WH_WORLD_GRIPPERS];
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
-    bool too_close[WH_CLEARANCES]; /* reported */
+    bool too_close[WH_CLEARANCES]; /* has been reported */
     bool struck;                   /* a hit was reported; contact is no longer judged */
-    bool undecided;                /* that was reported */
-    uint64_t slice;                /* the last one */
-    /* The smallest gaps of the bin of the curves that is not finished; of the run if no curves are kept. */
+    bool undecided;                /* has been reported */
+    uint64_t slice;                /* the last slice */
+    /* The smallest gaps of the current bin of the curves; of the run if no curves are recorded. */
     wh_real_t least[WH_CLEARANCES];
-    wh_real_t worth[WH_WORTHS]; /* a gap above it comes to nothing: it is no new `least` */
+    wh_real_t worth[WH_WORTHS]; /* a larger gap is no new `least` */
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
 
-/* How far both have gone, in the way that counts for the pair. `b` is null if the other one rests. */
+/* A sum of ways plus one more; never below the true sum. */
+static inline wh_real_t wh_world_add(wh_real_t sum, wh_real_t way) {
+    return sum + (way + WH_WORLD_ROUNDING * (sum + way));
+}
+
+/* The sum of both ways, of the kind that counts for the pair. `b` is null if the other one rests. */
 static inline wh_real_t wh_world_gone(const wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
     return a->gone[near->way] + (b ? b->gone[near->way] : 0);
 }
 
-/* A lower bound of the gap of two movers by now. */
+/* A lower bound of the present gap of two movers. */
 static inline wh_real_t wh_world_slack(const wh_mover_pair_t *pair, const wh_mover_t movers[]) {
     const wh_pair_t *near = &pair->near;
     const wh_real_t gone = movers[pair->a].gone[near->way] + movers[pair->b].gone[near->way];
     return near->slack - (gone - near->since);
 }
 
-/* To be called when slack and axis are those at the end of this slice. */
+/* The value of `since` for a pair that has gone this far. It is slightly less, so that no difference is
+ * rounded below the way, and this slice's way may be subtracted. */
+static inline wh_real_t wh_world_since(wh_real_t gone) {
+    return gone - 2 * WH_WORLD_ROUNDING * gone;
+}
+
+/* Call it when slack and axis are those at the end of this slice. */
 static inline void wh_world_remember(wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b) {
     near->way =
         near->axis.x == 0 && near->axis.y == 0 && near->axis.z != 0 ? WH_GONE_UPRIGHT : WH_GONE_ANYWHERE;
-    near->since = wh_world_gone(near, a, b);
+    near->since = wh_world_since(wh_world_gone(near, a, b));
 }
 
-/* Forgets all that was known of a pair. A pair with what is not there needs no look. */
+/* Forgets what was known about the separation of the two. */
+static inline void wh_world_lose(wh_pair_t *near) {
+    near->slack = WH_WORLD_UNKNOWN;
+    near->exact = -1;
+}
+
+/* Forgets everything that was known about a pair. A pair with an absent part need not be judged. */
 static inline void wh_world_forget(const wh_world_t *world, wh_mover_pair_t *pair) {
     const bool is_there = world->movers[pair->a].part != WH_NONE && world->movers[pair->b].part != WH_NONE;
-    pair->near.slack = is_there ? 0 : WH_WORLD_NOWHERE;
+    wh_world_lose(&pair->near);
+    pair->near.slack = is_there ? pair->near.slack : WH_WORLD_NOWHERE;
     pair->near.since = 0;
     pair->near.axis = wh_vec3(0, 0, 0);
-    pair->near.exact = -1;
     world->due[pair - world->pairs] = 0;
 }
 
-/* Takes over what wh_gap_measure has found, which was asked whether the gap is more than `enough`. */
+/* Takes the result of wh_gap_measure, which was asked whether the gap is more than `enough`. */
 static inline void wh_world_take_gap(wh_pair_t *near, const wh_side_t *a, const wh_side_t *b,
                                      const wh_gap_t *gap, wh_real_t enough) {
-    near->slack = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
+    near->slack = gap->state == WH_GAP_CLEAR ? gap->gap : WH_WORLD_UNKNOWN;
     near->exact = gap->state == WH_GAP_CLEAR && gap->gap <= enough ? a->gone + b->gone : -1;
     near->axis = gap->axis;
     near->step = 0;
 }
 
-/* Where the search for the gap of two parts begins. */
+/* The start of the search for the gap of two parts. */
 static inline wh_gap_start_t *wh_world_start(wh_world_t *world, int32_t a, int32_t b) {
     wh_start_t *start = &world->starts[((size_t)a * 31 + (size_t)b) % WH_WORLD_STARTS];
     if (start->parts[0] != a || start->parts[1] != b) {
@@ -203,7 +234,7 @@ typedef struct {
     wh_event_list_t *list;
 } wh_look_t;
 
-/* From the tree's items to part numbers and back. Parts are numbered: fixed parts, those that hang,
+/* From the tree's items to part numbers and back. The order of part numbers: fixed parts, hanging parts,
  * wafers. */
 int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_part_of_item);
 int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer) WH_SYMBOL(wh_world_item_of_wafer);
@@ -213,7 +244,7 @@ static inline size_t wh_world_arms(const wh_world_config_t *config) {
     return config->arm_count > 0 ? config->arm_count : 1;
 }
 
-/* How many movers hang on something; those of held wafers, by gripper, come behind them. */
+/* The number of movers that hang on something; those of held wafers, by gripper, come after them. */
 static inline size_t wh_world_hanging(const wh_world_t *world) {
     return world->config->part_count - world->fixed_count;
 }
@@ -223,31 +254,33 @@ int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
 int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);
 int32_t wh_world_door_body(size_t door) WH_SYMBOL(wh_world_door_body);
 
-/* To be called when a wafer that rests has been put elsewhere. */
+/* Call it when a wafer at rest has been put elsewhere. */
 void wh_world_place_shape(wh_world_t *world, size_t wafer) WH_SYMBOL(wh_world_place_shape);
 
-/* What is near is as the world is: valid until something moves. */
+/* The side of a mover now; it is valid until something moves. */
 const wh_side_t *wh_world_side_of_mover(const wh_world_t *world, wh_mover_t *mover)
     WH_SYMBOL(wh_world_side_of_mover);
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);
 
-/* The box around it where it is now. */
+/* The box around its present place. */
 wh_box_t wh_world_box(const wh_side_t *side) WH_SYMBOL(wh_world_box);
 
-/* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
+/* Takes the present places of everything. Wafers that were taken or released change between mover and
+ * tree. */
 void wh_world_move(const wh_look_t *look) WH_SYMBOL(wh_world_move);
 
-/* Called after the pairs were judged: what was let go rests from now on. */
+/* Call it after the pairs were judged: released wafers rest from now on. */
 void wh_world_settle(const wh_look_t *look) WH_SYMBOL(wh_world_settle);
 
-/* Makes the mover's list again if it has moved as far as the list reaches. */
+/* Makes the mover's list again if it has moved as far as the list is valid. */
 void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_near);
 
-/* Reports contact as undecided: more is near to this mover than its list can hold. */
-void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) WH_SYMBOL(wh_world_report_crowd);
+/* Reports contact as undecided, because this mover has more near things than its list can hold. */
+void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a, size_t crowd)
+    WH_SYMBOL(wh_world_report_crowd);
 
-/* True if nothing can come of the pair in this slice: it stays apart, and by more than its smallest gaps so
- * far. `b` is null if the other one rests. */
+/* True if the pair cannot matter in this slice: it stays apart, and by more than its smallest gaps so far.
+ * `b` is null if the other one rests. */
 bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t *a, const wh_mover_t *b)
     WH_SYMBOL(wh_world_is_far);
 
@@ -258,26 +291,27 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 /* Finishes the bin of the curves if this slice is its end, and begins the next one. */
 void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
 
-/* The arm of a part of this kind and owner, which is on a robot; of a held wafer as of a blade, its
- * gripper being the owner. WH_NONE: on none. */
+/* The arm of a part of this kind and owner, which is on a robot. A held wafer counts as a blade, with its
+ * gripper as owner. WH_NONE: it is on no arm. */
 int32_t wh_world_arm_of(const wh_world_config_t *config, wh_part_kind_t kind, int32_t owner)
     WH_SYMBOL(wh_world_arm_of);
 
-/* What a mover's gaps to something count for. `arm` is the other one's; WH_NONE: it is on none. */
+/* The clearances for which a mover's gaps to something count. `arm` is that of the other one; WH_NONE: it
+ * is on none. */
 wh_worth_t wh_world_worth_of(const wh_world_config_t *config, const wh_mover_t *mover, wh_part_kind_t kind,
                              int32_t arm) WH_SYMBOL(wh_world_worth_of);
 
-/* The largest of those of the gaps, by clearance, that may count. */
+/* The largest of the gaps, by clearance, that may count. */
 wh_real_t wh_world_most_of(wh_worth_t worth, const wh_real_t gaps[]) WH_SYMBOL(wh_world_most_of);
 
-/* Keeps a gap that is the run's smallest of its kind. */
+/* Keeps a gap that is the smallest of its kind in the run. */
 void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
                              const wh_side_t *b, const wh_gap_t *gap) WH_SYMBOL(wh_world_keep_clearance);
 
-/* Writes world->worth anew, after one of world->least has changed. */
+/* Writes world->worth again, after a change in world->least. */
 void wh_world_weigh(wh_world_t *world) WH_SYMBOL(wh_world_weigh);
 
-/* True if the pair need not be judged: config->known. */
+/* True if the pair need not be judged, by config->known. */
 bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) WH_SYMBOL(wh_world_is_known);
 
 /* True for parts that never move against each other, or are neighbours by design. */

@@ -1,7 +1,7 @@
-/* Where everything is now, and what of it rests. */
+/* The present places of everything, and the parts that rest. */
 #include "world_internal.h"
 
-/* A gripper has left the wafer that it let go when it has gone this far sideways, mm. */
+/* A gripper has left its released wafer when it has moved this far sideways, mm. */
 #define LEFT_BEHIND WH_REAL(1.0)
 
 int32_t wh_world_gripper_body(size_t gripper) {
@@ -74,7 +74,7 @@ static void move_body(wh_body_t *body, const wh_pose_t *now) {
     body->lean = spread > 0 ? upright_change(&body->now.R, &body->before.R) : 0;
 }
 
-/* Returns the most that a point of it moved, mm. */
+/* Returns the largest way of a point of it, mm. */
 static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
     const wh_body_t *body = &world->bodies[mover->body];
     if (mover->part == WH_NONE) {
@@ -89,8 +89,8 @@ static wh_real_t move_mover(wh_world_t *world, wh_mover_t *mover) {
     mover->motion = body->way + body->turn * mover->radius;
     mover->bulge = body->turn * body->turn * mover->radius / 8;
     mover->rise = wh_real_abs(body->now.r.z - body->before.r.z) + body->lean * mover->radius;
-    mover->gone[WH_GONE_ANYWHERE] += mover->motion;
-    mover->gone[WH_GONE_UPRIGHT] += mover->rise;
+    mover->gone[WH_GONE_ANYWHERE] = wh_world_add(mover->gone[WH_GONE_ANYWHERE], mover->motion);
+    mover->gone[WH_GONE_UPRIGHT] = wh_world_add(mover->gone[WH_GONE_UPRIGHT], mover->rise);
     mover->reach -= mover->motion;
     return mover->motion;
 }
@@ -101,7 +101,7 @@ static wh_mover_t *mover_of_gripper(wh_world_t *world, size_t gripper) {
     return &world->movers[wh_world_hanging(world) + gripper];
 }
 
-/* Forgets what is known of this mover's pairs with other movers. */
+/* Forgets the known values of this mover's pairs with other movers. */
 static void forget_pairs(wh_world_t *world, const wh_mover_t *mover) {
     const int32_t index = (int32_t)(mover - world->movers);
     for (size_t i = 0; i < world->pair_count; ++i) {
@@ -131,7 +131,7 @@ static void begin_to_carry(wh_world_t *world, size_t gripper, int32_t wafer) {
     relist_all(world);
 }
 
-/* The gripper lets its wafer go, and stays beside it for now. */
+/* The gripper releases its wafer, and stays beside it for now. */
 static void end_carrying(wh_world_t *world, size_t gripper) {
     world->left[gripper].wafer = world->held[gripper];
     world->left[gripper].at = world->bodies[wh_world_gripper_body(gripper)].now.r;
@@ -140,21 +140,20 @@ static void end_carrying(wh_world_t *world, size_t gripper) {
     forget_pairs(world, mover_of_gripper(world, gripper));
 }
 
-/* Forgets what the lists know of an item that has moved. */
+/* Removes the known values of an item that has moved from the lists. */
 static void forget_item(wh_world_t *world, int32_t item) {
     for (size_t m = 0; m < world->mover_count; ++m) {
         wh_mover_t *mover = &world->movers[m];
         for (size_t i = 0; i < mover->near_count; ++i) {
             if (mover->near[i].other == item) {
-                mover->near[i].slack = 0;
+                wh_world_lose(&mover->near[i]);
                 mover->near[i].axis = wh_vec3(0, 0, 0);
-                mover->near[i].exact = -1;
             }
         }
     }
 }
 
-/* Puts a wafer into the tree where it lies now. */
+/* Puts a wafer into the tree at its present place. */
 static void lay_down(wh_world_t *world, int32_t wafer) {
     const int32_t item = wh_world_item_of_wafer(world, wafer);
     wh_world_place_shape(world, (size_t)wafer);
@@ -235,7 +234,7 @@ static void move_held(const wh_look_t *look) {
     }
 }
 
-/* Ends a gripper's permission to touch the wafer that it let go, once it has gone sideways from there. */
+/* Ends a gripper's permission to touch its released wafer, once it has moved sideways from there. */
 static void leave_behind(wh_world_t *world, size_t gripper) {
     const wh_vec3_t *r = &world->bodies[wh_world_gripper_body(gripper)].now.r;
     wh_left_t *left = &world->left[gripper];
@@ -265,5 +264,5 @@ void wh_world_move(const wh_look_t *look) {
         const wh_real_t motion = move_mover(world, &world->movers[i]);
         most = motion > most ? motion : most;
     }
-    world->gone += 2 * (double)most;
+    world->gone = wh_world_add(world->gone, 2 * most);
 }

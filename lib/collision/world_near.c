@@ -1,4 +1,4 @@
-/* What rests near a moving part: a list that is good until the part has moved as far as it reaches. */
+/* The things at rest near a moving part: a list that is valid until the part has moved by its reach. */
 #include "world_internal.h"
 
 static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
@@ -14,7 +14,7 @@ static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
     return side;
 }
 
-/* Where the slice begins the one before has ended. */
+/* The slice begins where the one before ended. */
 static void place(const wh_world_t *world, wh_mover_t *mover) {
     const wh_body_t *body = &world->bodies[mover->body];
     const wh_convex_t *convex = wh_world_convex(world, mover->part);
@@ -58,7 +58,7 @@ wh_box_t wh_world_box(const wh_side_t *side) {
     return box;
 }
 
-/* How far two boxes are apart along base's axes; `axis` is the one with the largest gap. */
+/* The separation of two boxes along base's axes; `axis` is the one with the largest gap. */
 static wh_real_t box_gap(const wh_box_t *a, const wh_box_t *b, wh_vec3_t *axis) {
     const wh_real_t gaps[6] = {b->low.x - a->high.x, a->low.x - b->high.x, b->low.y - a->high.y,
                                a->low.y - b->high.y, b->low.z - a->high.z, a->low.z - b->high.z};
@@ -78,8 +78,9 @@ static wh_box_t box_before(const wh_world_t *world, wh_mover_t *mover) {
     return box;
 }
 
-/* Finds what is near within a margin, which is halved until all of it has room. If there is not even room for
- * the range of clearances, the list holds what could be touched in this slice, for this slice only. */
+/* Finds the things within a margin, which is halved until all of them have room. If there is no room even
+ * for the range of clearances, the list has the things that can be touched in this slice, and it is for
+ * this slice only. */
 static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *box, int32_t found[]) {
     wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
     const wh_real_t least = mover->motion + WH_NEAR_LEAST + WH_GAP_TOUCH;
@@ -87,9 +88,9 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
         const wh_box_t grown = wh_box_grown(box, margin);
         const size_t count = wh_tree_find(&world->tree, &grown, found, WH_NEAR_CAPACITY);
         mover->reach = margin - mover->motion - WH_CLEARANCE_RANGE;
-        mover->crowded = count > WH_NEAR_CAPACITY;
-        if (!mover->crowded || margin <= least) {
-            return mover->crowded ? WH_NEAR_CAPACITY : count;
+        mover->crowd = count > WH_NEAR_CAPACITY ? count : 0;
+        if (mover->crowd == 0 || margin <= least) {
+            return mover->crowd > 0 ? WH_NEAR_CAPACITY : count;
         }
         margin = margin / 2 > least ? margin / 2 : least;
     }
@@ -99,14 +100,14 @@ static wh_part_kind_t kind_of_item(const wh_world_t *world, int32_t item) {
     return (size_t)item < world->fixed_count ? world->config->parts[item].kind : WH_PART_WAFER;
 }
 
-/* True if nothing can come of the two: what rests is known as the mover is, or stands, and the mover is a
- * door in its frame. */
+/* True if the two cannot matter. The item at rest and the mover are both known, or the item stands and the
+ * mover is a door in its frame. */
 static bool may_pass(const wh_world_t *world, const wh_mover_t *mover, int32_t item) {
     return (mover->kind == WH_PART_DOOR && kind_of_item(world, item) != WH_PART_WAFER) ||
            wh_world_is_known(world, mover->part, wh_world_part_of_item(world, item));
 }
 
-/* Keeps what the old list knew of a thing. False if it was not on that list. */
+/* Takes the old list's knowledge of a thing. Returns false if it was not on that list. */
 static bool take_over(const wh_pair_t known[], size_t count, wh_pair_t *near) {
     for (size_t i = 0; i < count; ++i) {
         if (known[i].other == near->other) {
@@ -143,7 +144,7 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
             near->step = near->again = 0;
             near->exact = -1;
             near->way = WH_GONE_ANYWHERE;
-            near->since = mover->gone[near->way] - mover->motion;
+            near->since = wh_world_since(mover->gone[near->way]) - mover->motion;
         }
     }
     ++world->counters.relisted;

@@ -10,7 +10,7 @@
 
 /* ---------------------------------------------------------------------------------------------- far apart */
 
-/* How far turning in this slice can bring a point of the mover along the axis, at most. */
+/* The greatest distance along the axis that a turn in this slice can move a point of the mover. */
 static wh_real_t turned_along(const wh_body_t *body, wh_real_t radius, const wh_vec3_t *axis) {
     if (!(body->turn > 0)) {
         return 0;
@@ -26,7 +26,7 @@ static wh_real_t gone_along(const wh_body_t *body, const wh_vec3_t *axis) {
     return wh_vec3_dot(&way, axis);
 }
 
-/* By how much less the pair may be separated along its axis, which leads from a to b, after this slice. */
+/* The greatest loss of separation in this slice, along the pair's axis, which leads from a to b. */
 static wh_real_t lost_along(const wh_world_t *world, const wh_pair_t *near, const wh_mover_t *a,
                             const wh_mover_t *b) {
     const wh_body_t *body = &world->bodies[a->body];
@@ -47,8 +47,11 @@ bool wh_world_is_far(const wh_world_t *world, wh_pair_t *near, const wh_mover_t 
     if (slack > world->worth[near->worth]) {
         return true;
     }
+    if (!(slack > WH_WORLD_UNKNOWN)) {
+        return false;
+    }
     const wh_real_t bulge = a->bulge + (b ? b->bulge : 0);
-    const wh_real_t before = slack + moved(near, a) + (b ? moved(near, b) : 0);
+    const wh_real_t before = slack + moved(near, a) + (b ? moved(near, b) : 0) - WH_WORLD_BLUR;
     near->slack = before - lost_along(world, near, a, b);
     near->exact = -1;
     wh_world_remember(near, a, b);
@@ -165,21 +168,26 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
     return event;
 }
 
-static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, const wh_gap_t *gap,
-                           wh_gap_state_t state) {
+/* Returns the event; null if it was reported earlier, or there is no room. */
+static wh_event_t *report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b,
+                                  const wh_gap_t *gap, wh_gap_state_t state) {
     const bool is_hit = state == WH_GAP_HIT;
     bool *reported = is_hit ? &look->world->struck : &look->world->undecided;
-    if (!*reported) {
-        (void)append(look, is_hit ? WH_EVENT_HIT : WH_EVENT_UNDECIDED, a, b, gap);
-    }
+    wh_event_t *event =
+        *reported ? NULL : append(look, is_hit ? WH_EVENT_HIT : WH_EVENT_UNDECIDED, a, b, gap);
     *reported = true;
+    return event;
 }
 
-void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
+void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a, size_t crowd) {
     if (!look->world->struck) {
         const wh_gap_t nowhere = {.at = a->now->r};
         const wh_side_t nothing = {.part = WH_NONE, .kind = WH_PART_FIXED};
-        report_contact(look, a, &nothing, &nowhere, WH_GAP_UNDECIDED);
+        wh_event_t *event = report_contact(look, a, &nothing, &nowhere, WH_GAP_UNDECIDED);
+        if (event) {
+            event->value = (wh_real_t)crowd;
+            event->limit = WH_NEAR_CAPACITY;
+        }
     }
 }
 
@@ -207,7 +215,7 @@ void wh_world_keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, co
     }
 }
 
-/* Of a pair that was judged, which the bin of the curves has seen, too. */
+/* Keeps the clearance of a judged pair, which the curves' bin has seen, too. */
 static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
                            const wh_side_t *b, const wh_gap_t *gap) {
     wh_world_t *world = look->world;
@@ -224,8 +232,8 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
 
 /* ---------------------------------------------------------------------------------------------- judgement */
 
-/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. How
- * far it did at the end of the step before is how far it does at this one's begin. */
+/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. The
+ * separation at the end of the last step is that at the begin of this one. */
 static bool is_parted(const wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t needed,
                       wh_pair_t *near) {
     const wh_vec3_t axis = near->axis;
@@ -264,9 +272,9 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     }
     const wh_gap_state_t state = judge_between(world, a, b, &gap, &worst);
     if (state == WH_GAP_HIT || state == WH_GAP_UNDECIDED) {
-        report_contact(look, a, b, &worst, state);
+        (void)report_contact(look, a, b, &worst, state);
     }
-    if (state == WH_GAP_HIT) { /* between two slices it was */
+    if (state == WH_GAP_HIT) { /* the hit was between two slices */
         worst.state = WH_GAP_HIT;
         keep_clearance(look, kind, a, b, &worst);
     }
@@ -279,8 +287,7 @@ void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     if ((world->struck && kind == WH_CLEARANCES) || is_parted(world, a, b, least - WH_SAME_GAP, near)) {
         ++world->counters.planes;
     } else if (wh_world_may_touch(look, a, b)) {
-        near->slack = 0;
-        near->exact = -1;
+        wh_world_lose(near);
     } else {
         measure(look, a, b, kind, near);
     }

@@ -1,4 +1,4 @@
-/* What may touch what, and which clearance a pair counts for. */
+/* The rules of contact, and the clearance of a pair. */
 #include "world_internal.h"
 
 static bool is_on_robot(const wh_part_t *part) {
@@ -24,8 +24,9 @@ static bool is_one_robot(const wh_world_config_t *config, int32_t arm, int32_t o
            (arm != WH_NONE && other != WH_NONE && config->arms[arm].robot == config->arms[other].robot);
 }
 
-/* Of two arms of one robot: what they share belongs to both; where the second one begins, both meet. The
- * hands of two wrists are on one axis, and each one's blade passes the other hand. */
+/* True for neighbours of two arms of one robot: shared links belong to both arms, and both meet where the
+ * second one begins. The hands of two wrists are on one axis, and each one's blade passes the other
+ * hand. */
 static bool meet_at_robot(const wh_world_config_t *config, int32_t arm, int32_t link, int32_t other,
                           int32_t other_link) {
     const int32_t own = (int32_t)config->arms[arm > other ? arm : other].own;
@@ -58,7 +59,7 @@ bool wh_world_is_known(const wh_world_t *world, int32_t one, int32_t other) {
     return known && known[one] && known[other];
 }
 
-/* A door goes in its frame. */
+/* A door may touch its frame. */
 static bool may_stand(const wh_side_t *a, const wh_side_t *b) {
     const bool a_door = a->kind == WH_PART_DOOR;
     const wh_part_kind_t other = a_door ? b->kind : a->kind;
@@ -73,7 +74,7 @@ static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) 
     return &look->input->wafers[side->owner];
 }
 
-/* False if a wafer there is too far beside the station to lie in it. */
+/* False if a wafer there is too far from the station sideways to lie in it. */
 static bool is_beside(const wh_cell_t *cell, const wh_station_t *station, const wh_pose_t *base_from_wafer) {
     const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &station->base_from_station.r);
@@ -115,7 +116,8 @@ static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, con
     return support->kind == WH_PART_CHUCK && cell->stations[place.station].chuck == support->owner;
 }
 
-/* True if the wafer lies there at both ends of the slice. A wafer that comes through from below does not. */
+/* True if the wafer lies there at both ends of the slice. A wafer that passes through from below does
+ * not. */
 static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *support) {
     const wh_pose_t *now = &look->world->wafers[wafer->owner];
     return is_upon(look, now, support) && (!wafer->body || is_upon(look, &wafer->body->before, support));
@@ -129,8 +131,8 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     *a = first;
 }
 
-/* True if somebody has the wafer from whom a gripper may take it with a closed valve: another gripper, or a
- * chuck on which it lies, held or not. */
+/* True if a gripper may take the wafer with a closed valve, because another gripper has it, or a chuck on
+ * which it lies, held or not. */
 static bool is_offered(const wh_look_t *look, const wh_wafer_t *wafer) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
@@ -139,8 +141,7 @@ static bool is_offered(const wh_look_t *look, const wh_wafer_t *wafer) {
                                         cell->stations[place.station].chuck != WH_NONE);
 }
 
-/* True if gripper and wafer are meant to come together: they are within reach, and the gripper takes or
- * gives. */
+/* True if gripper and wafer may come together: they are within reach, and the gripper takes or gives. */
 static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *gripper) {
     const wh_grasp_config_t *grasp = look->world->config->grasp;
     const wh_gripper_t *state = &look->input->grippers[gripper->owner];
@@ -152,7 +153,7 @@ static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_
     if (beside || wh_real_abs(local.z) > grasp->near_projz) {
         return false;
     }
-    /* Let go in this slice: the world keeps it as held until the slice is over. */
+    /* The wafer was released in this slice; the world keeps it as held until the slice ends. */
     const bool released = look->world->held[gripper->owner] == wafer->owner;
     const bool is_edge = (look->world->config->edges >> (unsigned)gripper->owner & 1U) != 0;
     return state->valve == WH_VALVE_OPEN || is_edge || gripper->kind == WH_PART_CHUCK || released ||
@@ -172,7 +173,7 @@ bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side
 
 /* --------------------------------------------------------------------------------------------- clearances */
 
-/* For a gripper's part and a wafer that it does not hold. */
+/* The clearance of a gripper's part and a wafer that it does not hold. */
 static wh_clearance_kind_t wafer_and_gripper(const wh_look_t *look, const wh_side_t *wafer,
                                              const wh_side_t *gripper) {
     if (do_business(look, wafer, gripper)) {
@@ -240,7 +241,7 @@ wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t
     return has_blade ? WH_CLEARANCE_BLADE_OTHER : WH_CLEARANCES;
 }
 
-/* The clearances that one may count for, as bits. */
+/* The clearances that each worth may count for, as bits. */
 static const unsigned clearances[WH_WORTHS] = {
     [WH_WORTH_WAFER_WAFER] = 1U << WH_CLEARANCE_WAFER_WAFER,
     [WH_WORTH_WAFER_LEDGE] = 1U << WH_CLEARANCE_WAFER_LEDGE,
@@ -269,7 +270,7 @@ static wh_worth_t worth_of_wafer(wh_part_kind_t other, bool is_one) {
     return WH_WORTH_WAFER_OTHER;
 }
 
-/* Of two that are not of one robot. */
+/* The worth of two parts that are not of one robot. */
 static wh_worth_t worth_of_parts(wh_part_kind_t a, wh_part_kind_t b) {
     if (a == WH_PART_ARM || b == WH_PART_ARM) {
         return WH_WORTH_ARM_OTHER;

@@ -13,9 +13,8 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     }
     wh_world_list_near(world, mover);
     world->counters.pairs += mover->near_count;
-    if (mover->crowded) {
-        const wh_side_t *a = wh_world_side_of_mover(world, mover);
-        wh_world_report_crowd(look, a);
+    if (mover->crowd > 0) {
+        wh_world_report_crowd(look, wh_world_side_of_mover(world, mover), mover->crowd);
     }
     for (size_t i = 0; i < mover->near_count; ++i) {
         wh_pair_t *near = &mover->near[i];
@@ -28,7 +27,7 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     }
 }
 
-/* True for a wafer and what hangs on the gripper that holds it: they may touch, and no clearance is of
+/* True for a wafer and parts of the gripper that holds it: they may touch, and no clearance counts between
  * them. */
 static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
@@ -43,11 +42,11 @@ static bool hold_each_other(const wh_look_t *look, const wh_mover_pair_t *pair) 
            look->input->wafers[wafer].holder == hung->owner;
 }
 
-/* A slack that is worth less than so many slices of this motion is asked for anew; if that does not help,
- * not before so many slices have gone. */
+/* A slack that is used up within this number of slices at the present motion is computed again. If that
+ * does not help, the next time is after this number of slices. */
 #define SOON 16
 
-/* The sum of all ways is much more than two that go side by side have come closer. */
+/* The sum of all ways is much larger than the true approach of two movers side by side. */
 static void ask_anew(wh_world_t *world, wh_mover_t *a, wh_mover_t *b, wh_pair_t *near) {
     const wh_real_t soon = SOON * (a->motion + b->motion);
     if (near->slack - world->worth[near->worth] > soon || world->step < near->again) {
@@ -79,11 +78,11 @@ static void judge_movers(const wh_look_t *look, wh_mover_pair_t *pair) {
     wh_world_remember(&pair->near, a, b);
 }
 
-/* Sums of ways are rounded: a pair is looked at when this much is left, mm. */
+/* Sums of ways are rounded, so a pair is judged when this much is left, mm. */
 #define EARLY 0.01
 
-/* Looks at a pair. Returns how much farther apart the two are than what can matter: without end while they
- * hold each other, for what is known of a wafer is forgotten when it is taken or let go. */
+/* Judges a pair. Returns the distance that must still close before the pair matters. It is infinite while
+ * they hold each other, because the knowledge of a wafer is forgotten when it is taken or released. */
 static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     const wh_world_t *world = look->world;
     const wh_mover_t *movers = world->movers;
@@ -99,7 +98,7 @@ static double judge_pair(const wh_look_t *look, wh_mover_pair_t *pair) {
     return (double)(wh_world_slack(pair, movers) - worth);
 }
 
-/* Most pairs are so far apart that nothing need be known of them for many slices. */
+/* Most pairs are so far apart that they need no judgement for many slices. */
 static void judge_pairs(const wh_look_t *look) {
     const wh_world_t *world = look->world;
     const double gone = world->gone;
@@ -134,7 +133,7 @@ static bool cut(const wh_side_t *a, const wh_side_t *b) {
     return gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
 }
 
-/* The pairs that were found, of which the first `capacity` are kept. */
+/* The pairs found; the first `capacity` of them are kept. */
 typedef struct {
     int32_t (*pairs)[2];
     size_t count, capacity;
@@ -148,8 +147,8 @@ static void add_contact(contacts_t *contacts, const wh_side_t *a, const wh_side_
     ++contacts->count;
 }
 
-/* Adds the things at rest that this part overlaps, if they come after item `self`: so two wafers are a pair
- * once. Fixed parts may overlap each other: one thing may be made of several. */
+/* Adds the things at rest that this part overlaps, if they come after item `self`, so that two wafers make
+ * one pair. Fixed parts may overlap each other, because one thing may consist of several. */
 static void add_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, contacts_t *contacts) {
     const int32_t fixed_count = (int32_t)look->world->fixed_count;
     int32_t found[MOST_NEAR];

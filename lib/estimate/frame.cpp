@@ -1,10 +1,13 @@
 #include "frame.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "reason_internal.hpp"
+#include "rows_internal.hpp"
 
 namespace {
 
@@ -110,27 +113,27 @@ fit_t fit(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *est
     return found;
 }
 
-/* The squared distance of a point from where the others have it, in deviations of a point: its residual, less
- * its pull on the fit if it is used, or more what the fit may be off. A direction that it alone tells does
- * not count. */
+/* The squared distance of a point from its place by the others, in deviations of a point. It is its
+ * residual, less its pull on the fit if it is used, or plus the fit's possible error if it is not. A
+ * direction that only this point determines does not count. */
 double distance_of(const fit_t &found, const wh_frame_estimate_t &estimate, const wh_frame_point_t &point) {
     const Matrix3d cross = crossing(found.R * (vector_of(point.known) - found.moments.known));
     const Matrix3d pull =
         Matrix3d::Identity() / found.moments.used + cross * found.turned * cross.transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> own(pull);
+    const wh_estimate::own_t own = wh_estimate::own_of(pull);
     const wh_vec3_t off = wh_frame_residual(&estimate, &point);
-    const Vector3d along = own.eigenvectors().transpose() * vector_of(off);
+    const Vector3d along = own.vectors.transpose() * vector_of(off);
     double square = 0;
     for (int k = 0; k < 3; ++k) {
-        const double size = own.eigenvalues()(k);
+        const double size = own.values(k);
         const double variance = point.is_set_aside ? 1 + size : 1 - size;
         square += variance > 1e-6 ? along(k) * along(k) / variance : 0;
     }
     return square;
 }
 
-/* By how much, squared, a point may be off as seen from others with so many degrees of freedom, in units of
- * their variance (D. L. Wallace, 1959). */
+/* The largest usual squared deviation of a point as seen from others with this number of degrees of
+ * freedom, in units of their variance (D. L. Wallace, 1959). */
 double rare_square(double freedom) {
     constexpr double most = WH_FRAME_ASIDE_SDS * WH_FRAME_ASIDE_SDS;
     const double part = (freedom - 5.0 / 6) / ((freedom - 2.0 / 3) * (freedom - 2.0 / 3));
@@ -152,7 +155,7 @@ void drop_worst(wh_frame_point_t *points, size_t count, const fit_t &found,
     points[worst].is_set_aside = true;
 }
 
-/* Takes back the point that the fit to the others agrees with best; false if it agrees with none. */
+/* Takes back the point that agrees best with the fit to the others; false if none agrees. */
 bool take_back(wh_frame_point_t *points, size_t count, const fit_t &found,
                const wh_frame_estimate_t &estimate) {
     const double freedom = 3 * found.moments.used - 6;
@@ -172,8 +175,8 @@ bool take_back(wh_frame_point_t *points, size_t count, const fit_t &found,
     return best != nullptr;
 }
 
-/* A quarter of the points is left out first, the worst ones one by one, so that several wrong ones do not
- * hide one another. Then all are taken back that agree with the others. */
+/* It first leaves out a quarter of the points, the worst ones one by one, so that several wrong ones do not
+ * hide one another. Then it takes back all that agree with the others. */
 fit_t fit_agreed(wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate) {
     const auto most = static_cast<size_t>(WH_FRAME_ASIDE * static_cast<double>(count));
     for (size_t i = 0; i < count; ++i) {
@@ -190,9 +193,9 @@ fit_t fit_agreed(wh_frame_point_t *points, size_t count, wh_frame_estimate_t *es
     return found;
 }
 
-/* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from
- * the centre, by w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin
- * moves with the centre, and with w. */
+/* Fills in angles and all standard deviations. A small turn w about base's axes moves a known point p, seen
+ * from the centre, by w x p. So the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The
+ * origin moves with the centre, and with w. */
 void fill_in(const fit_t &found, wh_frame_estimate_t *estimate) {
     const Matrix3d &R = found.R;
     const double variance = found.squares / (3 * found.moments.used - 6);

@@ -1,5 +1,6 @@
 #include "geometry.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstring>
 
@@ -13,13 +14,13 @@ using namespace wh_estimate;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double most_pull = 100; /* times an error of the touches in a number, at the arm's length */
+constexpr double most_pull = 100; /* at the arm's length: factor of an error of the touches in a number */
 constexpr double nearly_alone =
-    0.3; /* of its error the fit takes over, where a touch may be the only one that tells */
+    0.3; /* of its error that the fit takes over, for a touch that may be the only one */
 
 const char *const axis_names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
 
-/* A fit that was agreed upon. */
+/* A fit that most touches agree with. */
 struct agreed_t {
     geometry_t model;
     geometry_rows_t rows;
@@ -42,13 +43,13 @@ bool is_told(const agreed_t &fit, const geometry_rows_t &rows, int k) {
            deviation * (is_length ? 1 : fit.reach) <= most_pull;
 }
 
-/* What the fit takes over of a touch's error where it takes over most of it. */
+/* The largest share of a touch's error that the fit takes over. */
 double largest_pull(const agreed_t &fit, const wh_touch_t &touch) {
-    return Eigen::SelfAdjointEigenSolver<Matrix3d>(pull_of(fit.rows, fit.model, touch)).eigenvalues()(2);
+    return own_of(pull_of(fit.rows, fit.model, touch)).values(2);
 }
 
-/* Sets is_determined; lone[k] is the number of the only touch that tells k, from 1, or 0. Few touches can
- * be such. */
+/* Sets is_determined; lone[k] is the number of the only touch that determines k, from 1, or 0. Only few
+ * touches can be of this kind. */
 void judge_values(touches_t &data, const agreed_t &fit, wh_geometry_estimate_t *estimate, size_t *lone) {
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
         estimate->values[k].is_determined = is_told(fit, fit.rows, k);
@@ -71,11 +72,11 @@ void judge_values(touches_t &data, const agreed_t &fit, wh_geometry_estimate_t *
 
 /* ---------------------------------------------------------------------------------------- what is missing */
 
-/* Why a number is not determined: sets of axes to be moved by their bits, or one of these, or a touch
- * behind them. */
+/* The reason why a number is not determined: sets of axes to move, as bits, or one of these values, or a
+ * touch number added to LONE. */
 enum { MORE = 0, NOTHING = 16, HEADINGS = 17, LONE = 32 };
 
-/* The touches once more with an axis moved, both ways. */
+/* Adds the touches again with an axis moved, in both directions. */
 void add_moved(const touches_t &data, const agreed_t &fit, unsigned axes, geometry_rows_t *rows) {
     const double ways[WH_ROBOT_AXES] = {full_turn / 6, 100, 100, full_turn / 4};
     for (size_t i = 0; i < data.count; ++i) {
@@ -89,7 +90,7 @@ void add_moved(const touches_t &data, const agreed_t &fit, unsigned axes, geomet
     }
 }
 
-/* What the touches would tell if there were others with these axes moved: one by one, and together. */
+/* The equations if there were further touches with these axes moved: one by one, and together. */
 geometry_rows_t rows_with(const touches_t &data, const agreed_t &fit, unsigned axes) {
     geometry_rows_t rows;
     add_moved(data, fit, 0, &rows);
@@ -101,7 +102,7 @@ geometry_rows_t rows_with(const touches_t &data, const agreed_t &fit, unsigned a
     return rows;
 }
 
-/* For each number that is not determined the fewest axes that would have to be moved. */
+/* For each number that is not determined, finds the fewest axes that must move. */
 void find_missing(const touches_t &data, const agreed_t &fit, const wh_geometry_estimate_t &estimate,
                   size_t *missing) {
     static const unsigned sets[] = {0, 8, 1, 2, 4, 9, 10, 3, 12, 5, 6, 11, 13, 14, 7, 15};
@@ -140,7 +141,7 @@ void tell_way(size_t missing, char *reason) {
     }
 }
 
-/* Names the numbers that want for the same as `first` does, and sets that they are named. */
+/* Names the numbers that lack the same measurements as `first`, and marks them as named. */
 void name_numbers(const size_t *missing, int first, bool *is_named, char *reason) {
     const char *before = "";
     for (int k = first; k < WH_GEOMETRY_PARAMETERS; ++k) {
@@ -194,7 +195,7 @@ wh_status_t check(const wh_touch_t *touches, size_t count, wh_geometry_estimate_
     return WH_OK;
 }
 
-/* By how much the scale of an axis seems to be off 1, and in how many times what is rare. */
+/* The apparent error of the scale of an axis, and how often that is beyond chance. */
 struct scale_t {
     double off, rareness;
 };
@@ -222,7 +223,7 @@ scale_t scale_of(const touches_t &data, const agreed_t &fit, int axis) {
     return {off, std::sqrt(fewer / std::max(left, least_sd_mm * least_sd_mm)) / rare_of(freedom)};
 }
 
-/* True if it does not take one certain touch to say so. */
+/* True if this does not depend on a single touch. */
 bool is_off_without_any(touches_t &data, const agreed_t &fit, int axis) {
     const agreed_t scaled = with_scale(data, fit, axis);
     bool is_off = true;
@@ -236,7 +237,7 @@ bool is_off_without_any(touches_t &data, const agreed_t &fit, int axis) {
     return is_off;
 }
 
-/* The axis whose scale is most surely off; -1 if none is. */
+/* The axis whose scale is most surely wrong; -1 if none is. */
 int find_scale(touches_t &data, const agreed_t &fit, double *off) {
     int found = -1;
     double most = 1;
@@ -297,7 +298,7 @@ wh_status_t fit_touches(touches_t &data, agreed_t *fit, wh_geometry_estimate_t *
     return WH_OK;
 }
 
-/* Residuals, and how far from the column the point was. */
+/* Computes residuals, and the distance of the point from the column. */
 void measure(const touches_t &data, agreed_t *fit, wh_geometry_estimate_t *estimate) {
     const auto used = static_cast<double>(estimate->used);
     double squares = 0;
@@ -342,7 +343,7 @@ void store_base(wh_geometry_estimate_t *estimate) {
     estimate->base_rpy[2] = std::atan2(R(1, 0), R(0, 0));
 }
 
-/* What the zero of yaw lacks, if it is not determined. */
+/* The measurements that the zero of yaw lacks, if it is not determined. */
 size_t missing_of_yaw(const wh_geometry_estimate_t &estimate, const size_t *missing) {
     if (estimate.headings == 0) {
         return HEADINGS;

@@ -1,5 +1,6 @@
 #include "geometry_internal.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "../math/philox.h"
@@ -13,7 +14,7 @@ using Eigen::Vector3d;
 constexpr int starts = 60;
 constexpr int touches_of_a_start = 6;
 constexpr double median_to_sd =
-    1 / 1.5382; /* of the lengths of what has a deviation of 1 in three directions */
+    1 / 1.5382; /* median length of a vector with a deviation of 1 in three directions */
 
 /* ---------------------------------------------------------------------------------------------- the model */
 
@@ -26,7 +27,7 @@ Matrix3d tilt_of(const double p[WH_GEOMETRY_PARAMETERS]) {
 }
 
 Vector3d point_of(const double p[WH_GEOMETRY_PARAMETERS], const double axes[WH_ROBOT_AXES], jacobian_t *by) {
-    double at[WH_ROBOT_AXES]; /* where the axes are */
+    double at[WH_ROBOT_AXES]; /* positions of the axes */
     for (int i = 0; i < WH_ROBOT_AXES; ++i) {
         at[i] = p[WH_GEOMETRY_SCALE + i] * axes[i] + (i == WH_AXIS_YAW ? 0 : p[WH_GEOMETRY_ZERO + i]);
     }
@@ -118,9 +119,9 @@ geometry_t stepped(const geometry_t &from, const geometry_rows_t::vector_t &step
 
 /* ------------------------------------------------------------------------------------------------- starts */
 
-/* Of a level column x and y are linear in four pairs of numbers: place, direction times r, direction times
+/* For a level column x and y are linear in four pairs of numbers: place, direction times r, direction times
  * the zero of r, and direction times the tool. */
-using level_rows_t = rows_t<8>;
+using level_rows_t = rows_t<level_parameters>;
 
 static void add_level(level_rows_t *rows, const wh_touch_t &touch, double weight, double reach) {
     const double theta = touch.axes[WH_AXIS_THETA];
@@ -136,7 +137,7 @@ static void add_level(level_rows_t *rows, const wh_touch_t &touch, double weight
     rows->add(weight * y, weight * touch.touched.y);
 }
 
-/* The mean length of r, and the mean height of the points less z, of what has a weight. */
+/* The mean length of r, and the mean height of the points minus z, of touches with a weight. */
 static void means_of(const touches_t &data, double *reach, double *height) {
     double weights = 0;
     *reach = 0;
@@ -170,7 +171,8 @@ static geometry_t level_of(const level_rows_t::vector_t &pairs, double heading, 
     return model;
 }
 
-/* From what has a weight. Where r is of one length, the direction is that of both pairs together. */
+/* Starts from the touches with a weight. If r has one length, the direction is that of both pairs
+ * together. */
 static geometry_t find_start(const touches_t &data) {
     double reach;
     double height;
@@ -189,7 +191,7 @@ static geometry_t find_start(const touches_t &data) {
     return squares_of(data, alone) < squares_of(data, together) ? alone : together;
 }
 
-/* Weights of 1 for six touches that the start's number draws, else 0. */
+/* Sets weights of 1 for six touches that the start's number draws, otherwise 0. */
 static void draw(touches_t &data, uint32_t start) {
     std::fill(data.weights, data.weights + data.count, 0);
     const uint32_t key[2] = {0, 0};
@@ -204,8 +206,8 @@ static void draw(touches_t &data, uint32_t start) {
 
 /* ------------------------------------------------------------------------------------------------- robust */
 
-/* The standard deviation of a coordinate by the median of the residuals' lengths; of few touches that is
- * too small (P. J. Rousseeuw, 1984). */
+/* The standard deviation of a coordinate, from the median of the residuals' lengths; it is too small for
+ * few touches (P. J. Rousseeuw, 1984). */
 static double deviation_of(touches_t &data, const geometry_t &model) {
     for (size_t i = 0; i < data.count; ++i) {
         data.sizes[i] = rest_of(model, data.touches[i]).norm();
@@ -224,7 +226,7 @@ static void weigh(touches_t &data, const geometry_t &model, double deviation) {
     }
 }
 
-/* The geometry that most touches agree with, by robust weights from the best of many starts. */
+/* The geometry that most touches agree with, found by robust weights from the best of many starts. */
 static geometry_t find_agreed(touches_t &data, bool with_scales) {
     geometry_t best = {};
     double least = HUGE_VAL;
@@ -260,24 +262,25 @@ Matrix3d pull_of(const geometry_rows_t &rows, const geometry_t &model, const wh_
     return pulls.transpose().lazyProduct(pulls); /* a general product would link to the heap */
 }
 
-/* How far off a touch is, in deviations, less what it pulls the fit towards itself, or more what the fit
- * may be off without it. Directions that it alone tells do not count. */
+/* The distance of a touch, in deviations, minus its own pull on the fit, or plus the fit's possible error
+ * without it. Directions that only this touch determines do not count. */
 static double distance_of(const touches_t &data, const geometry_rows_t &rows, const geometry_t &model,
                           size_t i) {
     constexpr double alone = 1e-6;
     const wh_touch_t &touch = data.touches[i];
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> own(pull_of(rows, model, touch));
-    const Vector3d along = own.eigenvectors().transpose() * rest_of(model, touch);
+    const own_t own = own_of(pull_of(rows, model, touch));
+    const Vector3d along = own.vectors.transpose() * rest_of(model, touch);
     double square = 0;
     for (int k = 0; k < 3; ++k) {
-        const double pull = own.eigenvalues()(k);
+        const double pull = own.values(k);
         const double variance = data.is_used[i] ? 1 - pull : 1 + pull;
         square += variance > alone ? along(k) * along(k) / variance : 0;
     }
     return std::sqrt(square);
 }
 
-/* Sets which touches are used, and their weights. Returns how many; `is_same` if they are those of before. */
+/* Decides which touches are used, and sets their weights. Returns their number; `is_same` is set if they
+ * are the same as before. */
 static size_t set_aside(touches_t &data, const geometry_t &model, double sd, bool *is_same) {
     const geometry_rows_t rows = rows_of(data, model);
     size_t used = 0;

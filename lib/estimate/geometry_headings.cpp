@@ -19,7 +19,7 @@ namespace {
 constexpr double heading_misfit = 0.02; /* rad */
 constexpr double most_scale_sds = 6;
 
-/* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less
+/* The zero of yaw by a touch's heading: the direction of the tool's x as seen from the turned column, minus
  * theta and yaw. */
 double yaw_zero_of(const double *p, const wh_touch_t &touch) {
     const Matrix3d tilt = tilt_of(p);
@@ -32,11 +32,11 @@ double yaw_zero_of(const double *p, const wh_touch_t &touch) {
     return std::remainder(std::atan2(ahead(1), ahead(0)) - theta - yaw, full_turn);
 }
 
-/* The axes that turn the tool, and that the scales may still be off. */
+/* The axes that turn the tool, whose scales may still be wrong. */
 constexpr int turning[2] = {WH_AXIS_THETA, WH_AXIS_YAW};
 constexpr int slope_rounds = 3;
 
-/* What the headings say, each less the middle of all. */
+/* The headings' values, each minus the median of all. */
 struct headings_t {
     double rests[WH_GEOMETRY_MOST_TOUCHES];
     double sizes[WH_GEOMETRY_MOST_TOUCHES]; /* to be sorted */
@@ -44,8 +44,8 @@ struct headings_t {
     bool is_used[WH_GEOMETRY_MOST_TOUCHES];
     size_t count, used;
     double middle, mean, sd;
-    double mean_sd;   /* of the middle and the mean together */
-    double slopes[2]; /* by which they go with the turning axes: taken out of the rests */
+    double mean_sd;   /* of the median and the mean together */
+    double slopes[2]; /* their dependence on the turning axes; it is removed from the rests */
 };
 
 double middle_of(double *values, size_t count) {
@@ -53,7 +53,7 @@ double middle_of(double *values, size_t count) {
     return values[count / 2];
 }
 
-/* Takes the middle out of the rests. */
+/* Subtracts the median from the rests. */
 void centre_rests(headings_t *headings) {
     std::copy(headings->rests, headings->rests + headings->count, headings->sizes);
     const double middle = middle_of(headings->sizes, headings->count);
@@ -86,7 +86,7 @@ void read_headings(const touches_t &data, const double *p, headings_t *headings)
     }
 }
 
-/* Sets aside, and takes the mean of the others. */
+/* Sets headings aside, and takes the mean of the others. */
 void average(headings_t *headings) {
     const auto count = static_cast<double>(headings->count);
     headings->sd = 1.4826 * (1 + 5 / count) * middle_of(headings->sizes, headings->count);
@@ -113,9 +113,9 @@ void average(headings_t *headings) {
     headings->mean_sd = headings->sd / std::sqrt(static_cast<double>(headings->used));
 }
 
-/* The scales of the turning axes are known as well as the touches tell them: what the headings have to add
- * to a scale is a slope, and where yaw and theta are 0 is what the zero of yaw is of. Of a scale that the
- * touches do not tell, the headings alone say the slope. */
+/* The touches determine the scales of the turning axes with some accuracy. The headings add a slope to a
+ * scale, and the zero of yaw refers to the place where yaw and theta are 0. If the touches do not determine
+ * a scale, the headings alone determine the slope. */
 void take_slopes(const touches_t &data, const wh_geometry_estimate_t &estimate, headings_t *headings) {
     Matrix3d products = Matrix3d::Zero();
     Vector3d sums = Vector3d::Zero();
@@ -133,7 +133,7 @@ void take_slopes(const touches_t &data, const wh_geometry_estimate_t &estimate, 
         sums(k + 1) -= weight * headings->slopes[k];
     }
     const double size = products(0, 0) * products(1, 1) * products(2, 2);
-    if (!(products.determinant() > 1e-12 * size)) { /* an axis stood still */
+    if (!(products.determinant() > 1e-12 * size)) { /* an axis did not move */
         headings->mean_sd = HUGE_VAL;
         return;
     }
@@ -150,7 +150,7 @@ void take_slopes(const touches_t &data, const wh_geometry_estimate_t &estimate, 
     headings->mean_sd = std::sqrt(variance * inverse(0, 0));
 }
 
-/* True if a slope is more than the touches leave to the scale of its axis. */
+/* True if a slope exceeds the accuracy with which the touches determine the scale of its axis. */
 bool contradicts_scale(const wh_geometry_estimate_t &estimate, const headings_t &headings) {
     bool is_off = false;
     for (int k = 0; k < 2; ++k) {
@@ -160,7 +160,7 @@ bool contradicts_scale(const wh_geometry_estimate_t &estimate, const headings_t 
     return is_off;
 }
 
-/* True if the headings go with an axis, which the mean would not show. */
+/* True if the headings depend on an axis, which the mean would not show. */
 bool goes_with(const touches_t &data, const headings_t &headings, int axis) {
     double products = 0;
     double spread = 0;

@@ -18,12 +18,12 @@ constexpr double largest_sd = 0.05;
 
 /* Fits of each set of limits to the moves that are used, and the deviation of one time. */
 struct fits_t {
-    model_t of[all_limits + 1]; /* by set; [0] is none */
+    model_t of[all_limits + 1]; /* one for each set; [0] is none */
     size_t used;
     double sd, quantum;
 };
 
-/* All sets that lack a limit; each is also looked for from the fit of all limits, beside which it may lie. */
+/* Fits all sets that lack a limit; each also starts from the fit of all limits, near which it may lie. */
 void fit_sets(const data_t &data, fits_t *fits) {
     for (unsigned set = 1; set < all_limits; ++set) {
         model_t model = fits->of[all_limits];
@@ -37,7 +37,7 @@ void fit_sets(const data_t &data, fits_t *fits) {
     }
 }
 
-/* The largest power of ten of which all times are multiples: what the log tells of a second. */
+/* The largest power of ten that divides all times: the resolution of the log in seconds. */
 double quantum_of(const data_t &data) {
     for (double per_second = 1; per_second < 1e6; per_second *= 10) {
         bool is_multiple = true;
@@ -57,7 +57,7 @@ bool fits_well(const fits_t &fits, const model_t &model) {
     return more <= needed_variances * fits.sd * fits.sd;
 }
 
-/* No set of limits without this one fits. */
+/* True if no set of limits without this one fits. */
 bool is_needed(const fits_t &fits, int limit) {
     bool is_needed = true;
     for (unsigned set = 1; set < all_limits; ++set) {
@@ -66,7 +66,8 @@ bool is_needed(const fits_t &fits, int limit) {
     return is_needed;
 }
 
-/* How low a limit can be if the others follow, from a model that fits with the limit at exp(model.p). */
+/* The lowest value of a limit if the others follow, from a model that fits with the limit at
+ * exp(model.p). */
 double lowest_of(const data_t &data, const fits_t &fits, int limit, model_t model) {
     constexpr double far = 10;
     const double lowest = model.p[limit] - far;
@@ -87,7 +88,7 @@ double lowest_of(const data_t &data, const fits_t &fits, int limit, model_t mode
     return std::exp(model.p[limit] - 0.01);
 }
 
-/* What a limit is at least by every set that fits; 0 if one of them says nothing. */
+/* A lower bound of a limit from every set that fits; 0 if one of them gives none. */
 double at_least(const data_t &data, const fits_t &fits, int limit) {
     double least = HUGE_VAL;
     for (unsigned set = 1; set <= all_limits; ++set) {
@@ -101,7 +102,7 @@ double at_least(const data_t &data, const fits_t &fits, int limit) {
     return least;
 }
 
-/* Standard deviations, with what it would do if all times were rounded the same way. */
+/* Fills in standard deviations, including the effect of rounding all times in one direction. */
 void fill_in(const data_t &data, const fits_t &fits, wh_limits_estimate_t *estimate) {
     const model_t &all = fits.of[all_limits];
     const limit_rows_t rows = rows_of(data, all);
@@ -137,7 +138,7 @@ void sort_used(const data_t &data, size_t *order) {
     });
 }
 
-/* True if the residuals of neighbours in distance are alike, as they are where the times follow another
+/* True if the residuals of neighbours in distance are alike, which happens if the times follow another
  * law. */
 bool is_of_another_law(const data_t &data, const fits_t &fits, const size_t *order) {
     const model_t &all = fits.of[all_limits];
@@ -193,11 +194,16 @@ wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order,
 
 /* -------------------------------------------------------------------------------------- which are missing */
 
-/* The shortest distance at which the speed is reached; what rises and falls takes but for the cruise. */
+/* The shortest distance at which the speed is reached: the part of rise and fall, without the cruise. */
 double reaching_distance(const wh_limits_estimate_t &estimate) {
     const double speed = estimate.fitted[WH_LIMIT_SPEED];
     return speed * (wh_limits_seconds(&estimate, estimate.longest) - estimate.fitted[WH_LIMIT_DELAY]) -
            estimate.longest;
+}
+
+/* No profile with this speed and jerk accelerates more, however long its move is. */
+double never_reached(const wh_limits_estimate_t &estimate) {
+    return std::sqrt(estimate.fitted[WH_LIMIT_SPEED] * estimate.fitted[WH_LIMIT_JERK]);
 }
 
 void tell_missing_of_acceleration(wh_limits_estimate_t *estimate, bool has_speed, bool has_jerk) {
@@ -206,8 +212,9 @@ void tell_missing_of_acceleration(wh_limits_estimate_t *estimate, bool has_speed
              reaching_distance(*estimate));
     } else if (has_speed) {
         tell(estimate->reason,
-             "acceleration: no move reaches it before the speed, so any from %.4g on gives these times; ",
-             estimate->at_least[WH_LIMIT_ACCELERATION]);
+             "acceleration: no move reaches it before the speed: surely not below %.4g, and any from %.6g on "
+             "gives the times of these limits; ",
+             estimate->at_least[WH_LIMIT_ACCELERATION], never_reached(*estimate));
     } else {
         tell(estimate->reason, "acceleration: moves of other lengths, longer than %.4g first; ",
              estimate->longest);
@@ -278,7 +285,7 @@ wh_status_t conclude(data_t &data, fits_t &fits, wh_limits_estimate_t *estimate)
     estimate->rms = std::sqrt(fits.of[all_limits].squares / static_cast<double>(fits.used));
     estimate->shortest = data.moves[order[0]].distance;
     estimate->longest = data.moves[order[fits.used - 1]].distance;
-    if (estimate->rms < fits.quantum / 2) { /* equal moves have equal errors of rounding */
+    if (estimate->rms < fits.quantum / 2) { /* equal moves have equal rounding errors */
         fits.sd *= std::sqrt(static_cast<double>(fits.used) /
                              static_cast<double>(count_distances(data, fits, order)));
     }

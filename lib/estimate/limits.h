@@ -1,22 +1,23 @@
-/* An axis's limits of speed, acceleration and jerk from the times that its moves took, as a field log has
+/* An axis's limits of speed, acceleration and jerk from the durations of its moves, as a field log has
  * them.
  *
- * Each time is taken for that of the jerk-limited profile of motion/profile.h over the move's distance.
- * The three limits that come nearest to all times, in the sense of least squares, are searched for from
- * many starts, with robust weights (Tukey's biweight, 4.685 deviations by the median). What is then
- * farther off than 4.685 standard deviations, such as a move with a pause in it, is set aside; the others
- * count alike.
+ * Each time counts as that of the jerk-limited profile of motion/profile.h over the move's distance. The
+ * search finds the three limits that come nearest to all times by least squares. It begins at many starts,
+ * with robust weights (Tukey's biweight, 4.685 deviations by the median). A move that then deviates by more
+ * than 4.685 standard deviations, such as one with a pause in it, is set aside; the others count equally.
  *
  * A limit is determined only if the moves tell it: no profile without this limit fits them (the squares
  * would grow by more than 25 of their variance), and its standard deviation is below 5 %. For one that is
- * not, the estimate says how large it is at least, and which moves are missing. An axis that never
- * reaches its acceleration has one all the same in a layout: any from "at least" on gives the same times.
+ * not, the estimate says how large it surely is at least, and which moves are missing. Such a bound is no
+ * value for a layout: times by it may be worse by those 25 variances. An axis that never reaches its
+ * acceleration has one all the same in a layout: any from sqrt(speed * jerk) on gives the same times, and the
+ * reason tells that number.
  *
- * A delay that is the same in each time (of the line, until the axis has settled) looks much like a low
- * jerk. It is fitted only if asked for. If it is not, and the times have one, they are refused rather
- * than fitted wrongly; so are times that depend on the distance in another way than any profile's.
+ * A constant delay in each time (of the line, until the axis has settled) looks much like a low jerk. It is
+ * fitted only on request. Without that, times with a delay are refused and not fitted wrongly. Times that
+ * depend on the distance in another way than any profile's are refused, too.
  *
- * Units: those of the distances (mm, rad or degrees), and seconds. */
+ * Units are those of the distances (mm, rad or degrees), and seconds. */
 #ifndef WH_ESTIMATE_LIMITS_H
 #define WH_ESTIMATE_LIMITS_H
 
@@ -25,7 +26,7 @@
 
 WH_HEADER_BEGIN
 
-/* Moves needed at least, and the most that are looked at. */
+/* The least number of moves, and the most that are used. */
 #define WH_LIMITS_MOVES 8
 #define WH_LIMITS_MOST_MOVES 10000
 
@@ -36,21 +37,21 @@ WH_HEADER_BEGIN
 typedef struct {
     double distance;   /* > 0 */
     double seconds;    /* > 0 */
-    bool is_set_aside; /* written */
+    bool is_set_aside; /* an output */
 } wh_timed_move_t;
 
-/* The limits in every list here; the delay is a parameter like them, s. */
+/* The limits in every list here; the delay is a parameter, too, s. */
 enum { WH_LIMIT_SPEED, WH_LIMIT_ACCELERATION, WH_LIMIT_JERK, WH_LIMIT_DELAY, WH_LIMIT_PARAMETERS };
 
 typedef struct {
     wh_status_t status; /* as wh_limits_estimate returns it */
     wh_estimate_value_t values[WH_LIMIT_PARAMETERS];
-    double at_least[WH_LIMIT_PARAMETERS]; /* of a limit that is not determined; 0: nothing is known */
-    double fitted[WH_LIMIT_PARAMETERS];   /* what wh_limits_seconds takes */
+    double at_least[WH_LIMIT_PARAMETERS]; /* lower bound of an undetermined limit; 0: nothing is known */
+    double fitted[WH_LIMIT_PARAMETERS];   /* input of wh_limits_seconds */
     size_t used, set_aside;
     double rms;                      /* s, of the times that were used */
     double shortest, longest;        /* distance of the moves that were used */
-    char reason[WH_ESTIMATE_REASON]; /* what is wrong; or which moves are missing, if one is; else empty */
+    char reason[WH_ESTIMATE_REASON]; /* the error; or the missing moves, if any; else empty */
 } wh_limits_estimate_t;
 
 /* Fits the limits. No pointer may be null. Returns
@@ -61,12 +62,12 @@ typedef struct {
  *   WH_STATUS_NO_FIT          too many were set aside, or the times are no profile's: see above
  *   WH_STATUS_NOT_DETERMINED  no limit is determined
  *   WH_OK                     at least one is
- * Cost: about 0.3 ms a move; 300 kB of stack. */
+ * Cost: about 0.3 ms for each move; 300 kB of stack. */
 wh_status_t wh_limits_estimate(wh_timed_move_t *moves, size_t count, bool with_delay,
                                wh_limits_estimate_t *estimate);
 
-/* The time that a move over this distance takes by what was fitted: within the distances of the moves
- * that were used it is told even if not all limits are. NaN unless the estimate is WH_OK. */
+/* The time of a move over this distance by the fitted values. Within the distances of the used moves it is
+ * valid even if not all limits are determined. It is NaN unless the estimate is WH_OK. */
 double wh_limits_seconds(const wh_limits_estimate_t *estimate, double distance);
 
 WH_HEADER_END

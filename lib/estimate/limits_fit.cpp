@@ -20,7 +20,7 @@ double rest_of(const data_t &data, const model_t &model, size_t i) {
     return data.moves[i].seconds - seconds_of(model.p, data.moves[i].distance);
 }
 
-/* The value that a part of the first `count` sizes does not exceed. */
+/* The value that this part of the first `count` sizes does not exceed. */
 static double quantile(data_t &data, size_t count, double part) {
     const auto place = static_cast<size_t>(part * static_cast<double>(count - 1));
     std::nth_element(data.sizes, data.sizes + place, data.sizes + count);
@@ -98,7 +98,7 @@ static double deviation_sum(const data_t &data, const model_t &model) {
     return sum;
 }
 
-/* Keeps the best, the first being the very best. */
+/* Keeps the best starts; the first is the very best. */
 static void keep_start(model_t starts[start_count], const model_t &model) {
     for (int i = 0; i < start_count; ++i) {
         if (model.squares < starts[i].squares) {
@@ -109,7 +109,7 @@ static void keep_start(model_t starts[start_count], const model_t &model) {
     }
 }
 
-/* The models on a grid whose times deviate least in sum: `free` says which limits there are. */
+/* The models on a grid whose times have the least sum of deviations; `free` says which limits exist. */
 static void find_starts(const data_t &data, unsigned free, model_t starts[start_count]) {
     std::fill(starts, starts + start_count, model_t{{}, {}, HUGE_VAL});
     int most[limit_count];
@@ -161,7 +161,7 @@ static double weigh(data_t &data, const model_t &model, double deviation) {
     return loss;
 }
 
-/* Weights of 1 for what is near enough, else 0. Returns how many are. */
+/* Sets weights of 1 for moves that are near enough, otherwise 0. Returns their number. */
 static size_t set_aside(data_t &data, const model_t &model, double deviation) {
     size_t used = 0;
     for (size_t i = 0; i < data.count; ++i) {
@@ -172,7 +172,8 @@ static size_t set_aside(data_t &data, const model_t &model, double deviation) {
     return used;
 }
 
-/* The model of all three limits that most moves agree with, by robust weights from the best starts. */
+/* The model of all three limits that most moves agree with, found by robust weights from the best
+ * starts. */
 static model_t find_agreed(data_t &data) {
     model_t starts[start_count];
     double deviation = HUGE_VAL;
@@ -197,7 +198,7 @@ static model_t find_agreed(data_t &data) {
     return *best;
 }
 
-/* What the quickest moves need at least, those that a twentieth of all exceed. */
+/* The least values that the quickest moves need; a twentieth of all exceed them. */
 static void find_scales(data_t &data) {
     const double of_rest[limit_count] = {1, 4, 32}; /* d = v t, a t^2 / 4, j t^3 / 32 */
     for (int k = 0; k < limit_count; ++k) {
@@ -209,7 +210,8 @@ static void find_scales(data_t &data) {
     }
 }
 
-/* Looks for a better fit from those that lack limits: there, each is set to what the moves reach of it. */
+/* Looks for a better fit from those that lack limits: it sets each lacking limit to the moves' largest
+ * value. */
 static void improve(const data_t &data, model_t *all) {
     for (unsigned set = 1; set <= all_limits; ++set) {
         model_t model;

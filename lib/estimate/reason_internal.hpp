@@ -1,4 +1,4 @@
-/* Within the room: the line that says what is wrong, or missing. */
+/* Internal to the room: the line that gives the error, or the missing measurements. */
 #ifndef WH_ESTIMATE_REASON_INTERNAL_HPP
 #define WH_ESTIMATE_REASON_INTERNAL_HPP
 
@@ -10,7 +10,7 @@
 
 namespace wh_estimate {
 
-/* Appends to a reason, which keeps what fits. */
+/* Appends to a reason, as far as there is room. */
 void tell(char *reason, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 inline void tell(char *reason, const char *format, ...) {

@@ -1,10 +1,11 @@
-/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any
- * number of them takes the same memory and no precision is lost by squaring. The triangle's singular
- * values are those of all rows. */
+/* Least squares row by row. Each equation is turned into a triangle at once (Givens), so any number of them
+ * takes constant memory, and no precision is lost by squaring. The triangle's singular values are those of
+ * all rows. */
 #ifndef WH_ESTIMATE_ROWS_INTERNAL_HPP
 #define WH_ESTIMATE_ROWS_INTERNAL_HPP
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <cmath>
 
 namespace wh_estimate {
@@ -12,15 +13,25 @@ namespace wh_estimate {
 /* A direction counts as not seen if its singular value is below this part of the largest. */
 constexpr double unseen = 1e-8;
 
+/* The eigenvalues of a symmetric matrix, in rising order, and their directions as columns. */
+struct own_t {
+    Eigen::Vector3d values;
+    Eigen::Matrix3d vectors;
+};
+own_t own_of(const Eigen::Matrix3d &symmetric);
+
 /* A parameter is not determined if it has more than this share in an unseen direction. */
 constexpr double unseen_share = 1e-6;
+
+/* The linear numbers of a geometry whose column is level. */
+constexpr int level_parameters = 8;
 
 template <int N> class rows_t {
   public:
     using vector_t = Eigen::Matrix<double, N, 1>;
     using matrix_t = Eigen::Matrix<double, N, N>;
 
-    /* One more equation: row * step = rest. */
+    /* Adds one equation: row * step = rest. */
     void add(vector_t row, double rest) {
         for (int i = 0; i < N; ++i) {
             const double length = std::hypot(triangle_(i, i), row(i));
@@ -35,24 +46,11 @@ template <int N> class rows_t {
         }
     }
 
-    /* To be called once after the last row. Columns are brought to one length first: parameters have
-     * different units. */
-    void solve() {
-        for (int k = 0; k < N; ++k) {
-            const double length = triangle_.col(k).norm();
-            lengths_(k) = length > 0 ? length : 1;
-        }
-        const matrix_t scaled = triangle_ * lengths_.cwiseInverse().asDiagonal();
-        const Eigen::JacobiSVD<matrix_t> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        if (svd.info() != Eigen::Success) { /* numbers that are not finite: nothing is seen */
-            return;
-        }
-        sigmas_ = svd.singularValues();
-        directions_ = svd.matrixV();
-        shares_ = svd.matrixU().transpose() * rests_;
-    }
+    /* Call it once after the last row. It first brings columns to one length, because parameters have
+     * different units. rows.cpp defines it, for the sizes that are in use. */
+    void solve();
 
-    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen
+    /* The step of Levenberg and Marquardt; damping 0 gives that of Gauss and Newton, without unseen
      * directions. */
     vector_t step(double damping) const {
         vector_t along = vector_t::Zero();
@@ -64,8 +62,8 @@ template <int N> class rows_t {
         return (directions_ * along).cwiseQuotient(lengths_);
     }
 
-    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not
-     * tell it. */
+    /* The standard deviation of a parameter if rows have a deviation of 1; infinite if the rows do not
+     * determine it. */
     double deviation(int parameter) const {
         double square = 0;
         for (int k = 0; k < N; ++k) {
@@ -79,9 +77,9 @@ template <int N> class rows_t {
         return std::sqrt(square) / lengths_(parameter);
     }
 
-    /* What a row takes of each seen direction, by that one's deviation: products of two rows' are the
-     * covariances of what the fit says of them, where rows have a deviation of 1. Unseen directions are
-     * left out. */
+    /* A row's part in each seen direction, times that direction's deviation. Products of two rows' parts
+     * are the covariances of the fit's predictions for them, if rows have a deviation of 1. Unseen
+     * directions are left out. */
     vector_t pull(const vector_t &row) const {
         vector_t along = directions_.transpose() * row.cwiseQuotient(lengths_);
         for (int k = 0; k < N; ++k) {
@@ -90,7 +88,7 @@ template <int N> class rows_t {
         return along;
     }
 
-    /* A row's parts in the directions that the rows do not tell. */
+    /* A row's parts in the directions that the rows do not determine. */
     vector_t unseen_part(const vector_t &row) const {
         vector_t beside = directions_.transpose() * row.cwiseQuotient(lengths_);
         for (int k = 0; k < N; ++k) {
@@ -99,7 +97,7 @@ template <int N> class rows_t {
         return beside;
     }
 
-    /* How many directions the rows tell. */
+    /* The number of directions that the rows determine. */
     int rank() const {
         int count = 0;
         for (int k = 0; k < N; ++k) {
@@ -127,8 +125,8 @@ template <int N> class rows_t {
     vector_t shares_ = vector_t::Zero();
 };
 
-/* Levenberg and Marquardt's descent, with the weights as they are: `data` and `model` have rows_of,
- * squares_of and stepped beside them, and the model its squares. */
+/* Levenberg and Marquardt's descent, with constant weights. There must be rows_of, squares_of and stepped
+ * for `data` and `model`; the model has its squares. */
 template <typename Data, typename Model> void descend(const Data &data, Model *model, int rounds) {
     double damping = 1e-3;
     model->squares = squares_of(data, *model);

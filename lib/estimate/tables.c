@@ -7,7 +7,7 @@
 #include "../math/trig.h"
 #include "../text/array.h"
 
-/* Of places and distances; beyond, a double has no 1e-9 mm left. */
+/* The largest place and distance; beyond it, a double cannot resolve 1e-9 mm. */
 #define LARGEST 1e6
 #define MOST_SECONDS 1e5
 
@@ -25,7 +25,7 @@ static const wh_csv_column_t point_columns[POINT_COLUMNS] = {
     [KNOWN_Z] = {"z", -LARGEST, LARGEST, false, false},
 };
 
-/* The station of a name, a new one if there is none; null if there are too many. */
+/* The station of a name, or a new one; null if there are too many. */
 static wh_station_points_t *find_station(wh_point_table_t *table, const char *name) {
     for (size_t i = table->count; i-- > 0;) {
         if (strcmp(table->stations[i].name, name) == 0) {
@@ -57,7 +57,7 @@ static bool add_point(wh_point_table_t *table) {
     return true;
 }
 
-/* Of a table that was read to its end. */
+/* Concludes a table that was read to its end. */
 static wh_status_t conclude(wh_csv_t *csv, bool has_rows) {
     if (csv->message[0] == '\0' && !has_rows) {
         (void)wh_csv_refuse_file(csv, "it has no line of measurements");

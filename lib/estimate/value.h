@@ -1,6 +1,6 @@
-/* What an estimate says of one number: the value with its standard deviation, or that the measurements do not
- * tell it. Plain structs; nothing keeps a reference; all functions of the room are reentrant, and the same
- * measurements give the same bits in one build. */
+/* The estimate of one number: its value with its standard deviation, or the statement that the measurements
+ * do not determine it. These are plain structs; nothing keeps a reference; all functions of the room are
+ * reentrant, and equal measurements give equal bits in one build. */
 #ifndef WH_ESTIMATE_VALUE_H
 #define WH_ESTIMATE_VALUE_H
 
@@ -11,11 +11,12 @@
 
 /* One number. */
 typedef struct {
-    double value, sd; /* of no meaning unless is_determined */
+    double value, sd; /* without meaning unless is_determined */
     bool is_determined;
 } wh_estimate_value_t;
 
-/* Room for why something is not determined, and which measurements are missing: one line, no stop. */
+/* Room for the reason why something is not determined, and for the missing measurements: one line, without
+ * a full stop. */
 #define WH_ESTIMATE_REASON 400
 
 #endif

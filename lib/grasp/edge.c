@@ -4,7 +4,7 @@
 
 #define PI 3.14159265358979323846
 #define DEGREE (PI / 180)
-/* Halvings of a way of a few mm: to less than a double's last place. */
+/* Halvings of a distance of a few mm, down to less than a double's last place. */
 #define HALVINGS 60
 
 typedef struct {
@@ -20,7 +20,7 @@ static double length(double x, double y) {
     return sqrt(x * x + y * y);
 }
 
-/* Series up to x^23, for angles up to 60 degrees: to rounding. */
+/* Series up to x^23, for angles up to 60 degrees, exact to rounding. */
 static spot_t direction(double angle) {
     const double square = angle * angle;
     spot_t d = {1, 1};
@@ -95,24 +95,8 @@ static bool is_notch(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
                                  is_within(length(wafer->notch_x, wafer->notch_y), 1 - 1e-6, 1 + 1e-6));
 }
 
-wh_status_t wh_edge_wafer_validate(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
-    if (!edge || !wafer) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    const double numbers[] = {wafer->radius,  wafer->x,      wafer->y,       wafer->depth,
-                              wafer->opening, wafer->bottom, wafer->notch_x, wafer->notch_y};
-    if (!are_finite(numbers, sizeof numbers / sizeof numbers[0])) {
-        return WH_STATUS_NOT_FINITE;
-    }
-    const double half = edge->radius / 2 < 50 ? edge->radius / 2 : 50;
-    const bool good = is_within(wafer->radius, edge->radius - 1, edge->radius + 1) &&
-                      is_within(wafer->x, -half, half) && is_within(wafer->y, -half, half) &&
-                      is_notch(edge, wafer);
-    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
-}
-
 /* The notch's outline, on one side of its axis: a flank through the apex (apex, 0) with the direction
- * (cosine, sine), as far as the corner. */
+ * (cosine, sine), up to the corner. */
 typedef struct {
     double apex, cosine, sine;
     double flank; /* from the apex to the corner */
@@ -133,13 +117,38 @@ static dip_t outline_of(const wh_edge_wafer_t *wafer) {
     return outline;
 }
 
+/* The straight part of a flank is longer than this, mm, as in wh_rim_validate. */
+#define LEAST_FLANK 0.01
+
+/* True if the rounded bottom leaves a straight part of each flank. */
+static bool has_flanks(const wh_edge_wafer_t *wafer) {
+    const dip_t outline = outline_of(wafer);
+    return wafer->depth == 0 || outline.flank - wafer->bottom * outline.cosine / outline.sine > LEAST_FLANK;
+}
+
+wh_status_t wh_edge_wafer_validate(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
+    if (!edge || !wafer) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const double numbers[] = {wafer->radius,  wafer->x,      wafer->y,       wafer->depth,
+                              wafer->opening, wafer->bottom, wafer->notch_x, wafer->notch_y};
+    if (!are_finite(numbers, sizeof numbers / sizeof numbers[0])) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    const double half = edge->radius / 2 < 50 ? edge->radius / 2 : 50;
+    const bool good = is_within(wafer->radius, edge->radius - 1, edge->radius + 1) &&
+                      is_within(wafer->x, -half, half) && is_within(wafer->y, -half, half) &&
+                      is_notch(edge, wafer) && has_flanks(wafer);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
 /* A pin's place from the wafer's centre, along the notch's axis and aside of it. */
 static spot_t from_notch(const wh_edge_wafer_t *wafer, spot_t pin) {
     return point(pin.x * wafer->notch_x + pin.y * wafer->notch_y,
                  fabs(pin.y * wafer->notch_x - pin.x * wafer->notch_y));
 }
 
-/* Never without a notch, whose corner is at 0 then. */
+/* Always false without a notch, because the corner is then at 0. */
 static bool is_over_notch(const dip_t *outline, spot_t p) {
     return p.x > 0 && p.y * outline->corner.x < p.x * outline->corner.y;
 }
@@ -149,30 +158,30 @@ bool wh_edge_meets_notch(const wh_edge_wafer_t *wafer, double pin_x, double pin_
     return is_over_notch(&outline, from_notch(wafer, point(pin_x - wafer->x, pin_y - wafer->y)));
 }
 
-/* What the path is worked out from. */
+/* The values from which the path is computed. */
 typedef struct {
     const wh_edge_t *edge;
     const wh_edge_wafer_t *wafer;
     dip_t outline;
     spot_t rests[2];                  /* at +y and -y */
     double rest_reach, plunger_reach; /* from a pin's centre to the centre of a round wafer that it touches */
-    double off;                       /* of centre, at the begin */
-    int first;                        /* the rest that is met first */
+    double off;                       /* distance off centre, at the begin */
+    int first;                        /* the rest that the wafer meets first */
     spot_t begin;                     /* the wafer's centre when the plunger meets the rim */
     spot_t rolls;                     /* and when it meets the first rest */
     spot_t plain;                     /* the seated centre of a round wafer */
     spot_t seated;                    /* the wafer's */
-    int sunk;                         /* which rest is over the notch; -1: none */
-    double ahead;                     /* of the plunger, if the notch is there */
-    double s_begin, s_plain, s_seated; /* where the plunger is then */
+    int sunk;                         /* the rest that is over the notch; -1: none */
+    double ahead;                     /* lead of the plunger, if the notch is there */
+    double s_begin, s_plain, s_seated; /* the plunger's place then */
 } path_t;
 
 static spot_t minus(spot_t a, spot_t b) {
     return point(a.x - b.x, a.y - b.y);
 }
 
-/* How far a pin of this radius is from touching the wafer, with its centre at `pin` from the wafer's. Below
- * 0: inside. */
+/* The distance of a pin of this radius from the wafer's outline, with its centre at `pin` from the wafer's
+ * centre. Below 0: inside. */
 static double gap_of(const path_t *path, double radius, spot_t pin) {
     const dip_t *o = &path->outline;
     const spot_t p = from_notch(path->wafer, pin);
@@ -196,7 +205,7 @@ static double meets(const path_t *path, spot_t centre) {
     return centre.x - sqrt(reach * reach - centre.y * centre.y) + path->edge->radius + path->edge->plunger;
 }
 
-/* How much later it touches this wafer, if the notch is there. */
+/* The delay with which it touches this wafer, if the notch is there. */
 static double lag_at(const path_t *path, spot_t centre) {
     const double least = meets(path, centre);
     double from = least;
@@ -213,7 +222,7 @@ static double lag_at(const path_t *path, spot_t centre) {
     return from - least;
 }
 
-/* The centre at the distance `reach` from `about`, `way` mm farther towards `to` than `from` is. */
+/* The centre at the distance `reach` from `about`, `way` mm farther from `from` towards `to`. */
 static spot_t roll(spot_t about, double reach, spot_t from, spot_t to, double way) {
     const spot_t towards = minus(to, from);
     const double part = way / length(towards.x, towards.y);
@@ -222,8 +231,8 @@ static spot_t roll(spot_t about, double reach, spot_t from, spot_t to, double wa
     return point(about.x + share * moved.x, about.y + share * moved.y);
 }
 
-/* From the round wafer's place the centre rolls on the other rest, until this one touches the outline. With
- * alpha and the notch's opening in their ranges the gap only shrinks on the way. */
+/* From the round wafer's place the centre rolls on the other rest, until the sunk rest touches the outline.
+ * With alpha and the notch's opening in their ranges the gap only decreases on this way. */
 static spot_t sink(const path_t *path) {
     const spot_t other = path->rests[path->sunk == 0 ? 1 : 0];
     const spot_t rest = path->rests[path->sunk];
@@ -237,7 +246,7 @@ static spot_t sink(const path_t *path) {
     return roll(other, path->rest_reach, path->plain, rest, from);
 }
 
-/* Which rest stands over the notch of a wafer at `centre`; -1: none. */
+/* The rest that is over the notch of a wafer at `centre`; -1: none. */
 static int find_sunk(const path_t *path, spot_t centre) {
     for (int rest = 0; rest < 2; ++rest) {
         if (is_over_notch(&path->outline, from_notch(path->wafer, minus(path->rests[rest], centre)))) {
@@ -247,7 +256,7 @@ static int find_sunk(const path_t *path, spot_t centre) {
     return -1;
 }
 
-/* Where the way begins: as the wafer lies, or moved back along the blade if it lies on a rest. */
+/* The begin of the path: the wafer's place, or moved back along the blade if it lies on a rest. */
 static void find_begin(path_t *path) {
     const spot_t start = {path->wafer->x, path->wafer->y};
     path->first = 1;
@@ -281,7 +290,7 @@ static path_t path_of(const wh_edge_t *edge, const wh_edge_wafer_t *wafer) {
     return path;
 }
 
-/* Where the circles about a rest and the plunger meet, on the side of the other rest. */
+/* The point where the circles about a rest and the plunger meet, on the side of the other rest. */
 static spot_t between(const path_t *path, int rest, double s) {
     const spot_t plunger = plunger_at(path->edge, s - path->ahead);
     const spot_t way = minus(path->rests[rest], plunger);
@@ -301,7 +310,7 @@ static void put(wh_edge_place_t *place, wh_edge_phase_t phase, double s, spot_t 
     place->y = centre.y;
 }
 
-/* A wafer that is farther off than the pocket allows. */
+/* Stops at a wafer that is farther off centre than the pocket allows. */
 static void stop(const path_t *path, double s, wh_edge_place_t *place) {
     const spot_t start = {path->wafer->x, path->wafer->y};
     const double rim = meets(path, start) + lag_at(path, start);
@@ -316,7 +325,8 @@ static void stop(const path_t *path, double s, wh_edge_place_t *place) {
     }
 }
 
-/* Before the plunger meets the rim. A wafer that lies on a rest slides off it meanwhile, evenly. */
+/* The path before the plunger meets the rim. A wafer that lies on a rest slides off it evenly during this
+ * time. */
 static void wait(const path_t *path, double s, wh_edge_place_t *place) {
     const double retracted = path->edge->retracted;
     const double part = s > retracted ? (s - retracted) / (path->s_begin - retracted) : 0;

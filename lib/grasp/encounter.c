@@ -11,6 +11,7 @@ static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_
         event->other = encounter->holder;
         event->measured = encounter->measured;
         event->measured_slice = encounter->slice;
+        event->face = encounter->face;
     }
     encounter->wafer = WH_NONE;
     encounter->holder = WH_NONE;
@@ -37,7 +38,7 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_clo
                                 reach);
 }
 
-/* How close the gripper came to the wafer in this slice; false if it did not come near. */
+/* Measures the gripper's approach to the wafer in this slice; false if it did not come near. */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
     if (wh_watch_sweep(watch) && wafer->released_by == WH_NONE) {
         return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
@@ -45,7 +46,7 @@ static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_close
     return is_near_now(watch, wafer, closest);
 }
 
-/* The square that "closest" is measured by: both distances in units of their tolerance. */
+/* The square that defines "closest": both distances in units of their tolerance. */
 static wh_real_t closeness(const wh_tolerance_t *tolerance, wh_real_t dr_proj_z, wh_real_t dr_proj_xy) {
     const wh_real_t z = dr_proj_z / tolerance->projz;
     const wh_real_t xy = dr_proj_xy / tolerance->projxy;
@@ -63,6 +64,7 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     encounter->wafer = w;
     encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
+    encounter->face = WH_FACE_BACK;
     if (WH_SWEEP_BUILT && t < 1) {
         wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
     } else {
@@ -96,7 +98,8 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
             wh_horizon_is_clear_at(table, g, &table->storage.grippers[g].base_from_gripper.r));
 }
 
-/* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
+/* Begins an approach if the gripper follows no wafer yet: the nearest free wafer in the neighbourhood, then
+ * the lowest index. */
 WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     const wh_sweep_t *sweep = wh_watch_sweep(watch);
     const wh_vec3_t *end = &watch->base_from_gripper->r;
@@ -121,7 +124,7 @@ WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     }
 }
 
-/* A contest that is over is reported unless the wafer went on to another holder. */
+/* Reports a contest that is over, unless the wafer passed to another holder. */
 static void end_contest(const wh_watch_t *watch) {
     wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -147,7 +150,7 @@ static bool contest_goes_on(const wh_watch_t *watch) {
                                  &watch->table->config.tolerance);
 }
 
-/* The held wafer that is ready, with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
+/* The held wafer that is ready and has the smallest |dr_proj_z|, then the lowest index; WH_NONE: none. */
 WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t best = WH_NONE;
@@ -167,8 +170,8 @@ WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     return best;
 }
 
-/* Follows the wafer that the gripper would take if nobody held it. A contest that goes on is kept even if
- * another held wafer has come nearer: else it would be reported each time that the two change places, and
+/* Follows the wafer that the gripper would take if no gripper held it. A contest continues even if another
+ * held wafer has come nearer. Otherwise it would be reported each time that the two change order, and
  * before its own hand-over. */
 WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
@@ -181,7 +184,7 @@ WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
     }
 }
 
-/* The gripper closed or took a wafer: what it was watching is over. */
+/* The gripper closed or took a wafer, so its encounters are over. */
 static void end_encounters(const wh_watch_t *watch, bool closed) {
     wh_encounter_t *approach = &watch->gripper->approach;
     if (approach->wafer != WH_NONE && closed &&

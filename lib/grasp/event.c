@@ -20,6 +20,7 @@ const char *wh_event_name(wh_event_kind_t kind) {
         [WH_EVENT_VACUUM_LOST] = "vacuum_lost",
         [WH_EVENT_FAULT_ARMED] = "fault_armed",
         [WH_EVENT_FAULT_CLEARED] = "fault_cleared",
+        [WH_EVENT_PUSHED_THROUGH] = "pushed_through",
     };
     return (unsigned)kind < WH_EVENT_KINDS ? names[kind] : "unknown";
 }

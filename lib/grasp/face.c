@@ -51,7 +51,8 @@ wh_status_t wh_face_measure(const wh_pose_t *base_from_wafer, wh_real_t thicknes
     return status;
 }
 
-/* The axis is divided by its length, so that twice is nothing even if that is not quite 1. */
+/* The axis is divided by its length, so that turning twice gives the old vector even if the length is not
+ * quite 1. */
 static void turn_about(const wh_vec3_t *axis, wh_vec3_t *v) {
     const wh_real_t twice = 2 * wh_vec3_dot(axis, v) / wh_vec3_dot(axis, axis);
     const wh_vec3_t along = wh_vec3_scale(twice, axis);

@@ -61,6 +61,23 @@ static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
     return status;
 }
 
+/* Table and arrays share no byte. */
+static bool are_apart(const wh_grasp_t *table, const wh_grasp_storage_t *storage) {
+    const size_t used =
+        storage->bucket_count > 0 ? wh_grasp_buckets(storage->wafer_count, storage->gripper_count) : 0;
+    const wh_extent_t all[] = {{table, sizeof *table},
+                               {storage->wafers, storage->wafer_count * sizeof *storage->wafers},
+                               {storage->grippers, storage->gripper_count * sizeof *storage->grippers},
+                               {storage->buckets, used * sizeof *storage->buckets}};
+    bool apart = true;
+    for (size_t i = 0; i + 1 < sizeof all / sizeof all[0]; ++i) {
+        for (size_t k = i + 1; k < sizeof all / sizeof all[0]; ++k) {
+            apart = apart && !wh_extents_overlap(all[i], all[k]);
+        }
+    }
+    return apart;
+}
+
 static void clear_encounter(wh_encounter_t *encounter) {
     static const wh_encounter_t zero = {0};
     *encounter = zero;
@@ -97,6 +114,7 @@ static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_g
     table->counters = none;
     table->storage = *storage;
     table->mark = WH_GRASP_MARK;
+    table->grips = 0;
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -110,6 +128,9 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     }
     if (status == WH_OK) {
         status = validate_storage(storage);
+    }
+    if (status == WH_OK && !are_apart(table, storage)) {
+        status = WH_STATUS_OVERLAP;
     }
     if (status != WH_OK) {
         return status;
@@ -245,7 +266,7 @@ static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
     }
     const wh_proximity_t *p = &encounter->measured;
     hash = wh_hash_int(hash, encounter->holder);
-    hash = wh_hash_word(hash, encounter->slice);
+    hash = wh_hash_word(hash, wh_encounter_stamp(encounter));
     hash = wh_hash_vec3(hash, &p->dr);
     hash = wh_hash_real(hash, p->n1_proj_n2);
     hash = wh_hash_real(hash, p->dr_proj_z);

@@ -1,18 +1,19 @@
-/* One step of the grasp table, in the four parts of grasp.h; one loop does 2 and 3. Most slices have no pick,
- * no release and no event: for them move_all is all there is to do. One file, so that the compiler inlines:
- * split, a slice costs 50 instructions more, and a sampled step 32 bytes of stack more than its limit. */
+/* One step of the grasp table, in the four parts of grasp.h; one loop does 2 and 3. Most slices have no
+ * pick, no release and no event: for them move_all does everything. It is one file, so that the compiler
+ * inlines. If split, a slice costs 50 instructions more, and a sampled step takes 32 bytes of stack more
+ * than its limit. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
 
-/* False if a number is not finite. */
+/* Returns false if a number is not finite. */
 static bool is_same(const wh_mat3_t *a, const wh_mat3_t *b) {
     return a->m[0][0] == b->m[0][0] && a->m[0][1] == b->m[0][1] && a->m[0][2] == b->m[0][2] &&
            a->m[1][0] == b->m[1][0] && a->m[1][1] == b->m[1][1] && a->m[1][2] == b->m[1][2] &&
            a->m[2][0] == b->m[2][0] && a->m[2][1] == b->m[2][1] && a->m[2][2] == b->m[2][2];
 }
 
-/* A gripper that has not turned since the last slice needs no second look at its rotation. */
+/* A gripper that has not turned since the last slice needs no second check of its rotation. */
 static wh_status_t validate_input(const wh_gripper_t *gripper, const wh_gripper_input_t *input) {
     const wh_pose_t *pose = &input->base_from_gripper;
     if (!is_same(&gripper->base_from_gripper.R, &pose->R) || !wh_vec3_is_finite(&pose->r)) {
@@ -55,6 +56,9 @@ static void refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_
 
 static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input_t *inputs,
                                  const wh_event_list_t *list) {
+    if (table->grips != 0) {
+        return WH_STATUS_HAS_GRIPS;
+    }
     if (!inputs && table->storage.gripper_count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
     }
@@ -86,7 +90,7 @@ static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs,
 }
 
 /* A gripper's pose that just passes wh_pose_validate can turn the wafer's pose into one that does not. The
- * table's owner could then hand that pose to no call, so it is mended here. It is never mirrored, since
+ * table's owner could then pass that pose to no call, so it is mended here. It is never mirrored, since
  * neither factor is. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer) {
@@ -96,7 +100,7 @@ void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
     }
 }
 
-/* Parts 2 and 3: held wafers go where their grippers carry them; a closed valve lets go of them there. */
+/* Parts 2 and 3: held wafers move with their grippers; a closed valve releases them there. */
 static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_gripper_t *gripper = &table->storage.grippers[g];
@@ -137,7 +141,7 @@ static void pick(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, w
     }
 }
 
-/* Reports a wafer that was let go and that nobody took. */
+/* Reports a wafer that was released and that no gripper took. */
 static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                            wh_event_list_t *list) {
     const int32_t w = table->storage.grippers[g].wafer;
@@ -154,8 +158,8 @@ static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t
     }
 }
 
-/* Keeps the slice's pose and valve. A gripper that let go named its wafer up to here; what the pick noted is
- * over. */
+/* Keeps the slice's pose and valve. A gripper that released its wafer has named it until now; the pick's
+ * note is no longer needed. */
 static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
     gripper->base_from_gripper = inputs[g].base_from_gripper;
@@ -209,8 +213,8 @@ static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *
     return !wh_grasp_is_swept(table, g) || wh_horizon_is_clear_at(table, g, begin);
 }
 
-/* False if gripper g just moves on, with its wafer or without. It may act if it watches a wafer, lets go, or
- * is open and not far from all wafers at rest. */
+/* False if gripper g only moves on, with its wafer or without. It may act if it watches a wafer, releases
+ * one, or is open and not far from all wafers at rest. */
 static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     const bool open = input->valve == WH_VALVE_OPEN;
@@ -224,7 +228,7 @@ static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t 
 }
 
 /* True if this slice has no pick, no release and no event. If one gripper holds a wafer and another one is
- * open and empty, the second may contest it. */
+ * open and empty, the second may contest that wafer. */
 static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     bool holding = false;
     bool looking = false;
@@ -249,14 +253,14 @@ static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     gripper->valve = input->valve;
 }
 
-/* An uneventful slice: the grippers move, and what they hold moves with them. */
+/* An uneventful slice: the grippers move, and their wafers move with them. */
 static void move_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         move(table, g, &inputs[g]);
     }
 }
 
-/* Parts 2 to 4, and what follows from them. */
+/* Parts 2 to 4, and their consequences. */
 static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     const bool uneventful = is_uneventful(table, inputs);
     ++table->slice;

@@ -21,7 +21,7 @@ static void keep_better(nearest_t *best, size_t w, wh_real_t distance) {
     }
 }
 
-/* Looks at the wafers around, and measures the gripper's horizon on the way. */
+/* Checks the wafers around, and measures the gripper's horizon at the same time. */
 WH_OUT_OF_LINE static int32_t find_around(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t *place = &base_from_gripper->r;
     const wh_real_t margin = wh_horizon_margin(table, g, place);
@@ -54,7 +54,7 @@ static bool is_aside(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper
     return wh_real_abs(dr.x) > side || wh_real_abs(dr.y) > side;
 }
 
-/* Looks at all wafers. If none is near, no second search of this step needs to look at them again. */
+/* Checks all wafers. If none is near, no second search of this step needs to check them again. */
 WH_OUT_OF_LINE static int32_t find_among_all(wh_grasp_t *table, size_t g,
                                              const wh_pose_t *base_from_gripper) {
     const wh_near_limits_t limits = wh_horizon_limits(table, g);
@@ -118,7 +118,7 @@ static void append(const wh_grasp_t *table, wh_event_list_t *list, size_t g, int
     wh_proximity_values(&wafer->base_from_wafer, then, &table->config.tolerance, &event->measured);
 }
 
-/* Before the wafer is taken: a seated wafer would no longer show what made it ready. */
+/* It runs before the wafer is taken: a seated wafer would no longer show the values that made it ready. */
 static void report(wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w, const wh_pose_t *then) {
     const bool handed_over = table->storage.wafers[w].released_by != WH_NONE;
     *(handed_over ? &table->counters.handed_over : &table->counters.picked) += 1;
@@ -132,8 +132,8 @@ static void pair(wh_grasp_t *table, size_t g, int32_t w) {
     table->storage.grippers[g].wafer = w;
 }
 
-/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do
- * not add up over many picks. */
+/* The rotation is made orthonormal again, so that deviations within WH_ROTATION_TOLERANCE do not add up
+ * over many picks. */
 static void measure_grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then,
                          const wh_pose_t *base_from_wafer, bool seat) {
     wh_pose_relative_to(then, base_from_wafer, gripper_from_wafer);

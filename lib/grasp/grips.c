@@ -24,7 +24,7 @@ static wh_status_t validate_numbers(const wh_grips_parts_t *parts) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* An edge grip beside every wafer that it may meet. */
+/* Validates an edge grip with every wafer that it may meet. */
 static wh_status_t validate_edge(const wh_edge_t *edge, const wh_grips_parts_t *parts, size_t wafer_count) {
     wh_status_t status = wh_edge_validate(edge);
     if (status == WH_OK && !parts->shapes && wafer_count > 0) {
@@ -64,6 +64,31 @@ static wh_status_t validate_parts(const wh_grips_parts_t *parts, const wh_grasp_
     return status;
 }
 
+/* True if the memory that a step writes shares no byte with other memory. */
+static bool are_apart(const wh_grips_t *grips, const wh_grips_parts_t *parts, const wh_grasp_t *table) {
+    const wh_grasp_storage_t *of = &table->storage;
+    const size_t wafers = of->wafer_count;
+    const size_t grippers = of->gripper_count;
+    const wh_extent_t all[] = {{parts->states, grippers * sizeof *parts->states},
+                               {parts->seen, wafers * sizeof *parts->seen},
+                               {grips, sizeof *grips},
+                               {table, sizeof *table},
+                               {of->wafers, wafers * sizeof *of->wafers},
+                               {of->grippers, grippers * sizeof *of->grippers},
+                               {parts->grips, grippers * sizeof *parts->grips},
+                               {parts->shapes, parts->shapes ? wafers * sizeof *parts->shapes : 0},
+                               {parts->supports, parts->support_count * sizeof *parts->supports},
+                               {parts->speeds, parts->speeds ? grippers * sizeof *parts->speeds : 0}};
+    /* The first six are written; the two of the table are apart already. */
+    bool apart = true;
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t k = i + 1; k < sizeof all / sizeof all[0]; ++k) {
+            apart = apart && !wh_extents_overlap(all[i], all[k]);
+        }
+    }
+    return apart;
+}
+
 static void clear_state(const wh_grip_t *grip, wh_grip_state_t *state) {
     static const wh_grip_state_t zero = {0};
     *state = zero;
@@ -78,10 +103,15 @@ wh_status_t wh_grips_init(wh_grips_t *grips, const wh_grips_parts_t *parts, wh_g
     if (table->mark != WH_GRASP_MARK) {
         return WH_STATUS_NOT_INITIALISED;
     }
-    const wh_status_t status = validate_parts(parts, &table->storage);
+    wh_status_t status = validate_parts(parts, &table->storage);
+    if (status == WH_OK && !are_apart(grips, parts, table)) {
+        status = WH_STATUS_OVERLAP;
+    }
     if (status == WH_OK) {
         grips->parts = *parts;
         grips->table = table;
+        table->grips = table->grips < UINT32_MAX ? table->grips + 1 : 1;
+        grips->number = table->grips;
         grips->mark = WH_GRIPS_MARK;
         for (size_t g = 0; g < table->storage.gripper_count; ++g) {
             clear_state(&parts->grips[g], &parts->states[g]);
@@ -101,13 +131,23 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     return !list || list->capacity / WH_EVENTS_PER_GRIPPER >= count ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
-static wh_status_t validate_input(const wh_gripper_input_t *input) {
+static wh_status_t validate_speed(const double *speeds, size_t g) {
+    if (!speeds) {
+        return WH_OK;
+    }
+    if (!(speeds[g] - speeds[g] == 0)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    return speeds[g] >= 0 ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
+static wh_status_t validate_input(const wh_grips_t *grips, const wh_gripper_input_t *input, size_t g) {
     const wh_status_t status = wh_pose_validate(&input->base_from_gripper);
     if (status != WH_OK) {
         return status;
     }
     const bool good = input->valve == WH_VALVE_OPEN || input->valve == WH_VALVE_CLOSED;
-    return good ? WH_OK : WH_STATUS_BAD_VALVE;
+    return good ? validate_speed(grips->parts.speeds, g) : WH_STATUS_BAD_VALVE;
 }
 
 static wh_status_t refuse_input(const wh_grasp_t *table, size_t g, wh_status_t status,
@@ -122,11 +162,12 @@ static wh_status_t refuse_input(const wh_grasp_t *table, size_t g, wh_status_t s
     return status;
 }
 
-static wh_status_t validate(const wh_grasp_t *table, const wh_gripper_input_t *inputs,
+static wh_status_t validate(const wh_grips_t *grips, const wh_gripper_input_t *inputs,
                             wh_event_list_t *list) {
+    const wh_grasp_t *table = grips->table;
     wh_status_t status = validate_call(table, inputs, list);
     for (size_t g = 0; g < table->storage.gripper_count && status == WH_OK; ++g) {
-        status = validate_input(&inputs[g]);
+        status = validate_input(grips, &inputs[g], g);
         if (status != WH_OK) {
             return refuse_input(table, g, status, list);
         }
@@ -187,7 +228,7 @@ static void report_release(const wh_turn_t *turn) {
     }
 }
 
-/* As the table's own step does. */
+/* Does this like the table's own step. */
 static void remember(const wh_turn_t *turn) {
     wh_gripper_t *gripper = turn->gripper;
     if (has_let_go(turn)) {
@@ -284,10 +325,11 @@ wh_status_t wh_grips_step(wh_grips_t *grips, const wh_gripper_input_t *inputs, w
     if (!grips) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (grips->mark != WH_GRIPS_MARK || grips->table->mark != WH_GRASP_MARK) {
+    if (grips->mark != WH_GRIPS_MARK || grips->table->mark != WH_GRASP_MARK ||
+        grips->number != grips->table->grips) {
         return WH_STATUS_NOT_INITIALISED;
     }
-    const wh_status_t status = validate(grips->table, inputs, list);
+    const wh_status_t status = validate(grips, inputs, list);
     if (status != WH_OK) {
         ++grips->table->counters.refused;
         return status;

@@ -1,7 +1,7 @@
 /* States of grips that came from elsewhere. */
 #include "grips.h"
 
-/* An excess beyond this, mm, is none: wafers lie on blades. */
+/* An excess beyond this, mm, is impossible, because wafers lie on blades. */
 #define MOST_EXCESS 1000
 
 static bool is_finite(double value) {
@@ -15,7 +15,8 @@ static void open_state(const wh_grip_t *grip, wh_grip_state_t *state) {
     state->s = grip->kind == WH_GRIP_EDGE ? grip->edge.retracted : 0;
 }
 
-/* A plunger that begins its way carries a wafer or none; one that has it carries it; others none. */
+/* True if the carried wafer fits the phase. A plunger that begins to move carries a wafer or none, a closed
+ * one carries it, and others carry none. */
 static bool carries_well(const wh_grip_state_t *state, int32_t carried) {
     if (state->phase == WH_GRIP_CLOSED) {
         return carried != WH_NONE && carried == state->wafer;
@@ -44,7 +45,7 @@ static wh_status_t complete_lying(const wh_edge_t *edge, const wh_edge_wafer_t s
                                                                       : WH_STATUS_NOT_FINITE;
 }
 
-/* A plunger that is not open. */
+/* Completes a plunger that is not open. */
 static wh_status_t complete_edge(const wh_edge_t *edge, const wh_edge_wafer_t shapes[], int32_t carried,
                                  size_t wafer_count, wh_grip_state_t *state) {
     if (!is_finite(state->s) || !is_finite(state->excess)) {

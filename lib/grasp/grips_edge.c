@@ -1,4 +1,4 @@
-/* The edge grip within a step: the plunger's way, and the wafer that it meets. */
+/* The edge grip within a step: the plunger's motion, and the wafer that it meets. */
 #include <math.h>
 
 #include "grasp_internal.h"
@@ -12,7 +12,7 @@ static const wh_edge_t *edge_of(const wh_turn_t *turn) {
     return &turn->grips->parts.grips[turn->index].edge;
 }
 
-/* How far the plunger comes in this slice. */
+/* The way of the plunger in this slice. */
 static double way_of(const wh_turn_t *turn) {
     const double *speeds = turn->grips->parts.speeds;
     const double speed = edge_of(turn)->speed;
@@ -33,7 +33,7 @@ static void go_back(const wh_turn_t *turn) {
     }
 }
 
-/* Without a wafer the place tells the window alone. */
+/* Without a wafer the place gives only the window. */
 static wh_edge_place_t place_at(const wh_turn_t *turn, double s) {
     const wh_grip_state_t *state = state_of(turn);
     wh_edge_place_t place = {WH_EDGE_FREE, WH_EDGE_SHORT, false, s, 0, 0, 0};
@@ -41,7 +41,7 @@ static wh_edge_place_t place_at(const wh_turn_t *turn, double s) {
     return place;
 }
 
-/* The phase in which a plunger that stands is, or CLOSING. */
+/* The phase of a plunger that stands, or CLOSING. */
 static wh_grip_phase_t phase_at(const wh_turn_t *turn, const wh_edge_place_t *place) {
     const bool stands =
         place->phase == WH_EDGE_SEATED || place->phase == WH_EDGE_JAMMED || place->s >= edge_of(turn)->end;
@@ -87,7 +87,7 @@ void wh_edge_turn_move(const wh_turn_t *turn) {
     }
 }
 
-/* The notch's axis as it lies on the blade; of a wafer that stands on edge any. */
+/* The notch's axis as it lies on the blade; any direction for a wafer that stands on edge. */
 static void turn_notch(const wh_mat3_t *gripper_from_wafer, wh_edge_wafer_t *lying) {
     const wh_mat3_t *m = gripper_from_wafer;
     const double x = (double)m->m[0][0] * lying->notch_x + (double)m->m[0][1] * lying->notch_y;
@@ -97,7 +97,7 @@ static void turn_notch(const wh_mat3_t *gripper_from_wafer, wh_edge_wafer_t *lyi
     lying->notch_y = length > 0 ? y / length : 1;
 }
 
-/* How this wafer lies on the blade; false if it does not lie where a plunger may meet it. */
+/* Finds how this wafer lies on the blade; false if it lies where no plunger may meet it. */
 static bool find_lying(const wh_turn_t *turn, size_t w, wh_edge_wafer_t *lying, wh_real_t *distance) {
     const wh_pose_t *pose = &turn->input->base_from_gripper;
     wh_pose_t face;

@@ -1,4 +1,4 @@
-/* Vacuum among other grips: the table's own pick and watch, of the faces that look at the gripper. */
+/* Vacuum among other grips: the table's own pick and watch, with the faces towards the gripper. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "grips_internal.h"
@@ -16,8 +16,8 @@ static bool shows_any_front(const wh_turn_t *turn) {
     return any;
 }
 
-/* While it looks, the table's wafers are the faces that look at this gripper. Returns the wafers themselves;
- * null if each shows its back, and nothing was changed. */
+/* During this the table's wafers are replaced by their faces towards this gripper. Returns the wafers
+ * themselves; null if each shows its back, and nothing was changed. */
 static wh_wafer_t *look(const wh_turn_t *turn) {
     wh_wafer_t *own = wh_turn_wafers(turn);
     wh_wafer_t *seen = turn->grips->parts.seen;
@@ -36,17 +36,28 @@ static size_t count_events(const wh_turn_t *turn) {
     return turn->list ? turn->list->count : 0;
 }
 
-static void look_away(const wh_turn_t *turn, wh_wafer_t *own, size_t first_event) {
-    turn->grips->table->storage.wafers = own;
-    for (size_t i = first_event; i < count_events(turn); ++i) {
-        wh_event_t *event = &turn->list->events[i];
-        if (wh_is_index(event->wafer, turn->grips->table->storage.wafer_count)) {
-            event->face = face_of(turn, &own[event->wafer].base_from_wafer);
-        }
+/* Sets the face for values measured in this slice; older values keep their face. */
+static void name_face(const wh_turn_t *turn, const wh_wafer_t *own, int32_t wafer, uint64_t measured,
+                      wh_face_t *face) {
+    const wh_grasp_t *table = turn->grips->table;
+    if (measured == table->slice && wh_is_index(wafer, table->storage.wafer_count)) {
+        *face = face_of(turn, &own[wafer].base_from_wafer);
     }
 }
 
-/* What was taken by its face is held by its own frame. */
+static void look_away(const wh_turn_t *turn, wh_wafer_t *own, size_t first_event) {
+    wh_encounter_t *approach = &turn->gripper->approach;
+    wh_encounter_t *contest = &turn->gripper->contest;
+    turn->grips->table->storage.wafers = own;
+    name_face(turn, own, approach->wafer, approach->slice, &approach->face);
+    name_face(turn, own, contest->wafer, contest->slice, &contest->face);
+    for (size_t i = first_event; i < count_events(turn); ++i) {
+        wh_event_t *event = &turn->list->events[i];
+        name_face(turn, own, event->wafer, event->measured_slice, &event->face);
+    }
+}
+
+/* A wafer that was taken by its face's frame is then held by its own frame. */
 static void take_over(const wh_turn_t *turn, wh_wafer_t *own) {
     wh_gripper_t *gripper = turn->gripper;
     const wh_pose_t *pose = &turn->input->base_from_gripper;

@@ -66,7 +66,7 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
     return hold;
 }
 
-/* Second difference; the differences first, for they are small and exact. */
+/* The second difference; it takes the differences first, because they are small and exact. */
 static wh_vec3_t acceleration_of(const wh_carry_t *carry, const wh_vec3_t *centre, wh_real_t dt) {
     const wh_vec3_t now = wh_vec3_subtract(centre, &carry->before[0]);
     const wh_vec3_t then = wh_vec3_subtract(&carry->before[0], &carry->before[1]);

@@ -11,11 +11,11 @@
 #define ROUNDING (16 * WH_REAL(DBL_EPSILON))
 #endif
 
-/* Units that are taken off: rounding a place to units moves it by less than 1.74 of them. The rest is far
- * more than the rounding of a neighbourhood's distances. */
+/* Units that are subtracted: rounding a place to units moves it by less than 1.74 of them. The rest is much
+ * more than the rounding error of a neighbourhood's distances. */
 #define TAKEN_OFF WH_REAL(2)
 
-/* No column of a rotation is longer, so no distance changes by more than this times the gripper's way. */
+/* The longest column of a rotation: no distance changes by more than this times the gripper's way. */
 #define LONGEST_COLUMN (1 + 3 * WH_ROTATION_TOLERANCE)
 
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
@@ -36,7 +36,7 @@ wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_
     return horizon;
 }
 
-/* The distance in units, rounded down, so that four times it fits into a word; 0 if none is left. */
+/* The distance in units, rounded down, so that four times it fits into a word; 0 if nothing remains. */
 static uint32_t reach_of(wh_real_t units) {
     const int32_t reach = wh_index_whole(units);
     if (reach < 0) {
@@ -45,7 +45,7 @@ static uint32_t reach_of(wh_real_t units) {
     return reach < LONGEST ? (uint32_t)reach : LONGEST;
 }
 
-/* Too far from base for the grid: such a gripper gets no horizon. */
+/* True if it is too far from base for the grid: such a gripper gets no horizon. */
 static bool is_far(int32_t units) {
     return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
 }

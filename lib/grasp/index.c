@@ -20,8 +20,8 @@ static uint32_t units_of(wh_real_t mm) {
     return units < most ? units : most;
 }
 
-/* A place along an axis in units, upwards from 2^31 below zero: the farther, the larger the number, and of
- * two places no farther apart than they are, but for the rounding to units. */
+/* A place along an axis in units, counted upwards from 2^31 below zero. A larger place gives a larger
+ * number, and the difference of two does not exceed their distance, except for rounding to units. */
 static uint32_t place_of(wh_real_t mm) {
     return (UINT32_C(1) << 31) + (uint32_t)wh_index_whole(WH_INDEX_UNITS * mm);
 }
@@ -50,7 +50,7 @@ static uint32_t key_at(const wh_grasp_t *table, const wh_vec3_t *r) {
                   place_of(r->z) >> shift_of(table, 2));
 }
 
-/* A disc of this radius and half this height reaches so far along an axis of base; a rotation that is almost
+/* The reach of a disc of this radius and half this height along an axis of base; a rotation that is almost
  * one lets it reach a little farther. */
 static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_near_limits_t *limits) {
     const wh_real_t loose = 8 * WH_ROTATION_TOLERANCE * (limits->projz + limits->projxy);
@@ -64,8 +64,8 @@ static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_near_limits_t 
     }
 }
 
-/* A cell is as long as the widest neighbourhood, so that a search looks at two along an axis; longer where
- * wafers that are put down tilted later would need too many. */
+/* A cell is as long as the widest neighbourhood, so that a search checks two along an axis. It is longer if
+ * wafers that are put down tilted later would need too many cells. */
 static void choose_edges(wh_grasp_t *table, const wh_near_limits_t *limits) {
     const uint32_t large = units_of((limits->projz + limits->projxy) / 8);
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -124,13 +124,13 @@ void wh_index_reinsert(wh_grasp_t *table, size_t wafer) {
     wh_horizon_reset(table);
 }
 
-/* Cells, from the first along each axis. */
+/* A box of cells, from the first one along each axis. */
 typedef struct {
     uint32_t first[3], count[3];
 } box_t;
 
-/* False when the cells along this axis are more than `most`. Two units for what the two places were rounded
- * by. */
+/* Returns false when there are more than `most` cells along this axis. Two units are added for the rounding
+ * of the two places. */
 static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t from, wh_real_t to,
                  uint32_t margin, size_t most) {
     const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & (uint32_t)INT32_MAX;
@@ -148,7 +148,7 @@ static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t fro
     return true;
 }
 
-/* The cells around the way. False if looking at all wafers is less work. */
+/* The cells around the way. Returns false if checking all wafers is less work. */
 static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin,
                     box_t *box) {
     const size_t most = table->storage.wafer_count;
@@ -162,8 +162,8 @@ static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec
     return level <= most && level * box->count[2] <= most;
 }
 
-/* Appends the cell's wafers to the `count` that were found; returns how many that makes, one more than all
- * for too many. */
+/* Appends the cell's wafers to the `count` found so far; returns the new count, one more than all if there
+ * are too many. */
 static size_t list_cell(wh_grasp_t *table, uint32_t key, size_t count) {
     const size_t all = table->storage.wafer_count;
     uint32_t *listed = heads_of(table) + 4 * all;
@@ -181,7 +181,7 @@ static size_t list_cell(wh_grasp_t *table, uint32_t key, size_t count) {
     return count;
 }
 
-/* Appends the wafers of the cells that are above each other. */
+/* Appends the wafers of a column of cells. */
 static size_t list_column(wh_grasp_t *table, const box_t *box, uint32_t x, uint32_t y, size_t count) {
     for (uint32_t i = 0; i < box->count[2]; ++i) {
         count = list_cell(table, key_of(x, y, box->first[2] + i), count);

@@ -3,17 +3,17 @@
 #include "face.h"
 #include "sweep_internal.h"
 
-/* To a 2^-50th of a slice. */
+/* Down to 2^-50 of a slice. */
 #define HALVINGS 50
 
-/* The face of the wafer that looks at pads or at a support. */
+/* The wafer's face towards pads or a support. */
 static void see(const wh_passive_t *passive, const wh_pose_t *base_from_wafer, const wh_pose_t *plane,
                 wh_pose_t *base_from_face) {
     wh_face_frame(base_from_wafer, passive->thickness,
                   wh_face_seen(base_from_wafer, passive->thickness, plane), base_from_face);
 }
 
-/* That face, and how far above their plane it is. */
+/* The face towards them, and its height above their plane. */
 static wh_real_t height_of(const wh_passive_t *passive, const wh_pose_t *base_from_wafer,
                            const wh_pose_t *plane, wh_pose_t *base_from_face) {
     see(passive, base_from_wafer, plane, base_from_face);
@@ -22,7 +22,7 @@ static wh_real_t height_of(const wh_passive_t *passive, const wh_pose_t *base_fr
     return wh_vec3_dot(&dr, &n);
 }
 
-/* (7) and (8). */
+/* Tests (7) and (8). */
 static bool is_over(const wh_passive_t *passive, const wh_pose_t *base_from_wafer, const wh_pose_t *plane) {
     wh_pose_t face;
     wh_proximity_t p;
@@ -37,16 +37,16 @@ static void lift(wh_pose_t *base_from_wafer, const wh_pose_t *plane, wh_real_t w
     base_from_wafer->r = wh_vec3_add(&base_from_wafer->r, &up);
 }
 
-/* One slice, as the parts below see it. */
+/* One slice, as the functions below use it. */
 typedef struct {
     const wh_passive_t *passive;
     const wh_pose_t *begin, *end; /* of the pads */
-    const wh_sweep_t *sweep;      /* between them, where sweeping is built */
+    const wh_sweep_t *sweep;      /* the motion between them, if sweeping is built */
     const wh_pose_t *support;     /* null: none */
     const wh_passive_wafer_t *wafer;
 } slice_t;
 
-/* The pads at an instant: 0 or 1 where sweeping is not built. */
+/* The pads at an instant; only 0 or 1 if sweeping is not built. */
 static void pads_at(const slice_t *slice, wh_real_t t, wh_pose_t *pads) {
     if (WH_SWEEP_BUILT) {
         wh_sweep_pose_at(slice->sweep, t, pads);
@@ -55,8 +55,8 @@ static void pads_at(const slice_t *slice, wh_real_t t, wh_pose_t *pads) {
     }
 }
 
-/* As the table does it: a product that would not pass wh_pose_validate is mended, else the next slice refuses
- * it. */
+/* Carries like the table: a product that would not pass wh_pose_validate is mended; otherwise the next
+ * slice would refuse it. */
 static void carry(const wh_pose_t *pads, const wh_pose_t *gripper_from_wafer, wh_pose_t *base_from_wafer) {
     wh_pose_compose_to(pads, gripper_from_wafer, base_from_wafer);
     if (!wh_mat3_is_orthonormal(&base_from_wafer->R)) {
@@ -64,7 +64,7 @@ static void carry(const wh_pose_t *pads, const wh_pose_t *gripper_from_wafer, wh
     }
 }
 
-/* The wafer at an instant: where it lies, or where the pads carry it. */
+/* The wafer at an instant: at its own place, or where the pads carry it. */
 static void wafer_at(const slice_t *slice, const wh_pose_t *pads, wh_pose_t *base_from_wafer) {
     if (slice->wafer->carried) {
         carry(pads, &slice->wafer->gripper_from_wafer, base_from_wafer);
@@ -73,8 +73,8 @@ static void wafer_at(const slice_t *slice, const wh_pose_t *pads, wh_pose_t *bas
     }
 }
 
-/* How far contact plane and plane are apart at an instant, the plane being that of the pads, or the support's
- * for a wafer that is carried. */
+/* The distance between the contact plane and the other plane at an instant: the pads' plane, or the
+ * support's for a carried wafer. */
 static wh_real_t gap_at(const slice_t *slice, wh_real_t t) {
     wh_pose_t pads;
     wh_pose_t wafer;
@@ -85,7 +85,7 @@ static wh_real_t gap_at(const slice_t *slice, wh_real_t t) {
     return height_of(slice->passive, &wafer, to_support ? slice->support : &pads, &face);
 }
 
-/* The slice's end, or swept the instant at which the planes meet; false if they do not. */
+/* Finds the slice's end, or with sweeping the instant at which the planes meet; false if they do not. */
 static bool meet(const slice_t *slice, wh_real_t *instant) {
     wh_real_t from = 0;
     *instant = 1;
@@ -99,7 +99,7 @@ static bool meet(const slice_t *slice, wh_real_t *instant) {
     return true;
 }
 
-/* The wafer is put onto the plane of the pads, and then goes with them to the slice's end. */
+/* Puts the wafer onto the plane of the pads and moves it with them to the slice's end. */
 static bool take(const slice_t *slice, wh_passive_wafer_t *wafer) {
     wh_real_t t;
     wh_pose_t pads;
@@ -162,7 +162,7 @@ static wh_status_t validate(const wh_passive_t *passive) {
     return good ? wh_tolerance_validate(&passive->tolerance) : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* `after` begins as the wafer and is what it becomes, if something happens to it. */
+/* `after` begins as the wafer and receives its new state if something happens to it. */
 static wh_passive_change_t change_of(const slice_t *slice, wh_passive_wafer_t *after) {
     const bool carried = slice->wafer->carried;
     if (carried ? leave(slice, after) : take(slice, after)) {

@@ -1,6 +1,6 @@
 #include "grasp_internal.h"
 
-/* Member by member: a compiler that saves bytes would copy a constant. */
+/* It copies member by member, because a compiler that saves bytes would copy a constant. */
 static wh_tolerance_t tolerance_of(wh_real_t projz, wh_real_t projxy, wh_real_t planar) {
     wh_tolerance_t tolerance;
     tolerance.projz = projz;
@@ -65,7 +65,7 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
     wh_proximity_judge(tolerance, p);
 }
 
-/* Then each value is finite, too; the half is for rotations that just pass. */
+/* Each value is then finite, too; the half covers rotations that just pass. */
 static bool is_square_finite(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
     return wh_vec3_dot(&dr, &dr) <= WH_REAL_LARGEST / 2;
@@ -97,7 +97,7 @@ wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
     const wh_vec3_t n2 = wh_mat3_column(&base_from_gripper->R, 2);
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
-    /* |n1 x n2| is the sine of the tilt and stays exact for small ones, where sqrt(1 - cos^2) does not. */
+    /* |n1 x n2| is the sine of the tilt and stays exact for small tilts, where sqrt(1 - cos^2) does not. */
     const wh_vec3_t sine = wh_vec3_cross(&n1, &n2);
     return wh_real_abs(wh_vec3_dot(&dr, &n2)) + radius * wh_vec3_norm(&sine);
 }

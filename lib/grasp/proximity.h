@@ -26,15 +26,16 @@ typedef struct {
     wh_real_t projz, projxy, planar;
 } wh_tolerance_t;
 
-/* Between slices a wafer is taken well inside the window, within this part of eps_projz, so that rounding
+/* Between slices a wafer is taken well inside the window, within this share of eps_projz, so that rounding
  * cannot put it outside again. */
 #define WH_SWEEP_INSIDE WH_REAL(0.998)
 
 /* Conditions that did not hold, as bits of wh_proximity_t.failed. */
 enum { WH_FAILED_PROJZ = 1, WH_FAILED_PROJXY = 2, WH_FAILED_PLANAR = 4 };
 
-/* Every value of (1)-(5). A margin is how far the value is inside its limit: mm for projz and projxy, a
- * cosine for planar; positive means that the condition holds, zero that it just does not. */
+/* Every value of (1)-(5), and the verdict. A margin is the distance of the value inside its limit: mm for
+ * projz and projxy, a cosine for planar. A positive margin means that the condition holds, zero that it
+ * just fails. */
 typedef struct {
     wh_vec3_t dr;              /* (1), base, mm */
     wh_real_t n1_proj_n2;      /* (2) */
@@ -46,33 +47,33 @@ typedef struct {
     bool ready;
 } wh_proximity_t;
 
-/* The paper's reference parameters, "paper": 0.5 mm, 50 mm, 0.99. The last is 8.1 degrees, which leaves the
- * rim of a 300 mm wafer 21 mm out of plane: see wh_proximity_rim_gap. */
+/* The paper's reference parameters, "paper": 0.5 mm, 50 mm, 0.99. The last is 8.1 degrees, which lets the
+ * rim of a 300 mm wafer be 21 mm out of plane: see wh_proximity_rim_gap. */
 wh_tolerance_t wh_tolerance_paper(void) WH_SYMBOL(wh_tolerance_paper);
 
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
 wh_tolerance_t wh_tolerance_strict(void) WH_SYMBOL(wh_tolerance_strict);
 
-/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null
- * and leaves `tolerance` as it was. Returns the preset's name, a constant string. */
+/* The number of presets, and one of them: `index` is 0 to WH_TOLERANCE_PRESETS - 1; any other value gives
+ * null and leaves `tolerance` unchanged. Returns the preset's name, a constant string. */
 #define WH_TOLERANCE_PRESETS 2
 const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_preset);
 
 /* WH_STATUS_BAD_TOLERANCE when a limit is NaN or out of the range given at wh_tolerance_t. */
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_validate);
 
-/* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
- * wh_pose_validate, bad tolerances, and poses so far apart that the square of their distance is no number
+/* Measures for people: all values, margins and reasons. It refuses null pointers, poses that do not pass
+ * wh_pose_validate, bad tolerances, and poses so far apart that the square of their distance is not finite
  * (WH_STATUS_NOT_FINITE: about 1e154 mm, 1e19 in float); `result` is then unchanged. Cost: about 100
  * products and a square root. */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result)
     WH_SYMBOL(wh_proximity_measure);
 
-/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is
- * checked: poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products
- * where the wafer is too high or too low, 15 within the limit (6), and a square root near the limit (7). It
- * stands here so that compilers put it into the caller's loop; for hundreds of wafers and more at once see
+/* The verdict alone, for the inner loop: it equals wh_proximity_measure's, bit for bit. No argument is
+ * checked: poses and tolerance must be valid, except that a NaN anywhere gives false. Cost: 3 products if
+ * the wafer is too high or too low, 15 within the limit (6), and a square root near the limit (7). It is in
+ * the header so that compilers put it into the caller's loop; for hundreds of wafers and more at once see
  * batch/batch.h. */
 static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                       const wh_tolerance_t *tolerance) {
@@ -90,19 +91,19 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
         !(wh_vec3_dot(&n1, &n2) > tolerance->planar)) {
         return false;
     }
-    /* (1)-(8) never look at the gripper's first two axes: a NaN there shows in their product. */
+    /* (1)-(8) never use the gripper's first two axes; a NaN there shows in their product. */
     const wh_real_t across = g->m[0][0] * g->m[0][1] + g->m[1][0] * g->m[1][1] + g->m[2][0] * g->m[2][1];
     return across - across == 0;
 }
 
-/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they
- * have travelled in a message. Arguments are not checked; a NaN fails its condition. */
+/* Computes margins, failed conditions and verdict again from the values (1)-(5) in `measured`, for example
+ * after a transfer in a message. Arguments are not checked; a NaN fails its condition. */
 void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured)
     WH_SYMBOL(wh_proximity_judge);
 
-/* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number
- * that the centre's distance (3) hides when the wafer is tilted. Arguments are not checked. Cost: one square
- * root. */
+/* The distance of the farthest point of a wafer's rim (radius in mm) from the gripper's contact plane. The
+ * centre's distance (3) hides this number when the wafer is tilted. Arguments are not checked. Cost: one
+ * square root. */
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                wh_real_t radius) WH_SYMBOL(wh_proximity_rim_gap);
 

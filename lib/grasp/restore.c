@@ -19,7 +19,7 @@ static bool measured_is_finite(const wh_proximity_t *p) {
     return finite;
 }
 
-/* A wafer that is contested has a holder, one that is approached has none. */
+/* A contested wafer has a holder, an approached one has none. */
 static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t *encounter, bool contested,
                                    uint64_t slice) {
     if (encounter->wafer == WH_NONE) {
@@ -27,15 +27,16 @@ static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t
     }
     const bool holder_fits = contested ? wh_is_index(encounter->holder, table->storage.gripper_count)
                                        : encounter->holder == WH_NONE;
-    if (!wh_is_index(encounter->wafer, table->storage.wafer_count) || !holder_fits ||
+    const bool face_fits = encounter->face == WH_FACE_BACK || encounter->face == WH_FACE_FRONT;
+    if (!wh_is_index(encounter->wafer, table->storage.wafer_count) || !holder_fits || !face_fits ||
         encounter->slice > slice) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     return measured_is_finite(&encounter->measured) ? WH_OK : WH_STATUS_NOT_FINITE;
 }
 
-/* True if the numbers are as near to each other as rounding and rotations that just pass wh_pose_validate let
- * them be; `size` is the largest number that went in. False if a number is not finite. */
+/* True if the difference of the numbers can come from rounding and from rotations that just pass
+ * wh_pose_validate; `size` is the largest number that went in. Returns false if a number is not finite. */
 static bool is_same(wh_real_t a, wh_real_t b, wh_real_t size) {
     return wh_real_abs(a - b) <= 16 * WH_ROTATION_TOLERANCE * size;
 }
@@ -70,8 +71,8 @@ static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer
     return placed ? status : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* A wafer is taken within the tolerances, one that shows its front by a frame beyond its thickness. One held
- * from much farther off could be carried beyond all finite numbers. */
+/* A wafer is taken within the tolerances; one that shows its front is taken by a frame that is farther by
+ * its thickness. A wafer held from much farther away could be carried beyond all finite numbers. */
 static bool is_within_reach(const wh_tolerance_t *tolerance, const wh_pose_t *gripper_from_wafer) {
     const wh_vec3_t *r = &gripper_from_wafer->r;
     const wh_real_t through = gripper_from_wafer->R.m[2][2] < 0 ? WH_FACE_THICKEST : 0;
@@ -160,6 +161,7 @@ static void copy_wafers(wh_wafer_t to[], const wh_wafer_t from[], size_t count) 
 static void copy_encounter(wh_encounter_t *to, const wh_encounter_t *from) {
     to->measured = from->measured;
     to->slice = from->slice;
+    to->face = from->face;
     to->holder = from->holder;
     to->wafer = from->wafer;
 }

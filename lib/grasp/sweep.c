@@ -2,7 +2,7 @@
 
 #include "grasp_internal.h"
 
-/* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
+/* Shepperd's method: it divides by the largest of the four, so that no digit is lost. */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
     const wh_real_t signals = R->m[0][0] + R->m[1][1] + R->m[2][2];
     size_t i = 0;
@@ -107,8 +107,8 @@ bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, 
                         p.x * p.x + p.y * p.y - projxy * projxy);
 }
 
-/* From when on n1_proj_n2 > limit: the part's beginning, or the root at which the quadratic
- * c2 t^2 + c1 t + c0 = |Q|^2 (n1_proj_n2 - limit) rises through zero. */
+/* The instant from which n1_proj_n2 > limit: the part's beginning, or the root at which the quadratic c2
+ * t^2 + c1 t + c0 = |Q|^2 (n1_proj_n2 - limit) rises through zero. */
 static bool cut_planar(wh_span_t *part, const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                        wh_real_t limit) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
@@ -136,8 +136,8 @@ static bool cut_planar(wh_span_t *part, const wh_sweep_t *sweep, const wh_pose_t
 
 bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                           const wh_tolerance_t *tolerance, wh_real_t *t) {
-    /* The limits (7) and (8) are strict, so on their very root the check fails by rounding: look a little
-     * later. */
+    /* The limits (7) and (8) are strict, so exactly at their root the check fails by rounding; it also
+     * tries a little later. */
     static const wh_real_t later[] = {0, WH_REAL(1.0 / 1048576), WH_REAL(1.0 / 1024), WH_REAL(0.5)};
     wh_span_t part;
     if (!wh_sweep_within(sweep, base_from_wafer, WH_SWEEP_INSIDE * tolerance->projz, tolerance->projxy,

@@ -1,5 +1,5 @@
-/* What only swept checking does within a step: picks and near misses between two slices. A file of its own,
- * so that its memory is never on the stack of a sampled step. */
+/* The parts of a step that only swept checking needs: picks and near misses between two slices. It is a
+ * separate file, so that its memory is never on the stack of a sampled step. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
@@ -7,7 +7,7 @@
 /* The best wafer so far. */
 typedef struct {
     int32_t wafer; /* WH_NONE: none */
-    wh_real_t t;   /* the instant within the slice, 1 being its end */
+    wh_real_t t;   /* the instant within the slice; 1 is its end */
     wh_real_t distance;
 } candidate_t;
 
@@ -19,7 +19,7 @@ static bool is_better(const candidate_t *best, const candidate_t *other) {
            (other->distance == best->distance && other->wafer < best->wafer);
 }
 
-/* Earliest instant, then smallest |dr_proj_z|, then lowest index. */
+/* The order is: earliest instant, then smallest |dr_proj_z|, then lowest index. */
 static void keep_better(candidate_t *best, const candidate_t *other) {
     if (best->wafer == WH_NONE || is_better(best, other)) {
         *best = *other;
@@ -118,7 +118,7 @@ bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafe
     if (is_near_at(watch, base_from_wafer, closest)) {
         return true;
     }
-    /* The closest instant may be the one on the neighbourhood's edge; then the middle tells. */
+    /* If the closest instant is on the neighbourhood's edge, the middle decides. */
     wh_closeness_t middle = {.t = (part.first + part.last) / 2};
     return is_near_at(watch, base_from_wafer, &middle);
 }

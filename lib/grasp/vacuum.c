@@ -1,6 +1,6 @@
 #include "vacuum.h"
 
-/* The longest time constant, s, and how near to its target a level is there. */
+/* The longest time constant, s, and the distance from its target at which a level reaches it. */
 #define LONGEST WH_REAL(3600.0)
 #define NEAR WH_REAL(1e-4)
 
@@ -55,7 +55,8 @@ wh_vacuum_t wh_vacuum_start(void) {
     return vacuum;
 }
 
-/* One slice towards the target. Below WH_REAL's rounding it never passes it, for the share is at most 1. */
+/* One slice towards the target. Below WH_REAL's rounding it never passes the target, because the share is
+ * at most 1. */
 static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, wh_real_t level,
                           wh_real_t target, wh_real_t dt) {
     if (level == target) {

@@ -1,10 +1,9 @@
 /* Chaos of a line: frames that are lost, come twice or late, and bytes that come wrong.
  *
- * What happens is drawn by Philox (math/philox.h) from (seed, port, direction, frame, byte), never in
- * sequence: frame 7 meets the same fate whatever became of frames 0 to 6, on every machine. Frames count from
- * 0 for each port and direction, as they were sent, before any chaos. Those to the controller are cut by a
- * framer of their own (framing.h), and what chaos leaves of them goes to the framer that the controller
- * reads. */
+ * Philox (math/philox.h) draws each fate from (seed, port, direction, frame, byte), never in sequence. So
+ * frame 7 meets the same fate whatever became of frames 0 to 6, on every machine. Frames count from 0 for
+ * each port and direction, as they were sent, before any chaos. A framer of its own (framing.h) cuts the
+ * frames to the controller. After chaos their bytes go to the framer that the controller reads. */
 #ifndef WH_HOST_CHAOS_H
 #define WH_HOST_CHAOS_H
 
@@ -16,7 +15,7 @@
 
 /* The longest delay. */
 #define WH_CHAOS_DELAY_US 3600000000
-/* Room for what chaos makes of a frame. */
+/* Room for the bytes that chaos makes of a frame. */
 #define WH_CHAOS_BYTES (2 * WH_FRAMING_LINE)
 
 /* Zero: none. Probabilities from 0 to 1. */
@@ -25,21 +24,21 @@ typedef struct {
     double drop;  /* that a frame is lost */
     double twice; /* that it comes twice (`double` in a dialect) */
     double
-        garble; /* that a byte comes wrong: in one half of the cases another byte, in a quarter no byte, in a
-                            quarter the byte twice */
-    int64_t delay_us;    /* a frame comes up to so much later, evenly spread */
-    int64_t late_ack_us; /* an acknowledgement up to so much more */
+        garble; /* that a byte comes wrong: in one half of the cases another byte comes, in a quarter no byte,
+                 * in a quarter the byte twice */
+    int64_t delay_us;    /* the most that a frame comes later, evenly spread */
+    int64_t late_ack_us; /* the most that an acknowledgement comes later in addition */
 } wh_chaos_t;
 
-/* Which bytes of a line: the port's number, from 0 in the order of the command line, the direction, and the
- * frame's number. */
+/* Names the bytes of a frame: the port's number, from 0 in the order of the command line, the direction, and
+ * the frame's number. */
 typedef struct {
     uint32_t port; /* below 2^24 */
     bool is_to_host;
     uint64_t frame;
 } wh_chaos_place_t;
 
-/* What becomes of a frame: 0, 1 or 2 copies, each so much later. */
+/* The fate of a frame: 0, 1 or 2 copies, and the delay of each. */
 typedef struct {
     size_t copies;
     int64_t later_us[2];

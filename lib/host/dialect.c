@@ -1,4 +1,4 @@
-/* A dialect's file, read strictly. What it says once is read here; its functions stay in Lua. */
+/* Reads a dialect's file strictly. Its constant values are read here; its functions stay in Lua. */
 #include "dialect.h"
 
 #include <math.h>
@@ -37,6 +37,7 @@ static const wh_reader_field_t dialect_fields[] = {
     {"timing", "table", "of answers", false},
     {"baud", "number", "the pace of the line", false},
     {"second_client", "string", "what becomes of it", false},
+    {"idle", "number", "s after which a silent client is closed", false},
     {"completes_to", "string", "who hears of a command's end", false},
     {"chaos", "table", "what befalls frames on the line", false},
     {0}};
@@ -257,7 +258,7 @@ static void read_does(wh_reader_t *reader, wh_dialect_command_t *command) {
     }
 }
 
-/* What the controller does not stand for it does not do. */
+/* Refuses words that the controller's mechanism cannot do. */
 static void check_mechanism(const wh_reader_t *reader, const wh_dialect_t *dialect,
                             const wh_dialect_command_t *command) {
     for (size_t i = 0; i < command->does_count; ++i) {
@@ -324,14 +325,14 @@ static void read_encoders(wh_reader_t *reader, wh_dialect_t *dialect) {
 
 static void read_units(wh_reader_t *reader, wh_dialect_t *dialect) {
     wh_reader_open_section(reader, "units", unit_fields);
-    dialect->length = wh_reader_number(reader, "length", 1, 1e-6, 1e6);
-    dialect->angle = wh_reader_number(reader, "angle", 1, 1e-6, 1e6);
+    dialect->units.length = wh_reader_number(reader, "length", 1, 1e-6, 1e6);
+    dialect->units.angle = wh_reader_number(reader, "angle", 1, 1e-6, 1e6);
     wh_reader_leave(reader);
     wh_reader_open_section(reader, "signs", sign_fields);
     for (size_t axis = 0; axis < 4; ++axis) {
         const char *name = sign_fields[axis].name;
-        dialect->signs[axis] = wh_reader_number(reader, name, 1, -1, 1);
-        if (fabs(dialect->signs[axis]) != 1) {
+        dialect->units.signs[axis] = wh_reader_number(reader, name, 1, -1, 1);
+        if (fabs(dialect->units.signs[axis]) != 1) {
             (void)wh_reader_push(reader, name);
             wh_reader_fail(reader, name, "1 or -1");
         }
@@ -353,14 +354,15 @@ static void read_timing(wh_reader_t *reader, wh_dialect_t *dialect) {
     static const char *const clients[] = {"refuse", "take_over", NULL};
     static const char *const hearers[] = {"asker", "next", NULL};
     wh_reader_open_section(reader, "timing", timing_fields);
-    dialect->ack_s = wh_reader_number(reader, "ack", 0, 0, 3600);
-    dialect->busy_s = wh_reader_number(reader, "busy", 0, 0, 3600);
-    dialect->ackn_s = wh_reader_number(reader, "ackn", 0, 0, 3600);
+    dialect->timing.ack_s = wh_reader_number(reader, "ack", 0, 0, 3600);
+    dialect->timing.busy_s = wh_reader_number(reader, "busy", 0, 0, 3600);
+    dialect->timing.ackn_s = wh_reader_number(reader, "ackn", 0, 0, 3600);
     wh_reader_leave(reader);
     dialect->takes_over = wh_reader_choice(reader, "second_client", 0, clients) == 1;
+    dialect->timing.idle_s = wh_reader_number(reader, "idle", 0, 0, 86400);
     dialect->completes_to_next = wh_reader_choice(reader, "completes_to", 0, hearers) == 1;
-    dialect->baud = wh_reader_whole(reader, "baud", 0, 0, WH_PACE_MOST);
-    if (!wh_pace_validate(dialect->baud)) {
+    dialect->timing.baud = wh_reader_whole(reader, "baud", 0, 0, WH_PACE_MOST);
+    if (!wh_pace_validate(dialect->timing.baud)) {
         (void)wh_reader_push(reader, "baud");
         wh_reader_fail(reader, "baud", "0 or %d to %d", WH_PACE_LEAST, WH_PACE_MOST);
     }
@@ -378,7 +380,7 @@ static void read_chaos(wh_reader_t *reader, wh_dialect_t *dialect) {
     wh_reader_leave(reader);
 }
 
-/* Runs protected. What the file returned is on top of the stack below the argument. */
+/* Runs protected. The file's return value is on top of the stack below the argument. */
 static int read_dialect(lua_State *L) {
     wh_dialect_t *dialect = lua_touserdata(L, 1);
     wh_reader_t reader;
@@ -395,7 +397,7 @@ static int read_dialect(lua_State *L) {
     check_names(&reader, "stations");
     check_names(&reader, "arms");
     check_names(&reader, "doors");
-    dialect->first_slot = wh_reader_whole(&reader, "first_slot", 1, 0, 1);
+    dialect->units.first_slot = wh_reader_whole(&reader, "first_slot", 1, 0, 1);
     (void)has_function(&reader, &dialect_fields[9]);
     read_commands(&reader, dialect);
     read_encoders(&reader, dialect);

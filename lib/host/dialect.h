@@ -1,8 +1,8 @@
-/* A dialect: how one controller talks to its host, as a Lua file says it.
+/* A dialect: a Lua file that says how one controller talks to its host.
  *
  * lua/dialects/README.md says what the file may say. It runs in a sandbox of its own, with 16 MB and 1e5
  * instructions for each call. It never runs a command: it turns a frame into lines as they are typed at the
- * prompt, and what came of them into a frame. A mistake in it is a message that names its file and line.
+ * prompt, and their result into a frame. A mistake in it is a message that names its file and line.
  *
  * One thread at a time for each dialect. All texts are the dialect's own and live until the next call.
  */
@@ -17,14 +17,14 @@
 #include "mechanism.h"
 #include "words.h"
 
-/* What a dialect may use up. */
+/* The limits of a dialect's memory and instructions. */
 #define WH_DIALECT_MEMORY_BYTES ((size_t)16 << 20)
 #define WH_DIALECT_INSTRUCTIONS 100000
 
 /* Room for a name, a code of theirs, a sequence number, and for one of our lines. */
 #define WH_DIALECT_NAME_BYTES 64
 #define WH_DIALECT_LINE_BYTES 1001
-/* So many lines may be one command of theirs, and so many of our words stand in one `does`. */
+/* The most lines that one of their commands may make, and the most of our words in one `does`. */
 #define WH_DIALECT_LINES 16
 #define WH_DIALECT_DOES 8
 
@@ -36,7 +36,7 @@ typedef struct {
     size_t does_count;
 } wh_dialect_command_t;
 
-/* What their host is told for one of our errors. */
+/* The code and text that their host is told for one of our errors. */
 typedef struct {
     wh_status_t number;
     char code[WH_DIALECT_NAME_BYTES];
@@ -44,17 +44,32 @@ typedef struct {
 
 typedef enum {
     WH_ENCODE_ACKNOWLEDGE,    /* (request): an action has been taken on */
-    WH_ENCODE_ANSWER,         /* (request, result): of what is answered at once */
+    WH_ENCODE_ANSWER,         /* (request, result): a request was answered at once */
     WH_ENCODE_COMPLETE,       /* (request, result): an action has ended, well or not */
     WH_ENCODE_REFUSE,         /* (request, failure): nothing was begun; the request may be empty */
-    WH_ENCODE_BAD,            /* (reason): a frame is none, by wh_frame_kind_name */
+    WH_ENCODE_BAD,            /* (reason): a bad frame, by wh_frame_kind_name */
     WH_ENCODE_EVENT,          /* (event): something befell a wafer */
     WH_ENCODE_UNACKNOWLEDGED, /* (): no ACKN has come in time */
     WH_ENCODERS
 } wh_encoder_t;
 
-/* As they stand in a dialect's `encode`. */
+/* Their names in a dialect's `encode`. */
 extern const char *const wh_encoder_names[WH_ENCODERS];
+
+/* How they measure and count. */
+typedef struct {
+    double length, angle; /* one of their units, in mm and degrees */
+    double signs[4];      /* of theta, r, z, yaw: 1 or -1 */
+    int first_slot;       /* how they count the first one */
+} wh_dialect_units_t;
+
+typedef struct {
+    double ack_s;  /* the delay of an acknowledgement */
+    double busy_s; /* how long an action waits for another port's */
+    double ackn_s; /* how long a completion waits for its ACKN; 0: none is awaited */
+    double idle_s; /* a client that is silent for so long is closed; 0: never */
+    int64_t baud;  /* 0: as fast as possible */
+} wh_dialect_timing_t;
 
 /* Read-only for others. Must not be moved while it is open. */
 typedef struct {
@@ -62,17 +77,14 @@ typedef struct {
     const char *path; /* the caller's */
     char name[WH_DIALECT_NAME_BYTES];
     wh_mechanism_t mechanism;
-    wh_framing_t framing; /* of what the host sends */
-    wh_framing_t replies; /* of what it is sent: the same, but for the starts */
-    double length, angle; /* what one of their units is, mm and degrees */
-    double signs[4];      /* of theta, r, z, yaw: 1 or -1 */
-    int first_slot;       /* how they count the first one */
-    double ack_s, busy_s; /* an acknowledgement comes that late; so long an action waits for another port's */
-    double ackn_s;        /* so long a completion waits for its ACKN; 0: none is awaited */
-    int64_t baud;         /* 0: as fast as it goes */
+    wh_framing_t framing; /* for the bytes that the host sends */
+    wh_framing_t replies; /* for the bytes that it is sent: the same, but for the starts */
+    wh_dialect_units_t units;
+    wh_dialect_timing_t timing;
     wh_chaos_t chaos;
     bool takes_over;        /* a second client takes the place of the first; else it is refused */
-    bool completes_to_next; /* the end of a command is told whoever is there; else only to who asked */
+    bool completes_to_next; /* the end of a command is told to whoever is there; else only to the client that
+                             * asked */
     bool encodes[WH_ENCODERS];
     wh_dialect_command_t *commands;
     size_t command_count, command_capacity;
@@ -95,8 +107,8 @@ void wh_dialect_close(wh_dialect_t *dialect);
  * characters are shown. */
 void wh_dialect_note(wh_dialect_t *dialect, const char *text);
 
-/* True if the layout has all that `stations`, `arms` and `doors` name. Else `message` tells file, field,
- * value, and the names that there are. */
+/* True if the layout has everything that `stations`, `arms` and `doors` name. Else `message` tells file,
+ * field, value, and the names that there are. */
 bool wh_dialect_fits(wh_dialect_t *dialect, const wh_layout_t *layout);
 
 /* ------------------------------------------------------------------------------------------------ a frame */
@@ -115,19 +127,19 @@ typedef struct {
     char detail[WH_SANDBOX_MESSAGE_BYTES];
 } wh_failure_t;
 
-/* What a frame asks for. */
+/* The request of a frame. */
 typedef struct {
     int reference; /* of the dialect's table; LUA_NOREF: none */
     const wh_dialect_command_t *command;
     char sequence[WH_DIALECT_NAME_BYTES]; /* empty: it has none */
 } wh_request_t;
 
-/* Calls decode(frame). The request, which is made in any case, is to be given to wh_dialect_forget. */
+/* Calls decode(frame). It always makes a request, which must go to wh_dialect_forget. */
 wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const char *frame, size_t size, wh_request_t *request,
                                wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
-/* Our lines for a request, or, of a LOCAL one, its answer as the only one. */
+/* Makes our lines for a request, or for a LOCAL one its answer as the only line. */
 typedef struct {
     char lines[WH_DIALECT_LINES][WH_DIALECT_LINE_BYTES];
     size_t count;
@@ -140,19 +152,19 @@ wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, 
 
 /* ------------------------------------------------------------------------------------------------ a reply */
 
-/* What came of a request. */
+/* The result of a request. */
 typedef struct {
     wh_status_t number;                   /* 0: it went well */
     const char *answer;                   /* as at the prompt, of the last line */
     const char *status;                   /* as STATUS tells it, without its OK */
-    double seconds;                       /* simulated, that it took */
+    double seconds;                       /* simulated time that it took */
     bool is_held;                         /* a HOLD stands */
     const wh_layout_t *layout;            /* whose robots and grippers these are; null: none */
     const wh_port_mechanism_t *mechanism; /* what the port stands for; null with no layout */
     uint32_t sensors; /* what the vacuum sensors of its grippers say: bit g of gripper g */
 } wh_result_t;
 
-/* What befell a wafer. */
+/* An event that concerns a wafer. */
 typedef struct {
     const char *kind;  /* wh_event_name */
     bool is_complaint; /* of the cell: such as slot_occupied */
@@ -160,7 +172,7 @@ typedef struct {
     double seconds; /* simulated, since the run's beginning */
 } wh_host_event_t;
 
-/* What an encoder is told besides its kind; what it is not told is null. */
+/* The arguments of an encoder besides its kind; those that it does not take are null. */
 typedef struct {
     const wh_request_t *request;
     const wh_result_t *result;
@@ -183,7 +195,7 @@ const char *wh_dialect_code(const wh_dialect_t *dialect, wh_status_t number);
 /* True if the table of errors has it. */
 bool wh_dialect_speaks(const wh_dialect_t *dialect, wh_status_t number);
 
-/* Registry keys of the dialect's table and of what its functions find as `host`: of lib/host alone. */
+/* Registry keys of the dialect's table and of the table `host` of its functions; for lib/host alone. */
 extern char wh_dialect_key;
 int wh_dialect_open_host(lua_State *L);
 

@@ -1,13 +1,15 @@
-/* A dialect's functions, called: decode, run and the encoders. */
+/* Calls a dialect's functions: decode, run and the encoders. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
 
+#include "../layout/axes.h"
 #include "../record/record.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "../text/utf8.h"
 #include "dialect.h"
 #include "values.h"
 
@@ -21,7 +23,7 @@ const char *const wh_encoder_names[WH_ENCODERS] = {[WH_ENCODE_ACKNOWLEDGE] = "ac
 
 /* ---------------------------------------------------------------------------------------------- refusals */
 
-/* A call of one function, and what comes of it. */
+/* A call of one function, and its result. */
 typedef struct {
     wh_dialect_t *dialect;
     const char *frame;
@@ -33,10 +35,20 @@ typedef struct {
 } call_t;
 
 /* A field of the error's table, as a text. */
-static void take_text(lua_State *L, const char *field, char *text, size_t size) {
+static void take_error_text(lua_State *L, const char *field, char *text, size_t size) {
     lua_pushstring(L, field);
     lua_rawget(L, -2);
     (void)snprintf(text, size, "%s", lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "");
+    lua_pop(L, 1);
+}
+
+/* Reads a text that a host has sent. Its control characters become \xNN: they cannot steer a terminal. */
+static void take_visible(lua_State *L, const char *field, char *text, size_t size) {
+    size_t length = 0;
+    lua_pushstring(L, field);
+    lua_rawget(L, -2);
+    const char *said = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : "";
+    wh_utf8_visible_bytes(text, size, said, length);
     lua_pop(L, 1);
 }
 
@@ -50,8 +62,8 @@ bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure) {
         is_refusal = lua_rawget(L, -2) == LUA_TNUMBER;
         failure->number = (wh_status_t)lua_tointeger(L, -1);
         lua_pop(L, 1);
-        take_text(L, "code", failure->code, sizeof failure->code);
-        take_text(L, "detail", failure->detail, sizeof failure->detail);
+        take_error_text(L, "code", failure->code, sizeof failure->code);
+        take_visible(L, "detail", failure->detail, sizeof failure->detail);
     }
     lua_pop(L, 1);
     if (is_refusal && failure->code[0] == '\0') {
@@ -60,8 +72,8 @@ bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure) {
     return is_refusal;
 }
 
-/* With a fresh budget. */
-static bool call(wh_dialect_t *dialect, lua_CFunction function, call_t *argument) {
+/* Calls with a fresh budget. */
+static bool call_dialect(wh_dialect_t *dialect, lua_CFunction function, call_t *argument) {
     wh_sandbox_result_t result;
     wh_sandbox_renew(dialect->sandbox);
     if (wh_sandbox_protect(wh_sandbox_state(dialect->sandbox), function, argument, &result)) {
@@ -100,8 +112,8 @@ __attribute__((noreturn)) static void refuse(lua_State *L, wh_status_t number, c
     abort();
 }
 
-/* The field of the request that is on top of the stack: a text, or a whole number. What is too long for a
- * word or has a byte 0 came from the host, and is refused by this error. */
+/* Takes a field of the request that is on top of the stack: a text, or a whole number. A text that is too
+ * long for a word or has a byte 0 came from the host, and is refused by this error. */
 static bool take_word(lua_State *L, const char *field, wh_status_t refusal, char *word) {
     size_t size = 0;
     lua_getfield(L, -1, field);
@@ -111,7 +123,9 @@ static bool take_word(lua_State *L, const char *field, wh_status_t refusal, char
         luaL_error(L, "decode returned a request's %s that is neither a text nor a whole number", field);
     }
     if (size >= WH_DIALECT_NAME_BYTES || strlen(text) != size) {
-        refuse(L, refusal, field);
+        char shown[WH_DIALECT_NAME_BYTES];
+        wh_utf8_visible_bytes(shown, sizeof shown, text, size);
+        refuse(L, refusal, shown);
     }
     (void)snprintf(word, WH_DIALECT_NAME_BYTES, "%s", text);
     lua_pop(L, 1);
@@ -128,7 +142,7 @@ static const wh_dialect_command_t *find_command(const wh_dialect_t *dialect, con
 }
 
 /* Runs protected. */
-static int decode(lua_State *L) {
+static int decode_frame(lua_State *L) {
     char name[WH_DIALECT_NAME_BYTES];
     call_t *it = lua_touserdata(L, 1);
     push_of(L, "decode", NULL);
@@ -158,7 +172,7 @@ wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const char *frame, size_t 
     call_t it = {.dialect = dialect, .frame = frame, .size = size, .request = request};
     *request = (wh_request_t){.reference = LUA_NOREF};
     memset(failure, 0, sizeof *failure);
-    const bool done = call(dialect, decode, &it);
+    const bool done = call_dialect(dialect, decode_frame, &it);
     const wh_decoded_t outcome = outcome_of(dialect, done, failure);
     const bool is_none = outcome == WH_DECODED_REQUEST && !request->command;
     return is_none ? WH_DECODED_NOTHING : outcome;
@@ -173,7 +187,7 @@ void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request) {
 
 /* -------------------------------------------------------------------------------------------------- lines */
 
-static void take_line(lua_State *L, const call_t *it) {
+static void take_typed_line(lua_State *L, const call_t *it) {
     const wh_dialect_command_t *command = it->request->command;
     size_t size = 0;
     const char *text = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &size) : NULL;
@@ -202,7 +216,7 @@ static void take_line(lua_State *L, const call_t *it) {
 }
 
 /* Runs protected. */
-static int run(lua_State *L) {
+static int run_command(lua_State *L) {
     call_t *it = lua_touserdata(L, 1);
     const wh_dialect_command_t *command = it->request->command;
     push_of(L, "commands", command->name);
@@ -213,11 +227,11 @@ static int run(lua_State *L) {
         lua_call(L, 1, 1);
     }
     if (!lua_istable(L, -1)) {
-        take_line(L, it);
+        take_typed_line(L, it);
         return 0;
     }
     for (lua_Integer i = 1; lua_geti(L, -1, i) != LUA_TNIL; ++i) {
-        take_line(L, it);
+        take_typed_line(L, it);
     }
     lua_pop(L, 1);
     if (it->lines->count == 0) {
@@ -232,7 +246,7 @@ wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, 
     call_t it = {.dialect = dialect, .request = &asked, .lines = lines};
     lines->count = 0;
     memset(failure, 0, sizeof *failure);
-    return outcome_of(dialect, call(dialect, run, &it), failure);
+    return outcome_of(dialect, call_dialect(dialect, run_command, &it), failure);
 }
 
 /* ----------------------------------------------------------------------------------------------- encoding */
@@ -245,7 +259,7 @@ static void push_request(lua_State *L, const wh_request_t *request) {
     }
 }
 
-/* Into the table on top of the stack: ok, number, name, code and text of an error, or of none. */
+/* Sets ok, number, name, code and text of an error, or of none, in the table on top of the stack. */
 static void set_error(lua_State *L, const wh_dialect_t *dialect, wh_status_t number, const char *code) {
     wh_lua_set_boolean(L, "ok", number == WH_OK);
     wh_lua_set_integer(L, "number", number);
@@ -274,33 +288,60 @@ static void set_state(lua_State *L, const wh_result_t *result) {
     lua_pop(L, 1);
 }
 
-/* As STATUS calls an axis: of several robots with its robot's name. */
+/* The port's robot; the first robot if the port has none or stands for the whole cell. */
+static size_t find_robot(const wh_result_t *result) {
+    const wh_port_mechanism_t *mechanism = result->mechanism;
+    const bool is_named = mechanism->kind == WH_MECHANISM_ROBOT && mechanism->name;
+    return result->layout->robot_count > 1 && is_named ? (size_t)mechanism->index : 0;
+}
+
+/* The name of an axis in STATUS: with several robots its robot's name comes first. */
 static void name_axis(const wh_result_t *result, const char *axis, char name[WH_DIALECT_LINE_BYTES]) {
     const wh_layout_t *layout = result->layout;
-    const wh_port_mechanism_t *mechanism = result->mechanism;
     char robot[WH_DIALECT_NAME_BYTES * (size_t)3] = "";
-    const bool has_several = layout && layout->robot_count > 1;
+    const bool has_several = layout->robot_count > 1;
     if (has_several) {
-        const bool is_named = mechanism->kind == WH_MECHANISM_ROBOT && mechanism->name;
-        (void)wh_value_spell(layout->robots[is_named ? mechanism->index : 0].name, robot, sizeof robot);
+        (void)wh_value_spell(layout->robots[find_robot(result)].name, robot, sizeof robot);
     }
     (void)snprintf(name, WH_DIALECT_LINE_BYTES, "%s%s%s", robot, has_several ? "." : "", axis);
 }
 
-static void set_position(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result) {
-    static const char *const axes[] = {"theta", "r", "z", "yaw"};
+/* The sign of an axis in their direction. */
+static double sign_of(const wh_dialect_t *dialect, const char *axis) {
+    static const char *const signed_axes[] = {"theta", "r", "z", "yaw"};
+    for (size_t i = 0; i < sizeof signed_axes / sizeof signed_axes[0]; ++i) {
+        if (strcmp(axis, signed_axes[i]) == 0) {
+            return dialect->units.signs[i];
+        }
+    }
+    return 1;
+}
+
+static void set_axis(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result, size_t axis) {
+    const wh_machine_t *machine = &result->layout->machine;
+    const char *own = wh_axis_name(machine, axis);
+    const double unit = wh_axis_turns(machine, axis) ? dialect->units.angle : dialect->units.length;
     char name[WH_DIALECT_LINE_BYTES];
-    lua_createtable(L, 0, 4);
-    for (size_t axis = 0; axis < 4; ++axis) {
-        const double unit = axis == 1 || axis == 2 ? dialect->length : dialect->angle;
-        name_axis(result, axes[axis], name);
-        const double at = strtod(wh_value_begin(result->status, name), NULL);
-        wh_lua_set_number(L, axes[axis], dialect->signs[axis] * at / unit + 0.0); /* no -0 */
+    name_axis(result, own, name);
+    const double at = strtod(wh_value_begin(result->status, name), NULL);
+    wh_lua_set_number(L, own, sign_of(dialect, own) * at / unit + 0.0); /* no -0 */
+}
+
+/* Sets only the axes that the robot has. */
+static void set_position(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result) {
+    const wh_machine_t *machine = result->layout ? &result->layout->machine : NULL;
+    lua_createtable(L, 0, WH_CHAIN_AXES);
+    for (size_t axis = 0; machine && axis < wh_machine_robot_axes(machine); ++axis) {
+        size_t own;
+        if (wh_machine_robot_of(machine, axis, &own) == (int32_t)find_robot(result) &&
+            wh_axis_exists(machine, axis)) {
+            set_axis(L, dialect, result, axis);
+        }
     }
     lua_setfield(L, -2, "position");
 }
 
-/* By our name of a gripper, as it is typed. */
+/* Sets fields by our name of a gripper, as it is typed. */
 static void set_sensors(lua_State *L, const wh_result_t *result) {
     const wh_layout_t *layout = result->layout;
     char spelt[WH_DIALECT_LINE_BYTES];
@@ -354,7 +395,7 @@ static void push_event(lua_State *L, const wh_host_event_t *event) {
     wh_lua_set_text(L, "gripper", event->gripper);
 }
 
-/* Pushes what the encoder is called with. Returns how many that are. */
+/* Pushes the arguments of the encoder. Returns how many there are. */
 static int push_told(lua_State *L, const call_t *it) {
     const wh_told_t *told = it->told;
     int count = 0;
@@ -402,7 +443,7 @@ static size_t take_start(lua_State *L, const call_t *it) {
     return 0;
 }
 
-/* In place of the list at index 2, its texts with a byte 0 between them. */
+/* Replaces the list at index 2 by its texts with a byte 0 between them. */
 static void join_frames(lua_State *L, const call_t *it) {
     luaL_Buffer buffer;
     luaL_buffinit(L, &buffer);
@@ -420,7 +461,7 @@ static void join_frames(lua_State *L, const call_t *it) {
 }
 
 /* Runs protected. */
-static int encode(lua_State *L) {
+static int encode_body(lua_State *L) {
     call_t *it = lua_touserdata(L, 1);
     wh_dialect_t *dialect = it->dialect;
     size_t size = 0;
@@ -452,5 +493,5 @@ bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_tol
     free(dialect->text);
     dialect->text = NULL;
     dialect->text_size = 0;
-    return !dialect->encodes[encoder] || call(dialect, encode, &it);
+    return !dialect->encodes[encoder] || call_dialect(dialect, encode_body, &it);
 }

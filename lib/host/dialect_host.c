@@ -1,4 +1,4 @@
-/* What a dialect's functions find as `host`: names and units by the dialect's own tables, and refusals. */
+/* The table `host` of a dialect's functions: names and units by the dialect's own tables, and refusals. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,24 +23,26 @@ static int refuse_by(lua_State *L, wh_status_t number, const char *detail) {
 
 /* host.refuse(name [, detail [, code]]): the request is refused by our error of this name; the host is told
  * the code of the dialect's table, or this one. */
-static int refuse(lua_State *L) {
+static int refuse_request(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
     int number = 1;
     while (number < NUMBERS && strcmp(wh_status_name((wh_status_t)number), name) != 0) {
         ++number;
     }
     luaL_argcheck(L, number < NUMBERS, 1, "no name of our errors");
-    const char *detail = luaL_optstring(L, 2, "");
+    size_t length = 0;
+    const char *detail = luaL_optlstring(L, 2, "", &length);
     const char *code = luaL_optstring(L, 3, "");
     lua_createtable(L, 0, 3);
     wh_lua_set_integer(L, "refused", number);
-    wh_lua_set_text(L, "detail", detail);
+    (void)lua_pushlstring(L, detail, length); /* which may have any bytes */
+    lua_setfield(L, -2, "detail");
     wh_lua_set_text(L, "code", code);
     return lua_error(L);
 }
 
-/* Pushes what the dialect's table of that name has for the word at index 1; the word itself without such a
- * table. */
+/* Pushes the entry of the dialect's table of that name for the word at index 1; without such a table, the
+ * word itself. */
 static void push_ours(lua_State *L, const char *table, wh_status_t number) {
     const char *theirs = luaL_tolstring(L, 1, NULL);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
@@ -64,23 +66,23 @@ static int push_spelt(lua_State *L, wh_status_t number) {
 
 /* host.station(theirs), host.arm(theirs), host.door(theirs): our name as it is typed. Refuses one that is not
  * in the table. */
-static int station(lua_State *L) {
+static int our_station(lua_State *L) {
     push_ours(L, "stations", WH_STATUS_NO_SUCH_STATION);
     return push_spelt(L, WH_STATUS_NO_SUCH_STATION);
 }
 
-static int arm(lua_State *L) {
+static int our_arm(lua_State *L) {
     push_ours(L, "arms", WH_STATUS_NO_SUCH_GRIPPER);
     return push_spelt(L, WH_STATUS_NO_SUCH_GRIPPER);
 }
 
-static int door(lua_State *L) {
+static int our_door(lua_State *L) {
     push_ours(L, "doors", WH_STATUS_BAD_ARGUMENT);
     return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
 }
 
 /* host.typed(name): a name of a wafer or of what was saved, as it is typed. */
-static int typed(lua_State *L) {
+static int name_as_typed(lua_State *L) {
     (void)luaL_tolstring(L, 1, NULL);
     return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
 }
@@ -109,7 +111,7 @@ static double number_of(lua_State *L, const char *table, const char *field, doub
 }
 
 /* host.slot(theirs): the slot as we count it, from 1. */
-static int slot(lua_State *L) {
+static int our_slot(lua_State *L) {
     const double theirs = take_number(L);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
     lua_getfield(L, -1, "first_slot");
@@ -121,8 +123,8 @@ static int slot(lua_State *L) {
     return 1;
 }
 
-/* 1 or -1: the dialect's `signs` of the axis that is named at index 2; 1 if none is. */
-static double sign_of(lua_State *L) {
+/* The sign, 1 or -1, that the dialect's `signs` give the axis named at index 2; 1 if none is named. */
+static double sign_at(lua_State *L) {
     static const char *const axes[] = {"theta", "r", "z", "yaw", "", NULL};
     const char *axis = axes[luaL_checkoption(L, 2, "", axes)];
     return number_of(L, "signs", axis, 1);
@@ -130,32 +132,32 @@ static double sign_of(lua_State *L) {
 
 /* host.mm(theirs, axis), host.degrees(theirs, axis): ours; host.length(mm, axis), host.angle(degrees, axis):
  * theirs. With an axis its sign counts. */
-static int mm(lua_State *L) {
-    const double sign = sign_of(L);
+static int our_mm(lua_State *L) {
+    const double sign = sign_at(L);
     lua_pushnumber(L, sign * take_number(L) * number_of(L, "units", "length", 1) + 0.0);
     return 1;
 }
 
-static int degrees(lua_State *L) {
-    const double sign = sign_of(L);
+static int our_degrees(lua_State *L) {
+    const double sign = sign_at(L);
     lua_pushnumber(L, sign * take_number(L) * number_of(L, "units", "angle", 1) + 0.0);
     return 1;
 }
 
-static int length(lua_State *L) {
-    const double sign = sign_of(L);
+static int their_length(lua_State *L) {
+    const double sign = sign_at(L);
     lua_pushnumber(L, sign * take_number(L) / number_of(L, "units", "length", 1) + 0.0);
     return 1;
 }
 
-static int angle(lua_State *L) {
-    const double sign = sign_of(L);
+static int their_angle(lua_State *L) {
+    const double sign = sign_at(L);
     lua_pushnumber(L, sign * take_number(L) / number_of(L, "units", "angle", 1) + 0.0);
     return 1;
 }
 
 /* host.code(number): theirs of one of our errors; nil of none. */
-static int code(lua_State *L) {
+static int their_code(lua_State *L) {
     const lua_Integer number = luaL_checkinteger(L, 1);
     if (number == WH_OK) {
         lua_pushnil(L);
@@ -197,7 +199,7 @@ static int refuse_alarm(lua_State *L, const char *theirs) {
 
 /* host.alarm(theirs): the number of our error that has this code; the first one, if several have. Refuses a
  * code that is not in the table. */
-static int alarm(lua_State *L) {
+static int find_alarm(lua_State *L) {
     char theirs[WH_DIALECT_NAME_BYTES];
     (void)snprintf(theirs, sizeof theirs, "%s", luaL_tolstring(L, 1, NULL));
     lua_settop(L, 0);
@@ -219,7 +221,7 @@ static int alarm(lua_State *L) {
 
 /* host.name(table, ours): their name of one of our "stations", "arms" or "doors"; ours where
  * there is no such table; nil where it has none. */
-static int name(lua_State *L) {
+static int their_name(lua_State *L) {
     const char *table = luaL_checkstring(L, 1);
     const char *ours = luaL_checkstring(L, 2);
     lua_settop(L, 2);
@@ -257,7 +259,7 @@ static const char *door_at(const wh_layout_t *layout, size_t i) {
     return i < layout->machine.door_count ? layout->door_list[i].name : NULL;
 }
 
-/* A table of the dialect's and what it names: the layout's. */
+/* A table of the dialect, and the things of the layout that it names. */
 typedef struct {
     wh_dialect_t *dialect;
     const wh_layout_t *layout;
@@ -289,7 +291,7 @@ static bool refuse_name(const naming_t *naming, const char *theirs, const char *
     return false;
 }
 
-static bool check_names(lua_State *L, const naming_t *naming) {
+static bool check_naming(lua_State *L, const naming_t *naming) {
     bool is_good = true;
     lua_settop(L, 0);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
@@ -306,17 +308,27 @@ static bool check_names(lua_State *L, const naming_t *naming) {
 
 bool wh_dialect_fits(wh_dialect_t *dialect, const wh_layout_t *layout) {
     lua_State *L = wh_sandbox_state(dialect->sandbox);
-    return check_names(L, &(naming_t){dialect, layout, "stations", station_at}) &&
-           check_names(L, &(naming_t){dialect, layout, "arms", gripper_at}) &&
-           check_names(L, &(naming_t){dialect, layout, "doors", door_at});
+    return check_naming(L, &(naming_t){dialect, layout, "stations", station_at}) &&
+           check_naming(L, &(naming_t){dialect, layout, "arms", gripper_at}) &&
+           check_naming(L, &(naming_t){dialect, layout, "doors", door_at});
 }
 
 /* Runs protected. */
 int wh_dialect_open_host(lua_State *L) {
-    static const luaL_Reg functions[] = {
-        {"refuse", refuse}, {"station", station}, {"arm", arm},         {"door", door},     {"typed", typed},
-        {"slot", slot},     {"mm", mm},           {"degrees", degrees}, {"length", length}, {"angle", angle},
-        {"name", name},     {"code", code},       {"alarm", alarm},     {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"refuse", refuse_request},
+                                         {"station", our_station},
+                                         {"arm", our_arm},
+                                         {"door", our_door},
+                                         {"typed", name_as_typed},
+                                         {"slot", our_slot},
+                                         {"mm", our_mm},
+                                         {"degrees", our_degrees},
+                                         {"length", their_length},
+                                         {"angle", their_angle},
+                                         {"name", their_name},
+                                         {"code", their_code},
+                                         {"alarm", find_alarm},
+                                         {NULL, NULL}};
     luaL_newlib(L, functions);
     lua_setglobal(L, "host");
     return 0;

@@ -33,10 +33,10 @@ static size_t start_size(const wh_framer_t *framer) {
     return framer->start < framer->framing.start_count ? framer->framing.starts[framer->start].size : 0;
 }
 
-/* Fills in the frame. The line leaves with the next call, but for its last `keeps` bytes, which are start
+/* Fills in the frame. The next call removes the line, except its last `keeps` bytes, which are start
  * `next`. */
-static void tell(wh_framer_t *framer, wh_frame_kind_t kind, size_t size, size_t keeps, size_t next,
-                 wh_frame_t *frame) {
+static void tell_frame(wh_framer_t *framer, wh_frame_kind_t kind, size_t size, size_t keeps, size_t next,
+                       wh_frame_t *frame) {
     *frame = (wh_frame_t){
         .kind = kind,
         .first_us = framer->first_us,
@@ -53,8 +53,8 @@ static void tell(wh_framer_t *framer, wh_frame_kind_t kind, size_t size, size_t 
     framer->next = next;
 }
 
-/* What was told of leaves. */
-static void settle(wh_framer_t *framer) {
+/* Removes the part of the line that was already told. */
+static void settle_line(wh_framer_t *framer) {
     if (framer->told) {
         memmove(framer->line, framer->line + framer->size - framer->keeps, framer->keeps);
         framer->size = framer->keeps;
@@ -64,7 +64,7 @@ static void settle(wh_framer_t *framer) {
     }
 }
 
-/* What stands behind a body of `size` bytes: its sum? */
+/* Judges the bytes behind a body of `size` bytes: they should be its sum. */
 static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *body, size_t size) {
     const wh_framing_t *framing = &framer->framing;
     const uint8_t *sum = body + size;
@@ -76,7 +76,7 @@ static wh_frame_kind_t judge_sum(const wh_framer_t *framer, const uint8_t *body,
 }
 
 /* The line has come to an end of `end_size` bytes. */
-static void judge(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
+static void judge_line(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
     const size_t from = start_size(framer);
     const size_t around = framing->sum != WH_SUM_NONE ? framing->separator.size + 2 : 0;
@@ -89,7 +89,7 @@ static void judge(wh_framer_t *framer, size_t end_size, wh_frame_t *frame) {
     } else if (around > 0) {
         kind = judge_sum(framer, framer->line + from, content - around);
     }
-    tell(framer, kind, framer->size, 0, framing->start_count, frame);
+    tell_frame(framer, kind, framer->size, 0, framing->start_count, frame);
     if (kind == WH_FRAME_GOOD) {
         frame->body = framer->line + from;
         frame->body_size = content - around;
@@ -136,13 +136,13 @@ static void begin_line(wh_framer_t *framer, size_t start, wh_frame_t *frame) {
     } else if (framer->size == mark) {
         framer->start = start;
     } else {
-        tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_NO_END, framer->size - mark, mark,
-             start, frame);
+        tell_frame(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_NO_END, framer->size - mark, mark,
+                   start, frame);
     }
 }
 
 /* An end has come. */
-static void end_line(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
+static void take_end(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
     const size_t size = framing->ends[end].size;
     if (framer->dropped > 0) {
@@ -151,15 +151,16 @@ static void end_line(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
         framer->counters.passed += size;
         framer->size = 0;
     } else {
-        judge(framer, size, frame);
+        judge_line(framer, size, frame);
     }
 }
 
-/* One byte over the longest line: told of at once. The last bytes stay, for a mark may lie across. */
-static void overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
+/* The line is one byte too long: this is told at once. The last bytes stay, because a mark may lie across the
+ * limit. */
+static void tell_overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     const size_t keeps = WH_FRAMING_MARK - 1;
-    tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_TOO_LONG, framer->framing.longest, keeps,
-         framer->framing.start_count, frame);
+    tell_frame(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : WH_FRAME_TOO_LONG, framer->framing.longest,
+               keeps, framer->framing.start_count, frame);
     frame->is_over = true;
     framer->dropped = 1;
     if (end < framer->framing.end_count) {
@@ -169,7 +170,7 @@ static void overflow(wh_framer_t *framer, size_t end, wh_frame_t *frame) {
     }
 }
 
-/* A byte behind all that the line has. */
+/* Adds a byte to the line. */
 static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
     const wh_framing_t *framing = &framer->framing;
     if (framer->dropped > 0) {
@@ -191,9 +192,9 @@ static void take_byte(wh_framer_t *framer, uint8_t byte, wh_frame_t *frame) {
     if (start < framing->start_count) {
         begin_line(framer, start, frame);
     } else if (framer->size > framing->longest) {
-        overflow(framer, end, frame);
+        tell_overflow(framer, end, frame);
     } else if (end < framing->end_count) {
-        end_line(framer, end, frame);
+        take_end(framer, end, frame);
     }
 }
 
@@ -204,22 +205,22 @@ static bool is_late(const wh_framer_t *framer, int64_t time_us) {
 }
 
 /* Gives up the line that was begun, if there is one. */
-static void give_up(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
+static void give_up_line(wh_framer_t *framer, wh_frame_kind_t kind, wh_frame_t *frame) {
     if (framer->dropped > 0) {
         end_drop(framer, 0, framer->framing.start_count);
     } else if (framer->size > 0) {
-        tell(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : kind, framer->size, 0,
-             framer->framing.start_count, frame);
+        tell_frame(framer, is_garbage(framer) ? WH_FRAME_GARBAGE : kind, framer->size, 0,
+                   framer->framing.start_count, frame);
     }
 }
 
 size_t wh_framer_feed(wh_framer_t *framer, const uint8_t *bytes, size_t size, int64_t time_us,
                       wh_frame_t *frame) {
     *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
-    settle(framer);
+    settle_line(framer);
     size_t taken = 0;
     if (size > 0 && is_late(framer, time_us)) {
-        give_up(framer, WH_FRAME_TIMEOUT, frame);
+        give_up_line(framer, WH_FRAME_TIMEOUT, frame);
     }
     for (; taken < size && frame->kind == WH_FRAME_NONE; ++taken) {
         framer->counters.bytes += 1;
@@ -238,9 +239,9 @@ size_t wh_framer_feed(wh_framer_t *framer, const uint8_t *bytes, size_t size, in
 
 bool wh_framer_wait(wh_framer_t *framer, int64_t time_us, wh_frame_t *frame) {
     *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
-    settle(framer);
+    settle_line(framer);
     if (is_late(framer, time_us)) {
-        give_up(framer, WH_FRAME_TIMEOUT, frame);
+        give_up_line(framer, WH_FRAME_TIMEOUT, frame);
     }
     return frame->kind != WH_FRAME_NONE;
 }
@@ -253,8 +254,8 @@ int64_t wh_framer_due(const wh_framer_t *framer) {
 
 bool wh_framer_finish(wh_framer_t *framer, wh_frame_t *frame) {
     *frame = (wh_frame_t){.kind = WH_FRAME_NONE};
-    settle(framer);
-    give_up(framer, WH_FRAME_NO_END, frame);
+    settle_line(framer);
+    give_up_line(framer, WH_FRAME_NO_END, frame);
     framer->passes = -1;
     return frame->kind != WH_FRAME_NONE;
 }

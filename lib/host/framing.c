@@ -60,7 +60,7 @@ static bool refuse_number(char *problem, const char *name, long long value, long
     return false;
 }
 
-/* What each mark is by itself. */
+/* Checks each mark by itself. */
 static bool check_marks(const wh_framing_t *framing, const wh_framing_mark_t *marks, size_t count,
                         const char *name, char *problem) {
     for (size_t i = 0; i < count; ++i) {
@@ -86,7 +86,8 @@ static bool check_starts(const wh_framing_t *framing, char *problem) {
     return true;
 }
 
-/* Holds an end against the other ends: none is twice there, and what begins alike is one byte longer. */
+/* Compares an end with the other ends: no end occurs twice, and an end that begins with another one is one
+ * byte longer. */
 static bool check_beginnings(const wh_framing_t *framing, size_t i, char *problem) {
     size_t longer = 0;
     for (size_t k = 0; k < framing->end_count; ++k) {
@@ -212,7 +213,7 @@ uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t 
 
 /* ----------------------------------------------------------------------------------------------- writing */
 
-static size_t append(uint8_t *to, size_t at, const void *bytes, size_t size) {
+static size_t append_bytes(uint8_t *to, size_t at, const void *bytes, size_t size) {
     memcpy(to + at, bytes, size);
     return at + size;
 }
@@ -242,16 +243,16 @@ size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_
     uint8_t bytes[WH_FRAMING_LINE + 4 * WH_FRAMING_MARK];
     size_t length = 0;
     if (framing->start_count > 0) {
-        length = append(bytes, length, framing->starts[start].bytes, framing->starts[start].size);
+        length = append_bytes(bytes, length, framing->starts[start].bytes, framing->starts[start].size);
     }
-    length = append(bytes, length, body, size);
+    length = append_bytes(bytes, length, body, size);
     if (framing->sum != WH_SUM_NONE) {
         char digits[3];
         (void)snprintf(digits, sizeof digits, "%02X", wh_framing_sum(framing, start, body, size));
-        length = append(bytes, length, framing->separator.bytes, framing->separator.size);
-        length = append(bytes, length, digits, 2);
+        length = append_bytes(bytes, length, framing->separator.bytes, framing->separator.size);
+        length = append_bytes(bytes, length, digits, 2);
     }
-    length = append(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
+    length = append_bytes(bytes, length, framing->ends[0].bytes, framing->ends[0].size);
     if (length > framing->longest || !reads_back(framing, bytes, length, body, size)) {
         return 0;
     }

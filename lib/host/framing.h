@@ -1,11 +1,11 @@
 /* From the bytes of a line to frames, and from a frame's body to bytes.
  *
  * A frame is, in this order: a start (or none), a body, a separator and two hex digits of a check sum (or
- * neither), an end. With starts, what comes before one is garbage. A start within a frame means that the
- * frame before it lost its end, so a body holds none. Each bad frame is handed on as such: whoever answers
- * knows which mistake it was. What is looked at first: length, end, check sum.
+ * neither), an end. With starts, bytes before a start are garbage. A start within a frame means that the
+ * frame before it lost its end, so a body holds no start. Each bad frame is handed on as such, so the reader
+ * knows which mistake it was. The checks are in this order: length, end, check sum.
  *
- * What a framer says depends on the bytes and their times alone, never on how they were cut into pieces.
+ * The result of a framer depends on the bytes and their times alone, never on how they were cut into pieces.
  * Nothing is allocated. Not for two threads at once. */
 #ifndef WH_HOST_FRAMING_H
 #define WH_HOST_FRAMING_H
@@ -33,23 +33,24 @@ typedef struct {
     size_t size;
 } wh_framing_mark_t;
 
-/* What the two hex digits are, of the bytes that count. Their names in a dialect: none, add, xor, complement.
+/* The check sum of the bytes that count, as two hex digits. Its names in a dialect: none, add, xor,
+ * complement.
  */
 typedef enum {
     WH_SUM_NONE,
     WH_SUM_ADD,       /* the bytes added up, modulo 256 */
     WH_SUM_XOR,       /* the bytes, exclusive or */
-    WH_SUM_COMPLEMENT /* what is lacking to the next multiple of 256 */
+    WH_SUM_COMPLEMENT /* the difference to the next multiple of 256 */
 } wh_sum_kind_t;
 
-/* How one direction of a line is framed. The body counts into the sum, and what is said below. Digits are
- * written in capitals and read in either case. */
+/* How one direction of a line is framed. The body counts into the sum; the fields below say what else does.
+ * Digits are written in capitals and read in either case. */
 typedef struct {
     wh_framing_mark_t starts[WH_FRAMING_MARKS]; /* any of them begins a frame; no two begin alike */
     size_t start_count;                         /* 0: a frame begins where the one before it ended */
     wh_framing_mark_t ends[WH_FRAMING_MARKS];   /* any of them ends a frame, the first is written; an end may
-                                                   begin as another does if that has one byte more, which is
-                                                   passed over if it comes next: "\r" and "\r\n" */
+                                                 * be another end less its last byte; that byte is passed over
+                                                 * if it comes next: "\r" and "\r\n" */
     size_t end_count;                           /* at least 1 */
     wh_sum_kind_t sum;
     wh_framing_mark_t separator; /* before the digits, such as ","; no part of the body */
@@ -79,7 +80,8 @@ uint8_t wh_framing_sum(const wh_framing_t *framing, size_t start, const uint8_t 
 size_t wh_framing_encode(const wh_framing_t *framing, size_t start, const uint8_t *body, size_t size,
                          uint8_t frame[WH_FRAMING_LINE]);
 
-/* What a frame is. What follows one that is too long, up to an end, a start or a time-out, is passed over. */
+/* The kind of a frame. Bytes behind a frame that is too long, up to an end, a start or a time-out, are passed
+ * over. */
 typedef enum {
     WH_FRAME_NONE,     /* no frame yet */
     WH_FRAME_GOOD,     /* whole */
@@ -87,7 +89,7 @@ typedef enum {
     WH_FRAME_NO_END,   /* a start, or the line's end, came before the frame's end */
     WH_FRAME_TIMEOUT,  /* nothing came for `timeout_us` before the frame's end */
     WH_FRAME_SHORT,    /* the body, or what should be the sum, has too few bytes */
-    WH_FRAME_BAD_SUM,  /* the sum is another one, or is none */
+    WH_FRAME_BAD_SUM,  /* the sum is wrong, or is not two hex digits */
     WH_FRAME_GARBAGE,  /* bytes without a start, up to an end, a start, a time-out, or too many of them */
     WH_FRAME_KINDS     /* how many there are */
 } wh_frame_kind_t;
@@ -101,7 +103,8 @@ typedef struct {
     /* When its first byte came, or, behind another frame that lost its end, all of its start. */
     int64_t first_us;
     int64_t last_us;      /* when its last byte came */
-    const uint8_t *bytes; /* as they came, with start, sum and end; of what is too long the first `longest` */
+    const uint8_t *bytes; /* as they came, with start, sum and end; of a frame that is too long the first
+                           * `longest` */
     size_t size;
     bool is_over; /* too long, or garbage of that length: the byte that was too many stands behind them */
     const uint8_t *body; /* of a good frame, without start, separator, sum and end; else as `bytes` */
@@ -109,14 +112,15 @@ typedef struct {
     size_t start; /* of frames with a start, which one; else 0 */
 } wh_frame_t;
 
-/* What happened on a line. */
+/* The counts of a line. */
 typedef struct {
     uint64_t bytes;                  /* taken */
     uint64_t frames[WH_FRAME_KINDS]; /* by their kind */
-    uint64_t passed;                 /* bytes passed over: behind what was too long, and blank lines */
+    uint64_t passed;                 /* bytes passed over: behind frames that were too long, and blank
+                                      * lines */
 } wh_framer_counters_t;
 
-/* One direction of a line, as it is read. `counters` are to be read, the rest is its own. */
+/* One direction of a line, as it is read. Read `counters`; the rest is private. */
 typedef struct {
     wh_framer_counters_t counters;
     wh_framing_t framing;
@@ -125,9 +129,9 @@ typedef struct {
     size_t size;      /* bytes in line */
     size_t start;     /* the start that it begins with; start_count: none */
     bool told;        /* the line was told of: with the next call it leaves, */
-    size_t keeps;     /* but for so many of its last bytes, */
+    size_t keeps;     /* but without this number of last bytes, */
     size_t next;      /* which are this start */
-    size_t dropped;   /* bytes behind what was too long; `line` then has the last bytes alone */
+    size_t dropped;   /* bytes behind a frame that was too long; `line` then has only the last bytes */
     int passes;       /* a byte that is passed over if it comes next; -1: none */
     int64_t first_us; /* of the line */
     int64_t last_us;  /* of the last byte */
@@ -147,7 +151,7 @@ bool wh_framer_init(wh_framer_t *framer, const wh_framing_t *framing);
  *         ...
  *     }
  *
- * Cost: linear in what is taken, about 10 ns a byte. */
+ * Cost: linear in the bytes taken, about 10 ns a byte. */
 size_t wh_framer_feed(wh_framer_t *framer, const uint8_t *bytes, size_t size, int64_t time_us,
                       wh_frame_t *frame);
 

@@ -1,4 +1,4 @@
-/* What a description of frames and their reader share. */
+/* Shared by a description of frames and their reader. */
 #ifndef WH_HOST_FRAMING_INTERNAL_H
 #define WH_HOST_FRAMING_INTERNAL_H
 
@@ -9,7 +9,7 @@ bool wh_framing_begins_with(const wh_framing_mark_t *mark, const wh_framing_mark
 /* The one byte that `longer` has behind `end`, or -1: it does not begin so, or has another length. */
 int wh_framing_byte_behind(const wh_framing_mark_t *longer, const wh_framing_mark_t *end);
 
-/* The value of a hex digit; 16: it is none. */
+/* The value of a hex digit; 16: it is not a hex digit. */
 unsigned wh_framing_digit(uint8_t byte);
 
 #endif

@@ -1,6 +1,7 @@
 #include "host.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -9,25 +10,50 @@
 
 #include "../record/record.h"
 #include "../text/array.h"
+#include "journal.h"
+#include "line.h"
+#include "playing.h"
+#include "reading.h"
+#include "telling.h"
 
-/* Between two slices ports are looked at so often at most. */
+/* The most times that the ports are checked between two slices. */
 #define SERVE_EACH_US 200
-/* Without anything to do, so long a wait at most. */
+/* The longest wait if there is nothing to do. */
 #define LONGEST_WAIT_US 100000
 
 /* ------------------------------------------------------------------------------------------------ waiting */
 
-/* Each time another one comes first: it may use up the time that there is for Lua. */
-static void serve_ports(wh_host_t *host) {
-    ++host->turns;
-    for (size_t i = 0; i < host->count; ++i) {
-        wh_controller_serve(host->controllers[(i + (size_t)host->turns) % host->count]);
+/* Serves a controller; a transcript tells of the operator's stops, too. */
+static unsigned serve_controller(wh_host_t *host, wh_controller_t *controller) {
+    const unsigned what = wh_controller_serve(controller);
+    if ((what & WH_PORT_ENDED) != 0) {
+        wh_host_end(host);
     }
-    host->last_served_us = wh_host_now(host);
+    if ((what & WH_PORT_HALTED) != 0) {
+        wh_host_stop(host);
+    }
+    return what & WH_PORT_TOLD;
 }
 
-/* Waits for a client, at most until `until_us`, and serves all ports. */
-static void serve(wh_host_t *host, int64_t until_us) {
+/* Each time another port comes first, because the first one may use up the time for Lua. A transcript tells
+ * all that it has for this slice. False: nothing more can come before the next slice. */
+static bool serve_ports(wh_host_t *host) {
+    bool goes_on = !host->played; /* a client may always come */
+    unsigned told = 0;
+    do {
+        told = 0;
+        ++host->turns;
+        for (size_t i = 0; i < host->count; ++i) {
+            told |= serve_controller(host, host->controllers[(i + (size_t)host->turns) % host->count]);
+        }
+        goes_on = goes_on || told != 0;
+    } while (told != 0);
+    host->clock.last_served_us = wh_host_now(host);
+    return goes_on;
+}
+
+/* Waits for a client, at most until `until_us`, and serves all ports. False: nothing more can come. */
+static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
     struct pollfd polls[WH_HOST_PORTS * WH_PORT_POLLS];
     size_t count = 0;
     const int64_t longest = wh_host_now(host) + LONGEST_WAIT_US;
@@ -35,72 +61,46 @@ static void serve(wh_host_t *host, int64_t until_us) {
     for (size_t i = 0; i < host->count; ++i) {
         const int64_t at = wh_controller_due(host->controllers[i]);
         due = at < due ? at : due;
-        count += wh_port_polls(&host->controllers[i]->port, polls + count);
+        count += wh_port_polls(&host->controllers[i]->line.port, polls + count);
     }
     const int64_t wait = due - wh_host_now(host);
     const struct timespec time = {wait > 0 ? (time_t)(wait / 1000000) : 0,
                                   wait > 0 ? (long)(wait % 1000000) * 1000 : 0};
     (void)ppoll(polls, (nfds_t)count, &time, NULL);
-    serve_ports(host);
+    const bool goes_on = serve_ports(host);
     if (host->tick) {
         host->tick(host->tick_user);
     }
+    return goes_on;
 }
 
 void wh_host_wait(wh_host_t *host) {
-    const int64_t slice = host->session->mcs.track.slice;
+    const int64_t slice = wh_session_slice(host->session);
     const int64_t now = wh_host_now(host);
-    host->base_wall_us += slice == host->waited_slice ? now - host->waited_us : 0;
-    host->waited_slice = slice;
-    host->waited_us = now;
-    host->lua_us = 0;
-    serve_ports(host);
+    host->clock.base_wall_us += slice == host->clock.waited_slice ? now - host->clock.waited_us : 0;
+    host->clock.waited_slice = slice;
+    host->clock.waited_us = now;
+    host->clock.lua_us = 0;
+    (void)serve_ports(host);
 }
 
-/* By the wall clock, when the slice that was just played ends. */
+/* The time by the wall clock when the slice that was just played ends. */
 static int64_t end_of_slice(const wh_host_t *host) {
-    const wh_track_t *track = &host->session->mcs.track;
-    const double run_us = (double)(track->slice * track->slice_us - host->base_run_us);
-    return host->rate > 0 ? host->base_wall_us + (int64_t)(run_us / host->rate) : 0;
+    const wh_session_t *session = host->session;
+    const double run_us = (double)(wh_session_time_us(session) - host->clock.base_run_us);
+    return host->rate > 0 ? host->clock.base_wall_us + (int64_t)(run_us / host->rate) : 0;
 }
 
-/* Stands still, and the clock with it. */
-static void wait_held(wh_host_t *host) {
+/* While it is held the run stands still, and the clock with it. False: nothing can end this HOLD. */
+static bool wait_held(wh_host_t *host) {
     const int64_t begin = wh_host_now(host);
-    while (host->is_held && !*host->stop) {
-        serve(host, wh_host_now(host) + LONGEST_WAIT_US);
-        host->lua_us = 0;
+    bool goes_on = true;
+    while (host->is_held && !*host->stop && goes_on) {
+        goes_on = wait_and_serve(host, wh_host_now(host) + LONGEST_WAIT_US);
+        host->clock.lua_us = 0;
     }
-    host->base_wall_us += wh_host_now(host) - begin;
-}
-
-/* ------------------------------------------------------------------------------- what a clock cannot tell */
-
-void wh_host_heed_clock(wh_host_t *host) {
-    const wh_track_t *track = &host->session->mcs.track;
-    const int64_t back = host->clock_slice - track->slice;
-    if (back > 0) {
-        host->skipped_us += back * track->slice_us;
-        host->base_run_us = track->slice * track->slice_us;
-        host->base_wall_us = wh_host_now(host);
-        wh_host_note(host, host->running, WH_TRANSCRIPT_CLOCK, NULL, 0);
-    }
-    host->clock_slice = track->slice;
-}
-
-void wh_host_end(wh_host_t *host) {
-    if (!host->is_ended) {
-        host->is_ended = true;
-        wh_host_note(host, host->running ? host->running : host->controllers[0], WH_TRANSCRIPT_STOPPED, NULL,
-                     0);
-    }
-    wh_session_stop(host->session);
-}
-
-void wh_host_heed_stop(wh_host_t *host, wh_status_t status) {
-    if (status == WH_STATUS_STOPPED && *host->stop) {
-        wh_host_end(host);
-    }
+    host->clock.base_wall_us += wh_host_now(host) - begin;
+    return goes_on || !host->is_held;
 }
 
 /* ------------------------------------------------------------------------------------------------- slices */
@@ -118,14 +118,17 @@ static void tell_events(wh_host_t *host, const wh_state_t *state) {
 /* Serves the ports until the slice's time is over. */
 static void serve_slice(wh_host_t *host) {
     const int64_t end = end_of_slice(host);
-    if (end > wh_host_now(host) || wh_host_now(host) - host->last_served_us >= SERVE_EACH_US) {
+    bool goes_on = true;
+    if (end > wh_host_now(host) || wh_host_now(host) - host->clock.last_served_us >= host->clock.rest_us) {
         do {
-            serve(host, end);
-            wait_held(host);
+            (void)wait_and_serve(host, end);
+            goes_on = wait_held(host);
         } while (wh_host_now(host) < end_of_slice(host) && !*host->stop && !host->is_told_to_stop);
     }
     if (*host->stop) {
         wh_host_end(host);
+    } else if (!goes_on || wh_host_differs(host)) {
+        wh_session_stop(host->session);
     }
 }
 
@@ -137,14 +140,10 @@ static void on_slice(void *user, const wh_command_t *command, const wh_state_t *
     if (!host->running) {
         return;
     }
-    host->lua_us = 0;
+    host->clock.lua_us = 0;
     wh_host_heed_clock(host);
     tell_events(host, state);
-    if (host->played) {
-        wh_host_play_slice(host);
-    } else {
-        serve_slice(host);
-    }
+    serve_slice(host);
 }
 
 static void on_boundary(void *user, const wh_layout_t *layout) {
@@ -160,27 +159,26 @@ wh_mcs_listener_t wh_host_listener(wh_host_t *host) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-wh_controller_t *wh_host_next_action(const wh_host_t *host) {
-    wh_controller_t *next = NULL;
-    for (size_t i = 0; i < host->count && !host->is_ended; ++i) {
-        wh_controller_t *controller = host->controllers[i];
-        if (controller->has_action && !controller->is_running && (!next || controller->order < next->order)) {
-            next = controller;
+static void run_loop(wh_host_t *host) {
+    bool goes_on = true;
+    while (goes_on && !*host->stop && !wh_host_differs(host)) {
+        wh_controller_t *action = wh_host_next_action(host);
+        host->clock.lua_us = 0;
+        if (action) {
+            wh_controller_play(action);
         }
+        goes_on = wait_and_serve(host, action ? 0 : wh_host_now(host) + LONGEST_WAIT_US) || action;
     }
-    return next;
 }
 
 void wh_host_run(wh_host_t *host) {
-    while (!*host->stop) {
-        wh_controller_t *controller = wh_host_next_action(host);
-        host->lua_us = 0;
-        if (controller) {
-            wh_controller_play(controller);
-        }
-        serve(host, controller ? 0 : wh_host_now(host) + LONGEST_WAIT_US);
-    }
+    run_loop(host);
     wh_host_end(host);
+}
+
+bool wh_host_converse(wh_host_t *host) {
+    run_loop(host);
+    return wh_transcript_is_over(host->played, wh_session_slice(host->session));
 }
 
 /* False for a second one of a mechanism. */
@@ -202,7 +200,7 @@ static bool is_alone(const wh_host_t *host, wh_controller_t *controller) {
 /* False if the layout has none of that name. */
 static bool find_mechanism(wh_controller_t *controller, const char *name) {
     wh_dialect_t *dialect = &controller->dialect;
-    const wh_layout_t *layout = controller->host->session->mcs.layout;
+    const wh_layout_t *layout = wh_session_layout(controller->host->session);
     char problem[WH_MECHANISM_PROBLEM];
     controller->mechanism = wh_mechanism_all(dialect->mechanism, layout);
     if (!name || wh_mechanism_find(dialect->mechanism, name, layout, &controller->mechanism, problem)) {
@@ -223,7 +221,7 @@ static bool is_name_taken(const wh_controller_t *controller) {
     return is_taken;
 }
 
-/* What stands for itself in a transcript, and is no other port's. */
+/* Gives the port a name that needs no quotes in a transcript, and that no other port has. */
 static void give_name(wh_controller_t *controller) {
     const wh_port_mechanism_t *mechanism = &controller->mechanism;
     const char *kind = wh_mechanism_names[mechanism->kind];
@@ -236,54 +234,58 @@ static void give_name(wh_controller_t *controller) {
     }
 }
 
-static bool open_port(wh_controller_t *controller, const wh_host_port_t *port) {
+/* Opens the port that was asked for; where a transcript is played, its host's side is the port. */
+static bool open_port(wh_controller_t *controller, const wh_host_port_t *asked) {
     char problem[WH_PORT_PROBLEM_BYTES];
+    wh_port_line_t *line = &controller->line;
+    wh_transcript_t *played = controller->host->played;
     const wh_port_second_t second = controller->dialect.takes_over ? WH_PORT_TAKEOVER : WH_PORT_REFUSE;
-    controller->is_open = port->is_pty ? wh_port_open_pty(&controller->port, port->address, problem)
-                                       : wh_port_open_tcp(&controller->port, port->address, second, problem);
-    if (!controller->is_open) {
+    if (played) {
+        wh_port_open_transcript(&line->port, played, controller->name);
+        line->is_open = true;
+    } else {
+        line->is_open = asked->is_pty ? wh_port_open_pty(&line->port, asked->address, problem)
+                                      : wh_port_open_tcp(&line->port, asked->address, second, problem);
+    }
+    if (!line->is_open) {
         (void)snprintf(controller->dialect.message, sizeof controller->dialect.message, "%.1000s", problem);
     }
-    return controller->is_open;
+    return line->is_open;
 }
 
 bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
-    host->shown = host->shown ? host->shown : wh_array_new(WH_HOST_NUMBERS, sizeof *host->shown);
+    if (!host->shown) {
+        host->shown = wh_array_new(WH_HOST_NUMBERS, sizeof *host->shown);
+        host->texts = wh_array_new(1, sizeof *host->texts);
+        host->clock.rest_us = host->played ? 0 : SERVE_EACH_US;
+    }
     wh_controller_t *controller = wh_array_new(1, sizeof *controller);
     controller->number = (uint32_t)host->count;
     host->controllers[host->count++] = controller;
     controller->host = host;
-    controller->ackn_due_us = INT64_MAX;
-    controller->request = (wh_request_t){.reference = LUA_NOREF};
-    const wh_layout_t *layout = host->session->mcs.layout;
+    controller->owed.due_us = INT64_MAX;
+    controller->action.request = (wh_request_t){.reference = LUA_NOREF};
+    const wh_layout_t *layout = wh_session_layout(host->session);
     if (!wh_dialect_open(&controller->dialect, port->dialect) ||
         !find_mechanism(controller, port->mechanism) || !is_alone(host, controller) ||
         (layout && !wh_dialect_fits(&controller->dialect, layout))) {
         return false;
     }
     give_name(controller);
-    controller->in_pace.baud = controller->out_pace.baud = controller->dialect.baud;
-    (void)wh_framer_init(&controller->framer, &controller->dialect.framing);
-    (void)wh_framer_init(&controller->before_chaos, &controller->dialect.framing);
-    return !port->address || open_port(controller, port);
-}
-
-static void free_frames(wh_sent_t *sent) {
-    while (sent->first) {
-        wh_sent_frame_t *frame = sent->first;
-        sent->first = frame->next;
-        free(frame);
-    }
+    controller->line.in_pace.baud = controller->line.out_pace.baud = controller->dialect.timing.baud;
+    (void)wh_framer_init(&controller->line.framer, &controller->dialect.framing);
+    (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect.framing);
+    return open_port(controller, port);
 }
 
 static void close_controller(wh_controller_t *controller) {
-    if (controller->is_open) {
-        wh_port_close(&controller->port);
+    if (controller->line.is_open) {
+        wh_port_close(&controller->line.port);
     }
-    free_frames(&controller->out);
-    free_frames(&controller->in);
-    free(controller->reply.text);
-    free(controller->ended_text);
+    wh_sent_drop(&controller->line.out);
+    wh_sent_drop(&controller->line.in);
+    free(controller->repeat.reply.text);
+    free(controller->action.ended_text);
     wh_dialect_close(&controller->dialect);
     free(controller);
 }
@@ -293,6 +295,8 @@ void wh_host_close(wh_host_t *host) {
         close_controller(host->controllers[i]);
     }
     free(host->shown);
+    free(host->texts);
     host->shown = NULL;
+    host->texts = NULL;
     host->count = 0;
 }

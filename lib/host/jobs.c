@@ -1,65 +1,40 @@
-/* Several ports: their actions are played side by side, as jobs of a session. */
+#include "jobs.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
 #include "../text/utf8.h"
-#include "host.h"
-#include "values.h"
-
-/* A job's number is one more than its port's. */
-static int32_t job_of(const wh_controller_t *controller) {
-    return (int32_t)controller->number + 1;
-}
-
-bool wh_host_plays_jobs(const wh_host_t *host) {
-    return host->count > 1 || host->controllers[0]->mechanism.name;
-}
-
-bool wh_controller_waits(const wh_controller_t *controller) {
-    return controller->is_running && wh_mcs_job_waits(&controller->host->session->mcs, job_of(controller));
-}
-
-void wh_controller_end_job(wh_controller_t *controller, wh_status_t status, const char *why) {
-    wh_mcs_end_job(&controller->host->session->mcs, job_of(controller), status, why);
-}
-
-bool wh_host_is_stopped(const wh_host_t *host) {
-    bool is_any = host->session->mcs.stop_requested;
-    bool is_all = true;
-    for (size_t i = 0; i < host->count; ++i) {
-        const wh_controller_t *controller = host->controllers[i];
-        is_any = is_any || (controller->is_running && controller->is_stopped);
-        is_all = is_all && (!controller->is_running || controller->is_stopped);
-    }
-    return is_any && is_all;
-}
+#include "actions.h"
+#include "status.h"
 
 static double seconds_of(const wh_controller_t *controller) {
-    const wh_track_t *track = &controller->host->session->mcs.track;
-    return (double)((track->slice - controller->begin_slice) * track->slice_us) / 1e6;
+    const wh_session_t *session = controller->host->session;
+    return (double)((wh_session_slice(session) - controller->action.begin_slice) *
+                    wh_session_slice_us(session)) /
+           1e6;
 }
 
-/* What still runs, if anything does. */
+/* The controller whose action still runs, if there is one. */
 static wh_controller_t *find_running(const wh_host_t *host) {
     wh_controller_t *running = host->running;
     for (size_t i = 0; i < host->count; ++i) {
-        running = host->controllers[i]->is_running ? host->controllers[i] : running;
+        running = host->controllers[i]->action.is_running ? host->controllers[i] : running;
     }
     return running;
 }
 
 static bool is_any_running(const wh_host_t *host) {
-    return host->running && host->running->is_running;
+    return host->running && host->running->action.is_running;
 }
 
-/* Those that were stopped meanwhile end unbegun. While commands run the record cannot forget: when it is
- * full, what comes waits until there is none. */
-static bool take(void *user, wh_mcs_job_t *job) {
+/* Actions that were stopped meanwhile end without having begun. While commands run the record cannot drop
+ * anything. When it is full, new actions wait until no command runs. */
+static bool take_job(void *user, wh_mcs_job_t *job) {
     wh_host_t *host = user;
     wh_controller_t *controller = wh_host_next_action(host);
-    while (controller && controller->is_stopped) {
+    while (controller && controller->action.is_stopped) {
         wh_controller_end_unbegun(controller, WH_STATUS_STOPPED, "it waited and was not begun");
         controller = wh_host_next_action(host);
     }
@@ -67,15 +42,16 @@ static bool take(void *user, wh_mcs_job_t *job) {
         return false;
     }
     wh_session_renew(host->session);
-    controller->is_running = true;
-    controller->line_number = 0;
-    controller->ended = WH_OK;
-    controller->begin_slice = host->session->mcs.track.slice;
+    controller->action.is_running = true;
+    controller->action.line_number = 0;
+    controller->action.line_command = wh_session_record(host->session)->command_count;
+    controller->action.ended = WH_OK;
+    controller->action.begin_slice = wh_session_slice(host->session);
     host->running = controller;
     const wh_port_mechanism_t *mechanism = &controller->mechanism;
-    *job = (wh_mcs_job_t){.number = job_of(controller),
-                          .line = controller->lines.lines[0],
-                          .may_wait = controller->dialect.busy_s > 0,
+    *job = (wh_mcs_job_t){.number = wh_controller_job(controller),
+                          .line = controller->action.lines.lines[0],
+                          .may_wait = controller->dialect.timing.busy_s > 0,
                           .robot = WH_NONE};
     if (mechanism->kind == WH_MECHANISM_ROBOT) {
         job->robot = mechanism->index;
@@ -88,110 +64,77 @@ static bool take(void *user, wh_mcs_job_t *job) {
 static void keep_answer(wh_controller_t *controller, wh_status_t status, const char *answer) {
     const size_t room =
         strlen(answer) + 1 < WH_SESSION_ANSWER_BYTES ? 4 * strlen(answer) + 8 : WH_SESSION_ANSWER_BYTES;
-    free(controller->ended_text);
-    controller->ended_text = wh_array_new(room, 1);
-    controller->ended = status;
-    wh_utf8_visible(controller->ended_text, room, answer);
+    free(controller->action.ended_text);
+    controller->action.ended_text = wh_array_new(room, 1);
+    controller->action.ended = status;
+    wh_utf8_visible(controller->action.ended_text, room, answer);
 }
 
-static void end_job(wh_controller_t *controller) {
+/* True if the line's own command failed: one that was refused before it began is not in the record. The job's
+ * task is the current one. */
+static bool has_failed(const wh_controller_t *controller) {
+    const wh_record_t *record = wh_session_record(controller->host->session);
+    const int32_t task = wh_session_task(controller->host->session);
+    bool failed = false;
+    for (size_t i = controller->action.line_command; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        failed = failed || (command->task == task && command->error != WH_OK);
+    }
+    return failed;
+}
+
+static void end_action(wh_controller_t *controller, bool failed) {
     wh_host_t *host = controller->host;
-    const size_t last = controller->lines.count - 1;
-    const size_t at = controller->line_number < last ? controller->line_number : last;
-    controller->is_running = false;
-    if (controller->ended != WH_OK) {
-        controller->failed = controller->ended;
-        (void)snprintf(controller->failed_line, sizeof controller->failed_line, "%s",
-                       controller->lines.lines[at]);
+    const size_t last = controller->action.lines.count - 1;
+    const size_t at = controller->action.line_number < last ? controller->action.line_number : last;
+    controller->action.is_running = false;
+    if (failed) {
+        controller->action.failed = controller->action.ended;
+        (void)snprintf(controller->action.failed_line, sizeof controller->action.failed_line, "%s",
+                       controller->action.lines.lines[at]);
     }
     if (host->holder == controller) {
         host->is_held = false;
     }
     host->running = find_running(host);
-    wh_controller_end(controller, controller->ended, controller->ended_text, seconds_of(controller));
+    wh_controller_end(controller, controller->action.ended, controller->action.ended_text,
+                      seconds_of(controller));
 }
 
-/* Behind a CLEAR a slice is waited for, with which the fault ends; what that is answered nobody hears. */
-static const char *ended(void *user, int32_t job, wh_status_t status, const char *answer) {
+/* After a CLEAR it waits for a slice, with which the fault ends; nobody hears the answer of that wait. */
+static const char *end_job_line(void *user, int32_t job, wh_status_t status, const char *answer) {
     wh_host_t *host = user;
     wh_controller_t *controller = host->controllers[job - 1];
-    const size_t last = controller->lines.count - 1;
-    if (controller->line_number <= last) {
+    const size_t last = controller->action.lines.count - 1;
+    if (controller->action.line_number <= last) {
         keep_answer(controller, status, answer);
     }
-    if (status == WH_OK && controller->line_number < last) {
-        return controller->lines.lines[++controller->line_number];
+    if (status == WH_OK && controller->action.line_number < last) {
+        controller->action.line_command = wh_session_record(host->session)->command_count;
+        return controller->action.lines.lines[++controller->action.line_number];
     }
-    if (status == WH_OK && controller->line_number == last &&
-        wh_word_of(controller->lines.lines[last]) == wh_word_of("CLEAR")) {
-        static char line[40];
-        (void)snprintf(line, sizeof line, "WAIT %.6f", (double)host->session->mcs.track.slice_us / 1e6);
-        ++controller->line_number;
+    if (status == WH_OK && controller->action.line_number == last &&
+        wh_word_of(controller->action.lines.lines[last]) == wh_word_of("CLEAR")) {
+        char *line = controller->action.wait_line;
+        (void)snprintf(line, sizeof controller->action.wait_line, "WAIT %.6f",
+                       (double)wh_session_slice_us(host->session) / 1e6);
+        ++controller->action.line_number;
         return line;
     }
-    end_job(controller);
+    end_action(controller, controller->action.ended != WH_OK && has_failed(controller));
     return NULL;
 }
 
-static const char *spell(const char *line, char spelt[2 * WH_DIALECT_LINE_BYTES]) {
-    spelt[0] = '\0';
-    (void)wh_value_spell(line, spelt, (size_t)(2 * WH_DIALECT_LINE_BYTES));
-    return spelt;
-}
-
-/* Its line, or what the robot holds. */
-static void put_phase(const wh_controller_t *controller, FILE *out) {
-    const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
-    const wh_mcs_t *mcs = &controller->host->session->mcs;
-    const wh_mcs_held_t *held = is_robot ? wh_mcs_find_held(mcs, controller->mechanism.index) : NULL;
-    const size_t last = controller->lines.count - 1;
-    const size_t at = controller->line_number < last ? controller->line_number : last;
-    char spelt[2 * WH_DIALECT_LINE_BYTES];
-    if (controller->has_action) {
-        (void)fprintf(out, "phase=running command=%s", spell(controller->lines.lines[at], spelt));
-    } else if (held) {
-        (void)fprintf(out, "phase=held command=%s stop=%s", spell(held->command, spelt), held->phase);
-    } else {
-        (void)fprintf(out, "phase=idle");
-    }
-}
-
-static void put_failed(const wh_controller_t *controller, FILE *out) {
-    char spelt[2 * WH_DIALECT_LINE_BYTES];
-    (void)fprintf(out, " error=%d", (int)controller->failed);
-    if (controller->failed != WH_OK) {
-        (void)fprintf(out, " error_name=%s error_command=%s", wh_status_name(controller->failed),
-                      spell(controller->failed_line, spelt));
-    }
-}
-
-/* What lies between what runs and what has failed is the cell's. */
-void wh_controller_describe(const wh_controller_t *controller, char text[WH_MCS_DESCRIPTION_BYTES]) {
-    static char whole[WH_MCS_DESCRIPTION_BYTES];
-    wh_mcs_describe(&controller->host->session->mcs, text);
-    const char *begin = strstr(text, " seq=");
-    const char *end = begin ? strstr(begin, " error=") : NULL;
-    if (!wh_host_plays_jobs(controller->host) || !end) {
-        return;
-    }
-    FILE *out = wh_memory_need(fmemopen(whole, sizeof whole, "w"));
-    put_phase(controller, out);
-    (void)fprintf(out, "%.*s", (int)(end - begin), begin);
-    put_failed(controller, out);
-    (void)fclose(out);
-    memcpy(text, whole, sizeof whole);
-}
-
 void wh_host_play_jobs(wh_host_t *host) {
-    static char text[WH_SESSION_ANSWER_BYTES];
-    const wh_mcs_jobs_t jobs = {take, ended, host};
+    char *text = host->texts->played;
+    const wh_mcs_jobs_t jobs = {take_job, end_job_line, host};
     wh_host_begin_clock(host, wh_host_next_action(host));
-    const wh_status_t status = wh_session_play(host->session, &jobs, text, sizeof text);
+    const wh_status_t status = wh_session_play(host->session, &jobs, text, WH_SESSION_ANSWER_BYTES);
     wh_host_heed_stop(host, status);
     for (size_t i = 0; i < host->count; ++i) {
-        if (host->controllers[i]->is_running) {
+        if (host->controllers[i]->action.is_running) {
             keep_answer(host->controllers[i], status, text);
-            end_job(host->controllers[i]);
+            end_action(host->controllers[i], status != WH_OK);
         }
     }
     host->running = NULL;

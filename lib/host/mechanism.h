@@ -1,4 +1,4 @@
-/* What a port stands for: the whole cell, or one of its robots, aligners and load ports.
+/* The mechanism that a port stands for: the whole cell, or one of its robots, aligners and load ports.
  *
  * Constant tables and pure functions: any thread.
  */
@@ -12,10 +12,10 @@
 #include "../layout/layout.h"
 #include "words.h"
 
-/* Room for why there is none of that name. */
+/* Room for the reason why there is none of that name. */
 #define WH_MECHANISM_PROBLEM 1000
 
-/* No two ports of a cell stand for one, and the whole cell is every one. */
+/* No two ports of a cell stand for one mechanism, and the whole cell is every mechanism. */
 typedef struct {
     wh_mechanism_t kind;
     int32_t index;     /* of a robot or a station in the layout; WH_NONE: it is all of that kind */
@@ -23,7 +23,7 @@ typedef struct {
     uint32_t grippers; /* which are its own, bits */
 } wh_port_mechanism_t;
 
-/* All of a kind, of a layout; null: no layout is known, and none has grippers. */
+/* All mechanisms of a kind in a layout; null: no layout is known, and no mechanism has grippers. */
 wh_port_mechanism_t wh_mechanism_all(wh_mechanism_t kind, const wh_layout_t *layout);
 
 /* The robot or the station of this name. The dialect's kind says which, if it is not the cell: else it is a

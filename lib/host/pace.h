@@ -1,4 +1,4 @@
-/* The pace of a serial line: how many of the bytes that wait are through by now.
+/* The pace of a serial line: how many of the waiting bytes are through by now.
  *
  * A byte takes `bits` of `baud`, in simulated time, to the microsecond and without drift. Each direction of a
  * port has a pace of its own. */
@@ -26,8 +26,8 @@ typedef struct {
 bool wh_pace_validate(int64_t baud);
 
 /* How many of `waiting` bytes are through by `now_us`, which never goes back: the caller takes them off.
- * Bytes that the line was free for begin at the first call that finds them waiting, so it is called in each
- * slice, with 0 as well. */
+ * If the line is free, bytes begin at the first call that finds them waiting. So call it in each slice, with
+ * 0 as well. */
 size_t wh_pace_take(wh_pace_t *pace, size_t waiting, int64_t now_us);
 
 #endif

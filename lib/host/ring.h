@@ -1,6 +1,6 @@
-/* A byte ring of fixed size: what waits between a line and whoever reads it. First in, first out.
+/* A byte ring of fixed size: bytes that wait between a line and its reader. First in, first out.
  *
- * All memory is the caller's. Nothing here fails but for want of room. Not for two threads at once. */
+ * All memory is the caller's. Calls fail only if there is no room. Not for two threads at once. */
 #ifndef WH_HOST_RING_H
 #define WH_HOST_RING_H
 
@@ -17,7 +17,7 @@ typedef struct {
     uint8_t bytes[WH_RING_BYTES];
 } wh_ring_t;
 
-/* How many bytes it takes yet. */
+/* How many more bytes it takes. */
 static inline size_t wh_ring_room(const wh_ring_t *ring) {
     return WH_RING_BYTES - ring->count;
 }
@@ -29,7 +29,7 @@ bool wh_ring_put(wh_ring_t *ring, const void *bytes, size_t size);
  * piece stays where it is until wh_ring_drop. */
 const uint8_t *wh_ring_front(const wh_ring_t *ring, size_t *size);
 
-/* Where the next bytes may be written, in one piece, for recv and the like. Null if the ring is full.
+/* Where the next bytes may be written, in one piece, for recv and similar calls. Null if the ring is full.
  * wh_ring_filled then says how many were written, at most `size`. */
 uint8_t *wh_ring_back(wh_ring_t *ring, size_t *size);
 void wh_ring_filled(wh_ring_t *ring, size_t size);

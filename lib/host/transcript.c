@@ -11,11 +11,11 @@
 #include "transcript_internal.h"
 
 #define FIRST_LINE "waferhand transcript 1"
-/* Of a value in a message. */
+/* The most bytes of a value that a message shows. */
 #define SHOWN 80
 /* The most digits of a slice, and of whole seconds. */
 #define DIGITS 12
-/* What fields are to be. */
+/* The expected values of fields, for messages. */
 #define SLICE "digits, not less than in the entry before"
 #define TIME "seconds with six decimals, not less than in the entry before"
 #define HEAD_TEXT "a text in quotes without control characters"
@@ -88,14 +88,14 @@ static void write_quoted(FILE *out, const uint8_t *bytes, size_t count) {
     (void)fputc('"', out);
 }
 
-/* The value of a hex digit; -1: it is none. */
+/* The value of a hex digit; -1: it is not a hex digit. */
 static int digit_value(char letter) {
     static const char digits[] = "0123456789abcdef0123456789ABCDEF";
     const char *found = letter != '\0' ? strchr(digits, letter) : NULL;
     return found ? (int)(found - digits) % 16 : -1;
 }
 
-/* Two hex digits, and passes them. -1: they are none. */
+/* Reads two hex digits, and passes them. -1: they are not hex digits. */
 static int read_digits(const char **at) {
     if (digit_value((*at)[0]) < 0 || digit_value((*at)[1]) < 0) {
         return -1;
@@ -105,7 +105,7 @@ static int read_digits(const char **at) {
     return value;
 }
 
-/* The byte that the text at `*at` stands for, and passes it. -1: it is none. */
+/* Reads the byte that the text at `*at` stands for, and passes it. -1: it is not valid. */
 static int read_byte(const char **at) {
     const char letter = *(*at)++;
     if (letter != '\\') {
@@ -143,7 +143,7 @@ bool wh_transcript_is_entry(const wh_transcript_entry_t *entry) {
            entry->size <= (wh_transcript_has_bytes(entry->kind) ? WH_TRANSCRIPT_BYTES : 0);
 }
 
-/* An entry but for its bytes. */
+/* Writes an entry without its bytes. */
 static void write_place(FILE *out, const wh_transcript_entry_t *entry) {
     (void)fprintf(out, "%lld %lld.%06lld %c %s", (long long)entry->slice, (long long)entry->time_us / 1000000,
                   (long long)entry->time_us % 1000000, entry->kind, entry->port);
@@ -187,7 +187,7 @@ static char *take_field(char **at) {
     return field;
 }
 
-/* A text in quotes up to the line's end, in place. False: it is none. */
+/* Reads a text in quotes up to the line's end, in place. False: it is not one. */
 static bool read_quoted(char *text, size_t *size) {
     const size_t length = strlen(text);
     if (length < 2 || text[0] != '"' || text[length - 1] != '"') {

@@ -49,7 +49,7 @@ bool wh_transcript_write_json(FILE *out, const wh_transcript_entry_t *entry) {
 
 /* ----------------------------------------------------------------------------------------------- reading */
 
-/* A text of JSON, which is valid UTF-8. */
+/* A JSON text, which is valid UTF-8. */
 typedef struct {
     const char *text;
     size_t size;
@@ -82,7 +82,7 @@ static bool refuse_line(wh_transcript_t *transcript, size_t line, const char *sh
                     "\"port\":NAME,\"bytes\":TEXT}");
 }
 
-static bool find_kind(const char *name, wh_transcript_kind_t *kind) {
+static bool find_entry_kind(const char *name, wh_transcript_kind_t *kind) {
     for (int sign = ' '; sign <= '~'; ++sign) {
         *kind = (wh_transcript_kind_t)sign;
         const char *own = wh_transcript_kind_name(*kind);
@@ -93,7 +93,8 @@ static bool find_kind(const char *name, wh_transcript_kind_t *kind) {
     return false;
 }
 
-static bool take_head(wh_transcript_t *transcript, size_t line, text_t name, text_t value, char *text) {
+static bool take_head_fields(wh_transcript_t *transcript, size_t line, text_t name, text_t value,
+                             char *text) {
     wh_transcript_head_t head = {text, NULL, line};
     const size_t size = take_bytes(&name, text);
     char *behind = text + (size == SIZE_MAX ? 0 : size + 1);
@@ -104,7 +105,7 @@ static bool take_head(wh_transcript_t *transcript, size_t line, text_t name, tex
                : wh_transcript_add_head(transcript, &head, value_size);
 }
 
-/* What an object says of an entry. */
+/* The fields of an entry's object. */
 typedef struct {
     json_int_t slice;
     double time;
@@ -123,9 +124,9 @@ static bool take_texts(const fields_t *fields, char *text, wh_transcript_entry_t
     return has_bytes == wh_transcript_has_bytes(entry->kind) && entry->size <= WH_TRANSCRIPT_BYTES;
 }
 
-static bool take_entry(wh_transcript_t *transcript, size_t line, const fields_t *fields, char *text) {
+static bool take_entry_fields(wh_transcript_t *transcript, size_t line, const fields_t *fields, char *text) {
     wh_transcript_entry_t entry = {.line = line, .slice = fields->slice, .port = text};
-    if (!find_kind(fields->kind.text, &entry.kind)) {
+    if (!find_entry_kind(fields->kind.text, &entry.kind)) {
         return wh_transcript_refuse(
             transcript, line, "kind", fields->kind.text,
             "said, timed_out, heard, came, went, clock, stopped, halted, ended or elapsed");
@@ -155,17 +156,17 @@ static bool take_object(wh_transcript_t *transcript, size_t line, json_t *object
     }
     if (json_unpack_ex(object, NULL, JSON_STRICT, "{s:s%,s:s%}", "head", &name.text, &name.size, "text",
                        &value.text, &value.size) == 0) {
-        return take_head(transcript, line, name, value, text);
+        return take_head_fields(transcript, line, name, value, text);
     }
     if (json_unpack_ex(object, NULL, JSON_STRICT, "{s:I,s:F,s:s%,s:s%,s?:s%}", "slice", &fields.slice, "time",
                        &fields.time, "kind", &fields.kind.text, &fields.kind.size, "port", &fields.port.text,
                        &fields.port.size, "bytes", &fields.bytes.text, &fields.bytes.size) != 0) {
         return refuse_line(transcript, line, text);
     }
-    return take_entry(transcript, line, &fields, text);
+    return take_entry_fields(transcript, line, &fields, text);
 }
 
-/* What is read takes no more room than the line that it stands in, names and quotes included. */
+/* The texts that are read take no more room than their line, which also holds names and quotes. */
 bool wh_transcript_take_json(wh_transcript_t *transcript, size_t line, char *text) {
     json_t *object = json_loads(text, JSON_ALLOW_NUL | JSON_REJECT_DUPLICATES, NULL);
     if (!object) {

@@ -7,7 +7,7 @@
 
 #include <lauxlib.h>
 
-/* What a name or a value without quotes may be made of. */
+/* The characters of a name or a value without quotes. */
 static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-";
 
 /* Behind a value that may be in quotes. */
@@ -28,7 +28,7 @@ static bool is_number(const char *text) {
     return !is_row;
 }
 
-/* Pushes a value: what stands in quotes without them, and `none` as nil. */
+/* Pushes a value: a text in quotes without the quotes, and `none` as nil. */
 static void push_value(lua_State *L, const char *value, const char *end) {
     if (*value == '"') {
         luaL_Buffer buffer;

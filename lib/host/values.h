@@ -1,4 +1,4 @@
-/* What the prompt answers, taken apart: name=value with blanks between them, as lua/README.md spells them. */
+/* Takes the prompt's answers apart: name=value with blanks between them, in the spelling of lua/README.md. */
 #ifndef WH_HOST_VALUES_H
 #define WH_HOST_VALUES_H
 
@@ -7,15 +7,15 @@
 
 #include <lua.h>
 
-/* Pushes a table of the values by their names: numbers where all of a value is one, `none` not at all, else
- * texts. What is no name=value is passed over; of names that come again the last counts. Raises only for
- * memory. Cost: linear. */
+/* Pushes a table of the values by their names. A value that is a number becomes a number, `none` is left out,
+ * others become texts. Words other than name=value are passed over; if a name comes again, the last one
+ * counts. Raises only for memory. Cost: linear. */
 void wh_push_values(lua_State *L, const char *text);
 
 /* Where the value of that name begins; an empty text if there is none. */
 const char *wh_value_begin(const char *text, const char *name);
 
-/* Copies the value of that name up to a blank, as far as it goes. */
+/* Copies the value of that name up to a blank, cut if it is too long. */
 void wh_value_copy(const char *text, const char *name, char *to, size_t size);
 
 /* Writes a name as it can be typed at the prompt, in quotes if it needs them. False if it does not fit: in

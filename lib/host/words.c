@@ -10,7 +10,7 @@
 
 const char *const wh_mechanism_names[WH_MECHANISMS + 1] = {"cell", "robot", "aligner", "load_port", NULL};
 
-/* Of what only the whole cell's controller does, the set is empty. */
+/* The set is empty for words that only the whole cell's controller does. */
 const wh_word_t wh_words[] = {{"GET", WH_WORD_ACTION, ROBOT, false},
                               {"PUT", WH_WORD_ACTION, ROBOT, false},
                               {"CONTINUE", WH_WORD_ACTION, ROBOT, false},

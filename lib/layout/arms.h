@@ -11,7 +11,7 @@
  * to the world if there are several. */
 void wh_layout_find_arms(wh_layout_t *layout);
 
-/* How many there are, also in a layout that knows of no robot: 1 or more. */
+/* The number of arms, also in a layout that knows of no robot: 1 or more. */
 size_t wh_layout_arms(const wh_layout_t *layout);
 
 /* The arm as the machine knows it, and its robot's first axis; null: that of motion/robot.h. */

@@ -23,28 +23,29 @@ bool wh_layout_is_scara(const wh_layout_t *layout, size_t robot);
 /* How far a robot's end-effector comes from theta's axis at least and at most, mm. */
 wh_travel_t wh_axis_reach(const wh_machine_t *machine, size_t robot);
 
-/* The same as wh_axis_turns, true for a chuck, and false for what moves a stage, pins or a door. Any axis of
- * the machine. True for an axis of which nobody knows (axes_untold): curves are then fine
- * enough for either unit. */
+/* Like wh_axis_turns, for any axis of the machine: true for a chuck, false for an axis that moves a stage,
+ * pins or a door. It is also true for an unknown axis (axes_untold): curves are then fine enough for either
+ * unit. */
 bool wh_layout_axis_turns(const wh_layout_t *layout, size_t axis);
 
 /* Its unit in recordings, "rad" or "mm"; null: the layout was not told which. Any axis of the machine. */
 const char *wh_layout_axis_unit(const wh_layout_t *layout, size_t axis);
 
-/* Its name in tables, pages and recordings: R and Z of the usual robot with capitals. Any axis of the
- * machine: of a chuck's it is its gripper's, with the word chuck, of the others with stage x, stage y,
- * pins or flipper, of a door's the door's with the word door; with several robots its robot's name comes
- * first. Of an axis of which nobody knows it is axis 1, axis 2 and so on, by its place in a command. */
+/* Its name in tables, pages and recordings: R and Z of the usual robot have capitals. Any axis of the
+ * machine. The name of an axis beside a robot is its gripper's name with the word chuck, stage x, stage y,
+ * pins or flipper. A door's axis has the door's name with the word door. With several robots the robot's name
+ * comes first. An unknown axis is axis 1, axis 2 and so on, by its place in a command. */
 void wh_layout_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
 
 /* Its name as commands have it, wh_axis_name; with several robots wh_layout_name_axis. Returns `name` or a
- * constant. Of an axis of a robot. */
+ * constant. `axis` belongs to a robot. */
 const char *wh_layout_axis_label(const wh_layout_t *layout, size_t axis, char *name, size_t size);
 
-/* Why something is for the usual robot alone: the end of a sentence, such as `a robot of kind "TRZY" ...`. */
+/* Says why something is for the usual robot alone: the end of a sentence, such as `a robot of kind "TRZY"
+ * ...`. */
 #define WH_AXES_USUAL "a robot of kind \"TRZY\" at base's origin, without rail, tilt and flip"
 
-/* The same of one of several robots. */
+/* The text for one of several robots. */
 #define WH_AXES_USUAL_OF_SEVERAL "a robot of kind \"TRZY\" without rail, tilt and flip"
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "layout_internal.h"
 
-/* What each is drawn for: never renumber, the same seeds would give other trials. */
+/* The field of each draw. Never renumber fields: the same seeds would then give other trials. */
 static const struct {
     const char *name, *unit;
     double most;
@@ -61,7 +61,7 @@ void wh_beam_draw_apply(const double drawn[WH_BEAM_DRAWS], wh_layout_t *layout, 
 
 /* --------------------------------------------------------------------------------------------------- read */
 
-/* Refuses a width of which a draw could take a beam out of what beams can be. */
+/* Refuses a width if a draw could then give a beam values that no beam can have. */
 static void check_width(const wh_reader_t *reader, const wh_layout_t *layout, size_t b, wh_beam_draw_t draw,
                         const wh_spread_t *spread) {
     const double reach = wh_spread_reach(spread);

@@ -2,7 +2,7 @@
 
 #include "doors.h"
 
-/* After a step that left wafers and grippers so. */
+/* Called after a step; wafers and grippers are as the step left them. */
 static void look_at(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
                     const wh_state_t *state, wh_event_list_t *list) {
     const wh_layout_t *layout = collision->layout;
@@ -29,7 +29,7 @@ static void place(wh_collision_t *collision, const wh_wafer_t wafers[], int32_t 
     }
 }
 
-/* Null if the command has not all of the machine's. */
+/* Null if the command does not have all axes of the machine. */
 static const wh_real_t *axes_of(const wh_collision_t *collision, const wh_command_t *command) {
     return command->axis_count == collision->layout->machine.axis_count ? command->axes : NULL;
 }

@@ -11,21 +11,21 @@ typedef struct {
     void *memory;
     wh_world_t *world; /* null before the first step */
     wh_links_t links;
-    const wh_physics_state_t *physics; /* of the simulator that is looked at */
+    const wh_physics_state_t *physics; /* of the observed simulator */
 } wh_collision_t;
 
 /* Bytes that wh_collision_attach needs. */
 size_t wh_collision_bytes(const wh_layout_t *layout);
 
 /* Makes the check the simulator's observer. The first step that it sees only tells where everything is; each
- * later step is judged. After a restore it is to be attached anew. `memory` is aligned as malloc's; layout,
- * simulator and memory must outlive the check. */
+ * later step is judged. After a restore, attach it anew. `memory` is aligned as malloc's; layout, simulator
+ * and memory must outlive the check. */
 void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, wh_simulator_t *simulator,
                          void *memory);
 
-/* For a simulator in another process: the same check, fed with the states that it sends, and with the axes of
- * the machine as the command has them, or null if they are not known. It keeps clearances and curves; what is
- * hit, the simulator reports. Set `layout` and `memory` before, as above, and `links` by wh_links_home. */
+/* The check for a simulator in another process. It takes the states that the simulator sends, and the
+ * command's axes of the machine, or null if they are not known. It keeps clearances and curves; the simulator
+ * itself reports hits. Set `layout` and `memory` before, as above, and `links` by wh_links_home. */
 void wh_collision_observe(wh_collision_t *collision, const wh_real_t axes[], const wh_state_t *state);
 
 #endif

@@ -1,9 +1,10 @@
-/* What touches in a layout before anything moves: as it is at the start, and with a wafer in every slot. */
+/* Finds the contacts in a layout before anything moves: at the start, and with a wafer in every slot. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
+#include "arms.h"
 #include "doors.h"
 #include "feasibility_internal.h"
 
@@ -35,6 +36,22 @@ static size_t find_contacts(const wh_feasibility_t *check, const wh_world_config
 
 /* ------------------------------------------------------------------------------------------- at the start */
 
+/* The arm whose link this part is; WH_NONE: it is none. */
+static int32_t arm_of(const wh_layout_t *layout, int32_t part) {
+    const bool is_link =
+        (size_t)part < layout->world.part_count && layout->world.parts[part].kind == WH_PART_ARM;
+    return is_link ? layout->world.parts[part].owner / WH_ARM_BODIES : WH_NONE;
+}
+
+/* True of links of both arms of one robot, as no file gives them. */
+static bool is_of_two_arms(const wh_layout_t *layout, const int32_t pair[2]) {
+    const int32_t one = arm_of(layout, pair[0]);
+    const int32_t other = arm_of(layout, pair[1]);
+    return one != WH_NONE && other != WH_NONE && one != other && wh_layout_arms(layout) > 1 &&
+           layout->arms[one].robot == layout->arms[other].robot &&
+           !layout->robots[layout->arms[one].robot].urdf;
+}
+
 void wh_feasibility_contacts(wh_feasibility_t *check) {
     const wh_layout_t *layout = check->layout;
     wh_wafer_t *wafers = wh_array_new(layout->wafer_count, sizeof *wafers);
@@ -46,8 +63,11 @@ void wh_feasibility_contacts(wh_feasibility_t *check) {
     const size_t count = find_contacts(check, &layout->world, wafers, pairs, NAMED_CONTACTS);
     for (size_t i = 0; i < count && i < NAMED_CONTACTS; ++i) {
         wh_finding_t *finding = wh_feasibility_add(
-            check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
-            wh_layout_part_name(layout, pairs[i][0]), wh_layout_part_name(layout, pairs[i][1]));
+            check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves%s",
+            wh_layout_part_name(layout, pairs[i][0]), wh_layout_part_name(layout, pairs[i][1]),
+            is_of_two_arms(layout, pairs[i]) ? ": `height` lifts a hand, the links of both arms are at one "
+                                               "height, unless a `urdf` has them"
+                                             : "");
         memcpy(finding->parts, pairs[i], sizeof finding->parts);
     }
     if (count > NAMED_CONTACTS) {
@@ -59,7 +79,7 @@ void wh_feasibility_contacts(wh_feasibility_t *check) {
 
 /* ---------------------------------------------------------------------------------- a wafer in every slot */
 
-/* A wafer of a full cell, or what it touches: a slot of a station, or a part. */
+/* A wafer of a full cell, or a thing that it touches: a slot of a station, or a part. */
 typedef struct {
     int32_t station, slot; /* slot 0: a part of the station; station WH_NONE: a part of none */
     int32_t part;          /* WH_NONE: a wafer */

@@ -1,4 +1,4 @@
-/* A layout's `study`: how wide the errors are, and what a trial draws of them. */
+/* A layout's `study`: the widths of the errors, and a trial's draws. */
 #include "errors.h"
 
 #include <math.h>
@@ -68,7 +68,7 @@ static void refuse_width(const wh_reader_t *reader, const wh_spread_t *spread, w
                    spread->shape == WH_SHAPE_NORMAL ? "8.6 standard deviations" : "all");
 }
 
-/* The first draw that, as far as it goes, makes of this rim one that an edge grip cannot take. */
+/* The first draw that, at its largest, changes this rim so that an edge grip cannot take it. */
 static wh_rim_draw_t too_wide_for_edges(const wh_layout_t *layout, const wh_rim_spreads_t *spreads,
                                         const wh_rim_t *rim) {
     for (int i = 0; i < (int)WH_RIM_WIDTHS; ++i) {
@@ -87,7 +87,7 @@ static wh_rim_draw_t too_wide_for_edges(const wh_layout_t *layout, const wh_rim_
     return WH_RIM_DRAWS;
 }
 
-/* The widths, which no draw may take out of what rims can be. */
+/* Checks the widths. No draw may give a rim values that rims cannot have. */
 static void check_rim(const wh_reader_t *reader, const wh_layout_t *layout, size_t wafer,
                       const wh_rim_spreads_t *spreads) {
     const wh_rim_draw_t wide = wh_rim_draw_too_wide(spreads, layout->rims[wafer]);
@@ -285,7 +285,8 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
     }
 }
 
-/* The blade of an arm without a wrist turns with where it was taught, of one that tilts out of its plane. */
+/* An error of the taught place turns the blade of an arm without a wrist; on an arm that tilts it turns the
+ * blade out of its plane. */
 static void refuse_beside(wh_reader_t *reader, const wh_layout_t *layout) {
     for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
         const wh_spread_t *widths = layout->errors->stations[s].of;
@@ -351,7 +352,7 @@ wh_real_t wh_spread_draw(const wh_spread_t *spread, const wh_trial_t *trial, uin
     return spread->width * (wh_real_t)wh_deviate_normal(trial, field, (uint32_t)index);
 }
 
-/* What is drawn for a part of a displacement: which of the spreads, and for which field. */
+/* The draw for one part of a displacement: which spread it has, and for which field. */
 typedef struct {
     size_t spread;
     uint32_t field;

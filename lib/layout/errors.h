@@ -1,9 +1,9 @@
-/* The errors of a study: how wide each is, and what a trial draws of it.
+/* The errors of a study: the width of each, and a trial's draw of it.
  *
  * Placement says where a wafer lies in its slot. Teaching says how far a station stands from where it was
- * taught. Timing says how late valves and vacuum act. Rims are what edge sensors and beams see of wafers.
- * Beams stand beside where they are taken to be, and latch late. Lengths in mm, angles in degrees, times in
- * s. A width of 0 draws 0.
+ * taught. Timing says how late valves and vacuum act. Rims are the edges of wafers that edge sensors and
+ * beams see. Beams stand beside their expected places, and latch late. Lengths in mm, angles in degrees,
+ * times in s. A width of 0 draws 0.
  */
 #ifndef WH_LAYOUT_ERRORS_H
 #define WH_LAYOUT_ERRORS_H
@@ -13,9 +13,9 @@
 #include "../sim/faults.h"
 #include "rim_errors.h"
 
-/* In this order, where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x
- * and y (one draw each), turn about z. Or where a station stands: moved along base's x, y, z, and turned by
- * roll, pitch, yaw about lines through slot 1 that are parallel to base's fixed x, y, z. */
+/* The order of a wafer's errors in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x and
+ * y (one draw each), turn about z. The order of a station's errors: shifts along base's x, y, z, then turns
+ * by roll, pitch, yaw about lines through slot 1 that are parallel to base's fixed x, y, z. */
 #define WH_SPREADS 6
 typedef struct {
     wh_spread_t of[WH_SPREADS];
@@ -27,7 +27,7 @@ typedef struct {
     wh_real_t turn[3]; /* about x, y, z; deg */
 } wh_displacement_t;
 
-/* What is drawn of a beam: see beam_errors.h. */
+/* The draws for a beam: see beam_errors.h. */
 typedef enum {
     WH_BEAM_DX,   /* mm, in the station's frame */
     WH_BEAM_DY,   /* mm */
@@ -64,8 +64,9 @@ typedef struct {
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer);
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
 
-/* With several robots a station stands where it should, only turned, and each robot was taught it by itself:
- * so far, mm along base's axes, it stands from where this robot was taught it. Of one robot 0. */
+/* With several robots a station stands where it should, only turned, and each robot was taught it by itself.
+ * The result is how far the station stands from the place that this robot was taught, mm along base's axes.
+ * With one robot it is 0. */
 wh_vec3_t wh_errors_draw_taught(const wh_errors_t *errors, const wh_trial_t *trial, size_t station,
                                 size_t robot);
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper);
@@ -78,8 +79,8 @@ wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *tri
 /* True if any of it is not 0. */
 bool wh_displacement_is_any(const wh_displacement_t *displacement);
 
-/* What a station's displacement is made of: x, y, z (mm), roll, pitch, yaw (deg); `axis` from 0 to
- * WH_SPREADS - 1. The name is a constant text. */
+/* The names of a station's errors: x, y, z (mm), roll, pitch, yaw (deg); `axis` from 0 to WH_SPREADS - 1. The
+ * name is a constant text. */
 const char *wh_errors_teaching_name(size_t axis);
 wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis);
 

@@ -1,5 +1,6 @@
 #include "feasibility_internal.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@
 const char *wh_finding_name(wh_finding_kind_t kind) {
     static const char *const names[] = {"contact", "space",  "reach",   "links", "wafer", "entry",
                                         "ledges",  "blades", "retract", "tilt",  "gap",   "release",
-                                        "sight",   "rest",   "pocket",  "play"};
+                                        "sight",   "rest",   "pocket",  "play",  "size"};
     return names[kind];
 }
 
@@ -86,7 +87,7 @@ wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
 
 /* -------------------------------------------------------------------------------------------------- links */
 
-/* If the robot that serves a station tilts. */
+/* True if the robot that serves a station tilts. */
 static bool tilts(const wh_layout_t *layout, size_t station) {
     const wh_mount_t *mount = &layout->machine.mounts[layout->stations[station].effector];
     const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, mount->robot, NULL);
@@ -99,7 +100,8 @@ static const wh_arm_t *lengths_at(const wh_layout_t *layout, size_t station) {
     return wh_layout_arm_lengths(layout, layout->machine.mounts[effector].robot);
 }
 
-/* Of a station that is none of the layout's the first one: all are of one robot then. */
+/* The station's index. For a station that is not the layout's own it is 0: one robot then serves all
+ * stations. */
 static size_t index_of(const wh_layout_t *layout, const wh_station_t *station) {
     size_t s = 0;
     while (s < layout->station_count && station != &layout->places[s]) {
@@ -130,7 +132,7 @@ wh_pose_t wh_feasibility_slot(const wh_layout_t *layout, const wh_station_t *sta
     return tilts(layout, index_of(layout, station)) ? base_from_slot : level;
 }
 
-/* True also where the robot's axes do not come: the survey says that. */
+/* True also where the robot's axes cannot go: the survey reports that. */
 static bool carrier_reaches(const wh_layout_t *layout, size_t station, const wh_pose_t *base_from_gripper) {
     const wh_layout_station_t *s = &layout->stations[station];
     const wh_chain_choice_t choice = {.rail = s->rail, .elbow = s->elbow};
@@ -149,8 +151,8 @@ static bool carrier_reaches(const wh_layout_t *layout, size_t station, const wh_
     return wh_vec3_norm(&out) <= 2 * lengths_at(layout, station)->link;
 }
 
-/* Checks that the links reach with the station's gripper so far before a slot. They are stretched most at one
- * end of a way. */
+/* Checks that the links reach with the station's gripper at this distance before a slot. They are stretched
+ * most at one end of a way. */
 static bool links_reach(const wh_layout_t *layout, size_t station, int32_t slot, wh_real_t before) {
     const wh_mount_t *mount = &layout->machine.mounts[layout->stations[station].effector];
     const wh_pose_t identity = wh_pose_identity();
@@ -166,19 +168,31 @@ static bool links_reach(const wh_layout_t *layout, size_t station, int32_t slot,
     return wh_arm_reaches(&layout->shapes.arm, &base_from_effector);
 }
 
-static void check_links(wh_feasibility_t *check, size_t station) {
-    const wh_layout_t *layout = check->layout;
+bool wh_feasibility_reaches(const wh_layout_t *layout, size_t station, size_t place,
+                            wh_unreached_t *unreached) {
     const wh_layout_station_t *s = &layout->stations[station];
-    const int32_t ends[] = {1, layout->places[station].slots};
-    for (int i = 0; s->taught && i < (ends[1] > 1 ? 2 : 1); ++i) {
-        for (int before = 0; before < 2; ++before) {
-            if (!links_reach(layout, station, ends[i], before == 1 ? s->retract : 0)) {
-                wh_feasibility_add(check, WH_FINDING_LINKS, (int32_t)station,
-                                   "%s%s slot %d: two links of %.4g mm do not reach the wrist",
-                                   before == 1 ? "the way into " : "", s->name, (int)ends[i],
-                                   (double)lengths_at(layout, station)->link)
-                    ->slot = ends[i];
-            }
+    const int32_t slots = layout->places[station].slots;
+    const bool is_before = place % 2 == 1;
+    const int32_t slot = place < 2 ? 1 : slots;
+    const bool is_another = place < 2 || slots > 1;
+    if (!s->taught || !is_another || links_reach(layout, station, slot, is_before ? s->retract : 0)) {
+        return true;
+    }
+    unreached->slot = slot;
+    unreached->is_before = is_before;
+    snprintf(unreached->text, sizeof unreached->text, "two links of %.4g mm do not reach the wrist",
+             (double)lengths_at(layout, station)->link);
+    return false;
+}
+
+static void check_links(wh_feasibility_t *check, size_t station) {
+    for (size_t place = 0; place < WH_FEASIBILITY_PLACES; ++place) {
+        wh_unreached_t unreached;
+        if (!wh_feasibility_reaches(check->layout, station, place, &unreached)) {
+            wh_feasibility_add(check, WH_FINDING_LINKS, (int32_t)station, "%s%s slot %d: %s",
+                               unreached.is_before ? "the way into " : "",
+                               check->layout->stations[station].name, (int)unreached.slot, unreached.text)
+                ->slot = unreached.slot;
         }
     }
 }
@@ -208,7 +222,7 @@ static bool is_too_tilted(const wh_layout_t *layout, const wh_pose_t *pose, doub
     return !(pose->R.m[2][2] > layout->grasp.tolerance.planar);
 }
 
-/* Where the robot keeps level the layout alone decides. */
+/* If the robot stays level, the layout alone decides. */
 static void check_tilt(wh_feasibility_t *check, size_t station) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *s = &layout->stations[station];
@@ -262,15 +276,44 @@ static void say_stray(wh_feasibility_t *check, size_t w) {
         layout->stations[wafer->station].name, (int)wafer->slot, tilt);
 }
 
+/* Says of a wafer that lies in a slot if that is not its own, or if no ledge is where it lies. */
+static bool say_height(wh_feasibility_t *check, size_t w, const wh_place_t *place) {
+    const wh_layout_t *layout = check->layout;
+    const wh_layout_wafer_t *wafer = &layout->wafers[w];
+    const char *station = layout->stations[wafer->station].name;
+    const wh_place_t own = wh_cell_measure(&layout->cell, &layout->places[wafer->station], wafer->slot,
+                                           &layout->start[w].base_from_wafer);
+    const double height = (double)own.dz;
+    const double projz = (double)layout->cell.tolerance.projz;
+    if (fabs(height) < projz) {
+        return false;
+    }
+    if (place->station == wafer->station && place->slot != wafer->slot) {
+        (void)wh_feasibility_add(check, WH_FINDING_WAFER, wafer->station,
+                                 "%s lies in slot %d of %s, %.4g mm %s the plane of its slot %d", wafer->name,
+                                 (int)place->slot, station, fabs(height), height > 0 ? "above" : "below",
+                                 (int)wafer->slot);
+        return true;
+    }
+    (void)wh_feasibility_add(
+        check, WH_FINDING_WAFER, wafer->station,
+        "%s lies %.4g mm %s the plane of %s slot %d, where nothing bears it (expected less "
+        "than eps_projz, %.4g mm)",
+        wafer->name, fabs(height), height > 0 ? "above" : "below", station, (int)wafer->slot, projz);
+    wh_feasibility_warn(check);
+    return true;
+}
+
 static void check_wafers(wh_feasibility_t *check) {
     const wh_layout_t *layout = check->layout;
-    size_t strays = 0;
+    size_t strays = 0, high = 0;
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         const wh_layout_wafer_t *wafer = &layout->wafers[w];
         wh_place_t place;
         ++check->entries[wafer->station].wafers;
-        if (!wh_cell_locate(&layout->cell, &layout->start[w].base_from_wafer, &place) &&
-            ++strays <= NAMED_STRAYS) {
+        if (wh_cell_locate(&layout->cell, &layout->start[w].base_from_wafer, &place)) {
+            high += high < NAMED_STRAYS && say_height(check, w, &place) ? 1 : 0;
+        } else if (++strays <= NAMED_STRAYS) {
             say_stray(check, w);
         }
     }
@@ -363,6 +406,8 @@ void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
             layout->robots[0].name, layout->robots[1].name, layout->robot_count > 2 ? " and others" : "");
         wh_feasibility_warn(check);
     }
+    wh_feasibility_sizes(check);
+    wh_feasibility_units(check);
     wh_feasibility_sight(check);
     wh_feasibility_rests(check);
     wh_feasibility_pockets(check);

@@ -21,10 +21,12 @@ typedef enum {
     WH_FINDING_TILT,    /* a station, or a wafer, is tilted more than a level blade takes it */
     WH_FINDING_GAP,     /* the room in a station is not more than `clearance` asks for */
     WH_FINDING_RELEASE, /* a PUT lets go only after the wafer has gone into its support */
-    WH_FINDING_SIGHT,   /* a beam or an edge sensor cannot see what it is there for */
+    WH_FINDING_SIGHT,   /* a beam or an edge sensor cannot see its wafer or notch */
     WH_FINDING_REST,    /* a notch points to where a rest of an edge grip is */
     WH_FINDING_POCKET,  /* a wafer lies so that an edge grip would not hold it, or is of no such size */
-    WH_FINDING_PLAY     /* GET or PUT, played at a slot, fails or hits something: see mcs/survey.h */
+    WH_FINDING_PLAY,    /* GET or PUT, played at a slot, fails or hits something: see mcs/survey.h */
+    WH_FINDING_SIZE,    /* a mesh is smaller than 1 mm, or larger than the cell: a warning */
+    WH_FINDING_UNIT     /* a number looks as if it were in another unit: a warning */
 } wh_finding_kind_t;
 
 typedef struct {
@@ -45,8 +47,8 @@ typedef struct {
     wh_real_t above;  /* entered for a GET: to the wafer in the slot */
     wh_real_t below;  /* to the wafer one slot lower; unknown for a single slot */
     wh_real_t beside; /* at the slot's height: to its ledges, or to the prealigner's chuck */
-    /* `retract` before the slot, at any height: from blade and held wafer to the station's wafers; from the
-     * blade alone where no wafer can be held while another lies there */
+    /* at `retract` before the slot, at any height: from blade and held wafer to the station's wafers. It is
+     * from the blade alone where no wafer can be held while another one lies there */
     wh_real_t before;
     /* at the end of a GET: from its wafer to the ledges and the wafer one slot higher, at most: checked at
      * slices, a wafer may lie a step of the stroke higher. Unknown for a single slot */
@@ -64,8 +66,25 @@ typedef struct {
     size_t wrong;           /* those that are no warnings */
 } wh_feasibility_t;
 
-/* Checks all of it but what a run would refuse, which mcs/survey.h adds. The caller frees the result. Ends
- * the program if out of memory. Cost: n log n in parts, wafers and slots, and wafers times stations. */
+/* A place that the links of the robot that serves a station do not reach. */
+typedef struct {
+    int32_t slot;
+    bool is_before; /* at the outer end of the way into it */
+    char text[80];
+} wh_unreached_t;
+
+/* The number of places that are checked at a station: in its first slot, before it, in its last slot, before
+ * that. */
+#define WH_FEASIBILITY_PLACES 4
+
+/* True if the two links reach there, or if there is no such place. Runs call it before they begin, and so
+ * does a check of the layout. A SCARA is refused by its inverse. */
+bool wh_feasibility_reaches(const wh_layout_t *layout, size_t station, size_t place,
+                            wh_unreached_t *unreached);
+
+/* Checks the whole layout. mcs/survey.h adds the findings that a run would refuse. The caller frees the
+ * result. Ends the program if out of memory. Cost: n log n in parts, wafers and slots, and wafers times
+ * stations. */
 void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout);
 
 /* Adds a finding: no warning, of this station or of none (WH_NONE), without parts and slot. It is valid until
@@ -80,6 +99,9 @@ void wh_feasibility_free(wh_feasibility_t *check);
 
 /* The kind in one word, such as "contact": a constant. */
 const char *wh_finding_name(wh_finding_kind_t kind);
+
+/* The edges of the box around a mesh along the axes of its own frame, mm. Cost: linear in its points. */
+wh_vec3_t wh_feasibility_extent(const wh_convex_t *mesh);
 
 /* base_from_part of any part, wafers included, with the robot at home and the wafers where the layout puts
  * them. */

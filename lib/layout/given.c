@@ -32,7 +32,7 @@ static bool take_word(char *word, size_t size, const char *from, const char *to)
     return true;
 }
 
-/* What stands before the equals sign; false if it does not fit. */
+/* Takes the names before the equals sign; false if they do not fit. */
 static bool take_names(given_t *given, const char *equals) {
     const char *point = equals;
     while (point > given->text && *point != '.') {
@@ -65,13 +65,14 @@ static void check_range(lua_State *L, const given_t *given, double least, double
     }
 }
 
-/* Of wafers, as wh_errors_teaching_name of stations; the first three are mm, the others degrees. */
+/* The name of a wafer's error, like wh_errors_teaching_name for stations. The first three are mm, the others
+ * degrees. */
 static const char *wafer_name(size_t part) {
     static const char *const names[] = {"dx", "dy", "dz", "tilt_x", "tilt_y", "turn"};
     return names[part];
 }
 
-/* "STATION.ROBOT", of several robots one that serves the station: the error's place, or WH_NONE. */
+/* The place of the error of "STATION.ROBOT", one of several robots that serves the station, or WH_NONE. */
 static int32_t find_taught(const wh_layout_t *layout, const char *name) {
     for (size_t s = 0; layout->robot_count > 1 && s < layout->station_count; ++s) {
         const wh_layout_station_t *station = &layout->stations[s];
@@ -94,7 +95,7 @@ static size_t find_part(const char *name_of(size_t part), const char *field) {
     return part;
 }
 
-/* Of one of several robots alone. */
+/* Gives the error of one of several robots alone. */
 static void give_taught(lua_State *L, const given_t *given, wh_vec3_t *taught, size_t axis) {
     wh_real_t *const parts[] = {&taught->x, &taught->y, &taught->z};
     if (axis >= 3) {
@@ -135,7 +136,7 @@ static int find_rim_draw(const char *field) {
     return draw;
 }
 
-/* Of a wafer's rim, as a trial draws it. */
+/* Gives an error of a wafer's rim, like a draw of a trial. */
 static void give_rim(lua_State *L, const wh_layout_t *layout, const given_t *given, wh_given_t *to,
                      wh_rim_draw_t draw) {
     const int32_t wafer = wh_layout_find_wafer(layout, given->name);
@@ -155,7 +156,8 @@ static void give_rim(lua_State *L, const wh_layout_t *layout, const given_t *giv
     to->rims[wafer][draw] = given->value;
 }
 
-/* Of a beam, as a trial draws it. False if there is no beam of that name, or no such error. */
+/* Gives an error of a beam, like a draw of a trial. False if there is no beam of that name, or no such
+ * error. */
 static bool give_beam(lua_State *L, const wh_layout_t *layout, const given_t *given, wh_given_t *to) {
     const int32_t beam = wh_layout_find_beam(layout, given->name);
     int draw = 0;
@@ -176,7 +178,7 @@ static bool give_beam(lua_State *L, const wh_layout_t *layout, const given_t *gi
     return true;
 }
 
-/* All that is given of a rim together leaves a rim, and none of it means nothing. */
+/* Checks that all given errors of a rim together leave a valid rim, and that each has an effect. */
 static void check_rim(lua_State *L, const wh_layout_t *layout, given_t *given, const wh_given_t *to) {
     take_apart(L, given);
     const int draw = find_rim_draw(given->field);

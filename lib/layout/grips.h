@@ -5,7 +5,8 @@
 #include "../sim/simulator.h"
 #include "layout.h"
 
-/* What a simulator with grips writes to beside its wafers and grippers: it belongs to that one alone. */
+/* The memory that a simulator with grips writes to beside its wafers and grippers. Each simulator has its
+ * own. */
 typedef struct {
     wh_wafer_t *seen; /* as many as the layout has wafers; null where it has no grips */
 } wh_grips_room_t;
@@ -16,11 +17,11 @@ bool wh_layout_has_grips(const wh_layout_t *layout);
 /* True if a gripper has passive pads. */
 bool wh_layout_has_passive(const wh_layout_t *layout);
 
-/* What takes wafers over from passive pads: the planes of all slots, those of chucks too. None without such
- * pads. */
+/* The number of supports that take wafers over from passive pads: the planes of all slots, chucks included. 0
+ * without such pads. */
 size_t wh_layout_count_supports(const wh_layout_t *layout);
 
-/* Makes the planes of the layout's places its supports; `supports` has room for so many, and must outlive
+/* Makes the planes of the layout's places its supports; `supports` has room for their count, and must outlive
  * it. */
 void wh_layout_take_supports(wh_layout_t *layout, wh_pose_t supports[]);
 
@@ -35,7 +36,8 @@ wh_edge_wafer_t wh_layout_edge_wafer(const wh_rim_t *rim);
 /* True if each edge grip of the layout may take a wafer with this rim. */
 bool wh_layout_edges_take(const wh_layout_t *layout, const wh_rim_t *rim);
 
-/* A layout's grips as a step takes them, but for what belongs to one simulator: `states` and `seen`. */
+/* A layout's grips as a step takes them, without the parts that belong to one simulator: `states` and
+ * `seen`. */
 wh_grips_parts_t wh_layout_grips(const wh_layout_t *layout);
 
 /* wh_grips_complete of a state that came from elsewhere, for a simulator of this layout. */

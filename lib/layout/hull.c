@@ -26,7 +26,7 @@ static void mark_corners(qhT *qh, bool is_corner[]) {
     }
 }
 
-/* The first line of what libqhull had to say. */
+/* The first line of libqhull's messages. */
 static void tell(const char *said, char *message, size_t size) {
     const size_t length = strcspn(said, "\n");
     (void)snprintf(message, size, "%.*s", (int)length, said);
@@ -42,7 +42,7 @@ static size_t keep(wh_vec3_t points[], size_t count, const bool is_corner[]) {
     return kept;
 }
 
-/* False if libqhull refuses; what it says goes to `said`. */
+/* False if libqhull refuses; its message goes to `said`. */
 static bool find_corners(coordT *numbers, size_t count, bool is_corner[], FILE *said) {
     static char options[] = "qhull Qt"; /* not const for libqhull, which only reads it */
     qhT state;

@@ -7,8 +7,8 @@
 
 #include "../math/vector.h"
 
-/* Keeps of `points`, mm, those that are corners of their convex hull, in the order in which they were, and
- * sets *count to their number. What is left out lies within the hull or, to rounding, on it.
+/* Keeps those of `points`, mm, that are corners of their convex hull, in their order, and sets *count to
+ * their number. The other points lie within the hull or, to rounding, on it.
  *
  * False with all unchanged: the points lie in a plane, or are too few. `message` then has one line of
  * libqhull. Cost: about points times the logarithm of their number. */

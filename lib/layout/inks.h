@@ -6,7 +6,7 @@
 
 #include "../collision/world.h"
 
-/* What a part is to the eye. */
+/* How a part looks. */
 typedef enum {
     WH_INK_WALL,
     WH_INK_SHELL,
@@ -18,7 +18,7 @@ typedef enum {
     WH_INKS
 } wh_part_ink_t;
 
-/* As a screen has it (sRGB), 0xrrggbb, on light and on dark paper. */
+/* A screen's colour (sRGB), 0xrrggbb, on light and on dark paper. */
 typedef struct {
     uint32_t light, dark;
 } wh_colour_t;
@@ -34,7 +34,7 @@ typedef struct {
 
 extern const wh_ink_look_t wh_ink_looks[WH_INKS];
 
-/* The same for glTF: `drawn.light` in linear light. All numbers are 0 to 1. */
+/* A part's material in glTF: `drawn.light` in linear light. All numbers are 0 to 1. */
 typedef struct {
     const char *name;
     double red, green, blue, opacity;
@@ -43,11 +43,11 @@ typedef struct {
 
 extern const wh_ink_material_t wh_ink_materials[WH_INKS];
 
-/* Of grippers on the page and in the viewer, over and over. */
+/* The colours of grippers on the page and in the viewer, used again and again in this order. */
 #define WH_INK_SERIES 6
 extern const wh_colour_t wh_ink_series[WH_INK_SERIES];
 
-/* Of edges and notches, and of what is behind the cell, on the page and in the viewer. */
+/* The colours of edges and notches, and of the background, on the page and in the viewer. */
 extern const wh_colour_t wh_ink_edge, wh_ink_stage;
 
 wh_part_ink_t wh_ink_of(const wh_part_t *part);

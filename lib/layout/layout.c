@@ -7,11 +7,13 @@
 
 #include "../math/trig.h"
 #include "../text/nearest.h"
+#include "along_arm.h"
 #include "arms.h"
 #include "grips.h"
 #include "layout_internal.h"
+#include "layout_tool.h"
 
-/* The registry's list of all memory of layouts. It is never cleared, for a record may outlive a second
+/* The registry's list of all memory of layouts. It is never cleared, because a record may outlive a second
  * `cell`. */
 #define OWNED "waferhand.layouts"
 
@@ -72,10 +74,10 @@ double wh_layout_default_pitch(const wh_layout_t *layout) {
 
 /* Below the smallest wafers there are, and around the numbers of sizes in inches. */
 static void refuse_inches(wh_reader_t *reader) {
-    const double least = 25;
+    const double least = 25; /* below 1 it is rather metres, which the reader asks */
     const bool is_number = wh_reader_push(reader, "diameter") == LUA_TNUMBER;
     const double diameter = lua_tonumber(reader->L, -1);
-    if (is_number && diameter > 0 && diameter < least) {
+    if (is_number && diameter >= 1 && diameter < least) {
         wh_reader_fail(reader, "diameter",
                        "mm, from %.12g to 1000; is that inches? 6 inches are 150 mm, 8 are 200, 12 are 300, "
                        "18 are 450",
@@ -105,6 +107,40 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_leave(reader);
 }
 
+/* Stations are tilted by less than 45 degrees, and blades by less than wafers bear: a limit below that would
+ * have no effect. */
+#define LEAST_PLANAR WH_REAL(0.7)
+
+/* Refuses limits that a wafer which is not there would keep: a blade that is nowhere below it takes none. */
+static void check_limits(wh_reader_t *reader, const wh_layout_t *layout) {
+    const wh_tolerance_t *tolerance = &layout->grasp.tolerance;
+    const double radius = layout->wafer_diameter / 2;
+    if (tolerance->projxy > radius) {
+        lua_pushnumber(reader->L, tolerance->projxy);
+        wh_reader_fail(reader, "projxy",
+                       "at most the wafer's radius, %.10g mm: farther out no pad is below it; \"strict\" "
+                       "has 5",
+                       radius);
+    }
+    if (tolerance->planar < LEAST_PLANAR) {
+        lua_pushnumber(reader->L, tolerance->planar);
+        wh_reader_fail(reader, "planar",
+                       "%.10g or more, the cosine of 45 degrees: beyond that no wafer lies on pads; "
+                       "\"paper\" has 0.99",
+                       (double)LEAST_PLANAR);
+    }
+}
+
+static void check_preset(wh_reader_t *reader, const wh_layout_t *layout) {
+    const double radius = layout->wafer_diameter / 2;
+    if (layout->grasp.tolerance.projxy > radius) {
+        (void)wh_reader_push(reader, "tolerance");
+        wh_reader_fail(reader, "tolerance",
+                       "{ projxy = } of at most the wafer's radius, %.10g mm: farther out no pad is below it",
+                       radius);
+    }
+}
+
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     static const char *const names[WH_TOLERANCE_LIMITS] = {"projz", "projxy", "planar"};
     wh_tolerance_t *tolerance = &layout->grasp.tolerance;
@@ -115,6 +151,7 @@ static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     tolerance->projz = wh_reader_number(reader, names[0], tolerance->projz, 1e-9, 1e6);
     tolerance->projxy = wh_reader_number(reader, names[1], tolerance->projxy, 1e-6, 1e6);
     tolerance->planar = wh_reader_number(reader, names[2], tolerance->planar, 0, 0.999999999999);
+    check_limits(reader, layout);
     wh_reader_leave(reader);
 }
 
@@ -135,6 +172,7 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
     } else {
         const int preset = wh_reader_choice(reader, "tolerance", 0, presets);
         name = wh_tolerance_preset((size_t)preset, &layout->grasp.tolerance);
+        check_preset(reader, layout);
     }
     snprintf(layout->tolerance_name, sizeof layout->tolerance_name, "%s", name);
 }
@@ -165,7 +203,7 @@ static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     wh_reader_open_section(reader, "placing", wh_layout_placing_fields);
     cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
     cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
-    cell->drop = wh_reader_number(reader, "drop", 0, 0, 1000);
+    cell->drop = wh_reader_number(reader, "drop", WH_USUAL_DROP, 0, 1000);
     wh_reader_leave(reader);
 }
 
@@ -175,6 +213,22 @@ static void read_corrections(wh_reader_t *reader, wh_corrections_t *corrections)
     corrections->y = wh_reader_number(reader, "y", 5, 0, 1000);
     corrections->z = wh_reader_number(reader, "z", 2.5, 0, 1000);
     corrections->turn_deg = wh_reader_number(reader, "turn", 5, 0, 180);
+    wh_reader_leave(reader);
+}
+
+static void read_mapping(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_mapping_t *mapping = &layout->mapping;
+    const double diameter = layout->wafer_diameter;
+    const double thickness = layout->wafer_thickness;
+    wh_reader_open_section(reader, "mapping", wh_layout_mapping_fields);
+    mapping->x = wh_reader_number(reader, "x", 0.6, 0, 0.8);
+    const double most = sqrt(0.95 - mapping->x * mapping->x); /* inside the rim */
+    mapping->y = wh_reader_number(reader, "y", most < 0.6 ? most : 0.6, 0.1, most);
+    mapping->crossed = wh_reader_number(reader, "crossed", 0.5, 0.01, 0.5);
+    mapping->level = wh_reader_number(reader, "level", 0, 0, diameter);
+    mapping->protruded = wh_reader_number(reader, "protruded", diameter / 10, 0, diameter);
+    mapping->thickest = wh_reader_number(reader, "thickest", 1.5 * thickness, thickness, 1000);
+    mapping->thinnest = wh_reader_number(reader, "thinnest", thickness / 2, 0, thickness);
     wh_reader_leave(reader);
 }
 
@@ -190,9 +244,26 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
     layout->grasp.seat = wh_reader_boolean(reader, "seat", false);
     read_placing(reader, &layout->cell);
     read_corrections(reader, &layout->corrections);
+    read_mapping(reader, layout);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
+
+/* A cell of times alone has no places: what else a layout has is that of a table with neither stations nor robots
+ * of its own. It is left on top of the stack. */
+static void stand_in(wh_reader_t *reader, wh_layout_t *layout) {
+    lua_State *L = reader->L;
+    layout->tool = wh_layout_read_tool(reader);
+    lua_createtable(L, 0, 2);
+    lua_newtable(L);
+    lua_setfield(L, -2, "stations");
+    lua_createtable(L, 1, 0);
+    lua_createtable(L, 0, 1);
+    lua_pushliteral(L, "none");
+    lua_setfield(L, -2, "name");
+    lua_rawseti(L, -2, 1);
+    lua_setfield(L, -2, "grippers");
+}
 
 /* The order matters: limits of later fields depend on earlier ones. Strokes are checked against the slice,
  * grippers name stations, wafers lie in them, and shapes follow the wafer's size. */
@@ -204,12 +275,19 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");
     }
+    const int top = lua_gettop(L);
+    if (wh_layout_is_timed(&reader)) {
+        stand_in(&reader, layout);
+    }
     wh_reader_refuse_unknown(&reader, wh_layout_top_fields);
     read_checks(&reader, layout);
     wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);
     wh_layout_read_stations(&reader, layout);
     wh_layout_read_grippers(&reader, layout);
+    wh_layout_read_taught(&reader, layout);
+    wh_layout_turn_along_arms(layout);
+    wh_layout_move_chucks(layout);
     wh_layout_read_doors(&reader, layout);
     wh_layout_read_vias(&reader, layout);
     wh_layout_read_effectors(&reader, layout);
@@ -224,6 +302,8 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);
     wh_layout_read_study(&reader, layout);
+    wh_layout_guess_units(&reader, layout);
+    lua_settop(L, top);
     return layout;
 }
 
@@ -285,7 +365,7 @@ int32_t wh_layout_find_robot(const wh_layout_t *layout, const char *name) {
     return find(layout->robots, layout->robot_count, sizeof *layout->robots, name);
 }
 
-/* Among how many names the nearest one is looked for. */
+/* The number of names among which the nearest one is searched. */
 #define MOST_NAMES 1000
 
 /* The name of thing `i` of those that `lookup` looks among; null behind the last one. */
@@ -350,6 +430,12 @@ static int load(lua_State *L) {
         return lua_error(L);
     }
     job->layout = wh_layout_read(L, job->path);
+    if (job->layout->tool) {
+        return luaL_error(
+            L,
+            "%s: robots that are times alone (expected robots with axes; a script with `flow` takes these)",
+            job->path);
+    }
     return 0;
 }
 

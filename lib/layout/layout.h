@@ -9,6 +9,7 @@
 
 #include "../cell/station.h"
 #include "../collision/world.h"
+#include "../flow/tool.h"
 #include "../grasp/grips.h"
 #include "../motion/machine.h"
 #include "../motion/via.h"
@@ -30,6 +31,9 @@
 #define WH_LAYOUT_STATIONS 1000
 #define WH_LAYOUT_SLOTS 1000
 
+/* The height that a wafer may fall, mm: placing.drop of a layout that does not say it. */
+#define WH_USUAL_DROP WH_REAL(0.5)
+
 /* The limits of a tolerance: projz, projxy, planar. */
 #define WH_TOLERANCE_LIMITS 3
 
@@ -42,7 +46,7 @@
 
 typedef struct {
     char name[WH_NAME_SIZE];
-    char valve[WH_NAME_SIZE]; /* the output's name, such as eeVacValve[0] */
+    char valve[WH_NAME_SIZE + 8]; /* the output's name, such as eeVacValve[0] */
     /* the prealigner whose chuck or pins it is, or the flipper; WH_NONE: on a robot's end-effector */
     int32_t station;
     wh_limits_t loaded; /* its own, of each 0: no limit; see wh_layout_loaded */
@@ -60,13 +64,13 @@ typedef struct {
     wh_elbow_t elbow;           /* SCARA: its usual side */
     wh_carrier_t carrier;       /* what machine.carrier and its `next` point to, unless that is null */
     wh_limits_t loaded;         /* while any gripper on it carries a wafer, of each 0: no limit */
-    wh_arm_t arm;               /* of any but the first, of which shapes.arm says it: its links, and */
+    wh_arm_t arm;               /* the links of any robot but the first, which has shapes.arm; and */
     wh_real_t lowest;           /* the least height of its contact plane, mm */
     wh_real_t transit;          /* mm, see transit.h; 0: the arm turns as it stands */
     const wh_part_list_t *urdf; /* its links' parts from a URDF; null: the usual ones of shapes.h */
 } wh_layout_robot_t;
 
-/* The most points of a station that an arm passes: on a way between two stations those of both. */
+/* The most points that an arm passes for a station; a way between two stations has the points of both. */
 #define WH_LAYOUT_VIAS 2
 
 /* One of them, by the robot's own axes. */
@@ -81,6 +85,9 @@ typedef struct {
     wh_layout_via_t at[WH_LAYOUT_VIAS];
 } wh_layout_vias_t;
 
+/* The farthest that a robot's taught place may be from the station's, mm. */
+#define WH_LAYOUT_ASIDE 5
+
 /* How one of several robots comes to a station. */
 typedef struct {
     bool serves;      /* the layout says so, or the robot alone decides by its reach */
@@ -90,11 +97,11 @@ typedef struct {
     wh_elbow_t elbow; /* and a SCARA's elbow */
     int32_t effector; /* its gripper that serves the station unless a command names another one */
     int32_t door;     /* that it comes through, or WH_NONE */
-    /* Where it was taught slot 1, beside where that is, in base, mm; the beams that it takes to stand where
-     * they are are off by as much. */
+    /* How far its taught slot 1 is from the true one, in base, mm. The places where it expects the beams are
+     * off by as much. */
     wh_vec3_t aside;
     int32_t first_beam, beam_count; /* those of the station's beams that it passes on its way in */
-    bool centre;                    /* a PUT of it corrects by what these say */
+    bool centre;                    /* its PUT corrects by what these say */
     wh_layout_vias_t vias;
 } wh_layout_approach_t;
 
@@ -115,7 +122,7 @@ typedef enum {
 /* Which face of a wafer points up in a station. */
 typedef enum { WH_STATION_ANY_FACE, WH_STATION_FACE_UP, WH_STATION_FACE_DOWN } wh_station_face_t;
 
-/* What of a station a probe touches: a block with flat faces, along the station's axes. */
+/* The part of a station that a probe touches: a block with flat faces, along the station's axes. */
 typedef struct {
     bool is_there;
     double at[3];   /* middle of its upper face, mm */
@@ -141,6 +148,7 @@ typedef struct {
     bool prealigner;
     bool foup;              /* with walls and a load port around its slots */
     bool flipper;           /* its one gripper clamps wafers and turns them over */
+    bool by_axes;           /* `axes`, its own or a robot's, say where it was taught */
     bool counts;            /* a wafer that is put here is done: for wafers per hour */
     wh_real_t stroke;       /* from entry below the wafer to exit above it */
     wh_real_t offset;       /* how far above the slot a GET leaves and a PUT starts */
@@ -177,15 +185,25 @@ typedef struct {
 typedef struct {
     char name[WH_NAME_SIZE];
     int32_t station, slot; /* slot from 1 */
+    double thickness;      /* as MAP measures it, mm; all else goes by that of the layout's wafers */
 } wh_layout_wafer_t;
+
+/* How MAP judges what its beams see: mcs/slot_codes.h. */
+typedef struct {
+    double x, y; /* where the beams stand, before the slot's middle and to either side: shares of a radius */
+    double crossed;            /* how far from its slot's plane a wafer may lie, a share of the pitch */
+    double level;              /* how far apart in height the beams may see it, mm; 0: half the pitch */
+    double protruded;          /* how far out it may lie, mm */
+    double thinnest, thickest; /* mm */
+} wh_mapping_t;
 
 /* How far a GET, PUT or SWAP may go beside what was taught: along the slot's axes, mm, and about its z. */
 typedef struct {
     double x, y, z, turn_deg;
 } wh_corrections_t;
 
-/* A beam of light at a station's door, as motion control believes in it, and how it truly is. In the
- * station's frame, upright. */
+/* A beam of light at a station's door, as motion control believes it to be, and as it truly is. It stands
+ * upright in the station's frame. */
 typedef struct {
     char
         name[WH_NAME_SIZE + 8]; /* as "LL.beam1": the station's name, and its number there; a face has none */
@@ -193,7 +211,7 @@ typedef struct {
     double x, y, low, high;     /* mm; from `low` to `high` over the station's z = 0 */
     double sd;                  /* how well x and y are known, mm: standard deviation */
     double delay_on, delay_off; /* s */
-    double dx, dy, late;        /* truly it stands there beside, and both delays are longer by `late` */
+    double dx, dy, late;        /* it truly stands off by this, and both delays are longer by `late` */
 } wh_layout_beam_t;
 
 /* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
@@ -210,7 +228,7 @@ typedef struct {
     int64_t slice_us;
     wh_physics_t physics; /* vacuum, pads, faults at the start */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
-    bool axes_untold;     /* made of a message, which does not tell what an axis moves, but for doors */
+    bool axes_untold;     /* made of a message, which tells what an axis moves only for doors */
     size_t robot_count;
     wh_layout_robot_t *robots;           /* sorted by name */
     wh_carrier_t carrier;                /* the first one's, unless machine.carrier is null */
@@ -221,6 +239,7 @@ typedef struct {
     bool homed;                      /* false: commands that rely on the arm's position need a HOME first */
     wh_layout_door_t *door_list;     /* machine.door_count of them, sorted by name */
     wh_corrections_t corrections;    /* the largest ones that a command may ask for */
+    wh_mapping_t mapping;
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */
@@ -241,8 +260,8 @@ typedef struct {
     size_t beam_count; /* with the faces of the stations' blocks, which come behind the beams, likewise */
     wh_blade_outline_t blades[WH_GRIPPERS];
     wh_layout_probe_t probe;
-    /* The edge sensors, and by wafer the rims that they, beams and edge grips meet: without any of these they
-     * mean nothing. Wafers of which the layout says nothing have the nominal one. */
+    /* The edge sensors, and by wafer the rims that they, beams and edge grips meet. Without any of these the
+     * rims have no effect. Wafers that the layout does not describe have the nominal rim. */
     wh_scanner_t scanners[WH_GRIPPERS];
     wh_sensor_error_t believed[WH_GRIPPERS]; /* what motion control takes each one's errors to be */
     size_t scanner_count;
@@ -254,14 +273,17 @@ typedef struct {
     wh_shapes_t shapes;
     wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
-    wh_errors_t *errors; /* what a study draws; null: no `study` */
+    wh_errors_t *errors;  /* what a study draws; null: no `study` */
+    const char **guesses; /* numbers that look as if they were in another unit: field, value, unit; sorted */
+    size_t guess_count;
+    const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
     size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
 } wh_layout_t;
 
 /* Reads the table on top of L's stack, which the layout file returned; it stays there. Fills in the defaults
- * and checks all that can be checked without moving: fields, ranges, names, who lies and who rides where,
- * strokes against slices. Raises a Lua error that names file, field path, value and what was expected. Lua
- * owns the layout's memory; the registry keeps the reference. Cost: linear in wafers, plus a sort. */
+ * and checks all that can be checked without moving: fields, ranges, names, where wafers lie and grippers
+ * ride, strokes against slices. Raises a Lua error that names file, field path, value and what was expected.
+ * Lua owns the layout's memory; the registry keeps the reference. Cost: linear in wafers, plus a sort. */
 wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
 /* Runs the file in the sandbox and reads what it returns. Null, and the reason in `result`, if that fails.
@@ -288,8 +310,8 @@ wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, 
  * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
 void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell);
 
-/* The same by itself, where nothing but stations is elsewhere. `parts` and `names` are room for the world's
- * parts and one more for each station; they and the copy must outlive the world. */
+/* Moves the collision world without the layout's table, if only stations stand elsewhere. `parts` and `names`
+ * are room for the world's parts and one more for each station; they and the copy must outlive the world. */
 void wh_layout_move_world(wh_layout_t *copy, wh_part_t *parts, char (*names)[WH_PART_NAME_SIZE]);
 
 /* Reads `study` from the table on top of the stack and replaces the layout's own. Errors name the script
@@ -299,15 +321,15 @@ void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layou
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
-/* What the way of a wafer on this gripper must keep to: mm/s, mm/s^2, mm/s^3 of its centre in base, the
- * stricter ones of the gripper's own and of its robot's; of each 0: no limit. */
+/* The limits of the way of a wafer on this gripper: mm/s, mm/s^2, mm/s^3 of its centre in base. They are the
+ * stricter ones of the gripper's and its robot's limits. Each is 0 if there is no limit. */
 wh_limits_t wh_layout_loaded(const wh_layout_t *layout, size_t gripper);
 
 /* True if there is such a limit for any gripper. */
 bool wh_layout_has_loaded(const wh_layout_t *layout);
 
-/* True for a gripper that is pins beside a prealigner's chuck, for one that is a flipper's clamp; and the
- * pins of a station, or WH_NONE. */
+/* True for a gripper that is the pins beside a prealigner's chuck; true for one that is a flipper's clamp;
+ * and the pins of a station, or WH_NONE. */
 bool wh_layout_is_pins(const wh_layout_t *layout, size_t gripper);
 bool wh_layout_is_flipper(const wh_layout_t *layout, size_t gripper);
 int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station);
@@ -333,17 +355,18 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout);
 /* The order that arms a station's beams; count 0 if it has none. */
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
 
-/* The order that arms those which a robot passes on its way in; count 0 if it passes none, or if beams are
- * not for its kind. */
+/* The order that arms the beams which a robot passes on its way in. Its count is 0 if the robot passes none,
+ * or if beams are not for its kind. */
 wh_latch_order_t wh_layout_beams_of(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* True if a PUT of the robot corrects by what the station's beams say. */
 bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot);
 
-/* True if beams and blocks are for the robot: see WH_AXES_USUAL; one of several robots may stand anywhere. */
+/* True if the robot can use beams and blocks: see WH_AXES_USUAL. One of several robots may stand anywhere. */
 bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot);
 
-/* How far beside the layout's place one of several robots was taught a station, in base, mm; else zero. */
+/* How far from the layout's place one of several robots was taught a station, in base, mm. With one robot it
+ * is zero. */
 wh_vec3_t wh_layout_aside(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* The order that arms a face of a station's block; count 0 if it has none. */

@@ -8,9 +8,9 @@
 /* Two beams of a station that are nearer to being at the same distance from the way cannot tell which of two
  * crossings met the notch, mm. */
 #define LEAST_APART 5
-/* What a beam must be inside of the rim to be crossed, mm. */
+/* A wafer crosses a beam only if the beam is inside its rim by this, mm. */
 #define LEAST_INSIDE 2
-/* A wafer may lie so far off on its blade, and yet pass the beams between the way's two ends, mm. */
+/* A wafer may lie off by this on its blade and still passes the beams between the way's two ends, mm. */
 #define ROOM 5
 
 static double chord_of(const wh_layout_t *layout, double y) {
@@ -18,7 +18,7 @@ static double chord_of(const wh_layout_t *layout, double y) {
     return sqrt(radius * radius - y * y);
 }
 
-/* Of one of several robots these count in its own way in, see find_passed. */
+/* With several robots the limits apply along each robot's own way in, see find_passed. */
 static double read_across_any(wh_reader_t *reader) {
     return wh_reader_number(reader, "y", WH_REAL(NAN), -10000, 10000);
 }
@@ -143,7 +143,7 @@ static const char *way_text(const way_t *way, char text[WH_NAME_SIZE + 20]) {
     return text;
 }
 
-/* Refuses what could never centre: a beam that the wafer does not pass whole on the way in. */
+/* Refuses beams that could never centre: the whole wafer must pass each beam on the way in. */
 static void check_whole(wh_reader_t *reader, const way_t *way, size_t b) {
     const wh_layout_t *layout = way->layout;
     const double retract = layout->stations[way->station].retract;
@@ -203,8 +203,8 @@ static void refuse_idle(wh_reader_t *reader, const wh_layout_t *layout, size_t s
     }
 }
 
-/* Of several robots each has its own way in, and passes its own part of the station's beams. Those of other
- * kinds pass without being asked. */
+/* Each of several robots has its own way in, and passes its own part of the station's beams. Robots of other
+ * kinds are not checked. */
 static void find_ways(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     const wh_layout_station_t *station = &layout->stations[s];
     bool is_any = false;
@@ -288,7 +288,7 @@ void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     }
 }
 
-/* A simulator looks for beams behind so many blades and wafers: what a robot holds may be both. */
+/* The most blades and wafers that a simulator checks against beams; a robot may hold both. */
 static void refuse_crowd(wh_reader_t *reader, const wh_layout_t *layout) {
     size_t count = 0;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {

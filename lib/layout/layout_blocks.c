@@ -132,10 +132,10 @@ static void add_faces(wh_layout_t *layout, size_t s) {
     }
 }
 
-/* So far from the block's own way in, as a cosine, a face no longer looks at the robot. */
+/* The least cosine of the angle to the block's own way in at which a face still looks at the robot. */
 #define LEAST_ALONG WH_REAL(0.98)
 
-/* Of several robots one has the probe, and comes to the block. */
+/* With several robots one of them has the probe, and comes to the block. */
 static void check_toucher(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     const size_t robot = layout->machine.mounts[layout->probe.gripper].robot;
     const char *name = layout->robots[robot].name;

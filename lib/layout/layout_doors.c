@@ -1,10 +1,10 @@
-/* A layout's doors: walls that move, and which stations have one; and which have pins. */
+/* A layout's doors: walls that move, which stations have one, and which stations have pins. */
 #include <string.h>
 
 #include "doors.h"
 #include "layout_internal.h"
 
-/* What obstacles may be on beside. */
+/* Other things that obstacles may be mounted on; no door may have these names. */
 static const char *const bodies[] = {"base", "lift", "upper arm", "forearm", "hand", "column", "robot"};
 
 static void check_name(wh_reader_t *reader, const wh_layout_t *layout, const char *name) {

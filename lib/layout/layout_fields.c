@@ -36,6 +36,7 @@ const wh_reader_field_t wh_layout_top_fields[] = {
     {"faults", "waferhand.fault[]", "faults on purpose", false},
     {"study", "waferhand.study", "what the trials of a study draw", false},
     {"corrections", "waferhand.corrections", "how far a command may go beside what was taught", false},
+    {"mapping", "waferhand.mapping", "where the beams of MAP stand and how they judge", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_size_fields[] = {{"diameter", NUMBER, "mm", false},
@@ -62,7 +63,7 @@ const wh_reader_field_t wh_layout_near_fields[] = {
 const wh_reader_field_t wh_layout_placing_fields[] = {
     {"off_centre", NUMBER, "mm beside the slot's centre; 0: never", false},
     {"askew", NUMBER, "degrees of tilt; 0: never", false},
-    {"drop", NUMBER, "mm above the slot as it is let go; 0: never", false},
+    {"drop", NUMBER, "mm above the slot as it is let go, 0.5; 0: any height is good", false},
     END};
 
 const wh_reader_field_t wh_layout_corrections_fields[] = {{"x", NUMBER, "mm", false},
@@ -70,6 +71,18 @@ const wh_reader_field_t wh_layout_corrections_fields[] = {{"x", NUMBER, "mm", fa
                                                           {"z", NUMBER, "mm", false},
                                                           {"turn", NUMBER, "degrees", false},
                                                           END};
+
+const wh_reader_field_t wh_layout_mapping_fields[] = {
+    {"x", NUMBER, "0 to 0.8: the beams before the slot's middle, a share of the wafers' radius", false},
+    {"y", NUMBER, "the beams to either side, likewise; both are within the rim", false},
+    {"crossed", NUMBER, "0.01 to 0.5: a wafer farther from its slot's plane is crossed, a share of the pitch",
+     false},
+    {"level", NUMBER, "mm: a wafer that the beams see so far apart in height is crossed; 0: half the pitch",
+     false},
+    {"protruded", NUMBER, "mm: a wafer farther out towards the arm is protruded", false},
+    {"thinnest", NUMBER, "mm: a wafer below it is thin", false},
+    {"thickest", NUMBER, "mm: a wafer above it is thick", false},
+    END};
 
 const wh_reader_field_t wh_layout_vacuum_fields[] = {
     {"model", "\"ideal\"|\"delayed\"", "whose values the other fields have by default", false},
@@ -251,8 +264,11 @@ const wh_reader_field_t wh_layout_door_fields[] = {
 
 const wh_reader_field_t wh_layout_station_fields[] = {
     {"kind", "\"slots\"|\"prealigner\"|\"foup\"|\"flipper\"", "what stands there", false},
-    {"at", TRIPLE, "x, y, z in mm, in base: the centre of a wafer's back face in slot 1", true},
+    {"at", TRIPLE, "x, y, z in mm, in base: the centre of a wafer's back face in slot 1; or `axes` says it",
+     false},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees: x is the way in, z goes up through the slots", false},
+    {"axes", "waferhand.axes", "in place of `at` and `rpy`: where the axes stand with the gripper in slot 1",
+     false},
     {"taught", SWITCH, "false: every command at the station is refused", false},
     {"slots", "integer", "how many", false},
     {"pitch", NUMBER, "mm from slot to slot", false},
@@ -289,10 +305,22 @@ const wh_reader_field_t wh_layout_approach_fields[] = {
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in base: x is this robot's way in", false},
     {"at", TRIPLE, "where it was taught slot 1, mm, in base, up to 5 mm beside the station's own `at`",
      false},
+    {"axes", "waferhand.axes", "where its axes stand with its gripper in slot 1", false},
     {"rail", NUMBER, "mm: where its rail stands for it", false},
     {"elbow", "\"left\"|\"right\"", "the side of a SCARA's elbow there", false},
     {"door", "string", "the door through which it comes, by name", false},
     {"via", "waferhand.via[]", "where it passes on its way there, and back on its way away", false},
+    END};
+
+const wh_reader_field_t wh_layout_axes_fields[] = {
+    {"theta", NUMBER, "degrees: where the axis stands", false},
+    {"r", NUMBER, "mm, of two arms that of the one that goes there", false},
+    {"forearm", NUMBER, "degrees, of a SCARA", false},
+    {"z", NUMBER, "mm", false},
+    {"yaw", NUMBER, "degrees, of two wrists that of the one that goes there", false},
+    {"rail", NUMBER, "mm", false},
+    {"tilt_x", NUMBER, "degrees", false},
+    {"tilt_y", NUMBER, "degrees", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_fields[] = {
@@ -304,6 +332,7 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
     {"dz", NUMBER, "mm above the slot", false},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
     {"face", "\"up\"|\"down\"", "the way it lies; without it as its station says, else up", false},
+    {"thickness", NUMBER, "mm: what MAP measures; all else goes by that of `wafer`", false},
     {"rim", "waferhand.rim", "its true rim, which edge sensors and beams see, and edge grips meet", false},
     END};
 
@@ -675,10 +704,11 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"placing", "Limits above which the place of a wafer that was set down is reported.",
      wh_layout_placing_fields},
     {"corrections", "How far a command may go beside what was taught.", wh_layout_corrections_fields},
+    {"mapping", "Where the beams of MAP stand and how they judge.", wh_layout_mapping_fields},
     {"vacuum", "The vacuum of all grippers.", wh_layout_vacuum_fields},
-    {"pads", "What holds a wafer on the pads.", wh_layout_pads_fields},
+    {"pads", "The grip of a wafer on its pads.", wh_layout_pads_fields},
     {"robot", "The robot's axes.", wh_layout_robot_fields},
-    {"joint", "What a joint of a URDF follows.", wh_layout_joint_fields},
+    {"joint", "The axis that a joint of a URDF follows.", wh_layout_joint_fields},
     {"turning_axis", "An axis that turns.", wh_layout_turning_axis_fields},
     {"robot_arm", "An arm of a robot.", wh_layout_robot_arm_fields},
     {"robot_wrist", "A wrist of a SCARA.", wh_layout_robot_wrist_fields},
@@ -689,24 +719,25 @@ const wh_layout_class_t wh_layout_classes[] = {
      wh_layout_gripper_fields},
     {"loaded", "Limits of a carried wafer's centre.", wh_layout_loaded_fields},
     {"edge_grip", "An edge grip.", wh_layout_edge_grip_fields},
-    {"stage", "What moves a chuck aside.", wh_layout_stage_fields},
-    {"pins", "What lifts wafers off a chuck.", wh_layout_pins_fields},
-    {"flipper", "What clamps wafers and turns them over.", wh_layout_flipper_fields},
+    {"stage", "The stage that moves a chuck aside.", wh_layout_stage_fields},
+    {"pins", "The pins that lift wafers off a chuck.", wh_layout_pins_fields},
+    {"flipper", "The clamp that turns wafers over.", wh_layout_flipper_fields},
     {"door", "A wall that moves: one shape about a place.", wh_layout_door_fields},
     {"station", "A place with slots, a prealigner, a FOUP or a flipper.", wh_layout_station_fields},
     {"approach", "How one of several robots comes to a station.", wh_layout_approach_fields},
+    {"axes", "The axes with which a station was taught; all that the arm has.", wh_layout_axes_fields},
     {"wafer", "A wafer, where it lies when a run begins.", wh_layout_wafer_fields},
     {"sensor", "A line sensor beside a prealigner's chuck.", wh_layout_sensor_fields},
     {"believed", "A sensor's errors as a calibration found them.", wh_layout_believed_fields},
     {"arc", "A part of a turn.", wh_layout_arc_fields},
     {"beam", "A beam of light at a station's door.", wh_layout_beam_fields},
     {"via", "A point that the arm passes on its way to a station.", wh_layout_via_fields},
-    {"block", "What a probe touches.", wh_layout_block_fields},
+    {"block", "The block that a probe touches.", wh_layout_block_fields},
     {"probe", "A pin with a ball and a switch.", wh_layout_probe_fields},
     {"rim", "A wafer's true rim.", wh_layout_rim_fields},
     {"rim_notch", "A notch with its roundings.", wh_layout_rim_notch_fields},
     {"flat", "A flat.", wh_layout_flat_fields},
-    {"chip", "What is broken off a rim.", wh_layout_chip_fields},
+    {"chip", "A piece that is broken off a rim.", wh_layout_chip_fields},
     {"shapes", "Sizes of what collisions look at.", wh_layout_shapes_fields},
     {"blade", "A gripper on the robot.", wh_layout_blade_fields},
     {"arm", "The links of the arm.", wh_layout_arm_fields},
@@ -732,7 +763,7 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"fault.late_beam", "A fault of a beam.", late_beam},
     {"fault.probe", "A fault of the probe.", of_probe},
     {"fault.edge_sensor", "A fault of an edge sensor.", of_edge_sensor},
-    {"study", "What the trials of a study draw.", wh_layout_study_fields},
+    {"study", "The errors that the trials of a study draw.", wh_layout_study_fields},
     {"placement", "Widths of errors of a wafer's place.", wh_layout_placement_fields},
     {"teaching", "Widths of errors of a station's place.", wh_layout_teaching_fields},
     {"timing", "Widths of errors of times.", wh_layout_timing_fields},

@@ -41,7 +41,7 @@ static uint64_t hash_second(uint64_t hash, const wh_carrier_t *carrier) {
     return hash;
 }
 
-/* What a robot has beyond the four axes of the usual one. */
+/* Hashes what a robot has beyond the four axes of the usual one. */
 static uint64_t hash_carrier(uint64_t hash, const wh_layout_t *layout) {
     const wh_chain_t *chain = &layout->carrier.chain;
     hash = wh_hash_int(hash_text(hash, "carrier"), (int32_t)chain->kind);
@@ -57,7 +57,7 @@ static uint64_t hash_carrier(uint64_t hash, const wh_layout_t *layout) {
     return hash_second(hash, &layout->carrier);
 }
 
-/* The others of several robots, and the first one's name. */
+/* Hashes the other robots, and the first one's name. */
 static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
     for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
         const wh_carrier_t *carrier = &layout->robots[r].carrier;
@@ -82,7 +82,7 @@ static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
     return hash;
 }
 
-/* Of stages and pins, which not every chuck has. */
+/* Hashes stages and pins, which not every chuck has. */
 static uint64_t hash_slides(uint64_t hash, const wh_mount_t *mount) {
     if (mount->axis == WH_NONE || mount->kind == WH_MOUNT_CHUCK) {
         return hash;
@@ -150,17 +150,19 @@ static uint64_t hash_stations(uint64_t hash, const wh_layout_t *layout) {
     return hash;
 }
 
-/* Only what is set, so that layouts without it keep their hash. */
+/* Hashes only fields that are set, so that layouts without them keep their hash. */
 static uint64_t hash_placing(uint64_t hash, const wh_cell_t *cell) {
     if (cell->settle || cell->off_centre > 0 || cell->askew > 0) {
         hash = wh_hash_int(hash, cell->settle ? 1 : 0);
         hash = wh_hash_real(hash, cell->off_centre);
         hash = wh_hash_real(hash, cell->askew);
     }
-    return cell->drop > 0 ? wh_hash_real(wh_hash_int(hash, 1), cell->drop) : hash;
+    const bool is_usual = !(cell->drop < WH_USUAL_DROP) && !(cell->drop > WH_USUAL_DROP);
+    return is_usual ? hash : wh_hash_real(wh_hash_int(hash, 1), cell->drop);
 }
 
-/* Only what differs from the paper's gripper, so that a layout without these sections keeps its hash. */
+/* Hashes only differences from the paper's gripper, so that a layout without these sections keeps its
+ * hash. */
 static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
     const wh_vacuum_config_t ideal = wh_vacuum_ideal();
     const wh_real_t values[] = {vacuum->build, vacuum->vent, vacuum->idle,
@@ -226,7 +228,7 @@ uint64_t wh_layout_world_hash(const wh_layout_t *layout) {
     return hash_reals(hash, world->limits, WH_CLEARANCES);
 }
 
-/* Only what has another grip than vacuum. */
+/* Hashes only grippers that have another grip than vacuum. */
 static uint64_t hash_grips(uint64_t hash, const wh_layout_t *layout) {
     bool is_new = false;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
@@ -240,9 +242,12 @@ static uint64_t hash_grips(uint64_t hash, const wh_layout_t *layout) {
                             hash_text(hash, "grips"));
 }
 
-/* Recordings and messages carry this hash: what is new goes behind, and only where it differs from the
+/* Recordings and messages carry this hash: new fields go to the end, and only if they differ from the
  * default. */
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
+    if (layout->tool) {
+        return wh_flow_tool_hash(layout->tool, WH_HASH_START);
+    }
     uint64_t hash = hash_checks(WH_HASH_START, layout);
     hash = hash_machine(hash, layout);
     hash = hash_stations(hash, layout);

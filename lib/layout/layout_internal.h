@@ -12,7 +12,7 @@ void *wh_layout_memory(lua_State *L, size_t count, size_t size);
 /* The path of a file that another one names: relative to that one's folder. */
 void wh_layout_path(char *path, size_t size, const char *beside, const char *name);
 
-/* As wh_layout_find_wafer: the index of a name, or WH_NONE. */
+/* A function like wh_layout_find_wafer: it returns the index of a name, or WH_NONE. */
 typedef int32_t wh_layout_find_t(const wh_layout_t *layout, const char *name);
 
 /* Reads a field that names something of the layout, and returns what `lookup` says of the name; `expected` is
@@ -20,7 +20,7 @@ typedef int32_t wh_layout_find_t(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_read_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
                             const char *fallback, wh_layout_find_t *lookup, const char *expected);
 
-/* The same for a gripper: the first one on the robot, unless the field names one. */
+/* Reads a field that names a gripper: the first one on the robot, unless the field names one. */
 int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
                                     const char *expected);
 
@@ -37,16 +37,25 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
+
+/* Stations that are given by `axes`. At a station: true if slot 1's place is, which waits for the grippers, and
+ * nothing else says it. At a station or at a robot's part of it: refuses what does not go with `axes`. Then,
+ * behind the grippers: the places; and the grippers at stations, where these now stand. */
+bool wh_layout_is_taught(wh_reader_t *reader, const wh_layout_t *layout);
+void wh_layout_check_taught(wh_reader_t *reader);
+void wh_layout_read_taught(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_move_chucks(wh_layout_t *layout);
 void wh_layout_read_doors(wh_reader_t *reader, wh_layout_t *layout);
 
-/* The points that the arm passes on its way to stations, and what they add to the hash of a layout. */
+/* The points that the arm passes on its way to stations, and their part of the hash of a layout. */
 void wh_layout_read_vias(wh_reader_t *reader, wh_layout_t *layout);
 uint64_t wh_layout_hash_vias(uint64_t hash, const wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_find_faces(wh_layout_t *layout);
 
-/* `grip` of the gripper at which the reader is; and once rims are read, what edge grips meet. */
+/* Read `grip` of the gripper at which the reader is; and, once rims are read, the wafers as edge grips meet
+ * them. */
 void wh_layout_read_grip(wh_reader_t *reader, wh_layout_t *layout, size_t g);
 void wh_layout_read_edge_wafers(wh_reader_t *reader, wh_layout_t *layout);
 
@@ -60,6 +69,9 @@ void wh_layout_read_urdfs(wh_reader_t *reader, wh_layout_t *layout);
 
 /* Fails at a field that must not be there. */
 void wh_layout_refuse_field(wh_reader_t *reader, const char *field, const char *expected);
+
+/* Finds numbers that look as if they were in another unit, once all of the table is read. */
+void wh_layout_guess_units(wh_reader_t *reader, wh_layout_t *layout);
 
 /* `robots`; and one of them, at which the reader is. */
 void wh_layout_read_robots(wh_reader_t *reader, wh_layout_t *layout);
@@ -76,10 +88,10 @@ void wh_layout_read_approach(wh_reader_t *reader, const wh_layout_t *layout, siz
 /* speed, acceleration and jerk; degrees where it turns. */
 void wh_layout_read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limits);
 
-/* How fast a way of mm or rad is that takes `seconds`, which the table at which the reader is has. */
+/* The speed of a way of mm or rad that takes `seconds`, a field of the table at which the reader is. */
 void wh_layout_read_seconds(wh_reader_t *reader, wh_real_t way, wh_limits_t *limits);
 
-/* Where the shape at which the reader is sits, and what it is: box, cylinder, capsule or mesh. */
+/* The place and the kind of the shape at which the reader is: box, cylinder, capsule or mesh. */
 void wh_layout_read_shape(wh_reader_t *reader, const wh_layout_t *layout, const char *name,
                           wh_convex_t *convex);
 
@@ -90,7 +102,7 @@ void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s);
  * items of `size` bytes that begin with their name. More than `most` are refused. */
 void *wh_layout_read_keys(wh_reader_t *reader, size_t most, size_t size, const char *what, size_t *count);
 
-/* Wafers that sensors and beams can see, mm. */
+/* The wafers that sensors and beams can see, mm. */
 #define WH_SENSED_LEAST 20
 #define WH_SENSED_MOST 600
 

@@ -17,7 +17,7 @@ void wh_layout_read_loaded(wh_reader_t *reader, wh_limits_t *loaded) {
     }
 }
 
-/* The smaller of two limits, of which 0 is none. */
+/* The smaller of two limits; 0 means no limit. */
 static wh_real_t stricter(wh_real_t a, wh_real_t b) {
     return !(b > 0) || (a > 0 && a < b) ? a : b;
 }

@@ -32,7 +32,7 @@ static void read_slides(wh_reader_t *reader, wh_mount_t *mount) {
     wh_reader_leave(reader);
 }
 
-/* What the axes of a gripper on a prealigner do; a chuck turns, if nothing is said. */
+/* Reads what the axes of a gripper on a prealigner do; by default it is a chuck that turns. */
 static void read_kind(wh_reader_t *reader, wh_mount_t *mount) {
     mount->kind = WH_MOUNT_CHUCK;
     if (wh_reader_open(reader, "stage", wh_layout_stage_fields)) {
@@ -80,7 +80,7 @@ static int32_t find_host(wh_reader_t *reader, const wh_layout_t *layout, const c
     return station;
 }
 
-/* Each has one gripper of a sort. */
+/* No prealigner or flipper has two grippers of one kind. */
 static void check_alone(wh_reader_t *reader, const wh_layout_t *layout, int32_t station, bool is_pins) {
     const int32_t other = is_pins ? wh_layout_find_pins(layout, station) : layout->places[station].chuck;
     if (other != WH_NONE) {
@@ -187,10 +187,10 @@ static void read_mount(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
 static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
     const size_t g = layout->machine.gripper_count;
     wh_layout_gripper_t *gripper = &layout->grippers[g];
-    char valve[WH_NAME_SIZE];
+    char valve[sizeof gripper->valve];
     wh_reader_refuse_unknown(reader, wh_layout_gripper_fields);
     wh_reader_text(reader, "name", NULL, gripper->name, sizeof gripper->name);
-    snprintf(valve, sizeof valve, "%.40s.valve", gripper->name);
+    snprintf(valve, sizeof valve, "%s.valve", gripper->name);
     wh_reader_text(reader, "valve", valve, gripper->valve, sizeof gripper->valve);
     if (wh_layout_find_gripper(layout, gripper->name) != WH_NONE) {
         wh_reader_refuse(reader, "name", gripper->name, "a name that no other gripper has");

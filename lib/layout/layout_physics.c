@@ -102,8 +102,8 @@ static int32_t station_of(const wh_layout_t *layout, int32_t wafer, const wh_pos
     return found ? place.station : layout->wafers[wafer].station;
 }
 
-/* A tilt in the slot's frame, in the wafer's, which may be turned in its slot. One that is not keeps the
- * tilt's bits. */
+/* Converts a tilt from the slot's frame to the wafer's, which may be turned in its slot. A wafer that is not
+ * turned keeps the tilt's bits. */
 static wh_pose_t in_wafer(const wh_pose_t *tilt, const wh_mat3_t *base_from_slot,
                           const wh_mat3_t *base_from_wafer) {
     const wh_mat3_t turn = wh_mat3_multiply_back(base_from_slot, base_from_wafer);
@@ -209,7 +209,7 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
     }
 }
 
-/* Only what a grip has can break down. */
+/* A fault can only break a part that the grip has. */
 static void check_grip(wh_reader_t *reader, const wh_layout_t *layout, const wh_fault_t *fault) {
     const bool of_plunger = fault->kind == WH_FAULT_PLUNGER_STUCK || fault->kind == WH_FAULT_PLUNGER_SLOW;
     const bool of_vacuum = fault->kind == WH_FAULT_NO_VACUUM || fault->kind == WH_FAULT_SLOW_VACUUM ||
@@ -230,7 +230,7 @@ static void check_grip(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     }
 }
 
-/* Of crossed wafers it is another one. */
+/* Reads the size of a fault. For crossed wafers another function reads `value` as a height. */
 static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
     const wh_real_t most = wh_fault_most(kind);
     return most > 0 ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, most) : 0;

@@ -40,7 +40,7 @@ static void check_travel(wh_reader_t *reader, bool turns, const wh_travel_t *tra
     }
 }
 
-/* What an axis is read into. */
+/* The place into which the reader reads an axis. */
 typedef struct {
     const char *name;
     bool turns;
@@ -99,7 +99,7 @@ static void refuse_scara(wh_reader_t *reader) {
     }
 }
 
-/* What this kind does not have. */
+/* Refuses fields that this kind does not have. */
 static void refuse_others(wh_reader_t *reader, wh_chain_kind_t kind) {
     if (kind != WH_CHAIN_SCARA) {
         refuse_scara(reader);

@@ -72,7 +72,7 @@ static void read_stand(wh_reader_t *reader, const wh_chain_t *chain, wh_elbow_t 
     }
 }
 
-/* A robot's own way in: turned about the station's z alone, for that is where the slots are. */
+/* A robot's own way in: turned about the station's z alone, because the slots lie along z. */
 static void read_way_in(wh_reader_t *reader, const wh_station_t *place, wh_layout_approach_t *approach) {
     static const wh_vec3_t level = {0, 0, 0};
     approach->is_turned = wh_reader_has(reader, "rpy");
@@ -89,19 +89,16 @@ static void read_way_in(wh_reader_t *reader, const wh_station_t *place, wh_layou
     }
 }
 
-/* A robot was taught a station no farther beside its place, mm. */
-#define MOST_ASIDE 5
-
-/* Where it was taught slot 1. The station stays where it is. */
+/* Reads where the robot was taught slot 1. The station stays where it is. */
 static void read_taught(wh_reader_t *reader, const wh_station_t *place, wh_layout_approach_t *approach) {
     const wh_vec3_t *own = &place->base_from_station.r;
     const wh_vec3_t at = wh_reader_vector(reader, "at", own);
     approach->aside = wh_vec3_subtract(&at, own);
     const wh_vec3_t *aside = &approach->aside;
-    if (!(wh_real_abs(aside->x) <= MOST_ASIDE && wh_real_abs(aside->y) <= MOST_ASIDE &&
-          wh_real_abs(aside->z) <= MOST_ASIDE)) {
+    if (!(wh_real_abs(aside->x) <= WH_LAYOUT_ASIDE && wh_real_abs(aside->y) <= WH_LAYOUT_ASIDE &&
+          wh_real_abs(aside->z) <= WH_LAYOUT_ASIDE)) {
         (void)wh_reader_push(reader, "at");
-        wh_reader_fail(reader, "at", "numbers up to %d mm beside the station's own `at`", MOST_ASIDE);
+        wh_reader_fail(reader, "at", "numbers up to %d mm beside the station's own `at`", WH_LAYOUT_ASIDE);
     }
 }
 
@@ -132,6 +129,10 @@ static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
         approach->elbow = robot->elbow;
         if (is_said && wh_reader_open(reader, robot->name, wh_layout_approach_fields)) {
             approach->serves = true;
+            wh_layout_check_taught(reader);
+            if (station->by_axes) {
+                wh_layout_refuse_field(reader, "at", "nothing: the station has no `at` that it is beside");
+            }
             read_way_in(reader, &layout->places[s], approach);
             read_taught(reader, &layout->places[s], approach);
             read_stand(reader, chain, robot->elbow, &approach->rail, &approach->elbow);
@@ -211,8 +212,8 @@ static size_t find_servers(wh_reader_t *reader, const wh_layout_t *layout, size_
     return count;
 }
 
-/* Who serves it: the effector that the station names says it, else the only robot in `by`, else the only one
- * that comes there. */
+/* Finds the robot that serves a station: the one with the effector that the station names, else the only
+ * robot in `by`, else the only one that comes there. */
 void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
     wh_layout_station_t *station = &layout->stations[s];
     if (!station->by) {

@@ -6,8 +6,8 @@
 #include "grips.h"
 #include "layout_internal.h"
 
-/* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder
- * steps. */
+/* The most samples that a chuck may pass in a slice: two less than a state carries, because of rounding to
+ * encoder steps. */
 #define MOST_PASSED (WH_SCAN_SLICE - 2)
 
 /* Required, or with a default, which keeps its bits. */
@@ -21,7 +21,7 @@ static double read_angle(wh_reader_t *reader, const char *field, double fallback
 
 /* ------------------------------------------------------------------------------------------------ sensors */
 
-/* Refuses what would end each scan early: more samples in a slice than a state carries, or a chuck too
+/* Refuses values that would end each scan early: more samples in a slice than a state carries, or a chuck too
  * fast. */
 static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, const wh_sensor_t *sensor) {
     const double speed = layout->machine.chuck_limits.speed;
@@ -125,7 +125,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
 
 /* --------------------------------------------------------------------------------------------------- rims */
 
-/* As the layout's `wafer` says. */
+/* The rim that the layout's `wafer` describes. */
 static wh_rim_t nominal_rim(wh_reader_t *reader, const wh_layout_t *layout) {
     wh_bad_field_t bad = {NULL, WH_NONE};
     wh_rim_t rim = wh_rim_nominal(layout->wafer_diameter / 2);
@@ -201,7 +201,7 @@ static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
     }
 }
 
-/* The value of a field that is wrong, given or not; of another one than the notch's nil. */
+/* Pushes the value of a wrong field of the notch, given or not; nil for any other field. */
 static void push_rim_field(lua_State *L, const wh_rim_t *rim, const char *name) {
     const char *const names[] = {"notch.depth", "notch.bottom", "notch.corner"};
     const double values[] = {rim->notch.depth, rim->notch.bottom, rim->notch.corner};

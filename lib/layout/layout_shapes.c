@@ -6,6 +6,7 @@
 #include "../math/trig.h"
 #include "arms.h"
 #include "axes.h"
+#include "hull.h"
 #include "layout_internal.h"
 #include "stl.h"
 
@@ -59,6 +60,9 @@ static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_
     if (!wh_stl_read(path, mm_per_unit[unit], &points, &convex->point_count, message, sizeof message)) {
         wh_reader_refuse(reader, "mesh", name, "a convex mesh in an STL file: %s", message);
     }
+    if (convex->point_count > WH_STL_FEW) { /* points on its faces need no check in each slice */
+        (void)wh_hull_reduce(points, &convex->point_count, message, sizeof message);
+    }
     wh_vec3_t *kept = wh_layout_memory(reader->L, convex->point_count, sizeof *kept);
     memcpy(kept, points, convex->point_count * sizeof *kept);
     free(points);
@@ -111,7 +115,7 @@ static int32_t find_body(const wh_layout_t *layout, const char *on) {
     return WH_NONE;
 }
 
-/* What the obstacle hangs on: base, a body of an arm, or a gripper. */
+/* Reads the mount of the obstacle: base, a body of an arm, or a gripper. */
 static void read_mount(wh_reader_t *reader, const wh_layout_t *layout, wh_part_t *part) {
     char on[2 * WH_NAME_SIZE];
     wh_reader_text(reader, "on", "base", on, sizeof on);
@@ -280,7 +284,7 @@ static void refuse_other_arms(wh_reader_t *reader, const wh_layout_t *layout) {
     }
 }
 
-/* With several robots, `arms` has those of each by name. */
+/* With several robots, `arms` has the fields of each robot by name. */
 static void read_arms(wh_reader_t *reader, wh_layout_t *layout) {
     for (size_t robot = 0; robot < layout->robot_count; ++robot) {
         wh_layout_robot_t *of = &layout->robots[robot];
@@ -374,7 +378,7 @@ static wh_stand_t stand_of(const wh_layout_station_t *station) {
     return station->foup ? WH_STAND_FOUP : WH_STAND_LEDGES;
 }
 
-/* The robot of an arm, also in a layout that knows of no robot; and what a URDF says of it, or null. */
+/* The robot of an arm, also in a layout that knows of no robot; and its data from a URDF, or null. */
 static size_t robot_of(const wh_layout_t *layout, size_t arm) {
     return arm == 0 ? 0 : (size_t)layout->arms[arm].robot;
 }
@@ -516,10 +520,10 @@ void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list) {
     set_parts(layout, list, &none);
 }
 
-/* Of what carries parts: the grippers, then the arm and the doors. */
+/* The carriers of parts: the grippers, then the arm and the doors. */
 enum { ON_ARM = WH_GRIPPERS, ON_DOORS, CARRIERS };
 
-/* How many parts hang on each of them, a gripper's own included. */
+/* Counts the parts that hang on each of them, a gripper's own included. */
 static void count_hanging(const wh_world_config_t *world, int counts[CARRIERS]) {
     memset(counts, 0, CARRIERS * sizeof *counts);
     for (size_t i = 0; i < world->part_count; ++i) {
@@ -538,7 +542,7 @@ static const char *name_carrier(const wh_layout_t *layout, size_t carrier) {
     return carrier == ON_DOORS ? "doors" : carrier == ON_ARM ? "the arm" : layout->grippers[carrier].name;
 }
 
-/* The world's limit, told with the body that has most of the parts. */
+/* Checks the world's limit; the error names the body that has most of the parts. */
 static void check_hanging(const wh_reader_t *reader, const wh_layout_t *layout) {
     int counts[CARRIERS];
     size_t fullest = ON_ARM;

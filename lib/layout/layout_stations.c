@@ -16,7 +16,7 @@ static double by_size(const wh_layout_t *layout, double small, double middle, do
     return layout->wafer_diameter <= 150 ? small : layout->wafer_diameter <= 200 ? middle : large;
 }
 
-/* A single slot needs none but for how near a wafer lies. */
+/* A single slot needs no pitch except to tell how near to the slot a wafer lies. */
 static double default_pitch(const wh_layout_t *layout, int32_t slots) {
     const double pitch = wh_layout_default_pitch(layout);
     return pitch > 0 || slots > 1 ? pitch : by_size(layout, 4.76, 6.35, 10);
@@ -48,16 +48,29 @@ static double read_number(wh_reader_t *reader, const char *field, double fallbac
     return wh_reader_number(reader, field, fallback, range->least, range->most);
 }
 
-static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
+/* Refuses slots so near to one another that a gripper is ready on the wafers of two at once. */
+static void check_pitch(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place) {
+    const double least = 2 * layout->grasp.tolerance.projz;
+    if (place->slots > 1 && place->pitch < least) {
+        lua_pushnumber(reader->L, place->pitch);
+        wh_reader_fail(reader, "pitch",
+                       "%.10g mm or more, twice tolerance.projz: nearer a gripper takes wafers of two slots",
+                       least);
+    }
+}
+
+static void read_place(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station,
                        wh_station_t *place) {
-    static const wh_vec3_t level = {0, 0, 0};
-    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
-    place->base_from_station.r = wh_reader_vector(reader, "at", NULL);
+    static const wh_vec3_t none = {0, 0, 0};
+    station->by_axes = wh_layout_is_taught(reader, layout);
+    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &none);
+    place->base_from_station.r = wh_reader_vector(reader, "at", station->by_axes ? &none : NULL);
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
                                    station->prealigner || station->flipper ? 1 : WH_LAYOUT_SLOTS);
     place->pitch = wh_layout_sized(reader, layout, "pitch", default_pitch(layout, place->slots), 0.1, 1000);
     place->chuck = WH_NONE;
+    check_pitch(reader, layout, place);
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
         (void)wh_reader_push(reader, "rpy");
         wh_reader_fail(reader, "rpy", "a station whose z points up, tilted by less than 45 degrees");
@@ -195,8 +208,8 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     wh_reader_leave(reader);
 }
 
-/* Where wafers end up, if nothing is said: in FOUPs, else among several slots, else in one, never on a
- * chuck. */
+/* Ranks stations as the places where wafers end up, if the layout does not say it: FOUPs first, then stations
+ * with several slots, then with one, never a chuck. */
 static int rank_of(const wh_layout_t *layout, size_t s) {
     const wh_layout_station_t *station = &layout->stations[s];
     const int by_slots = layout->places[s].slots > 1 ? 2 : 1;
@@ -210,7 +223,7 @@ static bool says_counts(wh_reader_t *reader, const wh_layout_station_t *station)
     return says;
 }
 
-/* Of stations that do not say if they count, those of the highest rank do. */
+/* Reads which stations count. Among those that do not say it, the ones of the highest rank count. */
 static void read_counts(wh_reader_t *reader, wh_layout_t *layout) {
     int highest = 1;
     for (size_t s = 0; s < layout->station_count; ++s) {
@@ -274,7 +287,7 @@ static wh_station_face_t read_wafer_face(wh_reader_t *reader, const wh_layout_st
     return face;
 }
 
-/* What the fields give is the place of the face that lies on the slot. */
+/* The fields give the place of the face that lies on the slot. */
 static void read_position(wh_reader_t *reader, wh_layout_t *layout, const wh_layout_wafer_t *wafer,
                           wh_pose_t *base_from_wafer) {
     static const wh_vec3_t none = {0, 0, 0};
@@ -302,6 +315,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     wafer->station = wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,
                                          "the name of a station of this layout");
     wafer->slot = wh_reader_whole(reader, "slot", 0, 1, layout->places[wafer->station].slots);
+    wafer->thickness = wh_reader_number(reader, "thickness", layout->wafer_thickness, 0.01, 100);
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
 

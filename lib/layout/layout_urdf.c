@@ -11,7 +11,7 @@
 #include "stl.h"
 #include "urdf.h"
 
-/* What is read of a `urdf`, while the reader is at its robot. */
+/* The state of reading a `urdf`, while the reader is at its robot. */
 typedef struct {
     wh_reader_t *reader;
     wh_layout_t *layout;
@@ -207,7 +207,7 @@ static void measure_arm(const urdf_t *urdf, size_t number, wh_arm_t *arm) {
     }
 }
 
-/* `shapes` has been read: of what the URDF says nothing may be in it. Two arms of a robot are alike. */
+/* `shapes` has been read: it may say nothing that the URDF says. Two arms of a robot are alike. */
 static void take_arms(const urdf_t *urdf, bool says_links) {
     const bool *folds = urdf->map.folds;
     wh_arm_t arms[WH_URDF_ARMS];
@@ -234,7 +234,7 @@ static void take_arms(const urdf_t *urdf, bool says_links) {
     *lengths_of(urdf) = folds[0] ? arms[0] : arms[1];
 }
 
-/* Rounding is no difference. */
+/* Rounding does not count as a difference. */
 static wh_real_t beyond(wh_real_t difference, wh_real_t rounding) {
     return difference <= rounding ? 0 : difference;
 }
@@ -447,7 +447,8 @@ static void read_file(urdf_t *urdf) {
     urdf->map.file = file;
 }
 
-/* If `shapes` says of the robot's arm what joints that fold have. The reader is at the layout's top. */
+/* True if `shapes` gives lengths of the robot's arm that folding joints already give. The reader is at the
+ * layout's top. */
 static bool says_links(wh_reader_t *reader, const wh_layout_t *layout, size_t robot) {
     const char *const path[] = {"shapes", layout->robot_count > 1 ? "arms" : "arm",
                                 layout->robots[robot].name};
@@ -470,7 +471,7 @@ static void refuse_without(wh_reader_t *reader) {
     }
 }
 
-/* What is known of the robot before its file is read. */
+/* Fills in what is known of the robot before its file is read. */
 static void start(urdf_t *urdf, wh_reader_t *reader, wh_layout_t *layout, size_t robot) {
     const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, &urdf->first);
     urdf->reader = reader;

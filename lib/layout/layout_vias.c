@@ -20,8 +20,8 @@ static bool has_elbow(const wh_carrier_t *carrier) {
     return carrier && carrier->chain.kind == WH_CHAIN_SCARA;
 }
 
-/* The field that says where one of the robot's axes is at a point; null: none does. A second arm has none of
- * its own: `r` and `yaw` are of the one that goes to the station. */
+/* The field that says where one of the robot's axes is at a point; null: no field does. A second arm has no
+ * fields of its own: `r` and `yaw` belong to the arm that goes to the station. */
 static const char *field_of(const wh_carrier_t *carrier, size_t own) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     if (own < WH_ROBOT_AXES) {
@@ -140,7 +140,7 @@ static uint64_t hash_points(uint64_t hash, const wh_layout_vias_t *vias, size_t 
     return hash;
 }
 
-/* Of the first robot as of one that is alone. */
+/* Hashes the first robot's points like those of a single robot. */
 uint64_t wh_layout_hash_vias(uint64_t hash, const wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         for (size_t r = 0; r < layout->robot_count; ++r) {

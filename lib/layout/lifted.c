@@ -5,7 +5,7 @@
 /* Gaps above this are all the same, mm. */
 #define FAR WH_REAL(1e4)
 
-/* A wafer at the end of a GET, and what is nearest to it so far. */
+/* A wafer at the end of a GET, and the nearest thing so far. */
 typedef struct {
     const wh_convex_t *wafer;
     wh_pose_t base_from_shape;
@@ -22,8 +22,8 @@ static void measure(lifted_t *lifted, const wh_convex_t *other, const wh_pose_t 
     lifted->hits |= gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
 }
 
-/* How high above the pads a wafer is at least once it was taken. Checked at slices it may lie a step lower
- * than where it is taken first. */
+/* The least height above the pads of a wafer that was taken. The check runs at slices, so it may lie a step
+ * lower than where it is taken first. */
 static wh_real_t find_height(const wh_layout_t *layout, const wh_layout_station_t *station) {
     const wh_grasp_config_t *grasp = &layout->grasp;
     const wh_real_t step =

@@ -1,10 +1,11 @@
 #include "links.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "arms.h"
 
-/* Of what a point 1 mm from the end-effector's origin is aside, for each mm of slack. */
+/* How far a point 1 mm from the end-effector's origin may be off, in mm for each mm of slack. */
 #define SLACK_PER_MM WH_REAL(0.01)
 
 /* The end-effector of the arm, by its first gripper. False, and nothing written, if there is none on it. */
@@ -63,6 +64,33 @@ void wh_links_home(wh_links_t *links, const wh_layout_t *layout) {
     wh_real_t home[WH_AXES];
     wh_machine_home(&layout->machine, home);
     wh_links_at(links, layout, home);
+}
+
+/* True if the arm's robot has the same axes in both. */
+static bool keeps(const wh_carrier_t *carrier, size_t first, const wh_real_t from[], const wh_real_t to[]) {
+    const size_t count = carrier ? carrier->axis_count : WH_ROBOT_AXES;
+    return memcmp(&from[first], &to[first], count * sizeof to[0]) == 0;
+}
+
+bool wh_links_reach(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[],
+                    char reason[WH_LINKS_BYTES]) {
+    wh_links_t links;
+    wh_links_at(&links, layout, to);
+    for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
+        size_t first = 0;
+        const wh_carrier_t *carrier = wh_layout_arm(layout, arm, &first);
+        const wh_pose_t *bodies = &links.bodies[arm * WH_ARM_BODIES];
+        const size_t robot = arm == 0 ? 0 : (size_t)layout->arms[arm].robot;
+        const wh_real_t link = wh_layout_arm_lengths(layout, robot)->link;
+        const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
+        if ((!carrier || carrier->chain.kind != WH_CHAIN_SCARA) && !keeps(carrier, first, from, to) &&
+            wh_vec3_norm(&out) > 2 * link + WH_LINKS_SAME) {
+            (void)snprintf(reason, WH_LINKS_BYTES, "two links of %.4g mm do not reach the wrist",
+                           (double)link);
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool is_at(const wh_pose_t *a, const wh_pose_t *b, wh_real_t slack) {

@@ -7,7 +7,7 @@
 /* How far the axes of a command may be from where they brought the end-effector, mm: rounding. */
 #define WH_LINKS_SAME WH_REAL(1e-6)
 
-/* What the next call goes by of an arm. */
+/* The state of an arm that the next call starts from. */
 typedef struct {
     wh_pose_t base_from_effector;
     wh_real_t axes[WH_CARRIER_AXES]; /* its robot's, at which the links are, of a robot with a carrier */
@@ -18,18 +18,28 @@ typedef struct {
     wh_pose_t bodies[WH_LAYOUT_ARMS * WH_ARM_BODIES]; /* base_from_body, by its number: arms.h */
 } wh_links_t;
 
+/* Room for the reason of wh_links_reach. */
+#define WH_LINKS_BYTES 80
+
+/* False if two links of a polar arm do not reach its wrist at the axes `to`, which are not all as in `from`:
+ * of the first such arm `reason` says it. Arms whose robot keeps its axes are not asked. A SCARA is refused by
+ * its inverse. Cost: that of wh_arm_place_carrier for each arm. */
+bool wh_links_reach(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[],
+                    char reason[WH_LINKS_BYTES]);
+
 /* All robots at home. */
 void wh_links_home(wh_links_t *links, const wh_layout_t *layout);
 
 /* The robots at these axes, all of the machine's. */
 void wh_links_at(wh_links_t *links, const wh_layout_t *layout, const wh_real_t axes[]);
 
-/* The first gripper on an arm tells where its end-effector is, for a fault may keep both from where the
- * axes should have brought them. Without such a gripper all stays. The links of the usual robot follow from
- * that. Of a robot with a carrier the links are at the command's axes, if these bring the end-effector there
- * to `slack` mm; else at axes which do, with rail, flip and the elbow's side as they were; if
- * there are none, where they were. `axes`, in the machine's order, may be null: not known. Cost: that of
- * wh_arm_place_carrier for each arm; of several arms that have not moved next to nothing. */
+/* The first gripper on an arm tells where its end-effector is, because a fault may keep both from the place
+ * to which the axes should have brought them. Without such a gripper nothing changes. The links of the usual
+ * robot follow from the end-effector. If a robot has a carrier and the command's axes bring the end-effector
+ * there to `slack` mm, its links are at these axes. Otherwise they are at axes that do so, with rail, flip
+ * and the elbow's side unchanged; if there are none, they stay. `axes`, in the machine's order, may be null:
+ * not known. Cost: that of wh_arm_place_carrier for each arm; with several arms an arm that has not moved
+ * costs next to nothing. */
 void wh_links_follow(wh_links_t *links, const wh_layout_t *layout, const wh_pose_t base_from_grippers[],
                      const wh_real_t axes[], wh_real_t slack);
 

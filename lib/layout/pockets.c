@@ -1,6 +1,6 @@
-/* Wafers that an edge grip would not hold where they lie: too high or askew, off by more than its pocket's
- * clearance, or of a size that its window does not have. Asked is the very function by which the simulator
- * closes the plunger. */
+/* Finds wafers that an edge grip would not hold where they lie: too high or askew, off by more than its
+ * pocket's clearance, or of a size outside its window. It calls the function with which the simulator closes
+ * the plunger. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

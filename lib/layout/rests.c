@@ -78,7 +78,8 @@ static void add_direction(directions_t *directions, double degrees) {
     directions->at[i] = turned;
 }
 
-/* Of a blade that comes into a slot: both places of the rim that a beam sees, `y` beside the way. */
+/* Adds both places of the rim that a beam sees as the blade comes into a slot. The beam stands `y` beside the
+ * way. */
 static void add_crossings(directions_t *directions, double radius, double y) {
     if (y * y < radius * radius) {
         const wh_real_t x = wh_real_sqrt((wh_real_t)(radius * radius - y * y));
@@ -101,8 +102,7 @@ static void find_directions(const wh_layout_t *layout, const wh_edge_t *edge, co
     }
 }
 
-/* "-29.5 to 29.5, 30.5 to 179.5": what is left of a turn, `width` to both sides of each direction taken
- * off. */
+/* "-29.5 to 29.5, 30.5 to 179.5": the rest of a turn, without `width` on both sides of each direction. */
 static void put_ranges(const directions_t *directions, double width, char *text, size_t size) {
     size_t length = 0;
     text[0] = 0;

@@ -5,7 +5,7 @@
 
 #include "../math/trig.h"
 
-/* What each is drawn for: never renumber, the same seeds would give other trials. */
+/* The field of each draw. Never renumber fields: the same seeds would then give other trials. */
 static const struct {
     const char *name, *unit;
     double most;
@@ -28,7 +28,7 @@ static const struct {
 
 /* A chip is never narrower, mm. */
 #define LEAST_CHIP_WIDTH 0.01
-/* How wide a chip is without a width of its own, of its depth. */
+/* The width of a chip without a width of its own, as a multiple of its depth. */
 #define CHIP_SLENDERNESS 4
 
 const char *wh_rim_draw_name(wh_rim_draw_t draw) {
@@ -130,7 +130,7 @@ static double reach_of(const wh_rim_spreads_t *spreads, const wh_rim_t *rim, int
     return wh_rim_draw_concerns((wh_rim_draw_t)draw, rim) ? wh_spread_reach(&spreads->of[draw]) : 0;
 }
 
-/* Each by itself, as far as it goes either way. */
+/* Tests each draw by itself, at its largest in both directions. */
 static wh_rim_draw_t find_alone(const wh_rim_spreads_t *spreads, const wh_rim_t *rim) {
     for (int i = 0; i < (int)WH_RIM_WIDTHS; ++i) {
         double drawn[WH_RIM_DRAWS] = {0};
@@ -139,7 +139,7 @@ static wh_rim_draw_t find_alone(const wh_rim_spreads_t *spreads, const wh_rim_t 
             drawn[i] = sign * reach_of(spreads, rim, i);
             good = good && wh_rim_draw_leaves_rim(drawn, rim);
         }
-        /* Of a chip without a depth nothing is drawn, so that its width is looked at here. */
+        /* Nothing is drawn for a chip without a depth, so its width is checked here. */
         const double chip = i == (int)WH_RIM_CHIP_WIDTH ? fabs(drawn[i]) : 0;
         if (!good || chip > draws[WH_RIM_CHIP_WIDTH].most) {
             return (wh_rim_draw_t)i;

@@ -1,8 +1,8 @@
-/* The errors of wafers' rims in a study: how wide each is, and what a trial draws of it.
+/* The errors of wafers' rims in a study: the width of each, and a trial's draw of it.
  *
- * A width is of what is added to the wafer's own rim: the true diameter, the shape of its notch, the lengths
- * of its flats, its bow and saddle; or of a chip more, and of glass, of which the size of the draw counts.
- * Where the chip is and in which direction the saddle is high are drawn evenly all round.
+ * A width describes what a trial adds to the wafer's own rim: to the true diameter, the shape of its notch,
+ * the lengths of its flats, its bow and saddle. It may also add a chip, or glass; of these the size of the
+ * draw counts. The places of the chip and of the saddle's high side are drawn evenly all round.
  */
 #ifndef WH_LAYOUT_RIM_ERRORS_H
 #define WH_LAYOUT_RIM_ERRORS_H
@@ -42,14 +42,14 @@ const char *wh_rim_draw_name(wh_rim_draw_t draw);
 const char *wh_rim_draw_unit(wh_rim_draw_t draw);
 double wh_rim_draw_most(wh_rim_draw_t draw);
 
-/* True for one whose size counts alone: it is never below 0. */
+/* True for an error whose size alone counts: it is never below 0. */
 bool wh_rim_draw_is_size(wh_rim_draw_t draw);
 
 /* True if a rim has what the draw changes: a notch, a flat, room for a chip. */
 bool wh_rim_draw_concerns(wh_rim_draw_t draw, const wh_rim_t *rim);
 
-/* What a trial draws for a wafer with that rim: 0 where a width is 0 or the rim has no such thing. Each draw
- * depends on seed, trial, field and wafer alone. Cost: about 70 ns for each width that is not 0. */
+/* The draws of a trial for a wafer with that rim: 0 where a width is 0 or the rim has no such feature. Each
+ * draw depends on seed, trial, field and wafer alone. Cost: about 70 ns for each width that is not 0. */
 void wh_rim_draw_all(const wh_rim_spreads_t *spreads, const wh_trial_t *trial, size_t wafer,
                      const wh_rim_t *rim, double drawn[WH_RIM_DRAWS]);
 
@@ -60,8 +60,8 @@ bool wh_rim_draw_leaves_rim(const double drawn[WH_RIM_DRAWS], const wh_rim_t *ri
 /* Changes a rim by what was drawn. False, and the rim is as it was, if nothing was. */
 bool wh_rim_draw_apply(const double drawn[WH_RIM_DRAWS], wh_rim_t *rim);
 
-/* The first width of which a draw may make no rim that wh_rim_validate accepts, or WH_RIM_DRAWS. A normal
- * draw may be as far off as 8.6 standard deviations. Cost: 50 times wh_rim_validate. */
+/* The first width whose draw may give a rim that wh_rim_validate refuses, or WH_RIM_DRAWS. A normal draw may
+ * be as far off as 8.6 standard deviations. Cost: 50 times wh_rim_validate. */
 wh_rim_draw_t wh_rim_draw_too_wide(const wh_rim_spreads_t *spreads, const wh_rim_t *rim);
 
 #endif

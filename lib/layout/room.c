@@ -10,21 +10,22 @@
 
 /* ---------------------------------------------------------------------------------------------- measuring */
 
-/* What a gripper carries into a station: its blade, and the wafer that it may hold. */
+/* The things that a gripper carries into a station: its blade, and the wafer that it may hold. */
 typedef struct {
     const wh_layout_t *layout;
     int32_t gripper;
     wh_pose_t base_from_gripper;
-    wh_real_t down, up; /* it sweeps so far below and above its height, mm */
+    wh_real_t down, up; /* how far it sweeps below and above its height, mm */
     bool holds;         /* a wafer as well */
 } carried_t;
 
-/* The least gap found so far. Of gaps that are as bad, a blade's own parts count before what hangs on it. */
+/* The least gap found so far. If gaps are equally bad, a blade's own parts come before parts that hang on
+ * it. */
 typedef struct {
     wh_real_t least;
     bool found;
     wh_gap_state_t worst; /* CLEAR, TOUCHING or HIT */
-    int32_t part;         /* of what is carried, where the gap is worst; WH_NONE: the wafer */
+    int32_t part;         /* the carried part where the gap is worst; WH_NONE: the wafer */
 } room_t;
 
 /* A level shape with all that it sweeps on its way up: exact for boxes and cylinders. */
@@ -120,7 +121,7 @@ static room_t find_entry(const wh_layout_t *layout, size_t station, const wh_sta
     return room;
 }
 
-/* The same place, as if the station stood upright there. */
+/* The place of a station, as if it stood upright there. */
 static wh_station_t upright(const wh_layout_t *layout, const wh_station_t *place) {
     wh_station_t level = *place;
     level.base_from_station.R = wh_feasibility_slot(layout, place, 1).R;
@@ -222,8 +223,7 @@ static void check_support(wh_feasibility_t *check, size_t station) {
 
 /* -------------------------------------------------------------------------------------- what is asked for */
 
-/* Compares a gap that the blade comes to in each GET or PUT with the layout's limit. A gap of 0 is another
- * finding. */
+/* Compares a gap that occurs in each GET or PUT with the layout's limit. A gap of 0 is another finding. */
 static void check_gap(wh_feasibility_t *check, size_t station, wh_clearance_kind_t kind, bool has,
                       wh_real_t gap, const char *where) {
     const wh_layout_t *layout = check->layout;
@@ -346,8 +346,8 @@ static bool go_over(const wh_layout_t *layout, size_t station, int32_t other, wh
     return true;
 }
 
-/* Where another gripper on the robot is when the station's has entered a slot, and what it sweeps as that one
- * goes up. False if the robot does not come there. */
+/* The place of another gripper on the robot when the station's gripper has entered a slot, and the room that
+ * it sweeps as the station's gripper goes up. False if the robot does not come there. */
 static bool beside(const wh_layout_t *layout, size_t station, int32_t slot, int32_t other,
                    carried_t *carried) {
     const wh_layout_station_t *s = &layout->stations[station];
@@ -418,7 +418,7 @@ static wh_box_t box_of(const wh_layout_t *layout, size_t station) {
     return wh_box_grown(&both, layout->stations[station].stroke + layout->shapes.blade.thickness);
 }
 
-/* Stations whose wafers stand between one another's touch in no slot, but the blade finds no way. */
+/* Finds stations whose wafers interleave: they touch in no slot, but the blade finds no way. */
 static void check_neighbour(wh_feasibility_t *check, size_t station, size_t other) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *s = &layout->stations[station];

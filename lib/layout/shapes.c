@@ -110,7 +110,7 @@ static void add_blade(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t g
     wh_shapes_add(list, &part, "%s palm", name);
 }
 
-/* True for a length that a part cannot have: what it would join is together without it. */
+/* True for a length that a part cannot have: the parts that it would join already meet. */
 static bool is_too_short(wh_real_t half) {
     return half < WH_CONVEX_THINNEST / 2;
 }

@@ -42,7 +42,7 @@ typedef struct {
     wh_real_t body; /* radius of the body, which begins 1 mm below the chuck */
 } wh_spindle_t;
 
-/* What carries the wafers of a station. */
+/* The stand that carries the wafers of a station. */
 typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK, WH_STAND_NOTHING } wh_stand_t;
 
 typedef struct {

@@ -1,13 +1,13 @@
-/* What the sensors of a cell cannot see: beams that no wafer breaks, and edge sensors that cannot know a
- * notch. */
+/* Finds what the sensors of a cell cannot see: beams that no wafer breaks, and edge sensors that cannot
+ * recognize a notch. */
 #include <math.h>
 
 #include "../math/trig.h"
 #include "feasibility_internal.h"
 
-/* So far apart on the rim samples may be for a notch that ALIGN finds for sure, mm. */
-#define FINE 0.4
-/* Two scans of one wafer may tell directions so far apart, degrees: lua/mcs/align.lua. */
+/* The largest distance between samples on the rim with which ALIGN always finds a notch, mm. */
+#define FINE 0.31
+/* The largest difference of direction between two scans of one wafer, degrees: lua/mcs/align.lua. */
 #define APART 0.07
 
 /* ------------------------------------------------------------------------------------------------- beams */
@@ -67,7 +67,7 @@ static void check_beams(wh_feasibility_t *check) {
 
 /* ------------------------------------------------------------------------------------------ edge sensors */
 
-/* ALIGN scans both ways round, and a latency that nobody knows of turns them against each other. */
+/* ALIGN scans in both directions, and an unknown latency turns the two results against each other. */
 static void check_latency(wh_feasibility_t *check, size_t i) {
     const wh_layout_t *layout = check->layout;
     const wh_scanner_t *scanner = &layout->scanners[i];

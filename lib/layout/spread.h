@@ -20,8 +20,8 @@ typedef struct {
 /* The farthest that a draw may be off. */
 double wh_spread_reach(const wh_spread_t *spread);
 
-/* A draw; 0 if the width is 0. `field` says what the number is drawn for: the first word of its counter.
- * Never renumber fields: the same seeds would give other trials. Cost: about 70 ns. */
+/* A draw; 0 if the width is 0. `field` is the purpose of the number: the first word of its counter. Never
+ * renumber fields: the same seeds would give other trials. Cost: about 70 ns. */
 wh_real_t wh_spread_draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32_t field, size_t index);
 
 #endif

@@ -25,7 +25,7 @@ typedef struct {
     unsigned line;
     wh_real_t mm_per_unit;
     bool any_body;      /* it need not be convex */
-    wh_vec3_t *corners; /* three for each facet, room for WH_STL_FACETS */
+    wh_vec3_t *corners; /* three for each facet, room for as many facets as the file can have */
     size_t facets;
     char *message;
     size_t message_size;
@@ -332,7 +332,9 @@ static bool parse(stl_t *stl, const char *bytes, size_t length, wh_vec3_t **poin
     if (length > WH_STL_BYTES) {
         return refuse(stl, ": more than %zu bytes", WH_STL_BYTES);
     }
-    stl->corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl->corners);
+    const size_t most = length / FACET + 1; /* no facet is shorter, as text neither */
+    stl->corners =
+        wh_array_new(3 * (most < WH_STL_FACETS ? most : (size_t)WH_STL_FACETS), sizeof *stl->corners);
     bool good = read_facets(stl);
     if (good) {
         size_t found = 0;
@@ -355,8 +357,9 @@ bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t 
     return parse(&stl, bytes, length, points, count);
 }
 
-/* Opens a regular file. It waits for nobody at the other end of a pipe. Null: the message says why. */
-static FILE *open_regular(stl_t *stl) {
+/* Opens a regular file. It does not wait for the other end of a pipe. Null: the message says why. `most` is
+ * set to the bytes to read: one more than the file has, or than are taken. */
+static FILE *open_regular(stl_t *stl, size_t *most) {
     struct stat status;
     const int fd = open(stl->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) {
@@ -368,18 +371,20 @@ static FILE *open_regular(stl_t *stl) {
         (void)close(fd);
         return NULL;
     }
+    *most = (status.st_size < (off_t)WH_STL_BYTES ? (size_t)status.st_size : WH_STL_BYTES) + 1;
     return wh_memory_need(fdopen(fd, "rb"));
 }
 
 static bool read_file(stl_t *stl, wh_vec3_t **points, size_t *count) {
     wh_output_note_input(stl->path);
-    FILE *file = open_regular(stl);
+    size_t most = 0;
+    FILE *file = open_regular(stl, &most);
     if (file == NULL) {
         return false;
     }
     wh_output_keep(stl->path);
-    char *bytes = wh_array_new(WH_STL_BYTES + 1, 1);
-    const size_t length = fread(bytes, 1, WH_STL_BYTES + 1, file);
+    char *bytes = wh_array_new(most, 1);
+    const size_t length = fread(bytes, 1, most, file);
     const bool good =
         ferror(file) != 0 ? refuse(stl, ": %s", strerror(errno)) : parse(stl, bytes, length, points, count);
     free(bytes);

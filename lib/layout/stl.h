@@ -10,10 +10,12 @@
 
 #include "../collision/convex.h"
 
-/* The largest file, the most facets and the most different corners. */
-#define WH_STL_BYTES ((size_t)16 << 20)
-#define WH_STL_FACETS 16384
-#define WH_STL_POINTS 4096
+/* The largest file, the most facets and the most different corners: room for what CAD programs export. */
+#define WH_STL_BYTES ((size_t)512 << 20)
+#define WH_STL_FACETS 1000000
+#define WH_STL_POINTS 65536
+/* A convex mesh with more corners than this should be reduced to the corners of its hull. */
+#define WH_STL_FEW 4096
 /* A corner may stand out of a facet's plane by this fraction of the body's size; for thin facets also by what
  * seven digits leave open. The body that the facets enclose may be smaller than the hull of the points by
  * that much. */
@@ -33,7 +35,7 @@
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size);
 
-/* The same of a body that need not be convex, whose corners may be more than WH_STL_POINTS. */
+/* Like wh_stl_read, for a body that need not be convex and may have more than WH_STL_POINTS corners. */
 bool wh_stl_read_body(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count,
                       char *message, size_t size);
 

@@ -7,7 +7,7 @@
 #include "../math/trig.h"
 #include "outline.h"
 
-/* What is looked for, over all corners of what is on one arm. */
+/* The search over all corners of everything on one arm. */
 typedef struct {
     const wh_layout_t *layout;
     size_t robot, arm;
@@ -61,7 +61,7 @@ static wh_real_t largest_cosine(const look_t *look, wh_real_t angle) {
     return leads_out ? 1 : wh_real_max(wh_cos(from), wh_cos(to));
 }
 
-/* A corner of what is on the end-effector, in its frame. */
+/* A corner of a thing on the end-effector, in its frame. */
 static void look_at(look_t *look, wh_real_t x, wh_real_t y, wh_real_t grown) {
     const wh_real_t d = wh_real_sqrt(x * x + y * y) * grown;
     const wh_real_t c = largest_cosine(look, wh_atan2(y, x));
@@ -87,7 +87,7 @@ static wh_real_t height_beside_axis(const look_t *look, wh_outline_t *outline, c
     return most;
 }
 
-/* While the blade turns over, a point is at most so far aside as it is from the flip's axis. */
+/* While the blade turns over, a point is aside by at most its distance from the flip's axis. */
 static void look_at_shape(look_t *look, wh_outline_t *outline, const wh_mount_t *mount,
                           const wh_convex_t *shape) {
     const wh_real_t grown = shape->kind == WH_CONVEX_BOX || shape->kind == WH_CONVEX_MESH ? 1 : ENCLOSING;

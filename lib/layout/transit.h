@@ -4,10 +4,10 @@
  * A robot's `transit` is a radius about theta's axis, mm. A point p of a blade is at R e_x + Rz(yaw) p
  * from that axis, seen along the arm. With p at the distance d and in the direction a, it is within the
  * circle while R <= sqrt(transit^2 - d^2 (1 - c^2)) - d c, c being the largest cos(a + yaw) on the way.
- * Looked at are the parts that hang on grippers of the arm, and on each of these grippers a wafer, if there
- * is one or not, turned over as far as the flip is. If the flip turns on the way, points are taken to be as
- * far aside as they are from its axis at most. What is not polygonal is taken by an outline of 48 corners
- * that encloses it.
+ * The check takes the parts that hang on grippers of the arm, and on each of these grippers a wafer, even if
+ * there is none, turned over as far as the flip is. If the flip turns on the way, each point counts as far
+ * aside as its distance from the flip's axis. Round shapes are replaced by an outline of 48 corners that
+ * encloses them.
  *
  * All functions are reentrant. They end the program if out of memory.
  */
@@ -17,10 +17,10 @@
 #include "../motion/track.h"
 #include "layout.h"
 
-/* What a way of a robot needs to know of it. */
+/* The transit of a robot on its way. */
 typedef struct {
     wh_real_t reach[WH_POLAR_ARMS]; /* the largest R of each arm, mm */
-    wh_real_t r;                    /* that of the arm which is beyond, the first if both are */
+    wh_real_t r;                    /* R of the arm which is beyond, the first if both are */
 } wh_transit_t;
 
 /* The largest R of an arm (0, 1) on the way from some axes of the robot's own to others (rad, mm), mm; below
@@ -38,8 +38,8 @@ bool wh_transit_leaves(const wh_layout_t *layout, size_t robot, const wh_real_t 
                        wh_transit_t *transit);
 
 /* True if the robot has a transit, and turns, or goes along its rail, on its way to a point or from there.
- * Fills in the largest R of each arm for all that yaw may be while one of these legs runs into the other.
- * Cost as above. */
+ * Fills in the largest R of each arm for every yaw that may occur while one of these legs runs into the
+ * other. Cost as above. */
 bool wh_transit_corner(const wh_layout_t *layout, size_t robot, const wh_real_t from[],
                        const wh_real_t point[], const wh_real_t to[], wh_real_t reach[WH_POLAR_ARMS]);
 
@@ -47,7 +47,7 @@ bool wh_transit_corner(const wh_layout_t *layout, size_t robot, const wh_real_t 
  * it. */
 void wh_transit_keep(const wh_layout_t *layout, const wh_real_t from[WH_AXES], wh_segment_t *segment);
 
-/* Says of such a way, whose ends the axes' travel allows, which transit would leave room to turn. */
+/* Says which transit would leave room to turn on such a way. The axes' travel allows its ends. */
 void wh_transit_say(const wh_layout_t *layout, const wh_real_t from[WH_AXES], const wh_segment_t *segment,
                     char *text, size_t size);
 

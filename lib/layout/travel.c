@@ -34,7 +34,7 @@ __attribute__((format(printf, 2, 3))) static void put(char text[WH_TRAVEL_BYTES]
     }
 }
 
-/* A value beyond its limits. However near they are, it does not read as one of them. */
+/* Writes a value beyond its limits with enough digits that it does not read as one of them. */
 static void put_value(char text[WH_TRAVEL_BYTES], double value, double min, double max) {
     char said[40], least[40], most[40];
     int digits = 7;
@@ -113,7 +113,7 @@ static bool is_of_travel(wh_status_t status) {
     return status == WH_STATUS_OUT_OF_REACH || status == WH_STATUS_LIMIT_EXCEEDED;
 }
 
-/* Of an axis of this gripper, which is not on the robot, if it is out of its travel. */
+/* Says that an axis of this gripper, which is not on the robot, is out of its travel, if so. */
 static void put_beside(char text[WH_TRAVEL_BYTES], const wh_layout_t *layout, size_t g, size_t axis,
                        double at) {
     char name[WH_NAME_SIZE + 8];
@@ -198,7 +198,7 @@ void wh_travel_say_point(const wh_layout_t *layout, const wh_travel_goal_t *goal
 
 /* -------------------------------------------------------------------------------------------------- lines */
 
-/* Where a line ends, and what it is of the usual robot; of another one it is not looked at. */
+/* The end of a line, and its plan for the usual robot; for another robot the plan is not used. */
 typedef struct {
     wh_real_t to[WH_AXES];
     wh_line_t path;
@@ -227,7 +227,7 @@ static wh_status_t plan(const wh_machine_t *machine, bool is_second, const wh_re
     return status;
 }
 
-/* After which share of the line this axis leaves its travel; 2: it does not. */
+/* The share of the line after which this axis leaves its travel; 2: it does not. */
 static wh_real_t find_end(const wh_machine_t *alone, bool is_second, const wh_real_t from_q[],
                           const wh_vec3_t *travel) {
     wh_real_t good = 0;
@@ -256,6 +256,44 @@ static wh_real_t farthest(const wh_machine_t *machine, const planned_t *line, in
     return value;
 }
 
+/* Says where the line comes too near to stretched or folded, or that it begins there. */
+static void put_end_of_bend(char text[WH_TRAVEL_BYTES], double share, double length, double forearm) {
+    const bool is_stretched = fabs(forearm) < 90;
+    const double off = is_stretched ? fabs(forearm) : 180 - fabs(forearm);
+    const char *where = is_stretched ? "stretched" : "folded";
+    const wh_real_t sine = WH_CHAIN_LEAST_SINE;
+    const double least = wh_deg_from_rad(wh_atan2(sine, wh_real_sqrt(1 - sine * sine)));
+    if (share > 0) {
+        put(text,
+            "a line ends %.4g degrees before %s, and this one of %.7g mm is there after %.3f mm: end it "
+            "before",
+            least, where, length, share * length);
+    } else {
+        put(text,
+            "a line begins %.4g degrees or more from %s, and it is at %.4g: MOVE it %.4g degrees away first",
+            least, where, off, least - off);
+    }
+}
+
+/* Why a SCARA's forearm may not go along the line, whatever its travel; `status` is that of its plan. */
+static void put_forearm(char text[WH_TRAVEL_BYTES], const alone_t *alone, wh_status_t status, bool is_second,
+                        const wh_real_t from_q[], const wh_vec3_t *travel) {
+    const wh_real_t *links = alone->carrier.chain.links;
+    const wh_real_t share = find_end(&alone->machine, is_second, from_q, travel);
+    wh_real_t forearm = from_q[WH_AXIS_R];
+    planned_t line;
+    if (share > 0 && plan(&alone->machine, is_second, from_q, travel, share, &line) == WH_OK) {
+        forearm = line.to[WH_AXIS_R];
+    }
+    if (status == WH_STATUS_OUT_OF_REACH) {
+        put(text, "forearm: no angle (expected a wrist %.7g to %.7g mm from the shoulder); ",
+            (double)wh_real_abs(links[0] - links[1]), (double)(links[0] + links[1]));
+    } else {
+        put(text, "forearm: the links reach, but near stretched or folded no joint follows a line; ");
+    }
+    put_end_of_bend(text, share, wh_vec3_norm(travel), wh_deg_from_rad(forearm));
+}
+
 void wh_travel_say_line(const wh_layout_t *layout, int32_t gripper, const wh_real_t from_q[],
                         const wh_vec3_t *travel, char text[WH_TRAVEL_BYTES]) {
     const wh_machine_t *machine = &layout->machine;
@@ -269,12 +307,12 @@ void wh_travel_say_line(const wh_layout_t *layout, int32_t gripper, const wh_rea
     set_travel_of(&alone, machine, robot, NO_AXIS);
     from_q += alone.first;
     const wh_status_t status = plan(&alone.machine, is_second, from_q, travel, 1, &line);
+    if (is_of_travel(status) && is_scara(&alone.machine)) {
+        put_forearm(text, &alone, status, is_second, from_q, travel);
+        return;
+    }
     if (is_of_travel(status)) {
-        put(text,
-            is_scara(&alone.machine)
-                ? "forearm: stretched or folded (expected a line of %.7g mm that keeps within its links' "
-                  "reach)"
-                : "r: 0 (expected a line of %.7g mm beside the robot's own axis: move r off the axis first)",
+        put(text, "r: 0 (expected a line of %.7g mm beside the robot's own axis: move r off the axis first)",
             length);
         return;
     }

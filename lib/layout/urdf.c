@@ -119,8 +119,8 @@ void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *lay
 
 /* -------------------------------------------------------------------------------------------- the sources */
 
-/* How far a body's x is turned from another's, in that one's plane: of all full turns that nearest to an
- * angle. */
+/* The angle by which a body's x is turned from another's, in the other's plane. Full turns are added to bring
+ * it nearest to an angle. */
 static wh_real_t turn_between(const wh_pose_t *from, const wh_pose_t *to, wh_real_t near) {
     const wh_pose_t turned = wh_pose_relative(from, to);
     const wh_real_t turn = wh_rad_from_deg(360);
@@ -158,9 +158,9 @@ wh_real_t wh_urdf_axis(const wh_urdf_robot_t *robot, const wh_layout_t *layout, 
     return wh_axis_exists(&layout->machine, at) ? axes[at] : 0;
 }
 
-/* The angles of a polar arm's links. Shoulder and wrist turn on with theta and yaw: from these and the links'
- * own fold they are apart by the direction of the wrist, seen from the shoulder, which is less than half a
- * turn. */
+/* The angles of a polar arm's links. Shoulder and wrist keep turning with theta and yaw. They differ from
+ * these and the links' own fold by the direction of the wrist, seen from the shoulder, which is less than
+ * half a turn. */
 static void find_turns(const wh_urdf_robot_t *robot, const wh_layout_t *layout, const wh_real_t axes[],
                        size_t number, const wh_pose_t bodies[], wh_real_t angles[]) {
     const wh_arm_t *arm = wh_layout_arm_lengths(layout, (size_t)layout->arms[robot->arm].robot);
@@ -266,8 +266,8 @@ static void compare_effectors(const wh_urdf_map_t *map, const wh_layout_t *layou
 
 /* --------------------------------------------------------------------------------------------- the bodies */
 
-/* By link and body, the bodies of a second arm behind those of the first: where the link was first seen from
- * there; it may still stand still there. */
+/* By link and body, with the bodies of a second arm behind those of the first: the link's first place seen
+ * from the body, and whether it has always been there. */
 typedef struct {
     size_t body_count;
     bool is_first;
@@ -275,9 +275,10 @@ typedef struct {
     wh_pose_t body_from_link[WH_URDF_LINKS][WH_URDF_ARMS * WH_ARM_BODIES];
 } rests_t;
 
-/* Two places of a link that moves with a body may differ by more than the end-effector from the robot's:
- * each is off by as much as that one, plus its reach of up to 2000 mm times the angle that is allowed. That
- * is 3e-6 mm, and may be in opposite directions. What does not move with the body is off by far more. */
+/* Two places of a link that moves with a body may differ by more than the end-effector may from the robot's.
+ * Each place may be off by as much as the end-effector, plus its reach of up to 2000 mm times the allowed
+ * angle. This sum is 3e-6 mm, and the two may be in opposite directions. A link that does not move with the
+ * body is off by far more. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     const wh_real_t room = 10;
     const wh_vec3_t off = wh_vec3_subtract(&a->r, &b->r);
@@ -304,7 +305,7 @@ static void watch(rests_t *rests, const wh_pose_t base_from_link[], size_t link_
     rests->is_first = false;
 }
 
-/* Of several bodies the first one. `first` is the number of the robot's first body. */
+/* Chooses the first one of several bodies. `first` is the number of the robot's first body. */
 static void choose_bodies(const rests_t *rests, const wh_layout_t *layout, size_t first, size_t link_count,
                           wh_urdf_findings_t *findings) {
     for (size_t i = 0; i < link_count; ++i) {

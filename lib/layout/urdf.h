@@ -12,11 +12,12 @@
 #include "links.h"
 #include "urdf_file.h"
 
-/* The URDF's end-effector may be so far from the robot's, mm, and so far turned from it, rad: rounding. */
+/* The largest distance of the URDF's end-effector from the robot's, mm, and the largest turn from it, rad:
+ * rounding. */
 #define WH_URDF_SAME_MM 1e-6
 #define WH_URDF_SAME_RAD 1e-9
 
-/* How many configurations are looked at. */
+/* The number of configurations that are compared. */
 #define WH_URDF_CONFIGURATIONS 500
 
 /* Arms or wrists of one robot. */
@@ -50,7 +51,7 @@ typedef struct {
     bool folds[WH_URDF_ARMS];              /* a joint follows an angle of this arm's links */
 } wh_urdf_map_t;
 
-/* What all configurations together say. */
+/* The result over all configurations. */
 typedef struct {
     size_t reached; /* configurations: those that the arms' links reach */
     /* where the end-effectors differ most: which arm's, by how much, the axes, and both places in base */
@@ -67,8 +68,8 @@ typedef struct {
     wh_pose_t body_from_link[WH_URDF_LINKS];
 } wh_urdf_findings_t;
 
-/* The lengths of arm `number` of a map, one that folds, as its joints have them, to 1e-9 mm. Of the robot
- * only the arm's heading counts. right_handed is read. */
+/* Takes the lengths of arm `number` of a map, an arm that folds, from its joints, to 1e-9 mm. Only the arm's
+ * heading is taken from the robot. right_handed is read. */
 void wh_urdf_arm(const wh_urdf_map_t *map, size_t number, const wh_layout_t *layout, wh_arm_t *arm);
 
 /* The value of the joint that carries a link, rad or mm. */

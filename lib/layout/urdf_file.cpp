@@ -28,7 +28,7 @@ namespace {
 
 const double mm_per_m = 1000;
 
-/* What is read into, and where it says why not. */
+/* The file to fill in, and the message for an error. */
 struct reading_t {
     const char *path;
     wh_urdf_file_t *file;
@@ -37,7 +37,8 @@ struct reading_t {
     std::vector<const urdf::Link *> links; /* in the order of file->links */
 };
 
-/* The library takes what it cannot read as the format of a message: what it gets has this byte for each %. */
+/* The library uses text that it cannot read as the format of a message, so it gets this byte in place of each
+ * %. */
 const char percent = '\1';
 
 std::string with_percents(std::string text) {
@@ -83,6 +84,51 @@ bool read_text(const reading_t &reading, std::string &text) {
     return length <= WH_URDF_BYTES || refuse(reading, "more than %zu bytes", WH_URDF_BYTES);
 }
 
+/* Returns where the tag or comment that begins at `at` ends, or the text's end. `count` is set to the most
+ * attributes that it may have. */
+size_t pass_tag(const std::string &text, size_t at, size_t &count) {
+    count = 0;
+    if (text.compare(at, 4, "<!--") == 0) {
+        return std::min(text.find("-->", at), text.size());
+    }
+    char quote = '\0';
+    for (; at < text.size() && (quote != '\0' || text[at] != '>'); ++at) {
+        count += size_t(quote == '\0' && text[at] == '=');
+        if (text[at] == quote) {
+            quote = '\0';
+        } else if (quote == '\0' && (text[at] == '"' || text[at] == '\'')) {
+            quote = text[at];
+        }
+    }
+    return at;
+}
+
+size_t line_of(const std::string &text, size_t at) {
+    return 1 + size_t(std::count(text.begin(), text.begin() + long(at), '\n'));
+}
+
+/* The reader compares each attribute of an element with all others of it. */
+bool check_attributes(const reading_t &reading, const std::string &text) {
+    size_t count = 0;
+    for (size_t at = text.find('<'); at < text.size(); at = text.find('<', at)) {
+        const size_t end = pass_tag(text, at, count);
+        if (count > WH_URDF_ATTRIBUTES) {
+            return refuse(reading, "line %zu: an element with %zu attributes (expected at most %d)",
+                          line_of(text, at), count, WH_URDF_ATTRIBUTES);
+        }
+        at = end;
+    }
+    return true;
+}
+
+/* A file for xacro is XML, too, and liburdfdom would pass over its elements. */
+bool check_expanded(const reading_t &reading, const std::string &text) {
+    const size_t at = std::min({text.find("<xacro:"), text.find("${"), text.find("$(")});
+    return at == std::string::npos ||
+           refuse(reading, "line %zu: it is written for xacro (expected what `xacro FILE` makes of it)",
+                  line_of(text, at));
+}
+
 /* liburdfdom's reader of XML takes text alone, and goes down one call for each element within another. */
 bool check_text(const reading_t &reading, const std::string &text) {
     const size_t tags = size_t(std::count(text.begin(), text.end(), '<'));
@@ -90,7 +136,8 @@ bool check_text(const reading_t &reading, const std::string &text) {
     if (at != std::string::npos) {
         return refuse(reading, "byte %zu is %d (expected text)", at, text[at]);
     }
-    return tags <= WH_URDF_TAGS || refuse(reading, "%zu tags (expected at most %d)", tags, WH_URDF_TAGS);
+    return tags <= WH_URDF_TAGS ? check_attributes(reading, text) && check_expanded(reading, text)
+                                : refuse(reading, "%zu tags (expected at most %d)", tags, WH_URDF_TAGS);
 }
 
 /* ---------------------------------------------------------------------------------------------- elements */
@@ -108,7 +155,7 @@ const char *name_of(const TiXmlElement &element) {
     return name ? name : "";
 }
 
-/* Of several shapes in one element liburdfdom takes the first, without a word. */
+/* If one element has several shapes, liburdfdom silently takes the first. */
 bool check_shape(const reading_t &reading, const TiXmlElement &link, const TiXmlElement &shape) {
     const TiXmlElement *geometry = shape.FirstChildElement("geometry");
     const bool is_one =
@@ -117,7 +164,8 @@ bool check_shape(const reading_t &reading, const TiXmlElement &link, const TiXml
                             shape.Row(), name_of(link), shape.Value());
 }
 
-/* It passes over elements that it does not know: one of a name that is nearly a shape's was meant for one. */
+/* liburdfdom ignores elements that it does not know. An element whose name is nearly a shape's was meant as
+ * that shape. */
 bool check_link(const reading_t &reading, const TiXmlElement &link) {
     static const char *const known[] = {"collision", "visual"};
     bool good = true;
@@ -136,10 +184,17 @@ bool check_link(const reading_t &reading, const TiXmlElement &link) {
     return good;
 }
 
-/* A text that is no XML is liburdfdom's to refuse. */
-bool check_elements(const reading_t &reading, const std::string &text) {
-    TiXmlDocument document;
+/* liburdfdom does not tell where it stopped reading. */
+bool read_xml(const reading_t &reading, const std::string &text, TiXmlDocument &document) {
     document.Parse(text.c_str());
+    if (document.Error() && document.ErrorRow() == 0) {
+        return refuse(reading, "at its end: %s (expected XML)", document.ErrorDesc());
+    }
+    return !document.Error() || refuse(reading, "line %d, column %d: %s (expected XML)", document.ErrorRow(),
+                                       document.ErrorCol(), document.ErrorDesc());
+}
+
+bool check_elements(const reading_t &reading, const TiXmlDocument &document) {
     const TiXmlElement *robot = document.RootElement();
     bool good = true;
     for (const TiXmlElement *at = robot ? robot->FirstChildElement("link") : nullptr; good && at;
@@ -151,9 +206,9 @@ bool check_elements(const reading_t &reading, const std::string &text) {
 
 /* ------------------------------------------------------------------------------------------- liburdfdom */
 
-/* Keeps what the library cannot read. It goes on where a shape or a mass is wrong, without the rest of that
- * link's shapes, and says so in two errors, of which the second names the link. How a link is painted
- * counts for nothing here. */
+/* Keeps the library's errors. If a shape or a mass is wrong, the library goes on without the rest of that
+ * link's shapes. It then reports two errors; the second one names the link. Errors of a link's paint do not
+ * count here. */
 class listener_t : public console_bridge::OutputHandler {
   public:
     void log(const std::string &text, console_bridge::LogLevel level, const char *, int) override;
@@ -177,7 +232,7 @@ void listener_t::log(const std::string &text, console_bridge::LogLevel level, co
 /* The library's messages go to one listener of the whole process. */
 pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 
-/* Null, and why, also where the library made a model of a part of the text. */
+/* Returns null and the reason, also if the library made a model of a part of the text. */
 urdf::ModelInterfaceSharedPtr parse(const std::string &text, std::string &error) {
     listener_t listener;
     (void)pthread_mutex_lock(&one_at_a_time);
@@ -279,7 +334,7 @@ const char *type_of(const urdf::Joint &joint) {
     return names[joint.type];
 }
 
-/* Limits of 0 and 0 are those of a joint of which the file says none. */
+/* Limits of 0 and 0 mean that the file gives none for the joint. */
 void take_limits(const urdf::Joint &joint, wh_urdf_link_t *link) {
     const double unit = link->motion == WH_URDF_SLIDES ? mm_per_m : 1;
     const bool can_be = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::PRISMATIC;
@@ -416,9 +471,13 @@ bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t 
         return false;
     }
     std::replace(text.begin(), text.end(), '%', percent);
+    TiXmlDocument document;
+    if (!read_xml(reading, text, document)) {
+        return false;
+    }
     const urdf::ModelInterfaceSharedPtr model = parse(text, error);
     if (!model) {
         return refuse(reading, "%s", error.c_str());
     }
-    return check_elements(reading, text) && take_model(reading, *model);
+    return check_elements(reading, document) && take_model(reading, *model);
 }

@@ -17,13 +17,15 @@ WH_HEADER_BEGIN
 /* The largest file, and the most tags, links and shapes in it. */
 #define WH_URDF_BYTES ((size_t)1 << 20)
 #define WH_URDF_TAGS 8192
+/* The most attributes of one element. */
+#define WH_URDF_ATTRIBUTES 64
 #define WH_URDF_LINKS 64
 #define WH_URDF_SHAPES 64
 /* The longest name of a link or joint, and of a mesh's file, with the terminator. */
 #define WH_URDF_NAME 64
 #define WH_URDF_PATH 512
 
-/* What a joint does. `continuous` and `revolute` joints turn, `prismatic` ones slide. */
+/* The motion of a joint. `continuous` and `revolute` joints turn, `prismatic` ones slide. */
 typedef enum { WH_URDF_FIXED, WH_URDF_TURNS, WH_URDF_SLIDES } wh_urdf_motion_t;
 
 typedef struct {
@@ -57,10 +59,10 @@ typedef struct {
 } wh_urdf_file_t;
 
 /* False with *file undefined: the file cannot be read or is too large; liburdfdom refuses it, or a part of
- * it other than how links are painted: a number that is none, a shape that it does not know; its joints make
- * no tree, or one is of another type; names are too long; counts are beyond the limits above. `message`
- * then has one line that names the file, the link or joint, the value and what was expected. Sizes of shapes
- * are not looked at. */
+ * it other than how links are painted: an invalid number, or an unknown shape; its joints do not form a tree,
+ * or one has another type; names are too long; counts are beyond the limits above. `message` then has one
+ * line that names the file, the link or joint, the value and what was expected. Sizes of shapes are not
+ * checked. */
 bool wh_urdf_read(const char *path, wh_urdf_file_t *file, char *message, size_t size);
 
 WH_HEADER_END

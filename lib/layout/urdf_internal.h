@@ -1,4 +1,4 @@
-/* What the comparison of a URDF with its robot (urdf.c) shares with the search for its joints' extremes
+/* Shared by the comparison of a URDF with its robot (urdf.c) and the search for its joints' extremes
  * (urdf_limits.c). */
 #ifndef WH_LAYOUT_URDF_INTERNAL_H
 #define WH_LAYOUT_URDF_INTERNAL_H
@@ -26,7 +26,8 @@ size_t wh_urdf_radial_axis(const wh_urdf_robot_t *robot, size_t number);
 void wh_urdf_sources(const wh_urdf_map_t *map, const wh_layout_t *layout, const wh_real_t axes[],
                      wh_real_t sources[], wh_real_t stretched[]);
 
-/* What the links of an arm that folds do not reach is not looked at; stretched, they reach up to rounding. */
+/* True if the links of each arm that folds reach. Other configurations are not checked; stretched links reach
+ * up to rounding. */
 bool wh_urdf_is_reached(const wh_urdf_map_t *map, const wh_real_t stretched[]);
 
 /* A value of a joint, and the axes there. */

@@ -78,7 +78,7 @@ static bool take_better(const search_t *search, wh_urdf_extreme_t *at, wh_urdf_e
     return true;
 }
 
-/* Goes by parts of the axes' travels. */
+/* Moves in steps that are parts of the axes' travels. */
 static bool try_step(const search_t *search, const size_t axes[], size_t count, const wh_real_t way[],
                      wh_real_t part, wh_urdf_extreme_t *best) {
     wh_urdf_extreme_t at = *best;
@@ -97,8 +97,9 @@ static bool is_radial(const search_t *search, int32_t source) {
     return radial;
 }
 
-/* The robot's axes by which a joint gets to its extreme: that which it follows; of an angle of the links, or
- * of an arm's R, where the links may not reach, the arm's R and yaw, and theta. Returns how many. */
+/* The robot's axes that bring a joint to its extreme: usually the axis that it follows. For an angle of the
+ * links, or for an arm's R, where the links may not reach, they are the arm's R and yaw, and theta. Returns
+ * how many there are. */
 static size_t list_axes(const search_t *search, size_t axes[WAY_AXES]) {
     int32_t link = search->link;
     while (search->map->file->links[link].mimics >= 0) {

@@ -1,4 +1,5 @@
-/* Datagrams: their check, and a look at them before LCM's generated code, which trusts counts and lengths. */
+/* Checks datagrams and validates their bytes before LCM's generated code, which trusts counts and
+ * lengths. */
 #include <endian.h>
 #include <string.h>
 
@@ -34,21 +35,16 @@
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
 
-/* A big-endian word; one that `size` cuts off is filled up with zeros. */
-static uint64_t word_at(const uint8_t *bytes, size_t size) {
+uint64_t wh_link_word(const uint8_t *bytes, size_t size) {
     uint64_t word = 0;
-    if (size >= sizeof word) {
-        memcpy(&word, bytes, sizeof word);
-    } else {
-        memcpy(&word, bytes, size);
-    }
+    memcpy(&word, bytes, size < sizeof word ? size : sizeof word);
     return be64toh(word);
 }
 
 static uint64_t check_of(const uint8_t *bytes, size_t size) {
     uint64_t hash = WH_HASH_START;
     for (size_t at = 0; at < size; at += 8) {
-        hash = wh_hash_word(hash, word_at(bytes + at, size - at));
+        hash = wh_hash_word(hash, wh_link_word(bytes + at, size - at));
     }
     return hash != 0 ? hash : 1;
 }
@@ -60,22 +56,23 @@ void wh_link_seal(uint8_t *bytes, size_t size) {
     }
 }
 
-/* True if the check at its end is right, or 0. */
+/* True if the check at the datagram's end is right, or 0. */
 static bool is_intact(const void *data, size_t size) {
     const uint8_t *bytes = data;
     if (size < 8) {
         return false;
     }
-    const uint64_t told = word_at(bytes + size - 8, 8);
+    const uint64_t told = wh_link_word(bytes + size - 8, 8);
     return told == 0 || told == check_of(bytes, size - 8);
 }
 
-/* The same for what is written with a check only. */
+/* True if the check is right and not 0, for messages that always have one. */
 static bool is_sealed(const void *data, size_t size) {
-    return is_intact(data, size) && word_at((const uint8_t *)data + size - 8, 8) != 0;
+    return is_intact(data, size) && wh_link_word((const uint8_t *)data + size - 8, 8) != 0;
 }
 
-/* A place in a datagram. `good` becomes false if something would lie beyond the end, and stays so. */
+/* A place in a datagram. `good` becomes false if something would lie beyond the end, and then stays
+ * false. */
 typedef struct {
     const uint8_t *bytes;
     size_t size, at;
@@ -104,7 +101,7 @@ static size_t take_count(walk_t *walk, int32_t most) {
     return walk->good ? (size_t)count : 0;
 }
 
-/* Passes a text: its length with the terminator, then so many bytes. */
+/* Passes a text: its length with the terminator, then that many bytes. */
 static void skip_text(walk_t *walk) {
     const size_t length = take_count(walk, WH_LINK_DATAGRAM);
     const size_t end = walk->at + length;
@@ -161,8 +158,8 @@ bool wh_link_decode_request(const void *data, size_t size, waferhand_request *me
 int64_t wh_link_request_number(const void *data, size_t size) {
     const uint8_t *bytes = data;
     const bool is_one =
-        size >= FINGERPRINT + HEADER && word_at(bytes, 8) == (uint64_t)__waferhand_request_get_hash();
-    return is_one ? (int64_t)word_at(bytes + FINGERPRINT + 8, 8) : 0;
+        size >= FINGERPRINT + HEADER && wh_link_word(bytes, 8) == (uint64_t)__waferhand_request_get_hash();
+    return is_one ? (int64_t)wh_link_word(bytes + FINGERPRINT + 8, 8) : 0;
 }
 
 static void skip_texts(walk_t *walk, size_t count) {
@@ -171,8 +168,8 @@ static void skip_texts(walk_t *walk, size_t count) {
     }
 }
 
-/* `count` entries, each of so many bytes, then a count of up to `most`, then so many doubles for each of
- * these. */
+/* Passes `count` entries. Each has `fixed` bytes, then a count of up to `most`, then `doubles` doubles for
+ * each counted one. */
 static void skip_entries(walk_t *walk, size_t count, size_t fixed, int32_t most, size_t doubles) {
     for (size_t i = 0; i < count && walk->good; ++i) {
         skip(walk, fixed);

@@ -1,4 +1,4 @@
-/* What sensors saw, told when it is whole: edge scans with what the estimate says, and what beams told. */
+/* Tells what sensors saw when it is complete: edge scans with the estimate, and what beams told. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -6,13 +6,13 @@
 #include "../text/array.h"
 #include "mcs_process_internal.h"
 
-/* The longest words, beside the samples, fit a datagram. */
+/* The longest words fit a datagram together with the samples. */
 typedef char
     part_fits[WH_LINK_SAMPLES * 9 + WH_SCAN_LINES * (WH_SCAN_LINE_BYTES + 4) + 400 <= WH_LINK_DATAGRAM ? 1
                                                                                                        : -1];
 typedef char lines_fit[WH_SCAN_LINES <= WH_LINK_LINES ? 1 : -1];
 
-/* What is told of each sample, and the words. */
+/* The values that are told for each sample, and the words. */
 typedef struct {
     int32_t *samples;
     float *residual;
@@ -34,7 +34,7 @@ static void put_result(waferhand_edge_scan *message, wh_status_t status, const w
 }
 
 static void estimate(const wh_mcs_t *mcs, told_t *told, waferhand_edge_scan *message) {
-    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_mcs_edge_t *edge = &wh_mcs_measuring(mcs)->edge;
     const wh_edge_scan_t scan = {.number = edge->number,
                                  .gripper = edge->order.gripper,
                                  .count = edge->order.count,
@@ -44,10 +44,8 @@ static void estimate(const wh_mcs_t *mcs, told_t *told, waferhand_edge_scan *mes
                                  .samples = edge->samples};
     wh_edge_point_t *samples = wh_array_new((size_t)edge->taken + 1, sizeof *samples);
     wh_align_result_t result;
-    const int32_t running = mcs->recorder.running;
-    const char *command = running != WH_NONE ? mcs->recorder.record->commands[running].text : NULL;
-    const wh_edge_wish_t wish = wh_edge_wish_of(command);
-    const wh_status_t status = wh_edge_scan_estimate(&scan, mcs->layout, wish, samples, &result);
+    const wh_edge_wish_t wish = wh_edge_wish_of(wh_mcs_running_text(mcs));
+    const wh_status_t status = wh_edge_scan_estimate(&scan, wh_mcs_layout(mcs), wish, samples, &result);
     put_result(message, status, &result);
     wh_edge_scan_words(&scan, status, &result, &told->words);
     for (int32_t i = 0; i < edge->taken; ++i) {
@@ -57,7 +55,7 @@ static void estimate(const wh_mcs_t *mcs, told_t *told, waferhand_edge_scan *mes
     free(samples);
 }
 
-/* One part, from sample `begin` on. */
+/* Tells one part, from sample `begin` on. */
 static void tell_part(wh_mcs_process_t *control, waferhand_edge_scan *message, const told_t *told,
                       int32_t begin) {
     const int32_t left = message->taken - begin;
@@ -74,10 +72,10 @@ static void tell_part(wh_mcs_process_t *control, waferhand_edge_scan *message, c
 }
 
 static waferhand_edge_scan begin_message(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
-    const wh_mcs_edge_t *edge = &mcs->edge;
-    const wh_sensor_t *sensor = &wh_layout_scanner(mcs->layout, edge->order.gripper)->sensor;
+    const wh_mcs_edge_t *edge = &wh_mcs_measuring(mcs)->edge;
+    const wh_sensor_t *sensor = &wh_layout_scanner(wh_mcs_layout(mcs), edge->order.gripper)->sensor;
     const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
-    return (waferhand_edge_scan){.utime = edge->seq * mcs->layout->slice_us,
+    return (waferhand_edge_scan){.utime = edge->seq * wh_mcs_layout(mcs)->slice_us,
                                  .seq = edge->seq,
                                  .run = now.run,
                                  .layout_hash = now.layout_hash,
@@ -95,10 +93,10 @@ static waferhand_edge_scan begin_message(wh_mcs_process_t *control, const wh_mcs
                                  .parts = edge->taken > 0 ? (edge->taken - 1) / WH_LINK_SAMPLES + 1 : 1};
 }
 
-void wh_mcs_process_tell_edge(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const size_t room = (size_t)mcs->edge.taken + 1;
-    told_t told = {.samples = mcs->edge.samples,
+void wh_mcs_process_tell_edge(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    const wh_mcs_edge_t *edge = &wh_mcs_measuring(mcs)->edge;
+    const size_t room = (size_t)edge->taken + 1;
+    told_t told = {.samples = edge->samples,
                    .residual = wh_array_new(room, sizeof(float)),
                    .counts = wh_array_new(room, sizeof(int8_t))};
     waferhand_edge_scan message = begin_message(control, mcs);
@@ -132,9 +130,9 @@ static waferhand_centre centre_of(const wh_centre_t *from) {
     return message;
 }
 
-void wh_mcs_process_tell_centring(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_centring_record_t *centring = &mcs->centring;
+void wh_mcs_process_tell_centring(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    const wh_pass_t *pass = &wh_mcs_measuring(mcs)->pass;
+    const wh_centring_record_t *centring = &wh_mcs_measuring(mcs)->centring;
     waferhand_crossing crossings[WH_CROSSINGS];
     waferhand_centre centres[2];
     const waferhand_mcs now = wh_mcs_process_message(control, 0, 0, WH_OK, "", "");
@@ -144,11 +142,11 @@ void wh_mcs_process_tell_centring(void *user, const wh_mcs_t *mcs) {
     for (int32_t i = 0; i < centring->centres.count; ++i) {
         centres[i] = centre_of(&centring->centres.candidates[i]);
     }
-    const waferhand_centring message = {.utime = mcs->pass.seq * mcs->layout->slice_us,
-                                        .seq = mcs->pass.seq,
+    const waferhand_centring message = {.utime = pass->seq * wh_mcs_layout(mcs)->slice_us,
+                                        .seq = pass->seq,
                                         .run = now.run,
                                         .layout_hash = now.layout_hash,
-                                        .number = (int32_t)mcs->pass.number,
+                                        .number = (int32_t)pass->number,
                                         .station = centring->station,
                                         .gripper = centring->gripper,
                                         .status = (int32_t)centring->status,

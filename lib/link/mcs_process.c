@@ -12,7 +12,7 @@
 #include "outputs.h"
 
 #define HEARTBEAT_US 200000
-/* How long the end of a free-running command waits for the state of its last slice. */
+/* The end of a free-running command waits this long for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
 
 /* ------------------------------------------------------------------------------------------------ telling */
@@ -24,7 +24,7 @@ void wh_mcs_process_publish(wh_mcs_process_t *control, const waferhand_mcs *mess
     }
 }
 
-/* As of now. `request` is the one that this answers or goes on with; 0: none. */
+/* A message with the present state. `request` is the request that it answers or continues; 0: none. */
 waferhand_mcs wh_mcs_process_message(wh_mcs_process_t *control, int64_t request, int32_t phase,
                                      wh_status_t error, const char *command, const char *text) {
     if (control->connected) {
@@ -50,10 +50,10 @@ void wh_mcs_process_tell(wh_mcs_process_t *control, int64_t request, int32_t pha
     wh_mcs_process_publish(control, &message);
 }
 
-/* The longest text of a script that is told whole, with its terminator. */
+/* The longest text of a script that is told in full, with its terminator. */
 #define TEXT_BYTES 4000
 
-/* Tells a text of the script's, which may be of any length. `number`: which one of the run it is, from 1. */
+/* Tells a text of the script; it may have any length. `number` counts the run's texts from 1. */
 static void tell_text(wh_mcs_process_t *control, int32_t phase, int line, int64_t number, const char *text) {
     char cut[TEXT_BYTES];
     const size_t length = strlen(text);
@@ -71,40 +71,41 @@ static void tell_expectation(wh_mcs_process_t *control, const wh_expectation_rec
 }
 
 void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
-    const wh_record_t *record = mcs->recorder.record;
+    const wh_record_t *record = wh_mcs_record(mcs);
     for (size_t i = (size_t)control->outcome.expectations; i < record->expectation_count; ++i) {
         tell_expectation(control, &record->expectations[i]);
     }
 }
 
-/* Before there is a run they are kept: nobody could tell whose they are. */
-static void expected(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
+/* Before a run begins expectations are kept, because nobody could tell which run they belong to. */
+static void tell_expected(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
     if (control->identity.run != 0 || control->connected) {
         wh_mcs_process_catch_up(control, mcs);
     }
 }
 
-static void cycle(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_cycle_record_t *begun = &mcs->recorder.record->cycles[mcs->recorder.record->cycle_count - 1];
+static void tell_cycle(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    const wh_record_t *record = wh_mcs_record(mcs);
+    const wh_cycle_record_t *begun = &record->cycles[record->cycle_count - 1];
     ++control->outcome.cycles;
     tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
 }
 
-static void finished(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = user;
-    const wh_record_t *record = mcs->recorder.record;
+static void judge_run(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    const wh_record_t *record = wh_mcs_record(mcs);
     const bool is_written = control->client.counters.unwritten == 0;
-    control->outcome.verdict = record->ok && is_written ? WH_OUTCOME_PASSED : WH_OUTCOME_FAILED;
+    const char *disturbance = control->client.disturbance;
+    control->outcome.verdict =
+        record->ok && is_written && disturbance[0] == '\0' ? WH_OUTCOME_PASSED : WH_OUTCOME_FAILED;
     if (record->failure || is_written) {
-        snprintf(control->reason, sizeof control->reason, "%s", record->failure ? record->failure : "");
+        snprintf(control->reason, sizeof control->reason, "%s",
+                 record->failure ? record->failure : disturbance);
     } else {
         snprintf(control->reason, sizeof control->reason, WH_OUTPUTS_UNWRITTEN, control->options.outputs);
     }
 }
 
-/* The run is over; the next one, of a session, has its own counts. */
+/* Tells that the run is over; a session's next run has its own counts. */
 void wh_mcs_process_tell_over(wh_mcs_process_t *control) {
     char text[WH_OUTCOME_BYTES + sizeof control->reason];
     if (control->outcome.verdict == WH_OUTCOME_UNTOLD) {
@@ -136,7 +137,7 @@ static void forget_running(wh_mcs_process_t *control, int32_t task) {
     }
 }
 
-/* A request is executed by the prompt, not by a task. */
+/* The prompt executes requests, a task does not. */
 static void tell_running(wh_mcs_process_t *control, const wh_mcs_process_running_t *running, int32_t phase,
                          const char *command, const char *text) {
     const bool goes_on = phase == WH_LINK_PHASE_BEGINS || phase == WH_LINK_PHASE_GOES_ON;
@@ -158,7 +159,7 @@ static void tell_begin(wh_mcs_process_t *control, const wh_command_record_t *com
     tell_running(control, running, WH_LINK_PHASE_BEGINS, command->text, "");
 }
 
-/* Not as the request's answer: that carries its result, and wh_mcs_process_answer sends it. */
+/* This is not the request's answer; that carries the result, and wh_mcs_process_answer sends it. */
 static void tell_end(wh_mcs_process_t *control, const wh_command_record_t *command) {
     const int32_t phase = command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED;
     waferhand_mcs message = wh_mcs_process_message(control, 0, phase, command->error, command->text,
@@ -168,13 +169,7 @@ static void tell_end(wh_mcs_process_t *control, const wh_command_record_t *comma
     wh_mcs_process_publish(control, &message);
 }
 
-static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
-    wh_mcs_process_t *control = user;
-    (void)mcs;
-    if (!ended) {
-        tell_begin(control, command);
-        return;
-    }
+static void tell_ended(wh_mcs_process_t *control, const wh_command_record_t *command) {
     forget_running(control, command->task);
     control->ended_with = command->error;
     if (control->connected) {
@@ -183,9 +178,37 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     tell_end(control, command);
 }
 
+static void tell_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news,
+                      const wh_command_record_t *command) {
+    wh_mcs_process_t *control = user;
+    switch (news) {
+    case WH_MCS_COMMAND_BEGINS:
+        tell_begin(control, command);
+        break;
+    case WH_MCS_COMMAND_ENDED:
+        tell_ended(control, command);
+        break;
+    case WH_MCS_EXPECTED:
+        tell_expected(control, mcs);
+        break;
+    case WH_MCS_CYCLE_BEGINS:
+        tell_cycle(control, mcs);
+        break;
+    case WH_MCS_EDGE_SCANNED:
+        wh_mcs_process_tell_edge(control, mcs);
+        break;
+    case WH_MCS_CENTRED:
+        wh_mcs_process_tell_centring(control, mcs);
+        break;
+    case WH_MCS_FINISHED:
+        judge_run(control, mcs);
+        break;
+    }
+}
+
 static void turn(void *user, const wh_mcs_t *mcs, const char *what) {
     wh_mcs_process_t *control = user;
-    const wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
+    const wh_lane_t *lane = wh_mcs_current_lane(mcs);
     wh_mcs_process_running_t none = {.task = lane->number};
     wh_mcs_process_running_t *running = find_running(control, lane->number);
     char names[WH_MCS_MECHANISMS_BYTES];
@@ -212,22 +235,23 @@ static void tell_wait(void *user) {
     control->owner.waits(control->owner.user);
 }
 
-/* A second time, for another run of a session: the one before is over. */
+/* A second call is for another run of a session: the run before is over. */
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
-    if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        wh_node_warn(control->node, "the layout has more wafers than a message carries (256)");
+    const wh_layout_t *layout = wh_mcs_layout(mcs);
+    if (layout->wafer_count > WH_LINK_WAFERS) {
+        wh_node_warn(control->node, "%s: %zu wafers (expected at most %d, for messages carry no more)",
+                     layout->path, layout->wafer_count, WH_LINK_WAFERS);
         return NULL;
     }
     control->mcs = mcs;
     control->options.waits = control->owner.waits ? tell_wait : NULL;
     if (control->connected) {
         wh_mcs_process_tell_over(control);
-        wh_protocol_client_begin(&control->client, mcs->layout);
+        wh_protocol_client_begin(&control->client, layout);
         return &control->client.link;
     }
-    control->connected =
-        wh_protocol_client_open(&control->client, control->node, mcs->layout, &control->options);
+    control->connected = wh_protocol_client_open(&control->client, control->node, layout, &control->options);
     if (control->connected) {
         wh_mcs_process_catch_up(control, mcs);
     }
@@ -256,7 +280,7 @@ static size_t save(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]) {
     return wh_protocol_client_save(&control->client, bytes);
 }
 
-/* Another run begins: the one before is over. */
+/* Another run begins, so the run before is over. */
 static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_state_t *state) {
     wh_mcs_process_t *control = user;
     control->utime = control->client.command.utime;
@@ -264,7 +288,7 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
     control->identity = control->client.identity;
     const wh_status_t status = wh_protocol_client_restore(&control->client, bytes, size, state);
     if (status == WH_OK) {
-        control->connected = false; /* so it is told of the run before */
+        control->connected = false; /* so that it is told of the run before */
         wh_mcs_process_tell_over(control);
         control->connected = true;
     }
@@ -322,8 +346,8 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* States have samples of an edge scan and latches of beams, and a free run takes several from one exchange
- * to the next. */
+/* States contain samples of an edge scan and latches of beams; a free run takes several states from one
+ * exchange to the next. */
 static void hear_state(void *user, const wh_state_t *state) {
     const wh_mcs_process_t *control = user;
     if (control->mcs) {
@@ -331,7 +355,7 @@ static void hear_state(void *user, const wh_state_t *state) {
     }
 }
 
-/* All that comes on our own channel is our own, but for another motion control's. */
+/* All messages on our own channel are ours, unless there is another motion control. */
 static void on_mcs(void *user, const void *data, size_t size) {
     wh_mcs_process_t *control = user;
     (void)data;
@@ -359,21 +383,13 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 }
 
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
+    static const wh_mcs_lossy_t lossy = {resume, await, reached, is_heard, explain};
     return (wh_mcs_partners_t){.connect = connect_client,
-                               .watch = watch,
-                               .turn = turn,
-                               .resume = resume,
-                               .await = await,
-                               .reached = reached,
-                               .is_heard = is_heard,
+                               .lossy = &lossy,
                                .save = save,
                                .restore = restore,
-                               .explain = explain,
-                               .expected = expected,
-                               .cycle = cycle,
-                               .edge = wh_mcs_process_tell_edge,
-                               .centring = wh_mcs_process_tell_centring,
-                               .finished = finished,
+                               .tell = tell_news,
+                               .turn = turn,
                                .user = control};
 }
 

@@ -1,4 +1,4 @@
-/* Requests to motion control: who waits, who is turned away, and what is remembered. */
+/* Requests to motion control: which wait, which are turned away, and which answers are remembered. */
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,11 +11,11 @@
 #include "../text/utf8.h"
 #include "mcs_process_internal.h"
 
-/* What a datagram has besides the two texts of a message. */
+/* The bytes of a datagram besides the two texts of a message. */
 #define MESSAGE_BYTES 128
-/* Room for why a request is turned away. */
+/* Room for the reason why a request is turned away. */
 #define REASON_BYTES 600
-/* So much of what has come is looked at before the requests that wait are answered. */
+/* At most this number of messages is handled before the requests that wait are answered. */
 #define MESSAGES_AT_ONCE 1000
 
 static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
@@ -27,7 +27,7 @@ static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *contro
     return NULL;
 }
 
-/* The request that waits or is executed under this number, else null. */
+/* The request that waits or is executed under this number; otherwise null. */
 static const wh_mcs_process_request_t *find_pending(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < control->waiting_count; ++i) {
         const wh_mcs_process_request_t *request =
@@ -39,7 +39,7 @@ static const wh_mcs_process_request_t *find_pending(const wh_mcs_process_t *cont
     return control->executing.seq == seq ? &control->executing : NULL;
 }
 
-/* Of a text that does not fit a datagram the answer tells how much is left. */
+/* If a text does not fit a datagram, the answer tells how much is left. */
 static void remember(wh_mcs_process_t *control, const wh_mcs_process_request_t *request, wh_status_t error,
                      const char *text) {
     const int32_t phase = error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED;
@@ -59,7 +59,7 @@ static void remember(wh_mcs_process_t *control, const wh_mcs_process_request_t *
     wh_mcs_process_publish(control, &answer->message);
 }
 
-/* An answer that is not remembered: asked again, the request may be taken. */
+/* Sends an answer that is not remembered: if it comes again, the request may be taken. */
 __attribute__((format(printf, 5, 6))) static void turn_away(wh_mcs_process_t *control, int64_t seq,
                                                             const char *line, wh_status_t error,
                                                             const char *format, ...) {
@@ -73,7 +73,7 @@ __attribute__((format(printf, 5, 6))) static void turn_away(wh_mcs_process_t *co
     wh_mcs_process_tell(control, seq, WH_LINK_PHASE_FAILED, 0, error, line, text);
 }
 
-/* True if the request is meant for another run or layout: it has then been told so. */
+/* True if the request is meant for another run or layout; its sender has then been told so. */
 static bool turn_away_misdirected(wh_mcs_process_t *control, const wh_mcs_process_request_t *request,
                                   const char *line) {
     static const wh_link_identity_t nowhere = {0};
@@ -94,7 +94,7 @@ static bool turn_away_misdirected(wh_mcs_process_t *control, const wh_mcs_proces
     return false;
 }
 
-/* The next one that waits is the one being executed. */
+/* The next request that waits becomes the one being executed. */
 static bool take_waiting(wh_mcs_process_t *control) {
     if (control->waiting_count == 0) {
         return false;
@@ -105,7 +105,7 @@ static bool take_waiting(wh_mcs_process_t *control) {
     return true;
 }
 
-/* Answers the requests that wait without beginning them. */
+/* Answers the requests that wait, without beginning them. */
 void wh_mcs_process_clear(wh_mcs_process_t *control) {
     char text[REASON_BYTES];
     const wh_mcs_process_request_t executing = control->executing;
@@ -117,13 +117,13 @@ void wh_mcs_process_clear(wh_mcs_process_t *control) {
     control->executing = executing;
 }
 
-/* Ends the running command, too. A script's next one, if it comes between two. */
+/* Ends all requests and the running command. Between two commands of a script it ends the next one. */
 static void stop_all(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
     if (control->mcs && control->owner.stops) {
         control->owner.stops(control->owner.user);
     } else if (control->mcs && (control->script || control->running_count > 0)) {
         wh_mcs_stop(control->mcs);
-        control->node->interrupted = true; /* also a wait for a simulator that is silent */
+        control->node->interrupted = true; /* ends also the wait for a silent simulator */
     } else if (control->mcs) {
         wh_mcs_give_up(control->mcs, WH_NONE);
     }
@@ -131,7 +131,7 @@ static void stop_all(wh_mcs_process_t *control, const wh_mcs_process_request_t *
     remember(control, request, WH_OK, "OK");
 }
 
-/* The name behind STOP and a blank, as it is or in quotes; false if the line is no such STOP. */
+/* Finds the name behind STOP and a blank, plain or in quotes; false if the line is no such STOP. */
 static bool find_stopped(const char *line, char name[WH_LINK_LINE]) {
     line += strspn(line, " ");
     if (strncasecmp(line, "STOP ", 5) != 0) {
@@ -171,7 +171,7 @@ static void enqueue(wh_mcs_process_t *control, const wh_mcs_process_request_t *r
     control->waiting[(control->first_waiting + control->waiting_count++) % WH_CONTROL_REQUESTS] = *request;
 }
 
-/* One that has not come before, for this run and layout. */
+/* Takes a new request for this run and layout. */
 static void take_new(wh_mcs_process_t *control, const wh_mcs_process_request_t *request) {
     const char *line = request->line;
     char status[WH_MCS_DESCRIPTION_BYTES + 4] = "OK phase=over";
@@ -201,8 +201,8 @@ static void take_new(wh_mcs_process_t *control, const wh_mcs_process_request_t *
     }
 }
 
-/* The number is known. What comes again is answered again, not executed again: the answer may have been
- * lost. The run may have gone on meanwhile, by a RESET. */
+/* The number is known. A request that comes again is answered again but not executed again, because the
+ * answer may have been lost. The run may have gone on meanwhile, by a RESET. */
 static void take_again(wh_mcs_process_t *control, const waferhand_request *message,
                        const wh_mcs_process_answer_t *answer, const wh_mcs_process_request_t *pending) {
     const char *line = answer ? answer->line : pending->line;
@@ -237,7 +237,7 @@ static void take_request(wh_mcs_process_t *control, const waferhand_request *mes
     }
 }
 
-/* Whoever sent it learns so if its number can be read. */
+/* The sender learns of it if the request's number can be read. */
 static void drop(wh_mcs_process_t *control, const void *data, size_t size) {
     const int64_t seq = wh_link_request_number(data, size);
     if (seq != 0) {
@@ -261,14 +261,14 @@ void wh_mcs_process_on_request(void *user, const void *data, size_t size) {
         drop(control, data, size);
         return;
     }
-    /* Nobody could tell the answer to 0 from what is told without a request. */
+    /* An answer to number 0 would look like a message without a request. */
     if (message.seq != 0) {
         take_request(control, &message);
     }
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-/* A RESET before it may have begun another run since the request came. */
+/* An earlier RESET may have begun another run since the request came. */
 bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]) {
     while (take_waiting(control)) {
         if (!turn_away_misdirected(control, &control->executing, control->executing.line)) {

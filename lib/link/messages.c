@@ -71,7 +71,7 @@ static void put_encounter(const wh_encounter_t *encounter, waferhand_encounter *
     if (encounter->wafer != WH_NONE) {
         out->wafer = encounter->wafer;
         out->holder = encounter->holder;
-        out->slice = (int64_t)encounter->slice;
+        out->slice = (int64_t)wh_encounter_stamp(encounter);
         put_measured(&encounter->measured, &out->measured);
     }
 }
@@ -80,7 +80,7 @@ static void take_encounter(const waferhand_encounter *in, const wh_tolerance_t *
                            wh_encounter_t *out) {
     out->wafer = in->wafer;
     out->holder = in->holder;
-    out->slice = (uint64_t)in->slice;
+    wh_encounter_take_stamp(out, (uint64_t)in->slice);
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
@@ -326,7 +326,7 @@ static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physi
     condition->carry[g].before[1] = take_vec3(in->wafer_before[1]);
 }
 
-/* The rest is the layout's to fill in: wh_layout_complete_grips. */
+/* The layout fills in the rest: wh_layout_complete_grips. */
 static void take_grip(const waferhand_gripper_state *in, wh_grip_state_t *grip) {
     memset(grip, 0, sizeof *grip);
     grip->phase = (wh_grip_phase_t)in->grip_phase;
@@ -341,7 +341,7 @@ static void take_grip(const waferhand_gripper_state *in, wh_grip_state_t *grip) 
     grip->lying.notch_y = in->grip_notch[1];
 }
 
-/* A near miss between two slices was held against a smaller window, as its limit tells. */
+/* A near miss between two slices was judged by a smaller window; its limit tells that. */
 static void take_near_miss(double limit, const wh_tolerance_t *tolerance, wh_event_t *out) {
     wh_tolerance_t inside = *tolerance;
     inside.projz *= WH_SWEEP_INSIDE;
@@ -409,7 +409,7 @@ static void take_latches(const waferhand_latching *message, wh_latches_t *latche
     take_latch_list(message->latches, message->latch_count, latches->latches);
 }
 
-/* True if `other` is what this kind of event has there. */
+/* True if `other` has a value that this kind of event allows. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
         return wh_is_index(event->other, (size_t)message->gripper_count);
@@ -420,8 +420,8 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
     return event->other == WH_NONE;
 }
 
-/* True if wafer and gripper are what this kind of event has. The collision check and the faults may name
- * none. */
+/* True if wafer and gripper have values that this kind of event allows. The collision check and the faults
+ * may name none. */
 static bool names_fit(const waferhand_event *event, const waferhand_state *message) {
     static const uint32_t any = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
                                 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
@@ -438,7 +438,7 @@ static bool part_fits(int32_t part) {
     return part >= WH_NONE && part < WH_LINK_PARTS;
 }
 
-/* True if a step could have yielded the event. Its readers trust its indices. */
+/* True if a step could have yielded the event. The event's readers trust its indices. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
     return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
            other_fits(event, message) && part_fits(event->parts[0]) && part_fits(event->parts[1]) &&

@@ -1,4 +1,4 @@
-/* Between the library's structs and LCM's messages. Nothing here allocates but where it says so. */
+/* Conversion between the library's structs and LCM's messages. Nothing here allocates, unless stated. */
 #ifndef WH_LINK_MESSAGES_H
 #define WH_LINK_MESSAGES_H
 
@@ -14,7 +14,7 @@
 #include "../layout/layout.h"
 #include "../sim/slice.h"
 
-/* Channels: lcm_types/README.md says who sends what. */
+/* The channels; lcm_types/README.md says who sends which. */
 #define WH_LINK_OURS "WAFERHAND_"
 #define WH_CHANNEL_COMMAND "WAFERHAND_COMMAND"
 #define WH_CHANNEL_STATE "WAFERHAND_STATE"
@@ -26,29 +26,29 @@
 #define WH_CHANNEL_EDGE_SCAN "WAFERHAND_EDGE_SCAN"
 #define WH_CHANNEL_LATCH "WAFERHAND_LATCH"
 
-/* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
+/* The most wafers of a layout for two processes, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
 #define WH_LINK_EVENTS WH_SLICE_EVENTS
-/* One for each wafer, and one for those that have none of their own. */
+/* One rim for each wafer, and one for those that have none of their own. */
 #define WH_LINK_RIMS (WH_LINK_WAFERS + 1)
-/* A command has room for as many, whatever the cell has. */
+/* A command has room for this many, whatever the cell has. */
 typedef char wh_link_needs_the_usual_counts[WH_AXES == 32 && WH_GRIPPERS == 16 ? 1 : -1];
-/* Parts of a collision world, with which an event's must do. */
+/* The most parts of a collision world; the parts of an event must be below it. */
 #define WH_LINK_PARTS (1 << 20)
-/* LCM sends what is longer in fragments, which get lost one by one. */
+/* LCM sends longer messages in fragments, and single fragments get lost. */
 #define WH_LINK_DATAGRAM 65499
 /* The most samples of a part of a whole scan. */
 #define WH_LINK_SAMPLES 7000
-/* The most lines of words about it. */
+/* The most lines of words about a scan. */
 #define WH_LINK_LINES 8
 
-/* More slices than any run has: 285 years of 1 ms, and sums of times stay exact. */
+/* No run has this many slices: 285 years of 1 ms. Sums of times stay exact. */
 #define WH_LINK_SLICES (INT64_C(1) << 53)
 
 /* The longest text of a request, with its terminator. */
 #define WH_LINK_LINE 1001
 
-/* waferhand_cell.collision: what the simulator looks for. */
+/* waferhand_cell.collision: the simulator's check. */
 enum { WH_LINK_NO_COLLISION, WH_LINK_CONTACT, WH_LINK_GAPS };
 
 /* waferhand_mcs.phase. */
@@ -67,7 +67,7 @@ enum {
     WH_LINK_PHASES
 };
 
-/* Who talks about which run: the first fields of each message after its times. */
+/* The sender and its run: the first fields of each message after its times. */
 typedef struct {
     int64_t run;
     uint64_t layout_hash;
@@ -128,27 +128,28 @@ wh_pose_t wh_link_take_pose(const double position[3], const double rotation[9]);
 void wh_link_put_fault(const wh_fault_t *fault, waferhand_fault *out);
 wh_fault_t wh_link_take_fault(const waferhand_fault *in);
 
-/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses,
- * valves and faults are for the step to judge. */
+/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE). The
+ * step judges poses, valves and faults. */
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
                                 bool lockstep, waferhand_command *message);
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command);
 
-/* A state as a message. The counts are within the room, which the caller has seen to; the condition may be
- * null where there is no gripper. */
+/* A state as a message. The caller ensures that the counts are within the room. The condition may be null
+ * where there is no gripper. */
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *message);
 
-/* Back: fills `arrays`, and `state` as a view of them. The message's counts are within the arrays, as
- * wh_link_decode_state sees to. Refuses events that no step yields (WH_STATUS_OUT_OF_RANGE); wafers and
- * grippers are for wh_grasp_restore to judge, the condition for wh_physics_state_validate. Margins and
- * verdicts of measured values, which do not travel, are made anew from `tolerance`; those of a near miss from
- * the limit that its message carries. */
+/* Converts back: fills `arrays`, and `state` as a view of them. The message's counts are within the arrays;
+ * wh_link_decode_state ensures that. It refuses events that no step yields (WH_STATUS_OUT_OF_RANGE).
+ * wh_grasp_restore judges wafers and grippers, wh_physics_state_validate the condition. Margins and
+ * verdicts of measured values do not travel: they are computed again from `tolerance`, those of a near miss
+ * from the limit in its message. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 
-/* The same, and true only if the state is one of this layout, its physics are sound, and its hash is the one
- * that it carries. Whether a grasp table could be in it, wh_grasp_restore finds out. */
+/* Converts back likewise. It returns true only if the state belongs to this layout, its physics are sound,
+ * and it has the hash that it carries. wh_grasp_restore finds out whether a grasp table could be in that
+ * state. */
 bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *layout,
                             wh_link_arrays_t *arrays, wh_state_t *state);
 
@@ -156,22 +157,25 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
 wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout, wh_link_arrays_t *arrays);
 
 /* The values of the paper's Fig. 9: each gripper of the state against the wafer that it holds, or else the
- * one nearest to the limits (record/counterpart.h); those that other grippers hold count too. Cost: linear
+ * one nearest to the limits (record/counterpart.h). Wafers that other grippers hold count too. Cost: linear
  * in grippers times wafers. */
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
                                   const wh_layout_t *layout, waferhand_proximity *message);
 
-/* Writes the check over the last eight of `size` bytes, the end of a command or a state: a datagram in which
- * a bit has flipped is no message. Nothing happens to less than eight. Cost: about 2 ns a word.
+/* Returns the big-endian word at `bytes`. If `size` is less than 8, zeros stand for the bytes beyond it. */
+uint64_t wh_link_word(const uint8_t *bytes, size_t size);
+
+/* Writes the check over the last eight of `size` bytes, which end a command or a state. A datagram with a
+ * flipped bit is then no message. It does nothing to less than eight bytes. Cost: about 2 ns a word.
  *
  * h = 0x6a09e667f3bcc908; for each eight bytes of the encoded message but the last eight, as a big-endian
- * word w, the last of them filled up with zeros:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32).  A
- * result of 0 is written as 1: 0 says that the sender makes no checks. */
+ * word w, the last of them filled up with zeros: h = (h ^ w) * 0x9e3779b97f4a7c15; h = h ^ (h >> 32). A
+ * result of 0 is written as 1, because 0 says that the sender makes no checks. */
 void wh_link_seal(uint8_t *bytes, size_t size);
 
-/* Decodes a datagram, after its size and fingerprint have been compared with what its counts ask for:
- * whatever it contains, nothing is read beyond it and nothing is allocated for a count that it does not
- * carry. The command needs no heap; states and texts are decoded into memory of their own: release them with
+/* Decodes a datagram. It first compares size and fingerprint with its counts. Whatever the datagram
+ * contains, nothing beyond it is read, and no memory is allocated for a count that it does not carry. The
+ * command needs no heap. States and texts are decoded into memory of their own; release them with
  * waferhand_*_decode_cleanup. */
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message);
 bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message);
@@ -182,7 +186,7 @@ bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan
 bool wh_link_decode_centring(const void *data, size_t size, waferhand_centring *message);
 
 /* The number of a request that cannot be decoded, if it has a request's fingerprint and is long enough to
- * carry one; else 0. */
+ * carry one; otherwise 0. */
 int64_t wh_link_request_number(const void *data, size_t size);
 
 /* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is
@@ -190,10 +194,10 @@ int64_t wh_link_request_number(const void *data, size_t size);
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
                               wh_link_cell_t *room);
 
-/* The layout that a cell message describes: enough for a simulator, without the file. In memory that
- * wh_link_layout_free releases; null for a message that no layout could have made: poses, tolerances, counts,
- * names and slots are checked. The machine but its number of grippers, and the stations' parameters of GET
- * and PUT, are not in the message and zero. */
+/* The layout that a cell message describes; a simulator needs no more, and no file. wh_link_layout_free
+ * releases it. The result is null for a message that no layout could have made: poses, tolerances, counts,
+ * names and slots are checked. The message has the number of the machine's grippers and nothing else of it.
+ * It does not have the stations' parameters of GET and PUT. All these are zero. */
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell);
 void wh_link_layout_free(wh_layout_t *layout);
 

@@ -25,7 +25,7 @@ int64_t wh_node_clock_us(void) {
 
 /* ---------------------------------------------------------------------------------------------------- URL */
 
-/* A URL, and who gave it; null: nobody, it is the default. */
+/* A URL, and who gave it; null: nobody, because it is the default. */
 typedef struct {
     const char *text, *giver;
 } url_t;
@@ -77,7 +77,8 @@ static bool open_multicast(wh_receiver_t *receiver, const url_t *url) {
     return false;
 }
 
-/* True if a server listens where LCM's tcpq:// would look for one, which tries for ever without a word. */
+/* True if a server listens where LCM's tcpq:// would look for one; LCM would try for ever without a
+ * message. */
 static bool is_answered(const char *text) {
     char host[256];
     const struct addrinfo wanted = {.ai_family = AF_INET, .ai_socktype = SOCK_STREAM};
@@ -140,7 +141,7 @@ static void keep(wh_node_t *node, const char *channel, const void *data, size_t 
     }
 }
 
-/* Recorded before it is handled: the log has each message before what follows from it. */
+/* A message is recorded before it is handled, so the log has each message before its consequences. */
 static void hand_over(const wh_node_subscriber_t *subscriber, const void *data, size_t size) {
     if (!subscriber->overhears) {
         keep(subscriber->node, subscriber->channel, data, size);
@@ -163,7 +164,7 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
         return true;
     }
     lcm_subscription_t *subscription = lcm_subscribe(node->lcm, channel, receive, subscriber);
-    /* No limit: a queue that drops would look like a network that loses. */
+    /* There is no limit: a queue that drops would look like a network that loses. */
     return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
 }
 
@@ -180,7 +181,7 @@ bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, siz
     return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
 }
 
-/* Messages of channels without a subscriber are other programs'. */
+/* Messages on channels without a subscriber belong to other programs. */
 static int take(wh_node_t *node) {
     wh_received_t message;
     if (!wh_receiver_take(&node->receiver, &message)) {
@@ -195,8 +196,8 @@ static int take(wh_node_t *node) {
     return 1;
 }
 
-/* True if something can be read within so many microseconds. LCM's own wait counts in ms, which may be longer
- * than a slice. */
+/* True if something can be read within `us` microseconds. LCM's own wait counts in ms, which may exceed a
+ * slice. */
 static bool is_readable(wh_node_t *node, int64_t us) {
     struct pollfd ready = {.fd = wh_node_descriptor(node), .events = POLLIN};
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
@@ -205,7 +206,7 @@ static bool is_readable(wh_node_t *node, int64_t us) {
     return count > 0;
 }
 
-/* Receives first: what a process has published comes back to it at once, and often more has come. */
+/* It receives first: a process gets back what it has published at once, and often more has come. */
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     if (node->receiver.socket >= 0) {
@@ -239,7 +240,7 @@ void wh_node_close(wh_node_t *node) {
 
 /* ------------------------------------------------------------------------------------------------- saying */
 
-/* The time as ISO 8601 has it, in UTC and ms, and the level. */
+/* Writes the time in ISO 8601 format, in UTC and ms, and the level. */
 static void put_time(char *text, size_t size, const char *level) {
     const int64_t us = wh_clock_us(CLOCK_REALTIME);
     const time_t seconds = (time_t)(us / 1000000);

@@ -1,5 +1,5 @@
-/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and what
- * becomes a record.
+/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and
+ * recording.
  *
  * Nothing here allocates while messages are published; receiving allocates in liblcm. One thread per node.
  */
@@ -14,14 +14,14 @@
 #include "receiver.h"
 #include "recording.h"
 
-/* Nothing leaves the host unless another URL is asked for. */
+/* Nothing leaves the host unless the user asks for another URL. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
 
-#define WH_NODE_SUBSCRIPTIONS 12
+#define WH_NODE_SUBSCRIPTIONS 16
 
 typedef struct wh_node wh_node_t;
 
-/* What a datagram is handed to: its bytes, true until the call returns. */
+/* A function that takes a datagram: its bytes are valid until the call returns. */
 typedef void wh_node_handler_t(void *user, const void *data, size_t size);
 
 typedef struct {
@@ -29,20 +29,20 @@ typedef struct {
     const char *channel; /* the caller's */
     wh_node_handler_t *handler;
     void *user;
-    bool overhears; /* what it hears is no part of the record */
+    bool overhears; /* the messages that it hears are not recorded */
 } wh_node_subscriber_t;
 
-/* Where a line for people goes; without its end. */
+/* A function that takes a line for people; without its end. */
 typedef void wh_node_listener_t(void *user, const char *line);
 
-/* Who sends on a channel, for one on which there should be one sender. All zero to begin with. */
+/* The senders on a channel that should have only one. It is all zero at the beginning. */
 typedef struct {
     uint64_t last, other; /* the last one, and the other one before it; 0: unknown */
-    bool shared;          /* both send */
+    bool shared;          /* both of them send */
 } wh_senders_t;
 
-/* Hears a message of this sender; 0: unknown. True, once, if two send in turns: one that was started anew
- * sends from another socket, and the one before it never again. */
+/* Hears a message of this sender; 0: unknown. True, once, if two send in turns. A process that was started
+ * again sends from another socket, and never again from the old one. */
 static inline bool wh_senders_hear(wh_senders_t *senders, uint64_t sender) {
     if (sender == 0 || sender == senders->last) {
         return false;
@@ -55,9 +55,9 @@ static inline bool wh_senders_hear(wh_senders_t *senders, uint64_t sender) {
 }
 
 struct wh_node {
-    const char *speaker; /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
+    const char *speaker; /* who speaks in wh_node_say's lines, such as "sim"; null, as at first: nobody */
     bool log_time;       /* lines begin with the time and a level */
-    wh_node_listener_t *listener; /* takes the lines in place of standard error; null: nobody does */
+    wh_node_listener_t *listener; /* takes the lines in place of standard error; null: there is none */
     void *listener_user;
     lcm_t *lcm;             /* sends; receives if the URL is not multicast */
     wh_receiver_t receiver; /* receives multicast */
@@ -68,33 +68,34 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* False, and standard error says why, if nobody outside of this process can be reached at the URL (null:
- * as in wh_node_open): it is one of memory or of a file. */
+/* False, and standard error says why, if the URL (null: as in wh_node_open) reaches nobody outside of this
+ * process. Such a URL is of memory or of a file. */
 bool wh_node_reaches_others(const char *url);
 
 /* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null
- * and its options have a path, it is opened then, and gets all that is published and received. It stays
- * the caller's, who closes it after the node. The node must not be moved afterwards. False, and standard
- * error says why, when LCM cannot (no multicast route, a bad URL, and whose it is: --lcm-url's or the
- * environment's) or the file cannot be made: nothing is then open. */
+ * and its options have a path, it is opened too, and records all messages sent and received. It stays the
+ * caller's, who closes it after the node. The node must not be moved afterwards. Returns false, and
+ * standard error says why, when LCM cannot open it or the file cannot be made; nothing is then open. The
+ * reason may be a missing multicast route or a bad URL, and names its origin: --lcm-url or the
+ * environment. */
 bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 
-/* Subscribes one channel, whose name must outlive the node. False if there is no room. */
+/* Subscribes one channel, whose name must outlive the node. Returns false if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
-/* The same, but what comes is not recorded: of a channel on which the node itself publishes, for over
- * multicast all that comes back. */
+/* Subscribes without recording. It is for a channel on which the node itself publishes: over multicast all
+ * its messages come back. */
 bool wh_node_overhear(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
-/* Sends one datagram, of which nothing is kept. False when the network refused it. */
+/* Sends one datagram and keeps nothing of it. Returns false when the network refused it. */
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size);
 
-/* Handles at most one message, waiting up to so many microseconds. Returns 1 when one was handled, 0 when
- * none came, -1 when LCM failed. Signals end the wait early. Cost besides the message's: one call of the
- * system for a message that is there, two more for one that is waited for. */
+/* Handles at most one message, waiting up to `timeout_us` microseconds. Returns 1 when one was handled, 0
+ * when none came, -1 when LCM failed. Signals end the wait early. Cost besides the message's: one system
+ * call for a message that is there, two more for one that comes later. */
 int wh_node_wait(wh_node_t *node, int64_t timeout_us);
 
-/* Handles what is there, without waiting, at most `most` messages; returns how many. */
+/* Handles at most `most` messages that are there, without waiting; returns their number. */
 int wh_node_drain(wh_node_t *node, int most);
 
 /* A descriptor that is readable when a message is there. */
@@ -103,14 +104,14 @@ int wh_node_descriptor(const wh_node_t *node);
 /* Closes LCM. */
 void wh_node_close(wh_node_t *node);
 
-/* Tells people a line, cut at 599 bytes: on standard error, or to the listener. The speaker stands before it;
- * with `log_time` the time (UTC) and the level, too: "2026-11-22T21:55:03.123Z info sim: ...". */
+/* Tells people a line, cut at 599 bytes: on standard error, or to the listener. The speaker stands before
+ * it; with `log_time` also the time (UTC) and the level: "2026-11-22T21:55:03.123Z info sim: ...". */
 void wh_node_say(const wh_node_t *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The same, of something that is not as it should be: its level is "warning". */
+/* Tells a problem likewise, with the level "warning". */
 void wh_node_warn(const wh_node_t *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* us of a clock that never jumps. */
+/* Returns the time in us of a clock that never jumps. */
 int64_t wh_node_clock_us(void);
 
 #endif

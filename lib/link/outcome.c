@@ -24,7 +24,7 @@ void wh_outcome_write(const wh_run_told_t *outcome, const char *reason, char *te
                    outcome->cycles, has_reason ? "; " : "", has_reason ? reason : "");
 }
 
-/* What follows the verdict's word; null if there is none. */
+/* The text after the verdict's word; null if there is no such word. */
 static const char *read_verdict(const char *text, wh_outcome_verdict_t *verdict) {
     for (size_t i = WH_OUTCOME_PASSED; i < sizeof words / sizeof words[0]; ++i) {
         const size_t length = strlen(words[i]);
@@ -36,7 +36,7 @@ static const char *read_verdict(const char *text, wh_outcome_verdict_t *verdict)
     return NULL;
 }
 
-/* What follows a count; null if it does not stand there. */
+/* The text after a count; null if the count is missing. */
 static const char *read_count(const char *text, const char *before, int64_t *count) {
     const size_t length = strlen(before);
     if (!text || strncmp(text, before, length) != 0 || text[length] < '0' || text[length] > '9') {

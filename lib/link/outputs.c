@@ -1,4 +1,4 @@
-/* outputs.txt: an update takes events, looks at the file, decides what that means, and reports it. */
+/* outputs.txt: an update takes events, looks at the file, decides on the result, and reports it. */
 #include "outputs.h"
 
 #include <errno.h>
@@ -12,9 +12,9 @@
 
 #include "../text/output.h"
 
-#define READS 16          /* of events in one update: a neighbour may never stop writing */
+#define READS 16          /* of events in one update, because a neighbour may never stop writing */
 #define RESTLESS_LOOKS 64 /* bad looks in a row after which a file that never rests is reported */
-#define SHOWN_PATH 200    /* bytes; of a longer path a report shows the end */
+#define SHOWN_PATH 200    /* bytes; a report shows only the end of a longer path */
 
 #define FILE_EVENTS (IN_MODIFY | IN_CLOSE_WRITE | IN_ATTRIB | IN_CREATE | IN_DELETE | IN_MOVE)
 #define FOLDER_EVENTS (IN_DELETE_SELF | IN_MOVE_SELF)
@@ -56,7 +56,7 @@ void wh_outputs_close(wh_outputs_t *outputs) {
     outputs->fd = outputs->watch = -1;
 }
 
-/* True for file systems on which this machine makes all changes, so that inotify sees them. */
+/* True for file systems that only this machine changes, so that inotify sees every change. */
 static bool sees_all(const char *folder) {
     struct statfs system;
     const unsigned long type = statfs(folder, &system) == 0 ? (unsigned long)system.f_type : 0;
@@ -65,7 +65,8 @@ static bool sees_all(const char *folder) {
            type == OVERLAYFS_SUPER_MAGIC;
 }
 
-/* Watches the folder that has the name now. If that is watched already, the kernel gives the same number. */
+/* Watches the folder that has the name at this moment. If it is already watched, the kernel gives the same
+ * number. */
 static void watch_folder(wh_outputs_t *outputs) {
     char folder[WH_OUTPUTS_PATH] = ".";
     if (outputs->name > 0) {
@@ -80,7 +81,8 @@ static void watch_folder(wh_outputs_t *outputs) {
     }
 }
 
-/* True if the event is a reason to look. Events of a folder that is no longer watched do not count. */
+/* True if the event is a reason to look at the file. Events of a folder that is no longer watched do not
+ * count. */
 static bool concerns(wh_outputs_t *outputs, const struct inotify_event *event) {
     const bool ours = event->wd == outputs->watch;
     const bool file = (event->mask & IN_Q_OVERFLOW) != 0 ||
@@ -89,7 +91,8 @@ static bool concerns(wh_outputs_t *outputs, const struct inotify_event *event) {
     return file || (ours && (event->mask & (FOLDER_EVENTS | IN_IGNORED | IN_UNMOUNT)) != 0);
 }
 
-/* Takes the waiting events, so many that it ends. The kernel pads each so that the next one is aligned. */
+/* Takes the waiting events; their number is limited, so that it ends. The kernel pads each event so that
+ * the next one is aligned. */
 static bool take_events(wh_outputs_t *outputs) {
     char buffer[4096] __attribute__((aligned(__alignof__(struct inotify_event))));
     bool told = false;
@@ -105,7 +108,7 @@ static bool take_events(wh_outputs_t *outputs) {
     return told;
 }
 
-/* The length of the next word, where `at` then is; 0: there is none. */
+/* The length of the next word, which begins at `at`; 0: there is none. */
 static size_t next_word(const char *text, size_t size, size_t *at) {
     static const char spaces[] = {' ', '\t', '\r', '\n'};
     size_t length = 0;
@@ -176,8 +179,8 @@ static wh_outputs_look_t failed(int error) {
     return look;
 }
 
-/* Linux lets a write change what a read is copying: one read can be of two moments. What it says counts if a
- * second read finds the same; else the file was caught in the act, and as good as empty. */
+/* On Linux a write may change bytes while a read copies them, so one read can mix two moments. A result
+ * counts if a second read finds it again. Otherwise the file was being written, and is treated as empty. */
 static wh_outputs_look_t read_values(const wh_outputs_t *outputs, int fd, int32_t *valves) {
     char text[WH_OUTPUTS_BYTES + 1];
     char again[WH_OUTPUTS_BYTES + 1];
@@ -189,8 +192,8 @@ static wh_outputs_look_t read_values(const wh_outputs_t *outputs, int fd, int32_
     return wh_outputs_parse(text, same ? (size_t)size : 0, outputs->count, valves);
 }
 
-/* Good values go to `valves`. What is no file is not opened. It may be a fifo since stat: O_NONBLOCK,
- * fstat. */
+/* Writes good values to `valves`. It does not open anything but a plain file. The file may have become a
+ * fifo since stat: O_NONBLOCK, fstat. */
 static wh_outputs_look_t look_at_file(wh_outputs_t *outputs, int32_t *valves, struct stat *status) {
     wh_outputs_look_t look = {.finding = WH_OUTPUTS_NO_FILE, .text = "not a regular file"};
     char byte;
@@ -213,7 +216,7 @@ static wh_outputs_look_t look_at_file(wh_outputs_t *outputs, int32_t *valves, st
     return look;
 }
 
-/* UTF-8 passes, control characters do not: the report is one line whatever the file is called. */
+/* UTF-8 passes, control characters do not, so the report is one line for any file name. */
 static void report(wh_outputs_t *outputs, const wh_outputs_look_t *look) {
     const size_t length = strlen(outputs->path);
     const size_t cut = length > SHOWN_PATH ? length - SHOWN_PATH : 0;
@@ -235,7 +238,7 @@ static void report(wh_outputs_t *outputs, const wh_outputs_look_t *look) {
     }
 }
 
-/* Counts one more bad look. True if the finding has lasted. */
+/* Counts one more bad look. Returns true if the finding has lasted long enough. */
 static bool has_settled(wh_outputs_t *outputs, bool moved, int64_t now_us) {
     if (!outputs->suspect) {
         ++outputs->counters.spells;
@@ -249,7 +252,7 @@ static bool has_settled(wh_outputs_t *outputs, bool moved, int64_t now_us) {
     return now_us - since_us >= outputs->settle_us;
 }
 
-/* Decides if the finding in force changes. */
+/* Decides whether the finding in force changes. */
 static unsigned judge(wh_outputs_t *outputs, const wh_outputs_look_t *look, bool moved, int64_t now_us) {
     const bool same = look->finding == outputs->finding;
     const bool good = look->finding == WH_OUTPUTS_GOOD;
@@ -268,7 +271,7 @@ static unsigned judge(wh_outputs_t *outputs, const wh_outputs_look_t *look, bool
     return WH_OUTPUTS_REPORTED;
 }
 
-/* The folder is watched before the look: what changes after the look must make an event. */
+/* It watches the folder before the look, so that every change after the look makes an event. */
 unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us) {
     if (!take_events(outputs) && now_us < outputs->due_us) {
         return 0;
@@ -281,7 +284,7 @@ unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us) {
     const bool switched = memcmp(before, outputs->valves, sizeof before) != 0;
     ++outputs->counters.looks[look.finding];
     outputs->counters.switches += switched;
-    status.st_atim = outputs->last.st_atim; /* our own reading */
+    status.st_atim = outputs->last.st_atim; /* our own read changes it */
     const bool moved = outputs->moved || memcmp(&status, &outputs->last, sizeof status) != 0;
     outputs->moved = false;
     outputs->last = status;

@@ -8,23 +8,25 @@
 #include "../grasp/restore.h"
 #include "../text/output.h"
 #include "outputs.h"
+#include "protocol_client_internal.h"
 
 #define SETTLE_US 1000000
 #define TICK_US 1000000
-/* How long the first wait is before a command is sent again, and how short and how long it may become. */
+/* The first wait before a command is sent again, and the shortest and longest later wait. */
 #define FIRST_RESEND_US 1200
 #define RESEND_LEAST_US INT64_C(300)
 #define RESEND_MOST_US 50000
-/* So often a command is sent again at the first pace. Then nobody seems to be there, and the pace slows
- * down. */
+/* A command is sent again this number of times at the first pace. After that nobody seems to be there, and
+ * the pace slows down. */
 #define RESENDS_AT_FIRST_PACE 20
-/* The longest single wait: between waits the client looks for silence and for a stop. */
+/* The longest single wait; between waits the client looks for silence and for a stop. */
 #define WAIT_MOST_US 50000
-/* So often it tells that it still waits. */
+/* The interval at which it tells that it still waits. */
 #define WAITS_US 2000
-/* After a stop the answer to what was sent is waited for so long: the simulator has stepped that slice. */
+/* After a stop it waits this long for the last answer, because the simulator has stepped that slice. */
 #define STOP_GRACE_US 100000
-/* A simulator that was started anew may ask for its state several times: it is said once in this time. */
+/* A simulator that was started again may ask for its state several times; this is told once in this
+ * time. */
 #define RESTORE_SAID_US 1000000
 
 static bool is_stopped(const wh_protocol_client_t *client) {
@@ -47,7 +49,7 @@ void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *comman
     }
 }
 
-/* Sends the last command. From the first one that is not answered on, the simulator owes an answer. */
+/* Sends the last command. The simulator owes an answer from the first unanswered command on. */
 static void send_command(wh_protocol_client_t *client) {
     if (client->asked_us == 0) {
         client->asked_us = wh_node_clock_us();
@@ -60,7 +62,7 @@ static void send_again(wh_protocol_client_t *client) {
     send_command(client);
 }
 
-/* Sends the last state, then the command, if a simulator that was started anew has asked for it. */
+/* Sends the last state, then the command, if a simulator that was started again has asked for it. */
 static void restore_simulator(wh_protocol_client_t *client) {
     const int64_t now = wh_node_clock_us();
     const bool asked = client->asked_for_state;
@@ -72,7 +74,7 @@ static void restore_simulator(wh_protocol_client_t *client) {
         client->refusal = WH_STATUS_NOT_RESTORED;
         return;
     }
-    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* asked for by us: no news */
+    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* we asked for it, so it is no news */
     if (client->restores_most == 0 && !client->senders.shared &&
         (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
         client->restored_us = now;
@@ -85,7 +87,7 @@ static void restore_simulator(wh_protocol_client_t *client) {
 
 /* ---------------------------------------------------------------------------------------------- receiving */
 
-/* The simulator lives. */
+/* Notes that the simulator lives. */
 static void heard(wh_protocol_client_t *client) {
     client->asked_us = 0;
     client->timed_out = false;
@@ -99,7 +101,8 @@ static void heard(wh_protocol_client_t *client) {
     }
 }
 
-/* Copies the state to client->arrays. False if it is not sound, or no grasp table could be in it. */
+/* Copies the state to client->arrays. Returns false if it is not sound, or no grasp table could be in
+ * it. */
 static bool take_over(wh_protocol_client_t *client, const waferhand_state *message, wh_state_t *state) {
     const wh_layout_t *layout = client->layout;
     if (!wh_link_state_is_sound(message, layout, &client->spare, state)) {
@@ -126,6 +129,9 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->arrays.physics = *state->physics;
     client->state.physics = &client->arrays.physics;
     client->has_state = true;
+    if (is_new) {
+        wh_protocol_client_compare(client, message);
+    }
     if (is_new && client->options.taken) {
         client->options.taken(client->options.user, &client->state);
     }
@@ -137,7 +143,7 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->answered = client->answered || state->seq == client->command.seq;
 }
 
-/* A slice whose state is still to come: the last one sent, in a free run those before it, too. */
+/* True for a slice whose state has not come yet: the last one sent, and in a free run those before it. */
 static bool is_awaited(const wh_protocol_client_t *client, int64_t seq) {
     return seq == client->command.seq ||
            (is_free_running(client) && seq > client->state.seq && seq < client->command.seq);
@@ -189,7 +195,7 @@ static void on_state(void *user, const void *data, size_t size) {
 
 /* ------------------------------------------------------------------------------------------------ waiting */
 
-/* How long the simulator has owed an answer. */
+/* The time since which the simulator has owed an answer. */
 static int64_t owed_us(const wh_protocol_client_t *client) {
     return client->asked_us == 0 ? 0 : wh_node_clock_us() - client->asked_us;
 }
@@ -219,10 +225,10 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
     return value > high ? high : value;
 }
 
-/* When to send a command again whose answer does not come. */
+/* The time at which to send an unanswered command again. */
 typedef struct {
     int64_t pause, due; /* us */
-    uint64_t before;    /* sent again before this wait */
+    uint64_t before;    /* times that a command was sent again before this wait */
 } resend_t;
 
 static void resend_when_due(wh_protocol_client_t *client, resend_t *resend) {
@@ -241,8 +247,8 @@ static bool is_interrupted(const wh_protocol_client_t *client) {
     return client->node->interrupted || (client->options.interrupted && client->options.interrupted());
 }
 
-/* WH_OK while an answer may come. Any signal ends a wait for a silent simulator: a program's own handler is
- * enough. `stopped_us` is when a stop was first seen, 0 before. */
+/* Returns WH_OK while an answer may come. Any signal ends a wait for a silent simulator; a program's own
+ * handler is enough. `stopped_us` is the time when a stop was first seen, 0 before. */
 static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us) {
     const int64_t now = wh_node_clock_us();
     if (client->options.timeout_us > 0 && owed_us(client) > client->options.timeout_us) {
@@ -268,7 +274,7 @@ static void tell_wait(const wh_protocol_client_t *client, int64_t *told_us) {
     }
 }
 
-/* Waits for the answer to the last command, sending it again and again. */
+/* Waits for the answer to the last command, and sends it again and again. */
 static wh_status_t await_answer(wh_protocol_client_t *client) {
     const int64_t begin = wh_node_clock_us();
     int64_t stopped_us = 0;
@@ -298,7 +304,8 @@ static bool is_silent_for_long(const wh_protocol_client_t *client) {
     return owed_us(client) > (timeout > 0 && timeout < WH_CLIENT_SILENCE_US ? timeout : WH_CLIENT_SILENCE_US);
 }
 
-/* Free-running: waits for the last slice's state. After a long wait the slices are due from then on. */
+/* In a free run, waits for the last slice's state. After a long wait the slices are due from that time
+ * on. */
 static wh_status_t hold(wh_protocol_client_t *client) {
     const int64_t begin = wh_node_clock_us();
     const wh_status_t status = await_answer(client);
@@ -308,7 +315,7 @@ static wh_status_t hold(wh_protocol_client_t *client) {
     return status;
 }
 
-/* False if there is no network any more. */
+/* Returns false if there is no network any more. */
 static bool wait_until_due(wh_protocol_client_t *client) {
     const double period_us = (double)client->layout->slice_us / client->options.rate;
     if (client->start_us == 0) {
@@ -325,8 +332,8 @@ static bool wait_until_due(wh_protocol_client_t *client) {
     return true;
 }
 
-/* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent or its state
- * is awaited. */
+/* In a free run, waits until the next slice is due. It waits longer if the simulator has fallen silent or
+ * its state is awaited. */
 static wh_status_t await_due_time(wh_protocol_client_t *client) {
     if (!wait_until_due(client)) {
         return WH_STATUS_NO_NETWORK;
@@ -339,7 +346,7 @@ static wh_status_t await_due_time(wh_protocol_client_t *client) {
 
 /* ------------------------------------------------------------------------------------ the slice interface */
 
-/* Called before the command is sent, so that a simulator that reads the file has the valves in time. */
+/* It runs before the command is sent, so that a simulator that reads the file has the valves in time. */
 static void write_outputs(wh_protocol_client_t *client) {
     const size_t count = (size_t)client->command.gripper_count;
     if (!client->options.outputs ||
@@ -359,7 +366,7 @@ static void write_outputs(wh_protocol_client_t *client) {
     }
 }
 
-/* Before the first answer the caller's state stays as it is: the beginning. */
+/* Before the first answer the caller's state stays at its initial value. */
 static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status_t status) {
     if (client->has_state) {
         *state = client->state;
@@ -380,7 +387,7 @@ wh_status_t wh_protocol_client_resume(wh_protocol_client_t *client) {
         return WH_STATUS_STOPPED;
     }
     if (client->timed_out) {
-        client->asked_us = 0; /* it may take its time again */
+        client->asked_us = 0; /* it may take its full time again */
     }
     client->node->interrupted = false;
     client->refusal = WH_OK;
@@ -397,7 +404,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     const bool free_running = is_free_running(client);
     client->node->interrupted = false;
-    /* Events that came after the last exchange, with a late state, are still to be handed over. */
+    /* Events that came with a late state, after the last exchange, remain to be handed over. */
     client->event_count -= client->events_delivered;
     memmove(client->events, client->events + client->events_delivered,
             client->event_count * sizeof *client->events);
@@ -407,10 +414,11 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
         return WH_STATUS_STOPPED;
     }
     client->refusal = WH_OK;
-    client->asked_us = client->timed_out ? 0 : client->asked_us; /* it may take its time again */
+    client->asked_us = client->timed_out ? 0 : client->asked_us; /* it may take its full time again */
     wh_link_command_to_message(command, &client->identity, !free_running, &client->command);
     client->answered = false;
     client->asked_for_state = false;
+    wh_protocol_client_note_sent(client);
     write_outputs(client);
     ++client->counters.sent;
     send_command(client);
@@ -431,13 +439,13 @@ int64_t wh_protocol_client_reached(const wh_protocol_client_t *client) {
     return client->refusal == WH_OK ? client->command.seq : answered;
 }
 
-/* The slice whose state is still to come; 0: none. */
+/* The slice whose state has not come yet; 0: none. */
 static int64_t owed_slice(const wh_protocol_client_t *client) {
     const bool owed = client->refusal == WH_OK && client->state.seq != client->command.seq;
     return owed ? client->command.seq : 0;
 }
 
-/* Waits a little: in a free-running run the last states may still be on their way. */
+/* It waits a little, because in a free run the last states may still be on their way. */
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     const bool settled = wh_protocol_client_settle(client, is_stopped(client) ? STOP_GRACE_US : SETTLE_US);
@@ -451,7 +459,7 @@ static uint64_t last_hash(wh_link_t *link) {
     return client->hash;
 }
 
-/* Those at the end that no state tells of count: nobody has seen that they arrived. */
+/* Slices at the end that no state tells of count as missed, because nobody has seen that they arrived. */
 static int64_t missed_slices(wh_link_t *link) {
     const wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     return client->missed + (client->options.rate > 0 ? client->command.seq - client->state.seq : 0);
@@ -490,7 +498,9 @@ void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *l
     wh_node_t *const node = client->node;
     const wh_protocol_client_options_t options = client->options;
     const wh_protocol_client_counters_t counters = client->counters;
+    const uint64_t own = client->own;
     memset(client, 0, sizeof *client);
+    client->own = own;
     client->link.exchange = exchange;
     client->link.hash = last_hash;
     client->link.missed = missed_slices;
@@ -513,6 +523,8 @@ bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, cons
     client->node = node;
     client->options = *options;
     memset(&client->counters, 0, sizeof client->counters);
+    client->own = 0;
     wh_protocol_client_begin(client, layout);
-    return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);
+    return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client) &&
+           wh_node_overhear(node, WH_CHANNEL_COMMAND, wh_protocol_client_overhear, client);
 }

@@ -1,13 +1,14 @@
-/* A run that is put back to where it was: motion control's side. */
+/* Puts a run back to an earlier state: motion control's side. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
 #include "protocol_client.h"
 
-/* So long the state of the last slice is waited for. */
+/* It waits this long for the state of the last slice. */
 #define SETTLE_US 100000
-/* So often a simulator that asks for the state gets it. One in a lossy network asks several times. */
+/* A simulator that asks for the state gets it this number of times. In a lossy network it asks several
+ * times. */
 #define RESTORES_MOST 20
 
 size_t wh_protocol_client_save(wh_protocol_client_t *client, uint8_t bytes[]) {
@@ -38,7 +39,7 @@ static bool take_again(wh_protocol_client_t *client, const uint8_t bytes[], size
     return client->has_state;
 }
 
-/* What is taken is no news: the simulator still has to have it. */
+/* The taken state is no news, because the simulator has yet to get it. */
 static wh_status_t hand_over(wh_protocol_client_t *client) {
     client->event_count = 0;
     client->has_lost_events = false;
@@ -58,7 +59,7 @@ static wh_status_t begin_there(wh_protocol_client_t *client, const uint8_t bytes
     client->asked_us = asked_us;
     const int64_t run = client->identity.run;
     if (size == sizeof client->command) {
-        return WH_OK; /* before the first slice: as a run begins */
+        return WH_OK; /* before the first slice the run is at its beginning */
     }
     memcpy(&client->command, bytes, sizeof client->command);
     client->command.run = run;

@@ -73,7 +73,8 @@ static void encode(wh_protocol_server_t *server, const wh_state_t *state,
     wh_link_seal(server->encoded, server->encoded_size);
 }
 
-/* Answers a command that is not stepped: its own numbers and the reason, no wafers, no grippers. */
+/* Answers a command that is not stepped, with the server's own numbers and the reason, without wafers and
+ * grippers. */
 static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const waferhand_command *message,
                                              wh_status_t reason) {
     const wh_state_t nothing = {.utime = message->utime, .seq = message->seq, .status = reason};
@@ -84,6 +85,10 @@ static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const
 
 void wh_protocol_server_encode(wh_protocol_server_t *server) {
     encode(server, &server->state, &server->identity);
+}
+
+void wh_protocol_server_tell(wh_protocol_server_t *server, uint64_t hash) {
+    wh_link_state_to_message(&server->state, &server->identity, hash, server->missed, &server->room);
 }
 
 /* ----------------------------------------------------------------------------------------------- commands */
@@ -99,7 +104,7 @@ static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     return false;
 }
 
-/* Remembers the run, so that a late command of it does not begin it again. */
+/* Remembers the run, so that its late commands do not begin it again. */
 static void leave_run(wh_protocol_server_t *server) {
     if (server->identity.run != 0) {
         server->past_runs[server->past_count++ % WH_SERVER_PAST_RUNS] = server->identity.run;
@@ -120,7 +125,7 @@ static wh_protocol_server_result_t step(wh_protocol_server_t *server, const wafe
     wh_state_t state;
     if (wh_simulator_step(&server->simulator, &command, &state) != WH_OK) {
         ++server->counters.refused;
-        server->state.event_count = 0; /* the simulator's events are now those of the refusal */
+        server->state.event_count = 0; /* the simulator's events now belong to the refusal */
         encode(server, &state, &server->identity);
         return WH_SERVER_ANSWERED;
     }
@@ -148,7 +153,7 @@ static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waf
         wh_protocol_server_encode(server);
         return WH_SERVER_ANSWERED;
     }
-    /* Nothing is skipped in lockstep: this simulator was started anew and lacks the slices between. */
+    /* In lockstep no slice is skipped: this simulator was started again and lacks the slices between. */
     if (gap && message->lockstep != 0) {
         ++server->counters.unknown_run;
         return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);

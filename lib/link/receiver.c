@@ -20,19 +20,19 @@ bool wh_multicast_is(const char *url) {
     return strncmp(url, SCHEME, strlen(SCHEME)) == 0;
 }
 
-/* A whole number up to `most`, written as people do; -1 if there is none: not 07, which liblcm would take for
- * an octal one. */
+/* A whole number up to `most`, in plain decimal notation; -1 if there is none. 07 is refused, because
+ * liblcm would take it for octal. */
 static int64_t number(const char *text, int64_t most) {
     const size_t length = strlen(text);
     const bool led_by_zero = length > 1 && text[0] == '0';
     if (length == 0 || led_by_zero || strspn(text, "0123456789") != length) {
         return -1;
     }
-    const int64_t value = strtoll(text, NULL, 10); /* the greatest there is, if it is too great */
+    const int64_t value = strtoll(text, NULL, 10); /* the largest number there is, if it is too large */
     return value <= most ? value : -1;
 }
 
-/* At most 40 bytes of what a user typed are repeated. */
+/* The message repeats at most 40 bytes of the user's text. */
 static bool refuse(char *problem, const char *name, const char *value, const char *expected) {
     snprintf(problem, WH_MULTICAST_PROBLEM_BYTES, "%.40s: %.40s (expected %s)", name,
              value[0] != '\0' ? value : "nothing", expected);
@@ -49,7 +49,7 @@ static bool take_place(const char *address, const char *port, wh_multicast_t *mu
            refuse(problem, "port", port, "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
 }
 
-/* One of liblcm's options. */
+/* Takes one of liblcm's options. */
 static bool take_option(const char *name, const char *value, wh_multicast_t *multicast, char *problem) {
     if (strcmp(name, "ttl") == 0) {
         return number(value, 255) >= 0 || refuse(problem, name, value, "a whole number from 0 to 255");
@@ -81,8 +81,8 @@ bool wh_multicast_parse(const char *url, wh_multicast_t *multicast,
 
 /* ------------------------------------------------------------------------------------------------- socket */
 
-/* Many processes of one host share the port. The buffer is as large as the system allows: what does not fit
- * is lost, as on a network. */
+/* Many processes of one host share the port. The buffer is as large as the system allows; excess messages
+ * are lost, as on a network. */
 static bool set_options(int socket, const wh_multicast_t *multicast) {
     const int on = 1;
     const int bytes = multicast->buffer_bytes > 0 ? multicast->buffer_bytes : FULL_BUFFER_BYTES;
@@ -134,7 +134,7 @@ static bool parse(const uint8_t *datagram, size_t size, wh_received_t *message) 
     return true;
 }
 
-/* Address and port; of other sockets 0. */
+/* Address and port as one number; 0 for other sockets. */
 static uint64_t sender_of(const struct sockaddr_in *from, socklen_t size) {
     if (size != sizeof *from || from->sin_family != AF_INET) {
         return 0;

@@ -12,7 +12,7 @@
 #include "../text/clock.h"
 #include "../text/output.h"
 
-/* Names that are tried. */
+/* The number of names that are tried. */
 #define ATTEMPTS 10000
 
 void wh_record_file_fail(wh_record_file_t *file, const char *path, const char *reason) {
@@ -25,7 +25,8 @@ void wh_record_file_fail(wh_record_file_t *file, const char *path, const char *r
 
 /* -------------------------------------------------------------------------------------------------- names */
 
-/* Where the ending begins: ".log.zst" of "run.log.zst", ".log" of "run.log", the end of "run" or ".run". */
+/* The place where the ending begins: ".log.zst" of "run.log.zst", ".log" of "run.log", the end of "run" or
+ * ".run". */
 static size_t find_ending(const char *path) {
     const char *slash = strrchr(path, '/');
     const size_t begin = slash ? (size_t)(slash - path) + 1 : 0;
@@ -59,7 +60,7 @@ static bool begin(wh_record_file_t *file, const char *path, int fd) {
     file->is_plain_file = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
     (void)snprintf(file->path, sizeof file->path, "%s", path);
     if (file->is_plain_file) {
-        /* Nobody else has it yet. */
+        /* No other process has it yet. */
         (void)flock(fd, LOCK_EX | LOCK_NB);
     }
     if (length > 4 && strcmp(path + length - 4, ".zst") == 0) {
@@ -129,7 +130,7 @@ static bool is_locked(const char *path) {
     return locked;
 }
 
-/* What must not be replaced at this path, in words; else null. */
+/* Says in words what must not be replaced at this path; otherwise null. */
 static const char *find_owner(const char *path) {
     struct stat old;
     if (stat(path, &old) != 0 || !S_ISREG(old.st_mode)) {
@@ -169,7 +170,7 @@ bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
     if (!wh_output_open(&output, path)) {
         return refuse(file, path, errno);
     }
-    /* The old file makes room at once: what is recorded is found there, also if this process is killed. */
+    /* The new file takes the place at once, so that the record is there also if this process is killed. */
     const int fd = fcntl(fileno(output.file), F_DUPFD_CLOEXEC, 0);
     const bool placed = fd >= 0 && fcntl(fd, F_SETFL, O_APPEND) == 0 && wh_output_commit(&output);
     if (!placed) {
@@ -185,7 +186,7 @@ bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
 
 /* ------------------------------------------------------------------------------------------------ writing */
 
-/* Finds out whether others have removed or changed the file. */
+/* Finds out whether other processes have removed or changed the file. */
 static bool is_ours(wh_record_file_t *file) {
     struct stat status;
     if (!file->is_plain_file) {
@@ -228,7 +229,7 @@ static void write_packed(wh_record_file_t *file, ZSTD_EndDirective directive) {
     }
 }
 
-/* Packs what waits; with `ends`, or if it is large or old enough, the frame ends. */
+/* Packs the bytes that wait. With `ends`, or if it is large or old enough, the frame ends. */
 static void pack(wh_record_file_t *file, bool ends) {
     const int64_t now = wh_clock_us(CLOCK_MONOTONIC);
     file->frame_us = file->frame_bytes == 0 ? now : file->frame_us;
@@ -241,7 +242,7 @@ static void pack(wh_record_file_t *file, bool ends) {
     }
 }
 
-/* What waits goes into the file; with `ends` the frame ends. */
+/* Writes the bytes that wait into the file; with `ends` the frame ends. */
 static void hand_over(wh_record_file_t *file, bool ends) {
     if (file->fd < 0) {
         return;

@@ -7,13 +7,14 @@
 
 #include "../text/clock.h"
 
-/* A cell's fingerprint; then utime, seq and run, which tell when it was sent; then what it says. */
+/* The bytes of a cell's message: a fingerprint; then utime, seq and run, which tell when it was sent; then
+ * its content. */
 #define CELL_FINGERPRINT 8
 #define CELL_CONTENT (8 + 3 * 8)
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-/* The command's slice is the last one from now on. A file that waits for the first slice is opened. */
+/* The command's slice becomes the last one. A file that waits for the first slice is opened. */
 static void note_slice(wh_recording_t *recording, const waferhand_command *command, int64_t missed) {
     if (recording->file.fd < 0 && !recording->file.failed) {
         (void)wh_recording_open_file(recording);
@@ -34,7 +35,7 @@ static bool follows(const wh_recording_place_t *last, const waferhand_command *c
     return command->seq == 1 && missed == 0;
 }
 
-/* wh_recording_slice. A slice that does not fit the block begins another one. */
+/* Implements wh_recording_slice. A slice that does not fit the block begins another block. */
 static wh_recorded_t take_slice(wh_recording_t *recording, const waferhand_command *command,
                                 const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
     if (recording->is_interrupted || !follows(&recording->last, command, missed)) {
@@ -51,7 +52,7 @@ static wh_recorded_t take_slice(wh_recording_t *recording, const waferhand_comma
     return has_events || recording->since_state >= WH_SLICES_MOST ? WH_RECORDED_STATE : WH_RECORDED;
 }
 
-/* wh_recording_state. */
+/* Implements wh_recording_state. */
 static void take_state(wh_recording_t *recording, const void *data, size_t size) {
     wh_recording_flush_block(recording);
     wh_recording_write_event(recording, WH_CHANNEL_STATE, data, size);
@@ -65,13 +66,13 @@ static waferhand_command *waiting(wh_recording_t *recording, size_t i) {
     return &recording->commands[(recording->first_command + i) % WH_RECORDING_COMMANDS];
 }
 
-/* A message that is sealed has these bytes alone. */
+/* A sealed message always has exactly these bytes. */
 static void write_command(wh_recording_t *recording, const waferhand_command *command) {
     const int size = waferhand_command_encode(recording->encoded, 0, (int)sizeof recording->encoded, command);
     wh_recording_write_event(recording, WH_CHANNEL_COMMAND, recording->encoded, (size_t)size);
 }
 
-/* The oldest commands, so many, were not answered, or will be later: they stand by themselves. */
+/* The `count` oldest commands were not answered, or will be later; they stand by themselves. */
 static void give_up(wh_recording_t *recording, size_t count) {
     if (count > 0) {
         wh_recording_flush_block(recording);
@@ -79,7 +80,7 @@ static void give_up(wh_recording_t *recording, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const waferhand_command *command = waiting(recording, i);
         write_command(recording, command);
-        /* One of an earlier slice came late, and changes nothing. */
+        /* A command of an earlier slice came late, and changes nothing. */
         recording->is_interrupted = recording->is_interrupted || command->run != recording->last.run ||
                                     command->seq > recording->last.seq;
     }
@@ -87,10 +88,10 @@ static void give_up(wh_recording_t *recording, size_t count) {
     recording->command_count -= count;
 }
 
-/* Which of the waiting commands this slice's is; their count if it is none of them. */
+/* Finds the waiting command of this slice; their count if there is none. */
 static size_t find_waiting(wh_recording_t *recording, int64_t run, int64_t seq) {
     size_t i = 0;
-    /* A new command, as most are: without a search. */
+    /* Most commands are new; this needs no search. */
     if (recording->command_count > 0) {
         const waferhand_command *newest = waiting(recording, recording->command_count - 1);
         i = newest->run == run && newest->seq < seq ? recording->command_count : 0;
@@ -107,7 +108,7 @@ static void write_whole(wh_recording_t *recording, const char *channel, const vo
     wh_recording_write_event(recording, channel, data, size);
 }
 
-/* True if the command is recorded, or waits, as it is. */
+/* True if this very command is recorded or waits. */
 static bool is_repeated(wh_recording_t *recording, const waferhand_command *message) {
     const wh_recording_place_t *last = &recording->last;
     const size_t i = find_waiting(recording, message->run, message->seq);
@@ -132,8 +133,7 @@ static void on_command(wh_recording_t *recording, const void *data, size_t size)
     *waiting(recording, recording->command_count++) = message;
 }
 
-/* The command and the state that answers it: a slice, if the state is what the command, replayed, can
- * yield. */
+/* Takes a command and its state as a slice, if replaying the command can yield the state. */
 static void take_pair(wh_recording_t *recording, const waferhand_command *command,
                       const waferhand_state *state, const void *data, size_t size) {
     int32_t told[WH_GRIPPERS];
@@ -159,7 +159,7 @@ static void take_pair(wh_recording_t *recording, const waferhand_command *comman
     }
 }
 
-/* A state that no waiting command asked for: of a simulator that was given a state, say. */
+/* Takes a state that no waiting command asked for, for example of a simulator that was given a state. */
 static void take_lone_state(wh_recording_t *recording, const waferhand_state *state, const void *data,
                             size_t size) {
     wh_recording_place_t *last = &recording->last;
@@ -208,7 +208,7 @@ static void on_state(wh_recording_t *recording, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* True if the cell says what the last one said, but for when it was sent, and in which run. */
+/* True if the cell has the content of the last one, apart from the time and the run of sending. */
 static bool is_known_cell(const wh_recording_t *recording, const void *data, size_t size) {
     const uint8_t *bytes = data;
     return size == recording->cell_size && size > CELL_CONTENT &&
@@ -238,7 +238,7 @@ static void on_cell(wh_recording_t *recording, const void *data, size_t size) {
     }
 }
 
-/* Progress, and that nothing moves: who replays the slices knows that. */
+/* Leaves out progress and messages that nothing moves; replaying the slices gives both. */
 static void on_mcs(wh_recording_t *recording, const void *data, size_t size) {
     waferhand_mcs message;
     bool wanted = true;
@@ -263,7 +263,7 @@ static void see_state(wh_recording_t *recording, const void *data, size_t size) 
     }
 }
 
-/* Every message. */
+/* Takes every message. */
 static void take_any(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
     waferhand_command command;
     wh_recording_write_event(recording, channel, data, size);
@@ -297,7 +297,7 @@ static void take_message(wh_recording_t *recording, const char *channel, const v
 
 /* ------------------------------------------------------------------------------------------------ calling */
 
-/* Locks it. False if nothing is recorded any more. */
+/* Locks the recording. Returns false if nothing is recorded any more. */
 static bool enter(wh_recording_t *recording) {
     (void)pthread_mutex_lock(&recording->lock);
     return recording->is_open && !recording->file.failed;
@@ -327,14 +327,14 @@ void wh_recording_state(wh_recording_t *recording, const void *data, size_t size
     (void)pthread_mutex_unlock(&recording->lock);
 }
 
-/* Sees to it that nothing waits for long. */
+/* Ensures that nothing waits for long. */
 static void *flush_now_and_then(void *user) {
     wh_recording_t *recording = user;
     (void)pthread_mutex_lock(&recording->lock);
     while (!recording->closes) {
         struct timespec until;
         clock_gettime(CLOCK_MONOTONIC, &until);
-        /* Twice as often, so that a machine that is busy may be late. */
+        /* It runs twice as often, so that a busy machine may be late. */
         until.tv_nsec += WH_RECORDING_WAIT_US * 1000L / 2;
         until.tv_sec += until.tv_nsec / 1000000000;
         until.tv_nsec %= 1000000000;
@@ -348,7 +348,7 @@ static void *flush_now_and_then(void *user) {
     return NULL;
 }
 
-/* Signals are for the thread that waits for messages. */
+/* The thread that waits for messages handles the signals. */
 static bool start_flusher(wh_recording_t *recording) {
     sigset_t all;
     sigset_t before;

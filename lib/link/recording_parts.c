@@ -1,4 +1,4 @@
-/* The events of a recording, and the parts that they are split into. */
+/* Writes the events of a recording, and splits it into parts. */
 #include "recording_internal.h"
 
 #include <stdio.h>
@@ -8,7 +8,7 @@
 
 #define SYNC UINT32_C(0xeda1da01)
 #define EVENT_HEADER 28
-/* Longer names are no channels of LCM. */
+/* The longest name of a channel in LCM. */
 #define CHANNEL_MOST 63
 
 /* ------------------------------------------------------------------------------------------------- events */
@@ -85,8 +85,8 @@ void wh_recording_begin_part(wh_recording_t *recording) {
     wh_recording_write_note(recording, WH_RECORDING_BEGINS);
 }
 
-/* Opens the first file, which may have waited for it. An old recording in parts is never mixed with this
- * one. */
+/* Opens the first file, which may have waited for this event. An old recording in parts is never mixed with
+ * this one. */
 static bool open_first(wh_recording_t *recording) {
     const wh_recording_options_t *options = &recording->options;
     const bool replaces = options->replaces && !wh_record_file_has_parts(options->path);
@@ -110,11 +110,18 @@ bool wh_recording_open_file(wh_recording_t *recording) {
     return wh_record_file_create(&recording->file, name);
 }
 
+/* True if the cell of the last slice has come. In a message its hash stands after fingerprint, utime, seq
+ * and run. */
+static bool has_cell(const wh_recording_t *recording) {
+    return recording->cell_size >= 40 &&
+           wh_link_word(recording->cell + 32, 8) == (uint64_t)recording->last.layout_hash;
+}
+
 void wh_recording_split(wh_recording_t *recording, const void *state, size_t size) {
     const double bytes = recording->options.part_mb * 1e6;
     wh_record_file_t *file = &recording->file;
-    if (bytes <= 0 || !file->is_plain_file) {
-        return;
+    if (bytes <= 0 || !file->is_plain_file || !has_cell(recording)) {
+        return; /* without its cell the next part could not be read */
     }
     if ((double)file->written + (double)file->used >= bytes) {
         wh_record_file_flush(file);
@@ -128,10 +135,8 @@ void wh_recording_split(wh_recording_t *recording, const void *state, size_t siz
     }
     wh_recording_begin_part(recording);
     if (wh_recording_open_file(recording)) {
-        if (recording->cell_size > 0) {
-            wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
-            wh_recording_write_note(recording, WH_RECORDING_BEGINS);
-        }
+        wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
+        wh_recording_write_note(recording, WH_RECORDING_BEGINS);
         wh_recording_write_event(recording, WH_CHANNEL_STATE, state, size);
     }
 }

@@ -64,7 +64,7 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
     if (result == WH_SERVER_IGNORED) {
         return;
     }
-    /* First of all: motion control waits for the answer. */
+    /* The state goes out first, because motion control waits for it. */
     publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
     if (result == WH_SERVER_RESTORED) {
         heard_motion_control(simulation);
@@ -92,8 +92,8 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
     const uint64_t others = simulation->server.counters.other_layout;
     const wh_protocol_server_result_t result =
         wh_protocol_server_command(&simulation->server, message, simulation->valves);
-    /* Before the first command of a run with another layout is turned away, so that its sender can name this
-     * one. */
+    /* It tells the cell before the first command of a run with another layout is turned away, so that its
+     * sender can name this layout. */
     if (simulation->server.counters.other_layout > others && simulation->other_run != message->run) {
         simulation->other_run = message->run;
         tell_cell(simulation);
@@ -110,11 +110,34 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
     act_on(simulation, result);
 }
 
+/* True, and counted, if the message does not come from the process that has the simulator. */
+static bool is_stranger(wh_sim_process_t *simulation) {
+    const uint64_t sender = simulation->node->sender;
+    const bool is_free =
+        simulation->bound == 0 || wh_node_clock_us() - simulation->last_command_us > WH_SIMULATION_BOUND_US;
+    if (!simulation->one_sender || sender == 0 || sender == simulation->bound) {
+        return false;
+    }
+    if (is_free) {
+        simulation->bound = sender;
+        simulation->last_command_us = wh_node_clock_us();
+        return false;
+    }
+    if (simulation->counters.strangers++ == 0) {
+        wh_node_warn(simulation->node,
+                     "another process sends commands while a run goes on: they are not taken "
+                     "(--one-sender), and counted");
+    }
+    return true;
+}
+
 static void on_command(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_command message;
     if (wh_link_decode_command(data, size, &message)) {
-        handle_command(simulation, &message);
+        if (!is_stranger(simulation)) {
+            handle_command(simulation, &message);
+        }
     } else {
         drop(simulation, WH_CHANNEL_COMMAND, size);
     }
@@ -127,11 +150,13 @@ static void on_restore(void *user, const void *data, size_t size) {
         drop(simulation, WH_CHANNEL_RESTORE, size);
         return;
     }
-    act_on(simulation, wh_protocol_server_restore(&simulation->server, &message));
+    if (!is_stranger(simulation)) {
+        act_on(simulation, wh_protocol_server_restore(&simulation->server, &message));
+    }
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* The task's command has ended, or begins anew; of a run that is over all have. */
+/* Forgets the task's command, which has ended or begins again; when the run is over it forgets all. */
 static void forget_commands(wh_sim_process_t *simulation, const waferhand_mcs *message) {
     size_t kept = 0;
     for (size_t i = 0; i < simulation->command_count; ++i) {
@@ -146,7 +171,8 @@ static bool command_runs(const waferhand_mcs *message) {
     return message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
 }
 
-/* The first command of a run begins before the run has a number. An answer, as of STATUS, ends no command. */
+/* The first command of a run begins before the run has a number. An answer, such as that of STATUS, ends no
+ * command. */
 static bool is_of_commands(const wh_sim_process_t *simulation, const waferhand_mcs *message) {
     const bool is_ours = message->run == 0 || message->run == simulation->server.identity.run;
     const bool rests = message->phase == WH_LINK_PHASE_IDLE || message->phase == WH_LINK_PHASE_OVER;
@@ -181,8 +207,9 @@ static void on_mcs(void *user, const void *data, size_t size) {
     }
     const bool is_ours = message.run == simulation->server.identity.run;
     note_command(simulation, &message);
-    if (is_ours && message.phase == WH_LINK_PHASE_OVER && simulation->running) {
+    if (is_ours && message.phase == WH_LINK_PHASE_OVER && simulation->running && !is_stranger(simulation)) {
         simulation->running = false;
+        simulation->bound = 0;
         wh_node_say(simulation->node, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
                     (uint64_t)message.run, simulation->server.seq,
                     wh_protocol_server_hash(&simulation->server));
@@ -190,7 +217,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* Subscribed only so that the record holds whole scans. */
+/* It is subscribed only so that the record contains whole scans. */
 static void on_edge_scan(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_edge_scan message;
@@ -201,7 +228,7 @@ static void on_edge_scan(void *user, const void *data, size_t size) {
     (void)waferhand_edge_scan_decode_cleanup(&message);
 }
 
-/* Subscribed only so that the record holds what beams told. */
+/* It is subscribed only so that the record contains what beams told. */
 static void on_latch(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_centring message;
@@ -212,7 +239,7 @@ static void on_latch(void *user, const void *data, size_t size) {
     (void)waferhand_centring_decode_cleanup(&message);
 }
 
-/* Subscribed only so that the record holds requests. Motion control answers them. */
+/* It is subscribed only so that the record contains requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_request message;

@@ -5,18 +5,18 @@
 #include "../math/hash.h"
 
 #define SIGN (UINT64_C(1) << 63)
-/* No time of a run is near to what 64 bits hold. */
+/* All times of a run are far below what 64 bits hold. */
 #define FARTHEST (INT64_C(1) << 62)
 #define SLICE_US_MOST 1000000
-/* Of polynomials that predict. */
+/* The number of polynomials that predict. */
 #define ORDERS 7
 
-/* How a column is coded. */
+/* The coding of a column. */
 enum { CONSTANT, SAME, NEGATIVE, PREDICTED };
 
 /* ------------------------------------------------------------------------------------------------- coding */
 
-/* Bytes that are written or read. `good` becomes false if there are too few, and stays so. */
+/* Bytes that are written or read. `good` becomes false if there are too few, and then stays false. */
 typedef struct {
     uint8_t *out;
     const uint8_t *in;
@@ -50,7 +50,7 @@ static uint64_t take_word(bytes_t *bytes) {
     return word;
 }
 
-/* Seven bits a byte, the lowest first; the highest bit says that more follow. */
+/* Writes seven bits in each byte, the lowest first; the highest bit says that more follow. */
 static void put_number(bytes_t *bytes, uint64_t number) {
     while (number >= 0x80) {
         put_byte(bytes, (uint8_t)(number & 0x7fU) | 0x80U);
@@ -73,7 +73,7 @@ static uint64_t take_number(bytes_t *bytes) {
     return 0;
 }
 
-/* Takes the length of a run, which must fit what is left. 0 if it does not. */
+/* Takes the length of a run, which must fit the rest. Returns 0 if it does not. */
 static size_t take_run(bytes_t *bytes, size_t left) {
     const uint64_t run = take_number(bytes);
     bytes->good = bytes->good && run >= 1 && run <= left;
@@ -108,26 +108,26 @@ static void take_valves(bytes_t *bytes, wh_slices_t *slices) {
 
 /* --------------------------------------------------------------------------------------------- prediction */
 
-/* What a number that changes from slice to slice will be: coder and decoder foretell it the same way, so that
- * only the miss is to be written. lcm_types/README.md has the rule.
+/* Predicts a number that changes from slice to slice. Coder and decoder predict it in an equal way, so only
+ * the error is written. lcm_types/format.md has the rule.
  *
- * Each of the polynomials of degree 0 to 6 through the last values tells one: axes are cubic in time,
- * poses are smooth. The one that was best of late is taken. Doubles go in and out as their bits. */
+ * Polynomials of degree 0 to 6 through the last values give one guess each; axes are cubic in time, poses
+ * are smooth. It takes the polynomial that was best recently. Doubles go in and out as their bits. */
 typedef struct {
     size_t seen;
     uint64_t last;
-    double differences[ORDERS]; /* of order 0, the last value, to 6 */
-    uint64_t guesses[ORDERS];   /* bits, by each order */
-    uint32_t scores[ORDERS];    /* how badly each order has guessed of late */
+    double differences[ORDERS]; /* of order 0, which is the last value, to 6 */
+    uint64_t guesses[ORDERS];   /* bits, one for each order */
+    uint32_t scores[ORDERS];    /* the recent errors of each order */
 } prediction_t;
 
-/* The bits as a number that grows with the value, so that neighbouring values differ by little. Done
- * twice, it is undone. */
+/* The bits as a number that grows with the value, so that neighbouring values differ by little. Applied
+ * twice, it gives the bits again. */
 static uint64_t rank_of(uint64_t bits) {
     return (bits & SIGN) != 0 ? bits ^ (SIGN - 1) : bits;
 }
 
-/* A difference of either sign as a number that is small if the difference is. */
+/* Maps a signed difference to a number that is small if the difference is. */
 static uint64_t fold(uint64_t difference) {
     return difference << 1 ^ ((difference & SIGN) != 0 ? UINT64_MAX : 0);
 }
@@ -136,7 +136,7 @@ static uint64_t unfold(uint64_t folded) {
     return folded >> 1 ^ ((folded & 1) != 0 ? UINT64_MAX : 0);
 }
 
-/* The rank of the next value, as far as one can tell: by the order that was best of late. */
+/* The likely rank of the next value, by the order that was best recently. */
 static uint64_t predict(prediction_t *prediction) {
     double sum = 0;
     size_t best = 0;
@@ -145,7 +145,7 @@ static uint64_t predict(prediction_t *prediction) {
         sum += prediction->differences[order];
         const double guess = prediction->differences[0] + sum;
         prediction->guesses[order] = prediction->last;
-        /* Which of many bits a sum that is no number has, differs from machine to machine. */
+        /* A NaN has different bits on different machines. */
         if (guess == guess) {
             prediction->guesses[order] = wh_double_bits(guess);
         }
@@ -184,7 +184,7 @@ static bool is_like(const uint64_t *column, const uint64_t *other, uint64_t mask
     return same;
 }
 
-/* Writes that the column repeats an earlier one or mirrors it, as entries of rotations do. */
+/* Writes that the column repeats or mirrors an earlier one; entries of rotations do. */
 static bool put_like(bytes_t *bytes, const wh_slices_t *slices, size_t c, size_t from, size_t end) {
     for (size_t other = 0; other < c; ++other) {
         const bool same = is_like(slices->column[c], slices->column[other], 0, from, end);
@@ -209,7 +209,7 @@ static void put_predicted(bytes_t *bytes, const uint64_t *column, size_t from, s
     prediction_t prediction = {0};
     size_t zeros = 0;
     for (size_t i = from; bytes->good && i < end; ++i) {
-        /* 0 or a small number if the value was foretold nearly right, one of 64 bits at worst. */
+        /* The miss is 0 or a small number if the prediction was nearly right, and has 64 bits at worst. */
         const uint64_t miss = fold(rank_of(column[i]) - predict(&prediction));
         learn(&prediction, column[i]);
         if (miss == 0) {
@@ -281,7 +281,7 @@ static void take_column(bytes_t *bytes, wh_slices_t *slices, size_t c) {
 
 /* ------------------------------------------------------------------------------------------------- adding */
 
-/* At most as much as all rotations of a command. */
+/* The size is at most that of all rotations of a command. */
 static bool is_zero(const void *bytes, size_t size) {
     static const uint8_t zeros[9 * sizeof(double) * WH_GRIPPERS];
     return memcmp(bytes, zeros, size) == 0;
@@ -293,14 +293,14 @@ static bool is_no_fault(const waferhand_fault *fault) {
            is_zero(fault->rotation, sizeof fault->rotation);
 }
 
-/* True if sensors and beams are told nothing. */
+/* True if there are no orders to sensors and beams. */
 static bool is_without_orders(const waferhand_command *command) {
     return (command->scan_order | command->scan_gripper | command->scan_count) == 0 &&
            command->scan_first == 0 &&
            (command->latch_order | command->latch_first | command->latch_beams) == 0;
 }
 
-/* True if the entries of arrays that do not count are all zero, as wh_link_command_to_message leaves them. */
+/* True if the unused entries of arrays are all zero, as wh_link_command_to_message leaves them. */
 static bool is_plain(const waferhand_command *command) {
     const size_t grippers = WH_GRIPPERS - (size_t)command->gripper_count;
     const size_t axes = WH_AXES - (size_t)command->axis_count;
@@ -318,7 +318,7 @@ static bool is_plain(const waferhand_command *command) {
     return plain;
 }
 
-/* True of what slices of a block, and the block, may have. */
+/* True if the values are allowed for slices of a block and for the block. */
 static bool is_in_range(int64_t seq, int64_t utime, int32_t grippers, int32_t axes, int8_t lockstep) {
     return seq >= 1 && seq <= WH_LINK_SLICES && utime > -FARTHEST && utime < FARTHEST && grippers >= 1 &&
            grippers <= WH_GRIPPERS && axes >= 0 && axes <= WH_AXES && (lockstep == 0 || lockstep == 1);
@@ -347,7 +347,7 @@ static bool gather(const int32_t valves[], int32_t count, uint16_t *mask) {
     return (any & ~1) == 0;
 }
 
-/* Where in a command the double of a column stands. */
+/* The place of a column's double in a command. */
 static size_t place_of(const wh_slices_t *slices, size_t column) {
     if (column < slices->axes) {
         return offsetof(waferhand_command, axis_position) + column * sizeof(double);
@@ -468,7 +468,7 @@ size_t wh_slices_encode(const wh_slices_t *slices, size_t *from, uint8_t bytes[W
     return (size_t)size;
 }
 
-/* True if the numbers of slices fit one another. */
+/* True if the numbers of slices agree. */
 static bool is_counted(const waferhand_slices *message) {
     return message->count >= 1 && message->count <= WH_SLICES_MOST && message->first >= 1 &&
            message->first <= WH_LINK_SLICES && message->seq <= WH_LINK_SLICES &&

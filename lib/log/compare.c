@@ -7,11 +7,11 @@
 
 #include "../math/hash.h"
 #include "../text/array.h"
-#include "../text/json.h"
+#include "../text/digits.h"
 
 /* ------------------------------------------------------------------------------------------------ digests */
 
-/* Of every NaN the same. */
+/* Returns equal bits for every NaN. */
 static uint64_t bits_of(double value) {
     return wh_double_bits(isnan(value) ? (double)NAN : value);
 }
@@ -20,13 +20,10 @@ static void keep(void *user, const wh_layout_t *layout, const double axes[], con
                  uint64_t hash) {
     wh_log_digests_t *digests = user;
     const size_t count = wh_slice_field_count(layout);
-    if (!digests->values) {
-        digests->values = wh_array_new(count, sizeof *digests->values);
-    }
-    wh_slice_fields(layout, axes, state, digests->values);
+    wh_slice_row_take(&digests->row, layout, axes, state);
     uint64_t digest = wh_hash_word(WH_HASH_START, hash);
     for (size_t i = 0; i < count; ++i) {
-        digest = wh_hash_word(digest, bits_of(digests->values[i]));
+        digest = wh_hash_word(digest, bits_of(digests->row.values[i]));
     }
     digests->slices =
         wh_array_grow(digests->slices, digests->count, &digests->capacity, sizeof *digests->slices);
@@ -42,8 +39,8 @@ bool wh_compare_read(wh_log_run_t *run, wh_log_run_options_t *options, wh_log_di
 
 void wh_log_digests_free(wh_log_digests_t *digests) {
     free(digests->slices);
-    free(digests->values);
-    *digests = (wh_log_digests_t){NULL, 0, 0, NULL};
+    wh_slice_row_free(&digests->row);
+    *digests = (wh_log_digests_t){.slices = NULL};
 }
 
 /* ---------------------------------------------------------------------------------------------- one slice */
@@ -64,10 +61,11 @@ static void take(void *user, const wh_layout_t *layout, const double axes[], con
     }
 }
 
-/* Reads a log once more for one of its slices. */
+/* Reads a log again for one of its slices. */
 static bool read_slice(wh_log_run_t *run, wanted_t *wanted) {
     wh_log_run_t *again = wh_array_new(1, sizeof *again);
     wh_log_run_options_t options = run->options;
+    options.only_slices = true;
     options.listener = take;
     options.user = wanted;
     const bool read = wh_log_run_read(again, &options) && wanted->values;
@@ -83,8 +81,8 @@ static bool read_slice(wh_log_run_t *run, wanted_t *wanted) {
 static void put_value(const wh_layout_t *layout, wh_slice_field_t kind, double value,
                       char text[WH_COMPARE_VALUE]) {
     const char *word = wh_slice_field_word(layout, kind, value);
-    char digits[WH_JSON_DIGITS];
-    wh_json_digits(value, digits);
+    char digits[WH_DIGITS];
+    wh_digits(value, digits);
     (void)snprintf(text, WH_COMPARE_VALUE, "%s",
                    isnan(value)      ? "none"
                    : !word           ? digits
@@ -129,7 +127,7 @@ static int64_t number_of(const wh_log_digests_t *digests, size_t i) {
     return i < digests->count ? digests->slices[i].seq : INT64_MAX;
 }
 
-/* Goes through both lists, which are in order. Returns if the first difference is one of values. */
+/* Goes through both lists, which are in order. Returns whether the first difference is one of values. */
 static bool merge(const wh_log_digests_t digests[2], wh_compare_t *found) {
     size_t at[2] = {0, 0};
     bool is_value = false;

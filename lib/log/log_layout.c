@@ -10,7 +10,7 @@
 #include "../link/messages.h"
 #include "../text/array.h"
 
-/* What a layout has by default. */
+/* The defaults of a layout. */
 #define DIAMETER 300
 #define THICKNESS 0.775
 
@@ -73,7 +73,7 @@ static void fill_shapes(wh_log_layout_t *made) {
     wh_robot_default(&robot);
     layout->wafer_diameter = DIAMETER;
     layout->wafer_thickness = layout->has_faces ? layout->cell.thickness : THICKNESS;
-    layout->notch_depth = 0; /* a log tells of none */
+    layout->notch_depth = 0; /* a log does not tell a notch */
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
     const size_t count = wh_layout_count_parts(layout);

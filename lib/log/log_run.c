@@ -1,4 +1,4 @@
-/* One run of a log: its record and its signals, as motion control would have kept them. */
+/* Makes the record and the signals of one run of a log, as motion control would have kept them. */
 #include "log_run_internal.h"
 
 #include <inttypes.h>
@@ -26,7 +26,7 @@ __attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const 
     run->notes[run->note_count++] = text;
 }
 
-/* Says why there is nothing to show: the file, then the reason. */
+/* Writes why there is nothing to show: the file, then the reason. */
 __attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, const char *format, ...) {
     const int length = snprintf(run->message, sizeof run->message, "%.300s: ", run->options.path);
     va_list values;
@@ -38,7 +38,7 @@ __attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, cons
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-/* What the robot stood still for in a slice, as far as valves tell. */
+/* The reason why the robot stood still in a slice, as far as valves tell. */
 static wh_share_t share_standing(const wh_log_run_t *run, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
         if (state->physics->told[g] != run->last.grippers[g].valve) {
@@ -79,7 +79,9 @@ static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
 
 static void start(wh_log_run_t *run, bool from_the_beginning) {
     const wh_machine_t *machine = &run->cell.layout->machine;
-    wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
+    if (!run->options.only_slices) {
+        wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
+    }
     memset(&run->last, 0, sizeof run->last);
     wh_machine_home(machine, run->last.axes);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
@@ -87,7 +89,7 @@ static void start(wh_log_run_t *run, bool from_the_beginning) {
     }
 }
 
-/* The command's axes, if they are known; else where they were. */
+/* Finds the command's axes, if they are known; else the last ones. */
 static bool find_axes(const wh_log_run_t *run, const waferhand_command *command, double axes[]) {
     wh_command_t checked;
     bool known = command && wh_link_command_from_message(command, &checked) == WH_OK;
@@ -101,30 +103,38 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_command *command,
     return known;
 }
 
-/* Slices that never reached the simulator are in no log. */
-static void note_gap(wh_log_run_t *run, const waferhand_state *message) {
-    const int64_t missed = message->missed - run->missed;
-    run->gaps += run->seq > 0 && message->seq - run->seq - 1 > missed ? 1 : 0;
+/* Takes the slice's numbers. Slices that never reached the simulator are in no log. */
+static void count_gap(wh_log_run_t *run, int64_t seq, int64_t missed) {
+    const int64_t more = missed - run->missed;
+    run->gaps += run->seq > 0 && seq - run->seq - 1 > more ? 1 : 0;
+    run->seq = seq;
+    run->missed = missed;
+}
+
+/* Adds the slice to the record and the signals; the axes that are known are `count`. */
+static void record_slice(wh_log_run_t *run, int64_t seq, const double axes[], size_t count) {
+    const bool is_whole = count == run->cell.layout->machine.axis_count;
+    count_slice(run, seq, axes);
+    wh_log_run_hear_passes(run);
+    if (run->collision.memory) {
+        wh_collision_observe(&run->collision, is_whole ? axes : NULL, &run->state);
+    }
+    wh_signals_slice(&run->signals, count > 0 ? axes : NULL, count, &run->state);
 }
 
 static void take_slice(wh_log_run_t *run, const waferhand_command *command, const waferhand_state *message) {
     double axes[WH_AXES];
-    if (!run->signals.layout) {
+    if (!run->has_slices) {
+        run->has_slices = true;
         start(run, message->seq == 1);
     }
     const bool known = find_axes(run, command, axes);
     const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
-    note_gap(run, message);
-    run->seq = message->seq;
+    count_gap(run, message->seq, message->missed);
     run->hash = (uint64_t)message->hash;
-    run->missed = message->missed;
-    count_slice(run, message->seq, axes);
-    wh_log_run_hear_passes(run);
-    if (run->collision.memory) {
-        wh_collision_observe(&run->collision, whole ? axes : NULL, &run->state);
+    if (!run->options.only_slices) {
+        record_slice(run, message->seq, axes, known ? (size_t)command->axis_count : 0);
     }
-    wh_signals_slice(&run->signals, known ? axes : NULL, known ? (size_t)command->axis_count : 0,
-                     &run->state);
     if (run->options.listener) {
         run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &run->state,
                               run->hash);
@@ -172,17 +182,35 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
 static void on_state(void *user, const waferhand_command *command, const waferhand_state *message) {
     wh_log_run_t *run = user;
     const wh_layout_t *layout = run->cell.layout;
-    wh_log_run_take_told_before(run, message->seq);
+    const bool is_recorded = !run->options.only_slices;
+    if (is_recorded) {
+        wh_log_run_take_told_before(run, message->seq);
+    }
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->state) != WH_OK ||
         !is_sound(&run->state, layout) ||
         !wh_layout_complete_grips(layout, run->arrays.grippers, &run->arrays.physics)) {
         return;
     }
-    wh_log_run_set_parts(run);
-    wh_recorder_events(&run->recorder, &run->state);
+    if (is_recorded) {
+        wh_log_run_set_parts(run);
+        wh_recorder_events(&run->recorder, &run->state);
+    }
     if (message->status == WH_OK) {
         take_slice(run, command, message);
     }
+}
+
+/* The replay's other listener, for slices alone: no simulator's own state needs to be checked. */
+static void on_stepped(void *user, const waferhand_command *command, const wh_protocol_server_t *server) {
+    wh_log_run_t *run = user;
+    double axes[WH_AXES];
+    const bool known = find_axes(run, command, axes);
+    const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
+    run->has_slices = true;
+    count_gap(run, server->state.seq, server->missed);
+    run->hash = run->replay.run->hash;
+    run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &server->state,
+                          run->hash);
 }
 
 /* ------------------------------------------------------------------------------- what there is in the log */
@@ -199,6 +227,21 @@ static void add_run(wh_log_run_t *run, const wh_link_identity_t *identity) {
     run->runs[run->run_count++] = *identity;
 }
 
+/* True if this is a block of a run that is known: its slices need not be decoded. */
+static bool is_of_known_run(const wh_log_run_t *run) {
+    waferhand_slices message;
+    bool is_known = false;
+    if (!wh_link_is_slices(run->log.data, run->log.size) ||
+        waferhand_slices_decode(run->log.data, 0, (int)run->log.size, &message) != (int)run->log.size) {
+        return false;
+    }
+    for (size_t i = run->run_count; !is_known && i > 0; --i) {
+        is_known = run->runs[i - 1].run == message.run;
+    }
+    (void)waferhand_slices_decode_cleanup(&message);
+    return is_known;
+}
+
 static void look_at(wh_log_run_t *run) {
     static wh_slices_t slices;
     const wh_log_t *log = &run->log;
@@ -206,7 +249,7 @@ static void look_at(wh_log_run_t *run) {
     waferhand_state state;
     if (strcmp(log->channel, WH_CHANNEL_MCS) == 0 && wh_link_decode_mcs(log->data, log->size, &told)) {
         wh_log_run_add_told(run, &told);
-    } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0 &&
+    } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0 && !is_of_known_run(run) &&
                wh_slices_decode(log->data, log->size, &slices)) {
         add_run(run, &slices.identity);
     } else if (strcmp(log->channel, WH_CHANNEL_STATE) == 0 &&
@@ -218,10 +261,10 @@ static void look_at(wh_log_run_t *run) {
     }
 }
 
-/* The cell of the wanted run. False if the log has it not. */
-static bool find_cell(wh_log_run_t *run, FILE *file) {
+/* Finds the cell of the wanted run. False if the log does not have it. */
+static bool find_cell(wh_log_run_t *run, const wh_log_files_t *files) {
     waferhand_cell message;
-    wh_log_open(&run->log, file);
+    wh_log_files_begin(files, &run->log);
     while (!run->cell.layout && wh_log_next_event(&run->log)) {
         if (strcmp(run->log.channel, WH_CHANNEL_CELL) == 0 &&
             wh_link_decode_cell(run->log.data, run->log.size, &message)) {
@@ -236,48 +279,53 @@ static bool find_cell(wh_log_run_t *run, FILE *file) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-/* What a replay says, of all that is in the log. */
+/* Judges everything in the log by a replay. */
 static void judge_log(wh_log_run_t *run) {
     const wh_replay_recording_t *recording = &run->replay.recording;
     const wh_reading_verdict_t verdict = wh_reading_judge(&run->replay, &run->reading, false, run->reason);
-    run->worth = (wh_record_log_t){.verdict = wh_reading_word(verdict),
-                                   .reason = run->reason,
-                                   .has_id = recording->version > 0,
-                                   .id = (uint64_t)recording->id,
-                                   .part = recording->part,
-                                   .notes = run->notes};
+    run->worth =
+        (wh_record_log_t){.verdict = wh_reading_word(verdict),
+                          .reason = run->reason,
+                          .has_id = recording->version > 0,
+                          .id = (uint64_t)recording->id,
+                          .part = recording->first_part > 1 ? recording->first_part : recording->part,
+                          .is_part = wh_log_run_is_part(run),
+                          .notes = run->notes};
     run->record.log = &run->worth;
     run->record.is_partial = verdict != WH_READING_SAME;
 }
 
-/* With several runs, all of them are replayed for that, and then the wanted one alone: between them a run may
- * come back. */
-static void replay_all(wh_log_run_t *run, FILE *file) {
-    wh_reading_replay(file, &run->log, &run->replay, &run->reading);
+/* With several runs, all of them are replayed for that, and then the wanted one alone: a run may return after
+ * another. */
+static void replay_all(wh_log_run_t *run, const wh_log_files_t *files) {
+    wh_reading_replay(files, &run->log, &run->replay, &run->reading);
     judge_log(run);
     wh_replay_close(&run->replay);
     memset(&run->replay, 0, sizeof run->replay);
 }
 
-/* The second pass: the slices of the wanted run. */
-static void follow(wh_log_run_t *run, FILE *file) {
+/* Makes the second pass: the slices of the wanted run. */
+static void follow(wh_log_run_t *run, const wh_log_files_t *files) {
     const wh_layout_t *layout = run->cell.layout;
     wh_recorder_open(&run->recorder, &run->record, run->options.path);
     run->recorder.layout = layout;
     run->recorder.cell = &layout->cell;
-    if (run->cell.is_whole && layout->collision) {
+    if (run->cell.is_whole && layout->collision && !run->options.only_slices) {
         run->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
         run->collision.layout = layout;
         wh_links_home(&run->collision.links, layout);
     }
     run->replay.only_run = run->run_count > 1 ? run->wanted->run : 0;
     run->replay.listener = on_state;
+    run->replay.stepped = run->options.only_slices ? on_stepped : NULL;
     run->replay.user = run;
-    wh_reading_replay(file, &run->log, &run->replay, &run->reading);
+    wh_reading_replay(files, &run->log, &run->replay, &run->reading);
     if (run->run_count == 1) {
         judge_log(run);
     }
-    wh_log_run_take_told_before(run, INT64_MAX);
+    if (!run->options.only_slices) {
+        wh_log_run_take_told_before(run, INT64_MAX);
+    }
 }
 
 static bool is_sound_log(const wh_log_run_t *run) {
@@ -288,9 +336,20 @@ static bool begins_late(const wh_log_run_t *run) {
     return run->replay.run && run->replay.run->first_slice > 1;
 }
 
-/* The rest is in the next part. */
+/* True if the rest is in the next part. */
 static bool ends_early(const wh_log_run_t *run) {
     return run->replay.run && !run->replay.run->over && run->replay.recording.closed == WH_RECORDING_GOES_ON;
+}
+
+/* A run is ok only if the log says so, and nothing of the log is missing. */
+static void settle_verdict(wh_log_run_t *run) {
+    if (run->outcome.verdict == WH_OUTCOME_FAILED) {
+        run->record.ok = false;
+    } else if ((run->outcome.verdict != WH_OUTCOME_PASSED || !is_sound_log(run) || wh_log_run_is_part(run)) &&
+               run->record.ok) {
+        run->record.ok = false;
+        run->record.is_untold = true;
+    }
 }
 
 static void finish_run(wh_log_run_t *run) {
@@ -302,12 +361,10 @@ static void finish_run(wh_log_run_t *run) {
     run->record.is_partial = run->record.is_partial || begins_late(run) || ends_early(run) || run->gaps > 0;
     wh_recorder_finish(&run->recorder, &end);
     run->record.wall_s = (double)NAN;
-    if (run->outcome.verdict == WH_OUTCOME_FAILED) {
-        run->record.ok = false;
-    } else if ((run->outcome.verdict != WH_OUTCOME_PASSED || !is_sound_log(run)) && run->record.ok) {
-        run->record.ok = false;
-        run->record.is_untold = true;
+    if (run->record.unlooked && run->cell.collision != WH_LINK_NO_COLLISION) {
+        run->record.unlooked = NULL;
     }
+    settle_verdict(run);
     wh_signals_finish(&run->signals);
 }
 
@@ -324,14 +381,14 @@ static void note_outcome(wh_log_run_t *run) {
         return;
     }
     if (begins_late(run)) {
-        return; /* what came before is elsewhere */
+        return; /* the earlier slices are in another file */
     }
     note_lost(run, "commands", outcome->commands, run->record.command_count);
     note_lost(run, "expectations", outcome->expectations, run->record.expectation_count);
     note_lost(run, "cycles", outcome->cycles, run->record.cycle_count);
 }
 
-/* What the replay says, and which part of the run this is. */
+/* Notes the replay's verdict, and which part of the run this is. */
 static void note_worth(wh_log_run_t *run) {
     const wh_replay_run_t *replayed = run->replay.run;
     if (!is_sound_log(run)) {
@@ -365,11 +422,25 @@ static void note_reading(wh_log_run_t *run) {
     }
 }
 
+static void note_files(wh_log_run_t *run) {
+    const size_t unclosed = run->replay.open_files;
+    if (run->options.then_count > 0) {
+        note(run, "Read as one log: this file and %zu that %s it.", run->file_count - 1,
+             run->file_count == 2 ? "follows" : "follow");
+    }
+    if (unclosed > 0) {
+        note(run, "%zu of these files %s not closed: nothing vouches for the texts in %s.", unclosed,
+             unclosed == 1 ? "was" : "were", unclosed == 1 ? "it" : "them");
+    }
+}
+
 static void tell(wh_log_run_t *run) {
+    note_files(run);
     note_worth(run);
     note_outcome(run);
     if (!run->cell.is_whole) {
-        note(run, "Shapes are the defaults of 300 mm wafers: %.140s.", run->cell.note);
+        note(run, "Shapes are the defaults of 300 mm wafers, and wafers per hour are not counted: %.140s.",
+             run->cell.note);
     }
     if (run->gaps > 0) {
         note(run, "%zu %s of slices %s not in the log: %" PRId64 " slices in all.", run->gaps,
@@ -380,10 +451,10 @@ static void tell(wh_log_run_t *run) {
     run->worth.note_count = run->note_count;
 }
 
-/* The first pass over the log: which runs have slices, and what was told. Chooses the run; false if there is
- * none. */
-static bool choose(wh_log_run_t *run, FILE *file) {
-    wh_log_open(&run->log, file);
+/* Makes the first pass over the log, for the runs with slices and the messages. Chooses the run; false if
+ * there is none. */
+static bool choose(wh_log_run_t *run, const wh_log_files_t *files) {
+    wh_log_files_begin(files, &run->log);
     while (wh_log_next_event(&run->log)) {
         look_at(run);
     }
@@ -408,8 +479,8 @@ static bool choose(wh_log_run_t *run, FILE *file) {
     return true;
 }
 
-static bool choose_layout(wh_log_run_t *run, FILE *file) {
-    if (!find_cell(run, file)) {
+static bool choose_layout(wh_log_run_t *run, const wh_log_files_t *files) {
+    if (!find_cell(run, files)) {
         return refuse(run, "no cell of this run in it (expected WAFERHAND_CELL, which a simulator tells once "
                            "a second)");
     }
@@ -417,52 +488,39 @@ static bool choose_layout(wh_log_run_t *run, FILE *file) {
 }
 
 static bool refuse_version(wh_log_run_t *run, int32_t version) {
-    return refuse(run, "a recording of version %d (expected 1 or %d)", (int)version, WH_RECORDING_VERSION);
+    return refuse(run, "a recording of version %d (expected 1, %d or %d)", (int)version, WH_RECORDING_OLDEST,
+                  WH_RECORDING_VERSION);
 }
 
-/* The version that the log says it has: with another one its messages are unknown, too. */
-static int32_t read_version(wh_log_run_t *run, FILE *file) {
-    waferhand_recording message;
-    int32_t version = WH_RECORDING_VERSION;
-    wh_log_open(&run->log, file);
-    if (wh_log_next_event(&run->log) && strcmp(run->log.channel, WH_CHANNEL_RECORDING) == 0 &&
-        wh_link_decode_recording(run->log.data, run->log.size, &message)) {
-        version = message.version;
-        (void)waferhand_recording_decode_cleanup(&message);
+static bool read_runs(wh_log_run_t *run, const wh_log_files_t *files) {
+    wh_log_files_begin(files, &run->log);
+    const wh_log_head_t head = wh_log_head(&run->log);
+    if (head.is_told && !wh_recording_is_known(head.version)) { /* its messages are unknown, too */
+        return refuse_version(run, head.version);
     }
-    return version;
-}
-
-static bool read_runs(wh_log_run_t *run, FILE *file) {
-    const int32_t version = read_version(run, file);
-    if (version != WH_RECORDING_VERSION) {
-        return refuse_version(run, version);
-    }
-    if (!choose(run, file) || !choose_layout(run, file)) {
+    if (!choose(run, files) || !choose_layout(run, files)) {
         return false;
     }
     if (run->run_count > 1) {
-        replay_all(run, file);
+        replay_all(run, files);
     }
-    follow(run, file);
+    follow(run, files);
     if (wh_reading_is_unknown(&run->replay)) {
         return refuse_version(run, run->replay.recording.version);
     }
-    return run->signals.layout ||
+    return run->has_slices ||
            refuse(run, "no sound slice of this run in it, in %" PRIu64 " events", run->reading.events);
 }
 
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     memset(run, 0, sizeof *run);
     run->options = *options;
-    const char *fault = NULL;
-    FILE *file = wh_log_file(options->path, &fault);
-    if (!file) {
-        return refuse(run, "%s (expected an LCM event log)", fault);
-    }
-    const bool read = read_runs(run, file);
-    (void)fclose(file);
-    if (read) {
+    wh_log_files_t files;
+    const wh_log_names_t names = {options->path, options->then, options->then_count, options->is_alone};
+    const bool read = wh_log_files_open(&files, &names, run->message) && read_runs(run, &files);
+    run->file_count = files.count;
+    wh_log_files_close(&files);
+    if (read && !options->only_slices) {
         finish_run(run);
         tell(run);
     }

@@ -1,5 +1,5 @@
-/* Several commands at once, in a log: which task runs which, what of the cell each has, and what of a slice
- * goes into each. */
+/* Several commands at once in a log: the command of each task, its mechanisms, and its share of each
+ * slice. */
 #include "log_run_internal.h"
 
 wh_log_lane_t *wh_log_run_find_lane(wh_log_run_t *run, int32_t task) {
@@ -43,7 +43,7 @@ void wh_log_run_set_parts(wh_log_run_t *run) {
     }
 }
 
-/* What its command stands still for in a slice, as far as valves tell. */
+/* The reason why its command stands still in a slice, as far as valves tell. */
 static wh_share_t share_standing(const wh_log_run_t *run, const wh_log_lane_t *lane) {
     const wh_state_t *state = &run->state;
     for (size_t g = 0; g < state->gripper_count; ++g) {

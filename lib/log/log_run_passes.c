@@ -1,11 +1,11 @@
-/* Passes through the beams at stations' doors, as the states tell them: each is estimated again when its
- * beams are disarmed, which motion control does once it has asked. */
+/* Passes through the beams at stations' doors, from the states. Each pass is estimated again when its
+ * beams are disarmed; motion control disarms them after its own estimate. */
 #include <math.h>
 #include <string.h>
 
 #include "log_run_internal.h"
 
-/* So far from the rim is a crossing that tells nothing, mm. */
+/* The most that a crossing's distance from the rim counts, mm. */
 #define FARTHEST 50.0
 
 static bool is_order(const wh_layout_t *layout, const wh_latches_t *latches) {
@@ -14,14 +14,14 @@ static bool is_order(const wh_layout_t *layout, const wh_latches_t *latches) {
            layout->doors[latches->first].kind == WH_DOOR_LIGHT;
 }
 
-/* Of the order's beams, and no younger than its slice. */
+/* True if the latch is from the order's beams, and not later than its slice. */
 static bool is_latch_sound(const wh_latch_t *latch, const wh_latches_t *of) {
     return latch->beam >= of->first && latch->beam < of->first + of->count &&
            (latch->edge == WH_CROSSING_IN || latch->edge == WH_CROSSING_OUT) && latch->slice > 0 &&
            latch->slice <= of->slice && latch->part >= 0 && latch->part <= 1;
 }
 
-/* A log may hold anything. */
+/* Checks the latches: a log may hold any data. */
 static bool are_sound(const wh_latches_t *latches, int64_t seq) {
     bool sound = latches->slice >= 0 && latches->slice < seq;
     for (int32_t i = 0; latches->armed && i < latches->latch_count; ++i) {
@@ -37,7 +37,7 @@ static void drop(wh_log_run_t *run) {
     memset(run->passes, 0, sizeof run->passes);
 }
 
-/* A log does not tell whose pass it is: that of any robot's gripper that has a wafer. */
+/* A log does not tell the gripper of a pass: it may be any gripper on a robot that has a wafer. */
 static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
     const wh_layout_t *layout = run->cell.layout;
     for (size_t g = 0; is_order(layout, latches) && g < run->state.gripper_count; ++g) {
@@ -66,7 +66,7 @@ static void hear(wh_log_run_t *run) {
     }
 }
 
-/* How far the crossings are from where the rim is expected on this gripper, mm, on average. */
+/* The mean distance of the crossings from the expected rim on this gripper, mm. */
 static double distance_of(const wh_pass_t *pass, const wh_layout_t *layout) {
     wh_pass_crossing_t crossings[WH_CROSSINGS];
     int64_t missed = 0;
@@ -74,12 +74,12 @@ static double distance_of(const wh_pass_t *pass, const wh_layout_t *layout) {
     const size_t count = wh_pass_crossings(pass, layout, crossings, &missed);
     for (size_t k = 0; k < count; ++k) {
         const wh_crossing_t *at = &crossings[k].crossing;
-        sum += fmin(fabs(hypot(at->x, at->y) - layout->wafer_diameter / 2), FARTHEST);
+        sum += fmin(fabs(sqrt(at->x * at->x + at->y * at->y) - layout->wafer_diameter / 2), FARTHEST);
     }
     return count > 0 ? sum / (double)count : FARTHEST;
 }
 
-/* The pass whose crossings are nearest to the rim of what its gripper holds, or null. */
+/* The pass whose crossings are nearest to the rim of its gripper's wafer, or null. */
 static const wh_pass_t *find_pass(const wh_log_run_t *run) {
     const wh_pass_t *found = NULL;
     double least = 2 * FARTHEST;

@@ -1,4 +1,5 @@
-/* What motion control told of a run, slice by slice: commands, expectations, cycles and the verdict. */
+/* Takes motion control's messages about a run, slice by slice: commands, expectations, cycles and the
+ * verdict. */
 #include "log_run_internal.h"
 
 #include <stdlib.h>
@@ -6,9 +7,9 @@
 
 #include "../text/array.h"
 
-/* A command begins once, however often that is said. */
+/* A command begins once, however often a message says so. */
 static bool is_running(const wh_log_run_t *run, const waferhand_mcs *told) {
-    const int32_t running = run->recorder.running; /* of the task that tells it */
+    const int32_t running = run->recorder.running; /* of the task in the message */
     return running != WH_NONE && strcmp(run->record.commands[running].text, told->command) == 0;
 }
 
@@ -27,7 +28,7 @@ static void take_end(wh_log_run_t *run, const waferhand_mcs *told) {
     }
 }
 
-/* What comes again, as over a lossy network, has the same number. */
+/* False for a repeated message, as over a lossy network: its number is known. */
 static bool is_new(wh_log_run_t *run, const waferhand_mcs *told) {
     const bool is_cycle = told->phase == WH_LINK_PHASE_CYCLE;
     int32_t *last = is_cycle ? &run->last_cycle : &run->last_expectation;
@@ -45,7 +46,7 @@ static bool is_new(wh_log_run_t *run, const waferhand_mcs *told) {
     return true;
 }
 
-/* From the first such message on there are tasks. */
+/* Takes a message about a task; from the first one on there are tasks. */
 static void take_turn(wh_log_run_t *run, const waferhand_mcs *told) {
     wh_log_lane_t *lane = wh_log_run_find_lane(run, told->task);
     const bool waits = told->phase == WH_LINK_PHASE_WAITS;
@@ -61,7 +62,7 @@ static void take_turn(wh_log_run_t *run, const waferhand_mcs *told) {
     }
 }
 
-/* True if the message tells of a task's command, or of the script's. */
+/* Takes the command of a task or of the script; true if the message has one. */
 static bool take_command(wh_log_run_t *run, const waferhand_mcs *told) {
     bool is_taken = true;
     wh_log_run_choose_task(run, told->task);

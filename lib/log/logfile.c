@@ -14,16 +14,16 @@
 #define HEADER 28
 #define SYNC UINT32_C(0xeda1da01)
 #define SYNC_BYTES 4
-/* No event of any program is longer. */
+/* The longest event of any program. */
 #define LONGEST UINT64_C(0x10000000)
-/* No channel of any program has a longer name. */
+/* The longest name of a channel of any program. */
 #define LONGEST_CHANNEL 1000
-/* What a compressed file, and each of its frames, begins with. */
+/* The first bytes of a compressed file, and of each of its frames. */
 #define MAGIC_BYTES 4
 
 static const uint8_t magic[MAGIC_BYTES] = {0x28, 0xB5, 0x2F, 0xFD};
 
-/* Opening a pipe must wait for nobody at its other end. */
+/* Opening a pipe must not wait for its other end. */
 FILE *wh_log_file(const char *path, const char **fault) {
     struct stat status;
     FILE *file = NULL;
@@ -51,16 +51,19 @@ bool wh_log_is_packed(const void *bytes, size_t size) {
     return size >= MAGIC_BYTES && memcmp(bytes, magic, MAGIC_BYTES) == 0;
 }
 
-void wh_log_open(wh_log_t *log, FILE *file) {
-    wh_log_source_t *source = &log->source;
-    wh_log_close(log);
-    memset(log, 0, offsetof(wh_log_t, window));
-    log->begin = log->end = 0;
+static void open_source(wh_log_source_t *source, FILE *file) {
     rewind(file);
     source->file = file;
     source->packed = wh_array_new(WH_LOG_PACKED, 1);
     source->end = fread(source->packed, 1, MAGIC_BYTES, file);
     source->zstd = wh_log_is_packed(source->packed, source->end) ? wh_memory_need(ZSTD_createDCtx()) : NULL;
+}
+
+void wh_log_open(wh_log_t *log, FILE *file) {
+    wh_log_close(log);
+    memset(log, 0, offsetof(wh_log_t, window));
+    log->begin = log->end = 0;
+    open_source(&log->source, file);
 }
 
 void wh_log_close(wh_log_t *log) {
@@ -71,7 +74,7 @@ void wh_log_close(wh_log_t *log) {
 
 /* ------------------------------------------------------------------------------------------------- source */
 
-/* Reads on, behind what is kept: from the frame's beginning, if there is room. */
+/* Reads on after the kept bytes; the bytes from the frame's beginning stay, if there is room. */
 static bool refill(wh_log_source_t *source) {
     const bool fits = source->end - source->frame < WH_LOG_PACKED / 2;
     const size_t from = fits ? source->frame : source->at;
@@ -85,7 +88,7 @@ static bool refill(wh_log_source_t *source) {
     return got > 0;
 }
 
-/* Finds where the next frame begins, behind the beginning of the damaged one. False if none does. */
+/* Finds the next frame after the beginning of the damaged one. False if there is none. */
 static bool find_frame(wh_log_source_t *source) {
     source->at = source->frame + 1 < source->end ? source->frame + 1 : source->end;
     for (;;) {
@@ -115,7 +118,7 @@ static void note_broken(wh_log_source_t *source) {
     (void)ZSTD_DCtx_reset(source->zstd, ZSTD_reset_session_only);
 }
 
-/* Decompresses a piece of what is kept. False at the end. */
+/* Decompresses a piece of the kept bytes. False at the end. */
 static bool unpack(wh_log_source_t *source, ZSTD_outBuffer *out) {
     if (source->at == source->end && !refill(source)) {
         return false;
@@ -133,7 +136,7 @@ static bool unpack(wh_log_source_t *source, ZSTD_outBuffer *out) {
     return true;
 }
 
-/* Reads up to so many bytes; fewer at the end only. */
+/* Reads up to `size` bytes; fewer only at the end. */
 static size_t read_source(wh_log_source_t *source, uint8_t *bytes, size_t size) {
     if (!source->zstd) {
         const size_t kept = source->end - source->at < size ? source->end - source->at : size;
@@ -149,7 +152,7 @@ static size_t read_source(wh_log_source_t *source, uint8_t *bytes, size_t size) 
 
 /* ------------------------------------------------------------------------------------------------- window */
 
-/* Has `wanted` bytes from `next` on in the window, or all that there are. Returns how many. */
+/* Brings `wanted` bytes from `next` on into the window, or all that there are. Returns their number. */
 static size_t look(wh_log_t *log, size_t wanted) {
     if (log->end - log->begin < wanted) {
         memmove(log->window, log->window + log->begin, log->end - log->begin);
@@ -165,7 +168,7 @@ static void pass(wh_log_t *log, size_t size) {
     log->next += size;
 }
 
-/* Passes over more than the window has. False if the file ends before. */
+/* Passes over `size` bytes, more than the window has. False if the file ends before. */
 static bool pass_over(wh_log_t *log, uint64_t size) {
     while (size > 0) {
         const size_t there = look(log, 1);
@@ -203,8 +206,8 @@ static uint64_t length_of(const uint8_t *header) {
     return sound ? HEADER + channel + data : 0;
 }
 
-/* True if at these bytes, the last ones in the window, an event begins, behind which another one begins or
- * the file ends. `ends` tells if the file ends with them. */
+/* True if an event begins at these bytes, the last ones in the window, and after it another one begins or
+ * the file ends. `ends` tells whether the file ends with them. */
 static bool is_linked(const uint8_t *bytes, size_t there, bool ends) {
     if (there < HEADER || !is_sync(bytes, there)) {
         return false;
@@ -216,7 +219,7 @@ static bool is_linked(const uint8_t *bytes, size_t there, bool ends) {
     return length == there || (there - length >= SYNC_BYTES && is_sync(bytes + length, there - length));
 }
 
-/* The first place behind the beginning of the window, and before `limit`, where events follow one another;
+/* The first place after the beginning of the window, and before `limit`, where events follow one another;
  * 0 if there is none. */
 static size_t find_link(wh_log_t *log, size_t limit) {
     const size_t there = look(log, sizeof log->window);
@@ -244,7 +247,7 @@ static wh_log_result_t skip_damage(wh_log_t *log) {
             pass(log, found > 0 ? found : there);
             return WH_LOG_DAMAGED;
         }
-        /* The next event may begin so near to the window's end that its own end is not in it. */
+        /* The next event may begin so near to the window's end that its own end is outside. */
         pass(log, sizeof log->window / 2);
     }
 }
@@ -261,7 +264,7 @@ static void take_header(wh_log_t *log, const uint8_t *bytes) {
     log->size = (size_t)big_endian(bytes + 24, 4);
 }
 
-/* An event of another program that is longer than ours are. */
+/* Passes over an event of another program that is longer than ours. */
 static wh_log_result_t pass_event(wh_log_t *log, uint64_t length) {
     log->data = NULL;
     log->size = 0;
@@ -272,8 +275,8 @@ static wh_log_result_t pass_event(wh_log_t *log, uint64_t length) {
     return WH_LOG_EVENT;
 }
 
-/* The event at the window's beginning, of which the header is there. Where its length may be wrong, events
- * within it say so. */
+/* Takes the event at the window's beginning, whose header is there. If its length may be wrong, events
+ * within it show that. */
 static wh_log_result_t take_event(wh_log_t *log, uint64_t length) {
     const size_t most = HEADER + LONGEST_CHANNEL + WH_LOG_EVENT_BYTES;
     const size_t there = look(log, most + SYNC_BYTES);
@@ -299,7 +302,28 @@ static wh_log_result_t take_event(wh_log_t *log, uint64_t length) {
     return WH_LOG_EVENT;
 }
 
-wh_log_result_t wh_log_next(wh_log_t *log) {
+/* The end of a file is that of the log, unless another one follows. */
+static wh_log_result_t end_file(wh_log_t *log, wh_log_result_t result) {
+    const uint64_t broken = log->source.broken;
+    const uint64_t first_broken = log->source.first_broken;
+    if (log->rest_count == 0) {
+        return result;
+    }
+    log->is_cut = result == WH_LOG_CUT;
+    log->passed += log->next;
+    log->next = 0;
+    log->begin = log->end = 0;
+    ++log->file;
+    --log->rest_count;
+    wh_log_close(log);
+    open_source(&log->source, *log->rest++);
+    log->source.broken = broken;
+    log->source.first_broken = first_broken;
+    return WH_LOG_NEXT_FILE;
+}
+
+/* The next event or result in this file. */
+static wh_log_result_t next_here(wh_log_t *log) {
     log->offset = log->next;
     const size_t there = look(log, HEADER);
     const uint8_t *bytes = log->window + log->begin;
@@ -316,9 +340,14 @@ wh_log_result_t wh_log_next(wh_log_t *log) {
     return length > 0 ? take_event(log, length) : skip_damage(log);
 }
 
+wh_log_result_t wh_log_next(wh_log_t *log) {
+    const wh_log_result_t result = next_here(log);
+    return result == WH_LOG_END || result == WH_LOG_CUT ? end_file(log, result) : result;
+}
+
 bool wh_log_next_event(wh_log_t *log) {
     wh_log_result_t result = WH_LOG_DAMAGED;
-    while (result == WH_LOG_DAMAGED) {
+    while (result == WH_LOG_DAMAGED || result == WH_LOG_NEXT_FILE) {
         result = wh_log_next(log);
     }
     return result == WH_LOG_EVENT;
@@ -335,7 +364,7 @@ static void note_gap(wh_log_numbers_t *numbers, uint64_t from, uint64_t to) {
     }
 }
 
-/* Takes a number out of its gap, of which one or two are left, or none. False if it is in none. */
+/* Takes a number out of its gap, which leaves one gap, two, or none. False if it is in no gap. */
 static bool fill_gap(wh_log_numbers_t *numbers, uint64_t number) {
     for (size_t i = 0; i < numbers->gap_count; ++i) {
         const uint64_t to = numbers->gaps[i].to;
@@ -402,6 +431,13 @@ void wh_log_numbers_finish(wh_log_numbers_t *numbers) {
         numbers->waits = false;
         insert(numbers, numbers->odd, numbers->odd_at);
     }
+}
+
+void wh_log_numbers_restart(wh_log_numbers_t *numbers) {
+    wh_log_numbers_finish(numbers);
+    numbers->beyond = wh_log_numbers_missing(numbers);
+    numbers->gap_count = 0;
+    numbers->next = 0;
 }
 
 uint64_t wh_log_numbers_missing(const wh_log_numbers_t *numbers) {

@@ -26,9 +26,10 @@ const wh_reading_loss_t wh_reading_losses[WH_REPLAY_LOSSES] = {
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-/* The cell is told once a second, so a recording may begin before it. And how runs begin must be known. */
-static void look_ahead(FILE *file, wh_log_t *log, wh_replay_t *replay) {
-    wh_log_open(log, file);
+/* Looks through the log first. The cell is told once a second, so a recording may begin before it; and the
+ * beginnings of runs must be known. */
+static void look_ahead(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *replay) {
+    wh_log_files_begin(files, log);
     while (wh_log_next_event(log)) {
         wh_replay_look_ahead(replay, log->channel, log->data, log->size);
         if (replay->cell_count == 0 && strcmp(log->channel, WH_CHANNEL_CELL) == 0) {
@@ -44,29 +45,56 @@ static void look_ahead(FILE *file, wh_log_t *log, wh_replay_t *replay) {
     replay->unknown_run = 0;
 }
 
-void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading) {
+/* Keeps the place if there is room for it, and counts it in any case. */
+static void note_place(wh_reading_damage_t places[WH_READING_DAMAGES], uint64_t *count,
+                       wh_reading_damage_t place) {
+    if (*count < WH_READING_DAMAGES) {
+        places[*count] = place;
+    }
+    ++*count;
+}
+
+/* One file has ended, the next one begins. */
+static void pass_file(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *replay) {
+    if (log->is_cut) {
+        note_place(reading->cuts, &reading->cut_count,
+                   (wh_reading_damage_t){log->offset, log->offset, log->file - 1});
+    }
+    reading->is_compressed = reading->is_compressed || log->source.zstd != NULL;
+    wh_log_numbers_restart(&reading->numbers);
+    wh_replay_next_file(replay);
+}
+
+static void take_event(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *replay) {
+    wh_log_numbers_take(&reading->numbers, log->number, log->offset);
+    replay->at = log->offset;
+    replay->file = log->file;
+    replay->is_loose = log->is_loose;
+    wh_replay_event(replay, log->channel, log->data, log->size);
+}
+
+void wh_reading_replay(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *replay,
+                       wh_reading_t *reading) {
     wh_log_result_t result;
     memset(reading, 0, sizeof *reading);
-    look_ahead(file, log, replay);
-    wh_log_open(log, file);
-    while ((result = wh_log_next(log)) == WH_LOG_EVENT || result == WH_LOG_DAMAGED) {
+    reading->is_alone = files->is_alone;
+    look_ahead(files, log, replay);
+    wh_log_files_begin(files, log);
+    while ((result = wh_log_next(log)) != WH_LOG_END && result != WH_LOG_CUT) {
         if (result == WH_LOG_DAMAGED) {
-            if (reading->damage_count < WH_READING_DAMAGES) {
-                reading->damages[reading->damage_count] = (wh_reading_damage_t){log->offset, log->next};
-            }
-            ++reading->damage_count;
-            continue;
+            note_place(reading->damages, &reading->damage_count,
+                       (wh_reading_damage_t){log->offset, log->next, log->file});
+        } else if (result == WH_LOG_NEXT_FILE) {
+            pass_file(reading, log, replay);
+        } else {
+            take_event(reading, log, replay);
         }
-        wh_log_numbers_take(&reading->numbers, log->number, log->offset);
-        replay->at = log->offset;
-        replay->is_loose = log->is_loose;
-        wh_replay_event(replay, log->channel, log->data, log->size);
     }
     wh_log_numbers_finish(&reading->numbers);
     wh_replay_end(replay);
     reading->events = log->count;
-    reading->bytes = log->next;
-    reading->is_compressed = log->source.zstd != NULL;
+    reading->bytes = log->passed + log->next;
+    reading->is_compressed = reading->is_compressed || log->source.zstd != NULL;
     reading->broken = log->source.broken;
     reading->first_broken = log->source.first_broken;
     reading->is_cut = result == WH_LOG_CUT;
@@ -84,7 +112,7 @@ static const wh_replay_run_t *last_begun(const wh_replay_t *replay) {
 }
 
 bool wh_reading_is_unknown(const wh_replay_t *replay) {
-    return replay->recording.version != 0 && replay->recording.version != WH_RECORDING_VERSION;
+    return replay->recording.is_told && !wh_recording_is_known(replay->recording.version);
 }
 
 bool wh_reading_is_doubtful(const wh_replay_t *replay, const wh_replay_run_t *run) {
@@ -117,9 +145,16 @@ int64_t wh_reading_lost_expectations(const wh_replay_run_t *run) {
     return run->told.expectations - (int64_t)(there->next - missing);
 }
 
+/* A command that was refused, for its layout or another reason, has no slice. */
+int64_t wh_reading_lost_end(const wh_replay_run_t *run) {
+    const int64_t reached = run->last_refused > run->reached ? run->last_refused : run->reached;
+    const bool is_told = run->over && !run->is_other_layout && run->homeless == 0;
+    return is_told && run->over_seq > reached ? run->over_seq - reached : 0;
+}
+
 /* ------------------------------------------------------------------------------------------------ judging */
 
-/* Writes why, unless nobody asks. True. */
+/* Writes the reason, if it is wanted. Returns true. */
 __attribute__((format(printf, 2, 3))) static bool because(char *reason, const char *format, ...) {
     va_list values;
     if (reason) {
@@ -148,7 +183,7 @@ static bool is_lost(const wh_replay_t *replay, wh_replay_loss_t loss, char *reas
                                       lost->count == 1 ? words->one : words->many, lost->first);
 }
 
-/* Messages that a network may have made so, as well as the file. */
+/* True for messages that the network or the file may have spoilt. */
 static bool has_strange_messages(const wh_replay_t *replay, char *reason) {
     return !wh_replay_is_vouched_for(replay) &&
            (is_lost(replay, WH_REPLAY_CONTRADICTS, reason) || is_lost(replay, WH_REPLAY_STRAY, reason));
@@ -162,7 +197,7 @@ static bool has_doubtful_slices(const wh_replay_t *replay, char *reason) {
     return count_because(reason, (uint64_t)doubtful, "slice is doubtful", "slices are doubtful");
 }
 
-/* What no network does. */
+/* True for damage that no network causes. */
 static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
     if (reading->damage_count > 0) {
         return because(reason, "bytes from %" PRIu64 " on are no event", reading->damages[0].from);
@@ -188,7 +223,9 @@ static bool is_run_whole(const wh_replay_t *replay, const wh_replay_run_t *run, 
     if (lost < 0) {
         return !because(reason, "more expectations are in the log than the run had");
     }
-    return !count_because(reason, (uint64_t)run->skipped, "slice was passed over",
+    return !count_because(reason, (uint64_t)wh_reading_lost_end(run), "slice before the run's end is missing",
+                          "slices before the run's end are missing") &&
+           !count_because(reason, (uint64_t)run->skipped, "slice was passed over",
                           "slices were passed over") &&
            !count_because(reason, (uint64_t)run->taken_up, "state was taken over as recorded",
                           "states were taken over as recorded") &&
@@ -197,7 +234,7 @@ static bool is_run_whole(const wh_replay_t *replay, const wh_replay_run_t *run, 
                           "expectations are not in the log");
 }
 
-/* What a network may do. */
+/* True for losses that a network may cause. */
 static bool is_something_missing(const wh_replay_t *replay, char *reason) {
     for (size_t i = 0; i < replay->run_count; ++i) {
         if (!is_run_whole(replay, &replay->runs[i], reason)) {
@@ -211,6 +248,27 @@ static bool is_something_missing(const wh_replay_t *replay, char *reason) {
     }
     return count_because(reason, replay->proximities, "proximity could not be compared",
                          "proximities could not be compared");
+}
+
+/* A part of the recording that should follow, and was not read; 0: none. */
+static int32_t find_lost_part(const wh_replay_t *replay, const wh_reading_t *reading) {
+    return replay->lost_part > 0 ? replay->lost_part : reading->is_alone ? 0 : replay->awaited_part;
+}
+
+static bool lacks_part(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
+    const int32_t lost = find_lost_part(replay, reading);
+    return lost > 0 &&
+           because(reason, "part %d of the recording is not there (--alone reads a part by itself)",
+                   (int)lost);
+}
+
+/* A file ended within a run, and no later one has the run's end. */
+static bool is_run_left(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
+    bool left = reading->cut_count > 0 && replay->run_count > 0 && !replay->runs[0].is_left;
+    for (size_t i = 0; i < replay->run_count; ++i) {
+        left = left || (replay->runs[i].is_left && !replay->runs[i].over);
+    }
+    return left && because(reason, "a file before the last one ends early, and the end is not in the others");
 }
 
 static int64_t count_compared(const wh_replay_t *replay) {
@@ -241,6 +299,9 @@ static bool shows_nothing(const wh_replay_t *replay, char *reason) {
 
 static bool lacks_end(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
     const wh_replay_run_t *last = last_begun(replay);
+    if (is_run_left(replay, reading, reason)) {
+        return true;
+    }
     if (reading->is_cut) {
         return because(reason, "it ends within an event, at byte %" PRIu64, reading->cut_at);
     }
@@ -249,6 +310,13 @@ static bool lacks_end(const wh_replay_t *replay, const wh_reading_t *reading, ch
                because(reason, "the recording was not closed, so nothing vouches for its texts");
     }
     return (!last || !last->over) && because(reason, "the run's end is not in it");
+}
+
+/* Damage, or anything missing that the leniency does not excuse. */
+static bool is_incomplete(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient,
+                          char *reason) {
+    return is_file_damaged(replay, reading, reason) || lacks_part(replay, reading, reason) ||
+           (!lenient && is_something_missing(replay, reason)) || shows_nothing(replay, reason);
 }
 
 wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient,
@@ -263,8 +331,7 @@ wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_readin
                       differs->difference.what);
         return WH_READING_DIFFERS;
     }
-    if (is_file_damaged(replay, reading, reason) || (!lenient && is_something_missing(replay, reason)) ||
-        shows_nothing(replay, reason)) {
+    if (is_incomplete(replay, reading, lenient, reason)) {
         return WH_READING_INCOMPLETE;
     }
     if (lacks_end(replay, reading, reason)) {

@@ -9,6 +9,7 @@
 void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss) {
     if (replay->losses[loss].count++ == 0) {
         replay->losses[loss].first = replay->at;
+        replay->losses[loss].file = replay->file;
     }
 }
 
@@ -51,6 +52,7 @@ static void begin_run(wh_replay_t *replay, wh_replay_run_t *run, const wh_replay
     replay->returned = wh_replay_find_return(replay, run->run);
     replay->seq = replay->returned ? replay->returned->seq - 1 : 0;
     replay->last_pending = 0;
+    replay->told_count = 0;
     replay->is_synchronous = replay->is_unsure = false;
     if (replay->cell != cell) {
         wh_protocol_server_close(&replay->server);
@@ -113,7 +115,7 @@ static void advance_to(wh_replay_t *replay, int64_t seq) {
     replay->seq = seq;
 }
 
-/* The first slice that waits and has that; 0: none. */
+/* The first waiting slice for which `has` is true; 0: none. */
 static int64_t first_with(wh_replay_t *replay, bool (*has)(wh_replay_t *replay, int64_t seq)) {
     int64_t seq = replay->seq + 1;
     while (seq <= replay->last_pending && !has(replay, seq)) {
@@ -122,7 +124,7 @@ static int64_t first_with(wh_replay_t *replay, bool (*has)(wh_replay_t *replay, 
     return seq <= replay->last_pending ? seq : 0;
 }
 
-/* True if the next slice can be stepped, once it is there: the run is known up to here. */
+/* True if the next slice can be stepped when it comes: the run is known up to here. */
 static bool is_at_hand(wh_replay_t *replay) {
     return replay->is_synchronous || (replay->seq == 0 && has_command(replay, 1));
 }
@@ -131,7 +133,7 @@ static int64_t missed_so_far(const wh_replay_t *replay) {
     return replay->is_synchronous ? replay->server.missed : 0;
 }
 
-/* A slice of which command and state are there. */
+/* Handles a slice with command and state. */
 static void resolve(wh_replay_t *replay, int64_t seq) {
     const wh_replay_slot_t *slot = slot_of(replay, seq);
     waferhand_state message;
@@ -143,19 +145,19 @@ static void resolve(wh_replay_t *replay, int64_t seq) {
     advance_to(replay, seq);
 }
 
-/* A slice whose state is not in the log, though later ones are. */
+/* Steps a slice whose state is not in the log, though later ones are. */
 static void step_unanswered(wh_replay_t *replay, int64_t seq) {
     wh_replay_step_alone(replay, &slot_of(replay, seq)->command);
     advance_to(replay, seq);
 }
 
-/* Counts the slices behind the last one, up to this one, as passed over. Those that an earlier part of the
- * recording has are not. */
+/* Counts the slices after the last one, up to this one, as passed over, except those that an earlier part
+ * of the recording has. */
 static void skip_to(wh_replay_t *replay, int64_t seq) {
     replay->run->skipped += replay->part_begins ? 0 : seq - replay->seq;
 }
 
-/* The first state of a run: true if it is one that was replayed before. Else all slices before it are passed
+/* For the first state of a run: true if it was replayed before. Else all slices before it are passed
  * over. */
 static bool returns_to(wh_replay_t *replay, int64_t seq, bool is_restored) {
     const wh_replay_return_t *returned = replay->returned;
@@ -168,7 +170,7 @@ static bool returns_to(wh_replay_t *replay, int64_t seq, bool is_restored) {
     return false;
 }
 
-/* A state whose command, or one before it, is not in the log. */
+/* Continues from a state whose command, or an earlier one, is not in the log. */
 static void take_up(wh_replay_t *replay, int64_t seq) {
     const wh_replay_slot_t *slot = slot_of(replay, seq);
     waferhand_state message;
@@ -227,8 +229,8 @@ static bool is_stepped_to(wh_replay_t *replay, int64_t state) {
     return whole && slot_of(replay, state)->missed == missed_so_far(replay);
 }
 
-/* Something does not come any more: what waits longest goes through without it. False if only commands
- * wait. */
+/* A message will not come any more: the longest waiting one goes through without it. False if only
+ * commands wait. */
 static bool force(wh_replay_t *replay) {
     const int64_t state = first_with(replay, has_state);
     if (state == 0) {
@@ -244,7 +246,7 @@ static bool force(wh_replay_t *replay) {
     return true;
 }
 
-/* The same where only commands wait. False if none does. */
+/* Like force, if only commands wait. False if none waits. */
 static bool force_command(wh_replay_t *replay) {
     const int64_t command = first_with(replay, has_command);
     if (command == 0) {
@@ -289,6 +291,9 @@ void wh_replay_finish(wh_replay_t *replay) {
         advance_to(replay, first_with(replay, has_command));
         replay->is_synchronous = false;
     }
+    if (replay->run && replay->seq > replay->run->reached) {
+        replay->run->reached = replay->seq;
+    }
 }
 
 /* ------------------------------------------------------------------------------------ commands and states */
@@ -300,8 +305,8 @@ static bool is_new(wh_replay_t *replay, int64_t run, int64_t seq, int64_t layout
     return !is_again && enter_run(replay, run, (uint64_t)layout_hash) && seq > replay->seq;
 }
 
-/* Keeps count of a command of a layout whose cell is not in the log. It is not lost if the simulator says
- * that it has another layout. */
+/* Counts a command of a layout whose cell is not in the log. It is not lost if the simulator answers that
+ * it has another layout. */
 static bool is_homeless(wh_replay_t *replay, const waferhand_command *message) {
     const bool is_current = replay->run && replay->run->run == message->run;
     if (is_current || wh_replay_find_cell(replay, (uint64_t)message->layout_hash)) {
@@ -366,23 +371,36 @@ static void keep_state(wh_replay_t *replay, const waferhand_state *message, cons
         slot->missed = message->missed;
         while (let_through(replay)) {
         }
+    } else if (slot->size != size || memcmp(slot->state, data, size - 8) != 0) {
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
+}
+
+static bool is_of_last(const wh_replay_t *replay, const waferhand_state *message) {
+    return replay->run && replay->run->run == message->run && message->seq == replay->seq;
 }
 
 void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                           size_t size) {
-    const bool is_last = replay->run && replay->run->run == message->run && message->seq == replay->seq;
+    const bool is_last = is_of_last(replay, message);
     if (is_last && replay->has_last) {
         wh_replay_take_last_state(replay, message, data, size);
         return;
     }
     wh_replay_tell_last(replay);
+    if (is_last && replay->file_begins && replay->is_synchronous) {
+        wh_replay_take_first_state(replay, message, data, size);
+        return;
+    }
+    replay->file_begins = false;
     if (is_last && !replay->is_synchronous && replay->seq > 0) {
-        --replay->seq; /* behind a block that could not be stepped, and was counted */
+        --replay->seq; /* after a block that could not be stepped, and was counted */
         --replay->run->skipped;
     }
     if (is_new(replay, message->run, message->seq, message->layout_hash)) {
         keep_state(replay, message, data, size);
+    } else {
+        wh_replay_check_repeat(replay, message, data, size);
     }
 }
 
@@ -392,7 +410,7 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
         return;
     }
     if (replay->seq + 1 != slices->first || replay->last_pending > replay->seq) {
-        wh_replay_finish(replay); /* nothing of what waits comes behind a block */
+        wh_replay_finish(replay); /* no waiting message belongs after a block */
     }
     for (size_t i = 0; i < slices->count; ++i) {
         int32_t told[WH_GRIPPERS];
@@ -418,7 +436,31 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
 
 bool wh_replay_is_vouched_for(const wh_replay_t *replay) {
     const wh_replay_recording_t *recording = &replay->recording;
-    return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed;
+    return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed &&
+           replay->open_files == 0;
+}
+
+/* A file has ended: if its recording goes on, its next part must come. A file without a recording's
+ * description does not stand in for that part. */
+static void await_part(wh_replay_t *replay) {
+    const wh_replay_recording_t *recording = &replay->recording;
+    if (recording->version > 0 && recording->closed == WH_RECORDING_GOES_ON) {
+        replay->awaited_part = recording->part + 1;
+    }
+}
+
+void wh_replay_next_file(wh_replay_t *replay) {
+    wh_replay_recording_t *recording = &replay->recording;
+    const bool is_open = recording->version == 0 || recording->closed == WH_RECORDING_BEGINS;
+    wh_replay_tell_last(replay);
+    replay->open_files += is_open ? 1 : 0;
+    await_part(replay);
+    if (replay->run && !replay->run->over) {
+        replay->run->is_left = true;
+    }
+    recording->closed = WH_RECORDING_BEGINS;
+    replay->events = replay->digest = 0;
+    replay->file_begins = true;
 }
 
 /* True if all expectations of the run are in the log, each once. */
@@ -428,7 +470,7 @@ static bool has_expectations(const wh_replay_run_t *run) {
            wh_log_numbers_missing(there) == 0;
 }
 
-/* What is known of a run when nothing more comes. */
+/* Completes a run when no more messages come. */
 static void finish_run(wh_replay_t *replay, wh_replay_run_t *run) {
     const wh_run_told_t *told = &run->told;
     const bool passed = told->verdict == WH_OUTCOME_PASSED;
@@ -447,11 +489,12 @@ static void finish_run(wh_replay_t *replay, wh_replay_run_t *run) {
 
 void wh_replay_end(wh_replay_t *replay) {
     wh_replay_finish(replay);
+    await_part(replay);
     for (size_t i = 0; i < replay->run_count; ++i) {
         wh_log_numbers_finish(&replay->runs[i].expectations);
         finish_run(replay, &replay->runs[i]);
     }
-    /* A network may bring the cell of an earlier run late: no loss, if that is sure to have come so. */
+    /* A network may bring the cell of an earlier run late: no loss, if that is certain. */
     if (replay->unknown_run != 0 && !wh_replay_find_run(replay, replay->unknown_run) &&
         !wh_replay_is_vouched_for(replay)) {
         replay->at = replay->unknown_at;
@@ -468,6 +511,9 @@ void wh_replay_close(wh_replay_t *replay) {
         free(replay->cells[i].told);
     }
     replay->cell_count = 0;
+    free(replay->told);
+    replay->told = NULL;
+    replay->told_count = replay->told_capacity = 0;
     for (size_t i = 0; i < replay->run_count; ++i) {
         free(replay->runs[i].reason);
     }

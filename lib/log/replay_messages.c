@@ -1,4 +1,4 @@
-/* What stands on each channel of a log, and what becomes of it. */
+/* The messages of each channel of a log, and their handling. */
 #include <endian.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static bool is_slice(int64_t run, int64_t seq) {
     return run != 0 && seq >= 1 && seq <= WH_LINK_SLICES;
 }
 
-/* A message without a check may be a sender's that makes none; false if it may be a torn one as well. */
+/* A message without a check may come from a sender that makes none; false if it may also be a torn one. */
 static bool is_to_be_had(wh_replay_t *replay, int64_t check) {
     if (check == 0) {
         wh_replay_lose(replay, replay->is_loose ? WH_REPLAY_GARBAGE : WH_REPLAY_UNCHECKED);
@@ -57,7 +57,8 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
         } else if (message.status == WH_STATUS_OTHER_LAYOUT) {
             note_other_layout(replay, message.run);
         } else if (message.status != WH_STATUS_UNKNOWN_RUN && message.status != WH_STATUS_RUN_OVER) {
-            wh_replay_take_refusal(replay, &message, data, size); /* else what another simulator knew */
+            wh_replay_take_refusal(replay, &message, data, size); /* else it is the knowledge of another
+                                                                   * simulator */
         }
     }
     (void)waferhand_state_decode_cleanup(&message);
@@ -69,7 +70,7 @@ static void add_cell(wh_replay_t *replay, waferhand_cell *message) {
     static uint8_t bytes[WH_LINK_DATAGRAM];
     const uint64_t hash = (uint64_t)message->layout_hash;
     wh_replay_cell_t *known = wh_replay_find_cell(replay, hash);
-    /* As it is told each time: without when and in which run. */
+    /* Compare the content of each message: without its time and its run. */
     message->utime = message->seq = message->run = 0;
     const int encoded = waferhand_cell_encode(bytes, 0, WH_LINK_DATAGRAM, message);
     const size_t size = encoded > 0 ? (size_t)encoded : 0;
@@ -118,7 +119,7 @@ static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* Which expectations are there. */
+/* Notes the expectations in the log. */
 static void take_expectation(wh_replay_t *replay, wh_replay_run_t *run, const waferhand_mcs *message) {
     if (message->error < 1) {
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
@@ -128,11 +129,12 @@ static void take_expectation(wh_replay_t *replay, wh_replay_run_t *run, const wa
     run->unmet += message->phase == WH_LINK_PHASE_UNMET ? 1 : 0;
 }
 
-/* How the run ended. Programs before version 2 of recordings told no verdict. */
-static void take_over(wh_replay_t *replay, wh_replay_run_t *run, const char *text) {
+/* Takes the end of the run. Programs before version 2 of recordings told no verdict. */
+static void take_over(wh_replay_t *replay, wh_replay_run_t *run, int64_t seq, const char *text) {
     const char *reason = wh_outcome_read(text, &run->told);
     run->over = true;
     run->over_at = replay->at;
+    run->over_seq = seq;
     if (!reason && text[0] != '\0') {
         run->is_told_wrong = true;
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
@@ -146,7 +148,7 @@ static void take_mcs(wh_replay_t *replay, const waferhand_mcs *message) {
                        message->phase != WH_LINK_PHASE_GOES_ON && is_wanted(replay, message->run);
     wh_replay_run_t *run = tells ? wh_replay_entry(replay, message->run) : NULL;
     if (run && message->phase == WH_LINK_PHASE_OVER) {
-        take_over(replay, run, message->text);
+        take_over(replay, run, message->seq, message->text);
     } else if (run && (message->phase == WH_LINK_PHASE_MET || message->phase == WH_LINK_PHASE_UNMET)) {
         take_expectation(replay, run, message);
     }
@@ -180,7 +182,7 @@ static void on_slices(wh_replay_t *replay, const void *data, size_t size) {
     }
 }
 
-/* What the log should have up to here, and what it has. */
+/* Compares the announced content of the log up to here with the real one. */
 static void check_recording(wh_replay_t *replay, const waferhand_recording *message) {
     if (message->events != (int64_t)replay->events - 1 || (uint64_t)message->digest != replay->digest) {
         replay->recording.is_changed = true;
@@ -193,14 +195,21 @@ static void check_recording(wh_replay_t *replay, const waferhand_recording *mess
 
 static void take_recording(wh_replay_t *replay, const waferhand_recording *message) {
     wh_replay_recording_t *recording = &replay->recording;
-    const bool is_known = recording->version == 0 || recording->version == WH_RECORDING_VERSION;
+    const bool is_known = !recording->is_told || wh_recording_is_known(recording->version);
     recording->version = is_known ? message->version : recording->version;
-    if (recording->version != WH_RECORDING_VERSION) {
+    recording->is_told = true;
+    if (!wh_recording_is_known(recording->version)) {
         return;
     }
     check_recording(replay, message);
-    if (replay->events == 1) {
+    if (replay->awaited_part != 0 && (recording->id != message->id || recording->part + 1 != message->part) &&
+        replay->lost_part == 0) {
+        replay->lost_part = replay->awaited_part;
+    }
+    replay->awaited_part = 0;
+    if (replay->events == 1 && !replay->file_begins) {
         replay->part_begins = message->part > 1;
+        recording->first_part = message->part;
     }
     recording->id = message->id;
     recording->part = message->part;
@@ -221,8 +230,7 @@ static void on_recording(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_recording_decode_cleanup(&message);
 }
 
-/* What was sent again to a simulator that was started anew: nothing follows from it that its state does not
- * tell. */
+/* A state that was sent again to a restarted simulator adds nothing to the simulator's own state. */
 static void on_restore(wh_replay_t *replay, const void *data, size_t size) {
     waferhand_state message;
     if (!wh_link_decode_state(data, size, &message)) {
@@ -243,7 +251,7 @@ static void on_request(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-/* It follows from its slice's state. */
+/* A proximity message follows from its slice's state. */
 static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
     const wh_protocol_server_t *server = &replay->server;
     waferhand_proximity message;
@@ -268,7 +276,7 @@ static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
     }
 }
 
-/* What its last slice's state tells of the scan, the samples of that slice included. */
+/* True if the message is the scan in its last slice's state, including the samples of that slice. */
 static bool is_scan_of(const waferhand_edge_scan *message, const wh_scan_t *scan) {
     const int32_t end = message->begin + message->sample_count;
     bool same = message->number == (int32_t)scan->number && message->gripper == scan->gripper &&

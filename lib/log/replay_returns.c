@@ -1,11 +1,11 @@
-/* Runs that go on from a state of an earlier one, as RESTORE and UNDO make them: which states these are is
- * found in a look at the log before the replay. So the replay keeps one hash a run, and not one a slice. */
+/* Runs that go on from a state of an earlier one, as after RESTORE and UNDO. A look through the log before
+ * the replay finds these states. So the replay keeps one hash for each run, and not one for each slice. */
 #include <endian.h>
 #include <string.h>
 
 #include "replay_internal.h"
 
-/* Where a message's number of its run is, behind fingerprint, time and slice. */
+/* The place of the run's number in a message, after fingerprint, time and slice. */
 #define RUN_AT 24
 
 static wh_replay_return_t *find(wh_replay_t *replay, int64_t run) {

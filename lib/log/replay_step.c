@@ -1,11 +1,11 @@
-/* Slices stepped, and what comes of them compared with what was recorded. */
+/* Steps slices, and compares the results with the recorded ones. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../sim/event_text.h"
 #include "replay_internal.h"
 
-typedef enum { REAL, VECTOR, MATRIX, INT8, INT32, INT64 } kind_t;
+typedef enum { REAL, PAIR, VECTOR, MATRIX, INT8, INT32, INT64 } kind_t;
 
 typedef struct {
     const char *name; /* null ends a table */
@@ -64,8 +64,10 @@ static const field_t latch_fields[] = {{"beam", AT(latch, beam), INT32},
                                        {"part", AT(latch, part), REAL},
                                        {0}};
 
-static const field_t tail_fields[] = {
-    {"sensors", AT(state, sensors), INT32}, {"hash", AT(state, hash), INT64}, {0}};
+static const field_t tail_fields[] = {{"sensors", AT(state, sensors), INT32},
+                                      {"events were lost", AT(state, events_lost), INT8},
+                                      {"hash", AT(state, hash), INT64},
+                                      {0}};
 
 static const field_t wafer_fields[] = {{"rotation", AT(wafer_state, rotation), MATRIX},
                                        {"position", AT(wafer_state, position), VECTOR},
@@ -88,6 +90,13 @@ static const field_t gripper_fields[] = {
     {"positions known", AT(gripper_state, positions_known), INT32},
     {"the held wafer a slice before", AT(gripper_state, wafer_before[0]), VECTOR},
     {"the held wafer two slices before", AT(gripper_state, wafer_before[1]), VECTOR},
+    {"plunger's phase", AT(gripper_state, grip_phase), INT8},
+    {"index of the plunger's wafer", AT(gripper_state, grip_wafer), INT32},
+    {"plunger's way", AT(gripper_state, grip_s), REAL},
+    {"beyond the clearance", AT(gripper_state, grip_excess), REAL},
+    {"where the plunger began", AT(gripper_state, grip_begin), PAIR},
+    {"where the face lay then", AT(gripper_state, grip_lying), PAIR},
+    {"the notch's axis then", AT(gripper_state, grip_notch), PAIR},
     {0}};
 
 static const field_t event_fields[] = {{"kind", AT(event, kind), INT32},
@@ -122,8 +131,10 @@ static const field_t fault_fields[] = {{"phase", AT(fault_slot, phase), INT32},
 
 /* ------------------------------------------------------------------------------------------------- fields */
 
-static const size_t counts[] = {[REAL] = 1, [VECTOR] = 3, [MATRIX] = 9, [INT8] = 1, [INT32] = 1, [INT64] = 1};
-static const size_t sizes[] = {[REAL] = 8, [VECTOR] = 8, [MATRIX] = 8, [INT8] = 1, [INT32] = 4, [INT64] = 8};
+static const size_t counts[] = {
+    [REAL] = 1, [PAIR] = 2, [VECTOR] = 3, [MATRIX] = 9, [INT8] = 1, [INT32] = 1, [INT64] = 1};
+static const size_t sizes[] = {
+    [REAL] = 8, [PAIR] = 8, [VECTOR] = 8, [MATRIX] = 8, [INT8] = 1, [INT32] = 4, [INT64] = 8};
 
 static double value_of(kind_t kind, const char *at) {
     union {
@@ -143,7 +154,7 @@ static double value_of(kind_t kind, const char *at) {
 }
 
 static void name_entry(const field_t *field, size_t i, char name[80]) {
-    if (field->kind == VECTOR) {
+    if (field->kind == VECTOR || field->kind == PAIR) {
         (void)snprintf(name, 80, "%s %c", field->name, (char)('x' + (int)i));
     } else if (field->kind == MATRIX) {
         (void)snprintf(name, 80, "%s %zu,%zu", field->name, i / 3 + 1, i % 3 + 1);
@@ -152,7 +163,7 @@ static void name_entry(const field_t *field, size_t i, char name[80]) {
     }
 }
 
-/* By their bits: -0 is not 0. */
+/* Compares by bits: -0 is not 0. */
 static bool differ(const field_t fields[], const char *of, const void *recorded, const void *replayed,
                    wh_replay_difference_t *difference) {
     for (const field_t *field = fields; field->name; ++field) {
@@ -175,17 +186,24 @@ static bool differ(const field_t fields[], const char *of, const void *recorded,
 
 /* ------------------------------------------------------------------------------------------------- states */
 
-/* True if an event is the collision check's, which a replay has not. */
+/* True for an event of the collision check, which a replay does not have. */
 static bool is_collision(int32_t kind) {
     return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
 }
 
-/* The next event from `from` on that is not of the collision check, or the count. */
-static int32_t next_event(const waferhand_state *message, int32_t from) {
-    while (from < message->event_count && is_collision(message->events[from].kind)) {
-        ++from;
+/* Makes the state without events of the collision check; the other events go into `events`. Returns the
+ * number left out. */
+static int32_t leave_out_collisions(const waferhand_state *message, waferhand_event events[WH_LINK_EVENTS],
+                                    waferhand_state *plain) {
+    *plain = *message;
+    plain->events = events;
+    plain->event_count = 0;
+    for (int32_t i = 0; i < message->event_count; ++i) {
+        if (!is_collision(message->events[i].kind)) {
+            events[plain->event_count++] = message->events[i];
+        }
     }
-    return from;
+    return message->event_count - plain->event_count;
 }
 
 static bool encounter_differs(const char *of, const char *which, const waferhand_encounter *recorded,
@@ -211,22 +229,21 @@ static bool event_differs(int number, const waferhand_event *recorded, const waf
            differ(measured_fields, of, &recorded->measured, &replayed->measured, difference);
 }
 
+/* Compares the events of states without those of the collision check. */
 static bool events_differ(const waferhand_state *recorded, const waferhand_state *replayed,
                           wh_replay_difference_t *difference) {
-    int32_t a = next_event(recorded, 0);
-    int32_t b = next_event(replayed, 0);
-    for (int number = 1; a < recorded->event_count && b < replayed->event_count; ++number) {
-        if (event_differs(number, &recorded->events[a], &replayed->events[b], difference)) {
+    const int32_t counts_of[2] = {recorded->event_count, replayed->event_count};
+    const int32_t both = counts_of[0] < counts_of[1] ? counts_of[0] : counts_of[1];
+    for (int32_t i = 0; i < both; ++i) {
+        if (event_differs((int)i + 1, &recorded->events[i], &replayed->events[i], difference)) {
             return true;
         }
-        a = next_event(recorded, a + 1);
-        b = next_event(replayed, b + 1);
     }
-    if (a == recorded->event_count && b == replayed->event_count) {
+    if (counts_of[0] == counts_of[1]) {
         return false;
     }
-    const bool lacks = a == recorded->event_count;
-    const waferhand_event *event = lacks ? &replayed->events[b] : &recorded->events[a];
+    const bool lacks = counts_of[0] == both;
+    const waferhand_event *event = lacks ? &replayed->events[both] : &recorded->events[both];
     (void)snprintf(difference->what, sizeof difference->what, "event: %s",
                    wh_event_name((wh_event_kind_t)event->kind));
     difference->recorded = lacks ? 0 : 1;
@@ -293,11 +310,10 @@ static bool sensing_differs(const wh_layout_t *layout, const waferhand_state *re
            latches_differ(&recorded->latching, &replayed->latching, difference);
 }
 
-/* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
- * `difference` then says where; else it is unchanged. */
-static bool states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
-                          const waferhand_state *replayed, wh_replay_difference_t *difference) {
-    /* The counts first: behind them they are the same. */
+/* Names the first field that differs. False if no field of the tables differs. */
+static bool name_difference(const wh_layout_t *layout, const waferhand_state *recorded,
+                            const waferhand_state *replayed, wh_replay_difference_t *difference) {
+    /* Compares the counts first: after that they are equal. */
     if (differ(head_fields, "", recorded, replayed, difference)) {
         return true;
     }
@@ -318,6 +334,40 @@ static bool states_differ(const wh_layout_t *layout, const waferhand_state *reco
            differ(tail_fields, "", recorded, replayed, difference);
 }
 
+static size_t encode(const waferhand_state *message, uint8_t bytes[WH_LINK_DATAGRAM]) {
+    const int size = waferhand_state_encode(bytes, 0, WH_LINK_DATAGRAM, message);
+    return size > 0 ? (size_t)size : 0;
+}
+
+/* True if the states differ in any bit, except in their checks and events of the collision check.
+ * `difference` then tells where; else it is unchanged. Whole messages are compared, so that no field can be
+ * forgotten; the tables name it. */
+static bool states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
+                          const waferhand_state *replayed, wh_replay_difference_t *difference) {
+    static waferhand_event events[2][WH_LINK_EVENTS];
+    static uint8_t bytes[2][WH_LINK_DATAGRAM];
+    waferhand_state plain[2];
+    const int32_t collisions = leave_out_collisions(recorded, events[0], &plain[0]);
+    (void)leave_out_collisions(replayed, events[1], &plain[1]);
+    if (collisions > 0 && recorded->events_lost != 0 && plain[1].event_count > plain[0].event_count) {
+        plain[1].event_count = plain[0].event_count; /* the other events had no room beside those of the
+                                                      * check */
+    }
+    plain[1].events_lost = replayed->events_lost;
+    if (collisions > 0) {
+        plain[1].events_lost = recorded->events_lost;
+    }
+    const size_t size = encode(&plain[0], bytes[0]);
+    if (size > 8 && encode(&plain[1], bytes[1]) == size && memcmp(bytes[0], bytes[1], size - 8) == 0) {
+        return false;
+    }
+    if (!name_difference(layout, &plain[0], &plain[1], difference)) {
+        (void)snprintf(difference->what, sizeof difference->what, "another field");
+        difference->recorded = difference->replayed = 0;
+    }
+    return true;
+}
+
 /* ------------------------------------------------------------------------------------------------- slices */
 
 static void note_slice(wh_replay_t *replay) {
@@ -330,7 +380,7 @@ static void note_slice(wh_replay_t *replay) {
     run->hash = wh_protocol_server_hash(&replay->server);
 }
 
-/* True if the simulator takes the command; null: with its own valves. */
+/* True if the simulator accepts the command; `valves` null: with its own valves. */
 static bool step(wh_replay_t *replay, const waferhand_command *command, const int32_t valves[]) {
     const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, valves);
     replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
@@ -348,10 +398,12 @@ void wh_replay_tell(const wh_replay_t *replay, const waferhand_command *command,
     }
 }
 
-/* A block's last slice, whose whole state has not come. */
+/* Calls the listener for a block's last slice, whose whole state has not come. */
 void wh_replay_tell_last(wh_replay_t *replay) {
-    if (replay->has_last && replay->listener) {
-        wh_protocol_server_encode(&replay->server);
+    if (replay->has_last && replay->stepped && !replay->last_differs) {
+        replay->stepped(replay->user, &replay->last, &replay->server);
+    } else if (replay->has_last && replay->listener) {
+        wh_protocol_server_tell(&replay->server, replay->run->hash);
         wh_replay_tell(replay, &replay->last, &replay->server.room.message);
     }
     replay->has_last = false;
@@ -364,7 +416,8 @@ static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay
     }
 }
 
-/* Counts a slice that was compared; null: it is the same. False if nobody knows, as its valves are not. */
+/* Counts a slice that was compared; null: it is equal. False if the result is unsure because its valves
+ * are not known. */
 static bool count_compared(wh_replay_t *replay, int64_t slice, const wh_replay_difference_t *difference) {
     ++replay->run->compared;
     if (difference && replay->is_unsure) {
@@ -381,7 +434,7 @@ static bool count_compared(wh_replay_t *replay, int64_t slice, const wh_replay_d
 /* Goes on from a recorded state. False if no simulator could have been in it. */
 bool wh_replay_restore(wh_replay_t *replay, const waferhand_state *message) {
     if (replay->server.identity.run == message->run) {
-        replay->server.identity.run = 0; /* else what is behind it is refused */
+        replay->server.identity.run = 0; /* else later slices are refused */
     }
     replay->is_unsure = false;
     replay->is_synchronous = wh_protocol_server_restore(&replay->server, message) == WH_SERVER_RESTORED;
@@ -391,7 +444,7 @@ bool wh_replay_restore(wh_replay_t *replay, const waferhand_state *message) {
     return replay->is_synchronous;
 }
 
-/* The recorded state with the server's. */
+/* Compares the recorded state with the server's. */
 static bool is_same(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size,
                     wh_replay_difference_t *difference) {
     wh_protocol_server_t *server = &replay->server;
@@ -403,14 +456,14 @@ static bool is_same(wh_replay_t *replay, const waferhand_state *message, const u
            !states_differ(server->layout, message, &server->room.message, difference);
 }
 
-/* A command that the simulator took and the replay refuses, or the other way round. */
+/* Counts a command that the simulator accepted and the replay refuses, or the reverse. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed) {
     const wh_replay_difference_t difference = {.what = "status", .recorded = recorded, .replayed = replayed};
     ++run->compared;
     note_difference(run, slice, &difference);
 }
 
-/* The valves in force as the state tells; null if they are the command's. */
+/* Finds the valves in force from the state; null if they are the command's. */
 static const int32_t *find_valves(const waferhand_command *command, const waferhand_state *message,
                                   int32_t valves[WH_GRIPPERS]) {
     bool outside = false;
@@ -426,6 +479,7 @@ void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const
     int32_t told[WH_GRIPPERS] = {0};
     wh_replay_difference_t difference;
     bool known = false;
+    wh_replay_remember_state(replay, message->seq, bytes, size);
     if (step(replay, command, find_valves(command, message, told))) {
         const bool same = is_same(replay, message, bytes, size, &difference);
         known = count_compared(replay, message->seq, same ? NULL : &difference);
@@ -440,7 +494,7 @@ void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const
     }
 }
 
-/* The whole state of the slice that went through last, in a block. */
+/* Compares the whole state of the last slice, in a block. */
 void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                                size_t size) {
     wh_replay_difference_t difference;
@@ -451,7 +505,19 @@ void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *messa
     replay->has_last = false;
 }
 
-/* A slice of a block: the hash stands for the state. */
+/* Compares the first state of another file of the log: that of the last slice. */
+void wh_replay_take_first_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                                size_t size) {
+    wh_replay_difference_t difference;
+    const int64_t collisions = replay->run->collisions; /* its events are counted already */
+    replay->file_begins = false;
+    if (!is_same(replay, message, data, size, &difference)) {
+        note_difference(replay->run, message->seq, &difference);
+    }
+    replay->run->collisions = collisions;
+}
+
+/* Steps a slice of a block: the hash is compared instead of the state. */
 void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash) {
     const waferhand_command *command = &replay->last;
     const bool outside = memcmp(told, command->valve, (size_t)command->gripper_count * sizeof *told) != 0;

@@ -2,6 +2,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "../layout/axes.h"
 #include "../layout/grips.h"
@@ -9,10 +11,11 @@
 #include "../record/counterpart.h"
 #include "../record/quaternion.h"
 #include "../record/signals.h"
+#include "../text/array.h"
 
 enum { OF_GRIPPER = 8, OF_WAFER = 13 };
 
-/* In which cells a column is told. */
+/* The cells that have a column. */
 typedef enum { IN_ALL, WITH_EDGES, WITH_FACES, WITH_GRIPS } told_t;
 
 static const struct {
@@ -59,7 +62,7 @@ static size_t of_each_gripper(const wh_layout_t *layout) {
     return is_told(layout, WITH_EDGES) ? OF_GRIPPER : OF_GRIPPER - 1;
 }
 
-/* Which of a wafer's columns are told, in their order. */
+/* The columns of a wafer in this cell, in their order. */
 static size_t of_each_wafer(const wh_layout_t *layout, size_t told[OF_WAFER]) {
     size_t count = 0;
     for (size_t i = 0; i < OF_WAFER; ++i) {
@@ -73,7 +76,7 @@ static bool has_axis(const wh_layout_t *layout, size_t axis) {
     return axis >= wh_machine_robot_axes(&layout->machine) || wh_axis_exists(&layout->machine, axis);
 }
 
-/* All but the yaw of an arm without a wrist. */
+/* Counts all axes except the yaw of an arm without a wrist. */
 static size_t count_axes(const wh_layout_t *layout) {
     size_t count = 0;
     for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
@@ -82,7 +85,7 @@ static size_t count_axes(const wh_layout_t *layout) {
     return count;
 }
 
-/* The machine's axis that is number `i` of these. */
+/* The machine's axis with number `i` among these. */
 static size_t axis_of(const wh_layout_t *layout, size_t i) {
     size_t axis = 0;
     while (i > 0 || !has_axis(layout, axis)) {
@@ -135,7 +138,7 @@ const char *wh_slice_field_word(const wh_layout_t *layout, wh_slice_field_t kind
     return kind == WH_FIELD_WAFER ? layout->wafers[(size_t)value].name : layout->grippers[(size_t)value].name;
 }
 
-/* True where a report shows the gripper against this wafer. */
+/* True if a report shows the gripper against this wafer. */
 static bool is_near(const wh_proximity_t *measured, const wh_grasp_config_t *grasp) {
     return fabs(measured->dr_proj_z) < WH_SIGNALS_REACH && measured->dr_proj_xy_norm < 2 * grasp->near_projxy;
 }
@@ -159,7 +162,7 @@ static void put_gripper(const wh_layout_t *layout, const wh_state_t *state, size
     }
 }
 
-/* How the face that looks at its gripper lies there, from values[9] on. */
+/* Writes the place of the face that looks at its gripper, from values[9] on. */
 static void put_held(const wh_layout_t *layout, const wh_state_t *state, const wh_wafer_t *wafer,
                      double values[OF_WAFER]) {
     const bool is_held = wafer->holder != WH_NONE;
@@ -190,8 +193,13 @@ static void put_wafer(const wh_layout_t *layout, const wh_state_t *state, const 
     put_held(layout, state, wafer, values);
 }
 
-void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
-                     double values[]) {
+static bool lies_as_before(const wh_wafer_t *wafer, const wh_wafer_t *before) {
+    return wafer->holder == WH_NONE && memcmp(wafer, before, sizeof *wafer) == 0;
+}
+
+/* `before`: the wafers of the values that are there; null: none are. */
+static void put_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
+                       const wh_wafer_t *before, double values[]) {
     for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
         if (has_axis(layout, axis)) {
             *values++ = axes ? axes[axis] : (double)NAN;
@@ -202,11 +210,36 @@ void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_st
     }
     size_t told[OF_WAFER];
     const size_t count = of_each_wafer(layout, told);
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
+    for (size_t w = 0; w < layout->wafer_count; ++w, values += count) {
         double all[OF_WAFER];
+        if (before && lies_as_before(&state->wafers[w], &before[w])) {
+            continue;
+        }
         put_wafer(layout, state, &state->wafers[w], all);
         for (size_t i = 0; i < count; ++i) {
-            *values++ = all[told[i]];
+            values[i] = all[told[i]];
         }
     }
+}
+
+void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
+                     double values[]) {
+    put_fields(layout, axes, state, NULL, values);
+}
+
+void wh_slice_row_take(wh_slice_row_t *row, const wh_layout_t *layout, const double axes[],
+                       const wh_state_t *state) {
+    const bool is_first = !row->values;
+    if (is_first) {
+        row->values = wh_array_new(wh_slice_field_count(layout), sizeof *row->values);
+        row->wafers = wh_array_new(layout->wafer_count, sizeof *row->wafers);
+    }
+    put_fields(layout, axes, state, is_first ? NULL : row->wafers, row->values);
+    memcpy(row->wafers, state->wafers, layout->wafer_count * sizeof *row->wafers);
+}
+
+void wh_slice_row_free(wh_slice_row_t *row) {
+    free(row->values);
+    free(row->wafers);
+    *row = (wh_slice_row_t){NULL, NULL};
 }

@@ -33,7 +33,7 @@ static const wh_real_t scale = 0x1p+700;
 static const wh_real_t flat = 0x1p-500;
 #endif
 
-/* The sign bit, of zeros too. */
+/* The sign bit, also of zeros. */
 static bool is_negative(wh_real_t x) {
     return wh_bits(x) >> (8 * sizeof(wh_bits_t) - 1) != 0;
 }
@@ -72,7 +72,7 @@ static wh_exact_t from_axis(wh_exact_t whole, wh_real_t sign, wh_exact_t angle) 
     return sum;
 }
 
-/* The angle in [0, pi/4] to the nearer axis; *cross says 1 when that is the y axis. */
+/* The angle in [0, pi/4] to the nearer axis; *cross is 1 when that is the y axis. */
 static wh_exact_t first_quadrant(wh_real_t y, wh_real_t x, wh_real_t *cross) {
     const bool steep = y > x;
     wh_real_t low = steep ? x : y;

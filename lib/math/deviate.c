@@ -15,7 +15,7 @@
  * |s| < 0.1716. */
 double wh_ln(double x) {
     uint64_t bits;
-    /* Of an infinite number x - x is no number. */
+    /* For an infinite x, x - x is NaN. */
     if (!(x >= 2.2250738585072014e-308) || x - x != 0) {
         return (double)NAN;
     }
@@ -43,8 +43,8 @@ static wh_philox_t draw(const wh_trial_t *trial, uint32_t field, uint32_t index)
     return wh_philox(counter, key);
 }
 
-/* (2 k + 1) / 2^53 is exact: 53 bits, put together from two halves, as a 32-bit machine converts no 64-bit
- * integer. */
+/* (2 k + 1) / 2^53 is exact. The 53 bits are put together from two halves, because a 32-bit machine does
+ * not convert 64-bit integers. */
 static double fraction(uint32_t high, uint32_t low) {
     const uint64_t k = ((uint64_t)high << 32 | low) >> 12;
     const double top = (double)(uint32_t)((2 * k + 1) >> 32);

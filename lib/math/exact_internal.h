@@ -1,8 +1,8 @@
-/* Sums and products without rounding error, rounding to whole numbers, and bits: within the room.
+/* Sums and products without rounding error, rounding to whole numbers, and bits; internal to the room.
  *
- * A value is kept as hi + lo, hi being the rounded result and lo what rounding took away (Knuth's two-sum and
- * Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add). Exact
- * unless something overflows or underflows: operands of a product stay below 1e300 (1e34 in float).
+ * A value is kept as hi + lo: hi is the rounded result and lo the rounding error. Sources: Knuth's two-sum
+ * and Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add. It is
+ * exact unless something overflows or underflows: operands of a product stay below 1e300 (1e34 in float).
  */
 #ifndef WH_MATH_EXACT_INTERNAL_H
 #define WH_MATH_EXACT_INTERNAL_H
@@ -15,14 +15,14 @@ typedef struct {
     wh_real_t hi, lo;
 } wh_exact_t;
 
-/* 2^27 + 1 and 2^12 + 1: cuts a significand into two halves. */
+/* 2^27 + 1 and 2^12 + 1: they split a significand into two halves. */
 #if defined(WH_FLOAT)
 #define WH_EXACT_SPLIT 4097.0F
 #else
 #define WH_EXACT_SPLIT 134217729.0
 #endif
 
-/* A number's bits: what tells zeros apart by their sign. */
+/* A number's bits, which tell zeros apart by their sign. */
 #if defined(WH_FLOAT)
 typedef uint32_t wh_bits_t;
 #else
@@ -58,7 +58,7 @@ static inline wh_exact_t wh_exact_product(wh_real_t a, wh_real_t b) {
     return product;
 }
 
-/* The nearest whole number, halves away from zero, for |x| < 2^31: what libm's round does. */
+/* The nearest whole number, halves away from zero, for |x| < 2^31, like libm's round. */
 static inline int32_t wh_nearest_whole(wh_real_t x) {
     return (int32_t)(x < 0 ? x - WH_REAL(0.5) : x + WH_REAL(0.5));
 }

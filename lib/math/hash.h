@@ -1,4 +1,5 @@
-/* A 64-bit hash of words in a fixed order, the same on machines of either byte order. Not cryptographic. */
+/* A 64-bit hash of words in a fixed order, equal on machines of either byte order. It is not
+ * cryptographic. */
 #ifndef WH_MATH_HASH_H
 #define WH_MATH_HASH_H
 
@@ -10,7 +11,7 @@ WH_HEADER_BEGIN
 
 #define WH_HASH_START UINT64_C(0x6a09e667f3bcc908)
 
-/* The shift carries high bits down again: a product alone would let two flipped signs cancel each other. */
+/* The shift brings high bits down; with a product alone two flipped signs would cancel each other. */
 static inline uint64_t wh_hash_word(uint64_t hash, uint64_t word) {
     hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     return hash ^ (hash >> 32);
@@ -20,14 +21,14 @@ static inline uint64_t wh_hash_int(uint64_t hash, int32_t value) {
     return wh_hash_word(hash, (uint64_t)(int64_t)value);
 }
 
-/* By its bits, so -0 and 0 differ. */
+/* It uses the bits, so -0 and 0 differ. */
 static inline uint64_t wh_hash_real(uint64_t hash, wh_real_t value) {
     wh_real_bits_t bits;
     memcpy(&bits, &value, sizeof bits);
     return wh_hash_word(hash, bits);
 }
 
-/* A double's bits as a word, also where wh_real_t is float. Which of the NaNs an operation gives differs from
+/* A double's bits as a word, also where wh_real_t is float. NaNs that an operation gives differ from
  * machine to machine. */
 static inline uint64_t wh_double_bits(double value) {
     uint64_t bits;

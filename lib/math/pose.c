@@ -1,7 +1,7 @@
 #include "pose.h"
 
 static bool pose_is_finite(const wh_pose_t *pose) {
-    /* A sum of differences that are each zero, or NaN as soon as one number is not finite. */
+    /* A sum of differences that are each zero, or NaN if one number is not finite. */
     wh_real_t zero = (pose->r.x - pose->r.x) + (pose->r.y - pose->r.y) + (pose->r.z - pose->r.z);
     for (size_t row = 0; row < 3; ++row) {
         for (size_t column = 0; column < 3; ++column) {
@@ -24,7 +24,7 @@ bool wh_mat3_is_orthonormal(const wh_mat3_t *R) {
            near(wh_vec3_dot(&e1, &e3), 0) && near(wh_vec3_dot(&e2, &e3), 0);
 }
 
-/* False for numbers that are not finite. */
+/* Returns false for numbers that are not finite. */
 static bool is_rotation(const wh_mat3_t *R) {
     const wh_vec3_t e1 = wh_mat3_column(R, 0);
     const wh_vec3_t e2 = wh_mat3_column(R, 1);
@@ -33,7 +33,7 @@ static bool is_rotation(const wh_mat3_t *R) {
     return wh_mat3_is_orthonormal(R) && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
 }
 
-/* The numbers of a rotation are finite: they need no look one by one. */
+/* The numbers of a rotation are finite, so they need no separate tests. */
 wh_status_t wh_pose_validate(const wh_pose_t *pose) {
     if (is_rotation(&pose->R)) {
         return wh_vec3_is_finite(&pose->r) ? WH_OK : WH_STATUS_NOT_FINITE;

@@ -1,4 +1,4 @@
-/* Poses: where a body stands and how it is turned.
+/* Poses: the place of a body and its rotation.
  *
  * Names read as products: base_from_gripper * gripper_from_wafer = base_from_wafer. The rotation R has the
  * body's axes as columns, the position r is the body's origin (mm), both seen from the left-hand frame.
@@ -32,7 +32,7 @@ void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh
 void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, wh_pose_t *b_from_c)
     WH_SYMBOL(wh_pose_relative_to);
 
-/* The same as values, for 96 bytes (48 in float) more of stack. */
+/* Returns the result by value, for 96 bytes (48 in float) more of stack. */
 static inline wh_pose_t wh_pose_compose(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c) {
     wh_pose_t a_from_c;
     wh_pose_compose_to(a_from_b, b_from_c, &a_from_c);
@@ -59,8 +59,8 @@ wh_status_t wh_pose_validate(const wh_pose_t *pose) WH_SYMBOL(wh_pose_validate);
  * False if a number is not finite. Cost: 18 products. */
 bool wh_mat3_is_orthonormal(const wh_mat3_t *R) WH_SYMBOL(wh_mat3_is_orthonormal);
 
-/* Brings an almost-rotation to the rotation nearest to it, in place, by one Newton step R (3 I - R^T R) / 2:
- * an error of e in R^T R becomes about e^2. R must pass wh_pose_validate. */
+/* Brings an almost-rotation to the nearest rotation, in place, by one Newton step R (3 I - R^T R) / 2: an
+ * error of e in R^T R becomes about e^2. R must pass wh_pose_validate. */
 void wh_mat3_orthonormalise(wh_mat3_t *R) WH_SYMBOL(wh_mat3_orthonormalise);
 
 WH_HEADER_END

@@ -2,13 +2,13 @@
 
 #include "trig.h"
 
-/* By sine and cosine, for a cosine alone says little of small angles. */
+/* It uses sine and cosine, because a cosine alone is inaccurate for small angles. */
 static wh_real_t angle_between(const wh_vec3_t *a, const wh_vec3_t *b) {
     const wh_vec3_t normal = wh_vec3_cross(a, b);
     return wh_atan2(wh_vec3_norm(&normal), wh_vec3_dot(a, b));
 }
 
-/* Of a rotation by t the skew part is sin t times the axis, the trace 1 + 2 cos t. */
+/* For a rotation by t, the skew part is sin t times the axis, and the trace is 1 + 2 cos t. */
 static wh_real_t angle_of(const wh_mat3_t *R) {
     const wh_vec3_t axis = wh_vec3(R->m[2][1] - R->m[1][2], R->m[0][2] - R->m[2][0], R->m[1][0] - R->m[0][1]);
     return wh_atan2(wh_vec3_norm(&axis), R->m[0][0] + R->m[1][1] + R->m[2][2] - 1);

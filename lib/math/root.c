@@ -1,5 +1,5 @@
-/* wh_cbrt: scaled to [1, 8) by powers of eight, a cubic to start from and two steps of Halley's method, the
- * second from an exact residual, so that one rounding decides the result. */
+/* wh_cbrt: scales to [1, 8) by powers of eight, starts from a cubic and takes two steps of Halley's method,
+ * the second from an exact residual. So one rounding decides the result. */
 #include "exact_internal.h"
 #include "trig.h"
 

@@ -1,6 +1,6 @@
 #include "status.h"
 
-/* The library's own alone: a firmware links no text that no function of the library returns. */
+/* The texts of the library alone: a firmware links no text that no function of the library returns. */
 static const struct {
     wh_status_t number;
     const char *text;

@@ -1,4 +1,4 @@
-/* A file of its own: a linker keeps or drops all strings of a file together. */
+/* This is a separate file, because a linker keeps or drops all strings of a file together. */
 #include "status.h"
 
 static const struct {

@@ -1,5 +1,5 @@
-/* The library's symbols for a compiler that cannot rename one by a word after its prototype: see WH_SYMBOL in
- * config.h, which includes this file only there. */
+/* The library's symbols for a compiler that cannot rename one by a word after its prototype. See WH_SYMBOL
+ * in config.h, which includes this file only in that case. */
 #ifndef WH_MATH_SYMBOLS_H
 #define WH_MATH_SYMBOLS_H
 
@@ -32,9 +32,12 @@
 #define wh_carrier_init WH_SYMBOL_RENAMED(wh_carrier_init)
 #define wh_carry_update WH_SYMBOL_RENAMED(wh_carry_update)
 #define wh_cbrt WH_SYMBOL_RENAMED(wh_cbrt)
+#define wh_cell_begin_passing WH_SYMBOL_RENAMED(wh_cell_begin_passing)
+#define wh_cell_end_passing WH_SYMBOL_RENAMED(wh_cell_end_passing)
 #define wh_cell_judge WH_SYMBOL_RENAMED(wh_cell_judge)
 #define wh_cell_locate WH_SYMBOL_RENAMED(wh_cell_locate)
 #define wh_cell_measure WH_SYMBOL_RENAMED(wh_cell_measure)
+#define wh_cell_passes WH_SYMBOL_RENAMED(wh_cell_passes)
 #define wh_cell_settle WH_SYMBOL_RENAMED(wh_cell_settle)
 #define wh_cell_stops WH_SYMBOL_RENAMED(wh_cell_stops)
 #define wh_cell_validate WH_SYMBOL_RENAMED(wh_cell_validate)
@@ -254,6 +257,7 @@
 #define wh_simulator_set_latching WH_SYMBOL_RENAMED(wh_simulator_set_latching)
 #define wh_simulator_set_physics WH_SYMBOL_RENAMED(wh_simulator_set_physics)
 #define wh_simulator_set_scanning WH_SYMBOL_RENAMED(wh_simulator_set_scanning)
+#define wh_simulator_set_strict WH_SYMBOL_RENAMED(wh_simulator_set_strict)
 #define wh_simulator_step WH_SYMBOL_RENAMED(wh_simulator_step)
 #define wh_simulator_view WH_SYMBOL_RENAMED(wh_simulator_view)
 #define wh_sin WH_SYMBOL_RENAMED(wh_sin)
@@ -303,6 +307,9 @@
 #define wh_vacuum_turn_pick WH_SYMBOL_RENAMED(wh_vacuum_turn_pick)
 #define wh_vacuum_turn_watch WH_SYMBOL_RENAMED(wh_vacuum_turn_watch)
 #define wh_vacuum_validate WH_SYMBOL_RENAMED(wh_vacuum_validate)
+#define wh_vee_fit WH_SYMBOL_RENAMED(wh_vee_fit)
+#define wh_vee_has_bottom WH_SYMBOL_RENAMED(wh_vee_has_bottom)
+#define wh_vee_hold_against WH_SYMBOL_RENAMED(wh_vee_hold_against)
 #define wh_version WH_SYMBOL_RENAMED(wh_version)
 #define wh_via_at WH_SYMBOL_RENAMED(wh_via_at)
 #define wh_via_plan WH_SYMBOL_RENAMED(wh_via_plan)

@@ -5,8 +5,8 @@
 /* Minimax polynomials (Remez exchange in 70 digits, then each coefficient rounded) on |x| <= pi/4:
  *   sin x = x + x^3 S(x^2), relative error of sin 2^-56.3 in double, 2^-26.8 in float;
  *   cos x = 1 - x^2/2 + x^4 C(x^2), relative error of cos 2^-59.7 and 2^-32.4.
- * pi/2 is cut into parts so short that n * part is exact for |n| < 2^16; the last part is rounded to full
- * length. What is missing of pi/2 after it is 7e-39 in double, 3e-20 in float. */
+ * pi/2 is split into parts so short that n * part is exact for |n| < 2^16; the last part is rounded to full
+ * length. The remaining error of pi/2 is 7e-39 in double, 3e-20 in float. */
 #if defined(WH_FLOAT)
 #define TERMS 3
 #define PARTS 6
@@ -57,7 +57,7 @@ static wh_real_t sin_of(wh_exact_t x) {
     return x.hi + (x.hi * z * polynomial(sin_terms, z) + x.lo * (1 - z / 2));
 }
 
-/* cos(hi + lo) to first order in lo; what rounding 1 - z/2 takes away is added back. */
+/* cos(hi + lo) to first order in lo; the rounding error of 1 - z/2 is added back. */
 static wh_real_t cos_of(wh_exact_t x) {
     const wh_real_t z = x.hi * x.hi;
     const wh_real_t about = 1 - z / 2;
@@ -88,7 +88,8 @@ static reduced_t reduce_deg(wh_real_t deg) {
     return angle;
 }
 
-/* The sine: quarter by quarter sin, cos, -sin, -cos of the rest. The cosine is the sine a quarter further. */
+/* The sine, for successive quarters: sin, cos, -sin, -cos of the rest. The cosine is the sine one quarter
+ * further. */
 static wh_real_t sin_in_quarter(int32_t quarters, wh_exact_t rest) {
     const uint32_t quarter = (uint32_t)quarters & 3U;
     const wh_real_t value = (quarter & 1U) != 0 ? cos_of(rest) : sin_of(rest);

@@ -1,7 +1,7 @@
-/* Vectors and matrices of three: structs passed by const pointer, results by value.
+/* Vectors and matrices of three: structs passed by const pointer, results returned by value.
  *
- * Every sum runs left to right and every product is rounded on its own (build with -ffp-contract=off): the
- * same inputs give the same bits everywhere. No function here looks for NaN: it passes through.
+ * Every sum runs left to right and every product is rounded by itself (build with -ffp-contract=off): equal
+ * inputs give equal bits on every machine. No function here tests for NaN: it passes through.
  */
 #ifndef WH_MATH_VECTOR_H
 #define WH_MATH_VECTOR_H
@@ -34,7 +34,7 @@ static inline wh_real_t wh_real_abs(wh_real_t a) {
 #endif
 }
 
-/* Correctly rounded, as IEEE 754 asks. */
+/* Correctly rounded, as IEEE 754 requires. */
 static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #if defined(WH_FLOAT)
     return sqrtf(a);
@@ -43,8 +43,8 @@ static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #endif
 }
 
-/* True if the square root, rounded as above, is less than a limit in [1e-6, 1e6]. Takes the root near the
- * limit only, since a root costs more than two products. */
+/* True if the square root, rounded as above, is less than a limit in [1e-6, 1e6]. It takes the root only
+ * near the limit, because a root costs more than two products. */
 static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
 #if !defined(WH_FLOAT)
     if (square < limit * limit * WH_REAL(0.999)) {
@@ -127,7 +127,7 @@ static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3
                    a->m[0][2] * v->x + a->m[1][2] * v->y + a->m[2][2] * v->z);
 }
 
-/* a * b, into memory that neither of them is in. */
+/* a * b, into memory that is part of neither. */
 static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
     for (size_t row = 0; row < 3; ++row) {
         const wh_real_t x = a->m[row][0];
@@ -139,7 +139,7 @@ static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, w
     }
 }
 
-/* transpose(a) * b, into memory that neither of them is in. */
+/* transpose(a) * b, into memory that is part of neither. */
 static inline void wh_mat3_multiply_back_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
     for (size_t row = 0; row < 3; ++row) {
         const wh_real_t x = a->m[0][row];

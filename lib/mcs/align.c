@@ -1,10 +1,9 @@
-/* What a scan of a wafer's edge says of the wafer on the chuck: the estimate of align/align.h over the
- * samples that the states have brought (edge_scan.c).
+/* Estimates the wafer on the chuck from a scan of its edge, with align/align.h, from the samples that the
+ * states have brought (edge_scan.c).
  *
- * Motion control knows the sensor and the wafers as the layout says they should be, and what a calibration
- * (calibration.c) has found of the sensor. What else is truly off, such as one wafer's own rim, it does
- * not know. A sample that never came counts as one that something covers: what is not seen is not told to
- * be without a notch. */
+ * Motion control knows the sensor and the wafers from the layout, and the sensor's errors that a calibration
+ * (calibration.c) has found. It does not know other true errors, such as a wafer's own rim. A sample that
+ * never came counts as covered: an unseen part of the rim is not assumed to be without a notch. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,10 +14,10 @@
 #include "../text/array.h"
 #include "native.h"
 
-/* What an estimate costs of the instruction budget, for each sample. */
+/* The cost of an estimate in the instruction budget, for each sample. */
 #define STEPS_PER_SAMPLE 4
 
-/* How many samples are of each kind. */
+/* The number of samples of each kind. */
 typedef struct {
     int32_t rim, nothing, covered, missed;
 } sights_t;
@@ -47,13 +46,13 @@ static void make_points(const wh_mcs_edge_t *edge, const wh_sensor_t *sensor,
     }
 }
 
-/* Where in a turn the scan's sample i is. */
+/* The place of the scan's sample i in a turn. */
 static size_t place_of(const wh_mcs_edge_t *edge, int32_t samples, size_t i) {
     const int64_t k = edge->order.first + (edge->order.count > 0 ? (int64_t)i : -(int64_t)i);
     return (size_t)((k % samples + samples) % samples);
 }
 
-/* The turns that were kept are merged into the last one. */
+/* Merges the kept turns into the last one. */
 static void merge_turns(const wh_mcs_turns_t *turns, const wh_mcs_edge_t *edge, size_t count,
                         wh_rim_point_t points[]) {
     for (size_t i = 0; turns->turns > 0 && i < count; ++i) {
@@ -106,6 +105,22 @@ static void push_limits(lua_State *L, const wh_align_limits_t *limits, const wh_
     lua_setfield(L, -2, "limits");
 }
 
+/* Pushes the dent most like a notch, if a notch was looked for. */
+static void push_seen_notch(lua_State *L, const wh_notch_seen_t *seen) {
+    if (seen->depth_most > 0) {
+        wh_lua_set_number(L, "notch_depth", seen->depth);
+        wh_lua_set_number(L, "notch_least", seen->depth_least);
+        wh_lua_set_number(L, "notch_most", seen->depth_most);
+        wh_lua_set_integer(L, "flank_right", (lua_Integer)seen->flanks[0]);
+        wh_lua_set_integer(L, "flank_left", (lua_Integer)seen->flanks[1]);
+        wh_lua_set_integer(L, "flank_least", WH_NOTCH_FLANK_LEAST);
+        wh_lua_set_integer(L, "notch_off", (lua_Integer)seen->off);
+        wh_lua_set_number(L, "narrow_at", seen->narrow_at);
+        wh_lua_set_number(L, "width", seen->width);
+        wh_lua_set_number(L, "width_least", seen->width_least);
+    }
+}
+
 static void push_sights(lua_State *L, const sights_t *sights) {
     wh_lua_set_integer(L, "seen", sights->rim);
     wh_lua_set_integer(L, "nothing", sights->nothing);
@@ -130,12 +145,11 @@ static size_t count_of(const wh_mcs_edge_t *edge) {
     return (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
 }
 
-/* native.keep_turn(believed): the last scan, a turn, is of the same wafer as the next one: estimates take
- * both. */
+/* native.keep_turn(believed): the last scan, a turn, is of the next scan's wafer: estimates use both. */
 static int keep_turn(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_mcs_turns_t *turns = &mcs->turns;
-    const wh_mcs_edge_t *edge = &mcs->edge;
+    wh_mcs_turns_t *turns = &mcs->measuring.turns;
+    const wh_mcs_edge_t *edge = &mcs->measuring.edge;
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     const wh_sensor_error_t believed = read_believed(L, 1);
     luaL_argcheck(L, edge->samples && scanner && turns->turns + 1 < WH_MERGE_TURNS, 1, "no turn to be kept");
@@ -155,19 +169,20 @@ static int keep_turn(lua_State *L) {
     return 0;
 }
 
-/* native.forget_turns(): the next scan is by itself. */
+/* native.forget_turns(): the next scan is used alone. */
 static int forget_turns(lua_State *L) {
-    wh_mcs_free_turns(&wh_mcs_with_layout(L)->turns);
+    wh_mcs_free_turns(&wh_mcs_with_layout(L)->measuring.turns);
     return 0;
 }
 
-/* native.estimate_edge(with marks, glass, believed { offset, zero, gain, latency }): what the last scan, and
- * the turns that were kept, say of their wafer by a sensor with these errors, all in the chuck's frame, mm
- * and rad: `verdict`, the name of a status; the numbers of samples, by what they see; the `limits`; with a
- * circle its centre, `x` and `y`; with a verdict of OK and a mark the `mark` and its `direction`. */
+/* native.estimate_edge(with marks, glass, believed { offset, zero, gain, latency }): estimates the wafer
+ * from the last scan and the kept turns, for a sensor with these errors, all in the chuck's frame, mm and
+ * rad. Returns `verdict`, the name of a status; the numbers of samples, by kind; the `limits`; with a circle
+ * its centre, `x` and `y`; the dent most like a notch, if one was looked for; with a verdict of OK and a
+ * mark the `mark` and its `direction`. */
 static int estimate_edge(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_mcs_edge_t *edge = &mcs->measuring.edge;
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     luaL_argcheck(L, edge->samples && scanner, 1, "there was no scan");
     const size_t count = count_of(edge);
@@ -181,18 +196,19 @@ static int estimate_edge(lua_State *L) {
     sights_t sights;
     memset(&result, 0, sizeof result);
     memset(&sights, 0, sizeof sights);
-    wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
+    wh_decisions_measured(mcs->wanted.decisions, "a scan of a wafer's edge");
     wh_sandbox_charge(L, STEPS_PER_SAMPLE * (uint64_t)count);
     make_points(edge, &scanner->sensor, &believed, count, points, &sights);
-    merge_turns(&mcs->turns, edge, count, points);
+    merge_turns(&mcs->measuring.turns, edge, count, points);
     const wh_rim_scan_t scan = {points, count, believed.offset, scanner->sensor.pixel};
     const wh_status_t status = wh_align_estimate(&scan, &scanner->sensor, &nominal, &limits, rays, &result);
-    lua_createtable(L, 0, 16);
+    lua_createtable(L, 0, 28);
     wh_lua_set_text(L, "verdict", wh_status_name(status == WH_OK ? result.verdict : status));
     push_sights(L, &sights);
     push_limits(L, &limits, &nominal);
     if (result.circle.used > 0) {
         push_circle(L, &result);
+        push_seen_notch(L, &result.notch_seen);
     }
     if (status == WH_OK && result.verdict == WH_OK) {
         push_mark(L, &nominal, &result);

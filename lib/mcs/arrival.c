@@ -1,5 +1,5 @@
-/* What the end switches of mechanisms tell: if a door, or what carries a gripper, is where motion control has
- * it. A state tells where they truly are; the switches are good to a tenth of a millimetre and of a
+/* The end switches of mechanisms tell whether a door, or a gripper's carrier, is where motion control has
+ * commanded it. A state tells their true places; the switches are good to a tenth of a millimetre and of a
  * degree. */
 #include "../script/wh_module_values.h"
 #include "native.h"
@@ -8,7 +8,7 @@
 #define SWITCH_MM WH_REAL(0.1)
 #define SWITCH_RAD WH_REAL(0.0017)
 
-/* True before the first slice: all is at home. */
+/* True before the first slice, when everything is at home. */
 static bool is_door_there(const wh_mcs_t *mcs, int32_t door, wh_real_t at) {
     const wh_physics_state_t *physics = mcs->state.physics;
     const wh_door_t *of = &mcs->layout->machine.doors[door];
@@ -59,20 +59,20 @@ void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh
     }
     lua_getfield(L, 1, "timeout");
     segment->kind = WH_SEGMENT_SENSOR;
-    segment->gripper = 0; /* any: all are said to be on, or none */
+    segment->gripper = 0; /* any gripper: all sensor bits are on, or none */
     segment->seconds = luaL_checknumber(L, -1);
     lua_pop(L, 1);
-    mcs->unplayed = "waits for a door or a flipper";
-    wh_decisions_measured(mcs->decisions, "if a mechanism has arrived");
+    mcs->kept.unplayed = "waits for a door or a flipper";
+    wh_decisions_measured(mcs->wanted.decisions, "if a mechanism has arrived");
 }
 
-/* native.door(door): "open" or "shut" by its switches, or "moving"; and how far it is open, mm. */
+/* native.door(door): "open", "shut" or "moving", by its switches; and its opening, mm. */
 static int read_door(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t door = wh_mcs_index(L, 1, mcs->layout->machine.door_count);
     const wh_door_t *of = &mcs->layout->machine.doors[door];
     const bool is_told = mcs->state.physics && door < mcs->state.physics->doors.count;
-    wh_decisions_measured(mcs->decisions, "where a door is");
+    wh_decisions_measured(mcs->wanted.decisions, "where a door is");
     lua_pushstring(L, wh_mcs_door_word(mcs, (size_t)door));
     lua_pushnumber(L, is_told ? mcs->state.physics->doors.at[door] : wh_door_home(of));
     return 2;
@@ -85,12 +85,12 @@ const char *wh_mcs_door_word(const wh_mcs_t *mcs, size_t door) {
     return is_door_there(mcs, (int32_t)door, 0) ? "shut" : "moving";
 }
 
-/* native.arrived(gripper): true if what carries it is where motion control has it; while no command runs, it
- * is only tried out or planned, and so it is. */
+/* native.arrived(gripper): true if its carrier is where motion control has commanded it. Without a running
+ * command, a pattern is only tried or planned, and the answer is true. */
 static int read_arrived(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->layout->machine.gripper_count);
-    wh_decisions_measured(mcs->decisions, "where a flipper is");
+    wh_decisions_measured(mcs->wanted.decisions, "where a flipper is");
     lua_pushboolean(L, mcs->recorder.running == WH_NONE || is_gripper_there(mcs, gripper));
     return 1;
 }

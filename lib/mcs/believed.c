@@ -1,5 +1,5 @@
-/* Where motion control believes slots to be, and goes: where the layout has them, or a host has told
- * since. */
+/* The believed places of slots, where motion control goes: from the layout, or from a host's later
+ * command. */
 #include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
@@ -17,7 +17,7 @@ void wh_mcs_read_numbers(lua_State *L, int list, wh_real_t numbers[], size_t cou
 static wh_pose_t corrected_slot(lua_State *L, const wh_station_t *place, int32_t slot) {
     wh_pose_t base_from_slot = wh_station_slot(place, slot);
     const wh_vec3_t d = wh_vec3(luaL_checknumber(L, 3), luaL_checknumber(L, 4), luaL_checknumber(L, 5));
-    if (wh_vec3_norm(&d) > 0) { /* else the very bits of the slot, zeros of either sign, too */
+    if (wh_vec3_norm(&d) > 0) { /* else the slot's bits stay unchanged, also the sign of zeros */
         const wh_vec3_t by = wh_mat3_transform(&base_from_slot.R, &d);
         base_from_slot.r = wh_vec3_add(&base_from_slot.r, &by);
     }
@@ -34,7 +34,7 @@ static wh_real_t corrected_heading(const wh_mat3_t *R, wh_real_t turn_deg) {
     return wh_atan2(cosine * R->m[1][0] + sine * R->m[1][1], cosine * R->m[0][0] + sine * R->m[0][1]);
 }
 
-/* A robot that tilts comes along the slot's own axes: `up` is its z, `rotation` the gripper's. */
+/* A robot that tilts moves along the slot's own axes: `up` is its z, `rotation` the gripper's. */
 static void push_tilted(lua_State *L, const wh_mat3_t *R, wh_real_t turn_deg) {
     const wh_vec3_t up = wh_mat3_column(R, 2);
     const wh_mat3_t turn = wh_mat3_from_rpy_deg(0, 0, turn_deg);
@@ -48,13 +48,13 @@ static void push_tilted(lua_State *L, const wh_mat3_t *R, wh_real_t turn_deg) {
     lua_setfield(L, -2, "rotation");
 }
 
-/* How a robot comes to a station: with several each comes its own way. */
+/* How a robot comes to a station; several robots come in different ways. */
 typedef struct {
     double rail;
     wh_elbow_t elbow;
 } approach_t;
 
-/* Turns the slot to where the robot comes from, and moves it to where that was taught it. */
+/* Turns the slot towards the robot's way in, and moves it to the place that the robot was taught. */
 static approach_t take_approach(const wh_layout_t *layout, size_t index, size_t robot,
                                 wh_pose_t *base_from_slot) {
     const wh_layout_station_t *station = &layout->stations[index];
@@ -67,16 +67,16 @@ static approach_t take_approach(const wh_layout_t *layout, size_t index, size_t 
     return (approach_t){by->rail, by->elbow};
 }
 
-/* About what a station that was set is turned: a robot that tilts comes along the slot's own axes, a level
- * one goes by headings. */
+/* Chooses the axis that turns a set station: a robot that tilts moves along the slot's own axes, a level
+ * one uses headings. */
 static bool turns_in_slot(const wh_layout_t *layout, size_t robot) {
     const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
     return carrier && carrier->chain.has_tilt;
 }
 
-/* The slot as it lies if its station has been moved by the numbers { x, y, z, yaw } at this stack index, mm
- * and rad: yaw turns it about the vertical through slot 1 as the robot was taught that, or of a robot that
- * tilts, about the slot's z there. */
+/* Moves the slot with its station by the numbers { x, y, z, yaw } at this stack index, mm and rad. Yaw
+ * turns it about the vertical through slot 1 as the robot was taught it; for a robot that tilts, about the
+ * slot's z there. */
 static void move_station(lua_State *L, int shift, const wh_layout_t *layout, size_t station, size_t robot,
                          wh_pose_t *base_from_slot) {
     wh_real_t by[4] = {0};
@@ -121,9 +121,9 @@ static void check_travel(lua_State *L, wh_mcs_t *mcs, const wh_real_t axes[]) {
     }
 }
 
-/* native.shift(station, robot, gripper, axes, checked): { x, y, z, yaw }, mm and rad, by which the station
- * lies elsewhere than the layout says if the gripper stands in its slot 1 at these axes; if they are to be
- * `checked`, refuses what leaves their travel. */
+/* native.shift(station, robot, gripper, axes, checked): { x, y, z, yaw }, mm and rad, the station's shift
+ * from its place in the layout if the gripper stands in its slot 1 at these axes. With `checked` it
+ * refuses axes beyond their travel. */
 static int find_shift(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_layout_t *layout = mcs->layout;
@@ -154,16 +154,21 @@ static int find_shift(lua_State *L) {
 /* native.slot(station, slot, dx, dy, dz, turn, robot, shift, undrawn): { x, y, z, dir_x, dir_y, heading } of
  * the gripper there, displaced in the slot's axes (mm) and turned about its z (degrees); of a station that a
  * host has moved by `shift`, see native.shift. The way in, projected to horizontal, is beside the taught one
- * and goes the same way: it is not turned. In a trial a robot was taught it elsewhere, unless `undrawn`. */
-static int find_slot(lua_State *L) {
+ * and goes the same way: it is not turned. In a trial a robot was taught it elsewhere, unless `undrawn`, or the
+ * layout's reach is judged: a draw does not make a layout unfit, but fails the command that goes there. */
+static int find_believed_slot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const bool is_drawn = mcs->local.trial && !lua_toboolean(L, 9) && mcs->rehearsal.reach_slot == 0;
     const wh_station_t *place = &mcs->layout->places[station];
     const int32_t slot = wh_mcs_index(L, 2, (size_t)place->slots) + 1;
     const size_t robot = (size_t)luaL_optinteger(L, 7, 1) - 1;
+    if (mcs->rehearsal.reach_slot == 0) {
+        wh_decisions_visit(mcs->wanted.decisions, station, (int32_t)robot);
+    }
     wh_pose_t base_from_slot = corrected_slot(L, place, slot);
     const approach_t way = take_approach(mcs->layout, (size_t)station, robot, &base_from_slot);
-    if (mcs->layout->stations[station].by && mcs->local.trial && !lua_toboolean(L, 9)) {
+    if (mcs->layout->stations[station].by && is_drawn) {
         wh_trial_cell_teach(mcs->local.trial, (size_t)station, robot, way.rail, &base_from_slot);
     }
     if (lua_istable(L, 8)) {
@@ -189,4 +194,5 @@ static int find_slot(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_believed_functions[] = {{"slot", find_slot}, {"shift", find_shift}, {NULL, NULL}};
+const luaL_Reg wh_mcs_believed_functions[] = {
+    {"slot", find_believed_slot}, {"shift", find_shift}, {NULL, NULL}};

@@ -1,5 +1,5 @@
-/* Calibrating an edge sensor: scans of a wafer that a robot carried from place to place, and what they
- * tell of the sensor's errors (align/calibration.h). lua/mcs/calibration.lua moves arm and chuck. */
+/* Calibrating an edge sensor: scans of a wafer that a robot carried from place to place, and the
+ * sensor's errors from them (align/calibration.h). lua/mcs/calibration.lua moves arm and chuck. */
 #include "../align/calibration.h"
 
 #include <math.h>
@@ -10,12 +10,12 @@
 
 /* The name of the type of userdata. */
 #define TURN "wh.edge_turn"
-/* Samples that were taken at another speed than most do not count: by this part of it. */
+/* Samples whose speed differs by more than this share from that of most samples do not count. */
 #define STEADY 1e-3
-/* What an estimate costs of the instruction budget, for each sample. */
+/* The cost of an estimate in the instruction budget, for each sample. */
 #define STEPS_PER_SAMPLE 20
 
-/* A scan as the calibration takes it, nothing believed. */
+/* A scan for the calibration, without believed errors. */
 typedef struct {
     double speed;
     size_t count;
@@ -41,16 +41,16 @@ static wh_rim_point_t point_of(const wh_mcs_edge_t *edge, const wh_sensor_t *sen
     return point;
 }
 
-/* native.edge_turn(): the last scan as a value for native.calibrate. The chuck came to its speed before the
- * first sample or soon after it, so in the middle of the turn it has it. */
+/* native.edge_turn(): the last scan as a value for native.calibrate. The chuck reaches its speed before the
+ * first sample or soon after it, so it has that speed in the middle of the turn. */
 static int edge_turn(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_mcs_edge_t *edge = &mcs->measuring.edge;
     const wh_scanner_t *scanner = wh_layout_scanner(mcs->layout, edge->order.gripper);
     luaL_argcheck(L, edge->samples && scanner, 1, "there was no scan");
     const size_t count = (size_t)(edge->order.count < 0 ? -edge->order.count : edge->order.count);
     turn_t *turn = lua_newuserdatauv(L, sizeof *turn + count * sizeof *turn->points, 0);
-    wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
+    wh_decisions_measured(mcs->wanted.decisions, "a scan of a wafer's edge");
     wh_sandbox_charge(L, (uint64_t)count);
     turn->count = count;
     turn->speed = edge->taken > 0 ? edge->speeds[edge->taken / 2] : 0;
@@ -92,9 +92,9 @@ static void push_calibration(lua_State *L, const wh_calibration_t *found) {
 
 /* native.calibrate(chuck, list of { turn, way_x, way_y }, radius, sd_way): the errors of the sensor at the
  * chuck, { offset, zero, gain, latency, sd_offset, sd_zero, sd_gain, sd_latency, mismatch, x, y: of the
- * wafer's centre in the first scan }; or nil, the name of the status, and which of the scans, from 1, if
- * it is one alone. */
-static int calibrate(lua_State *L) {
+ * wafer's centre in the first scan }; or nil, the name of the status, and the scan's number, from 1, if
+ * only one scan is wrong. */
+static int calibrate_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_scanner_t *scanner =
         wh_layout_scanner(mcs->layout, wh_mcs_index(L, 1, mcs->state.gripper_count));
@@ -128,4 +128,4 @@ static int calibrate(lua_State *L) {
 }
 
 const luaL_Reg wh_mcs_calibration_functions[] = {
-    {"edge_turn", edge_turn}, {"calibrate", calibrate}, {NULL, NULL}};
+    {"edge_turn", edge_turn}, {"calibrate", calibrate_sensor}, {NULL, NULL}};

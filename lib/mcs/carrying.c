@@ -7,10 +7,11 @@
 #include "../math/trig.h"
 #include "../sim/slice.h"
 
-/* Places before and after a motion, where everything stands: a difference of the third order has four. */
+/* The places before and after a motion, while everything stands: a difference of the third order needs
+ * four. */
 #define PLACES 4
 
-/* What limits are measured over is at least so long, us. */
+/* Limits are measured over at least this time, us. */
 #define LEAST_US 1000
 
 bool wh_carrying_matters(const wh_layout_t *layout) {
@@ -25,7 +26,7 @@ void wh_carrying_start(wh_track_t *track, const wh_layout_t *layout) {
     }
 }
 
-static bool moves(const wh_segment_t *segment) {
+static bool moves_axes(const wh_segment_t *segment) {
     return segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_LINE ||
            segment->kind == WH_SEGMENT_WAY || segment->kind == WH_SEGMENT_VIA;
 }
@@ -37,8 +38,8 @@ typedef struct {
     wh_track_t track;
     wh_command_t command;
     wh_machine_cache_t cache;
-    int64_t slices; /* how many were stepped through, standing ones as well */
-    int64_t rest;   /* how many are to come yet, once the segment is over */
+    int64_t slices; /* the slices stepped through, including standing ones */
+    int64_t rest;   /* the slices still to come after the segment */
 } walk_t;
 
 static void begin_walk(walk_t *walk, const wh_track_t *begun, int64_t stride) {
@@ -58,7 +59,7 @@ static bool walk_on(walk_t *walk) {
     return goes || walk->rest >= 0;
 }
 
-static const wh_pose_t *pose_of(const walk_t *walk, size_t g) {
+static const wh_pose_t *gripper_pose_of(const walk_t *walk, size_t g) {
     return &walk->command.grippers[g].base_from_gripper;
 }
 
@@ -75,7 +76,7 @@ static void begin_differences(differences_t *differences, const wh_vec3_t *at) {
     differences->last[0] = *at;
 }
 
-static void note(differences_t *differences, const wh_vec3_t *at) {
+static void note_difference(differences_t *differences, const wh_vec3_t *at) {
     wh_vec3_t now = *at;
     for (size_t order = 0; order < PLACES; ++order) {
         const wh_vec3_t last = differences->last[order];
@@ -85,7 +86,7 @@ static void note(differences_t *differences, const wh_vec3_t *at) {
     }
 }
 
-/* By how much a motion of these differences is too fast for these limits: 1 and less is not. */
+/* The ratio by which a motion with these differences is too fast for these limits: 1 or less is allowed. */
 static wh_real_t excess_over(const wh_limits_t *loaded, const wh_real_t most[PLACES], wh_real_t dt) {
     wh_real_t excess = 0;
     if (loaded->speed > 0) {
@@ -109,11 +110,11 @@ static wh_real_t excess_of(const wh_track_t *begun, const wh_layout_t *layout, u
     wh_real_t excess = 0;
     begin_walk(&walk, begun, stride);
     for (size_t g = 0; g < count; ++g) {
-        begin_differences(&differences[g], &pose_of(&walk, g)->r);
+        begin_differences(&differences[g], &gripper_pose_of(&walk, g)->r);
     }
     while (walk_on(&walk)) {
         for (size_t g = 0; walk.slices % stride == 0 && g < count; ++g) {
-            note(&differences[g], &pose_of(&walk, g)->r);
+            note_difference(&differences[g], &gripper_pose_of(&walk, g)->r);
         }
     }
     *slices += walk.slices;
@@ -182,8 +183,8 @@ static wh_status_t begin_slowly(wh_track_t *track, const wh_segment_t *segment, 
     return status;
 }
 
-/* Slices cut a slower motion elsewhere, so that its differences are not quite those that its pace
- * promises. */
+/* Slices cut a slower motion at other places, so its differences are not exactly those expected
+ * from its pace. */
 #define MOST_TRIES 50
 #define MARGIN WH_REAL(1e-4)
 
@@ -192,7 +193,7 @@ wh_status_t wh_carrying_begin(wh_track_t *track, const wh_layout_t *layout, cons
     wh_real_t pace = 1;
     wh_status_t status = wh_track_begin(track, segment);
     *slices = 0;
-    for (int i = 0; loaded != 0 && moves(segment) && status == WH_OK && i < MOST_TRIES; ++i) {
+    for (int i = 0; loaded != 0 && moves_axes(segment) && status == WH_OK && i < MOST_TRIES; ++i) {
         const wh_real_t excess = excess_of(track, layout, loaded, slices);
         if (!(excess > 1)) {
             break;
@@ -210,13 +211,13 @@ typedef struct {
     wh_real_t of[3][WH_AXES];
 } stands_t;
 
-static void remember(stands_t *stands, const wh_track_t *track) {
+static void remember_place(stands_t *stands, const wh_track_t *track) {
     memmove(stands->of[0], stands->of[1], 2 * sizeof stands->of[0]);
     memcpy(stands->of[2], track->axes, sizeof stands->of[2]);
 }
 
-/* How fast this axis alone would change the speed of a gripper: mm in one slice and the next. */
-static wh_real_t share_of(const wh_machine_t *machine, const stands_t *stands, size_t axis, size_t g) {
+/* The change of a gripper's speed by this axis alone, as mm in one slice and the next. */
+static wh_real_t speed_share_of(const wh_machine_t *machine, const stands_t *stands, size_t axis, size_t g) {
     wh_vec3_t at[3];
     for (size_t i = 0; i < 3; ++i) {
         wh_real_t axes[WH_AXES];
@@ -232,13 +233,13 @@ static wh_real_t share_of(const wh_machine_t *machine, const stands_t *stands, s
     return wh_vec3_norm(&change);
 }
 
-/* Where no axis moves the wafer's middle, the one that goes on most turns its pads. */
+/* If no axis moves the wafer's middle, the axis that moves most turns its pads. */
 static size_t find_axis(const wh_machine_t *machine, const stands_t *stands, size_t g, bool turns) {
     size_t most = 0;
     wh_real_t largest = 0;
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
         const wh_real_t share = turns ? wh_real_abs(stands->of[2][axis] - stands->of[1][axis])
-                                      : share_of(machine, stands, axis, g);
+                                      : speed_share_of(machine, stands, axis, g);
         if (share > largest) {
             largest = share;
             most = axis;
@@ -247,19 +248,19 @@ static size_t find_axis(const wh_machine_t *machine, const stands_t *stands, siz
     return most;
 }
 
-/* Whatever the direction: |a| asks for a cos and takes friction * a sin from what presses, or the other
- * way. */
+/* For any direction: |a| needs a cos and takes friction * a sin from the pressing force, or the other
+ * way round. */
 static wh_real_t enough_for(const wh_pads_t *pads, const wh_mat3_t *base_from_gripper) {
     return wh_passive_limit(pads, base_from_gripper) / wh_real_sqrt(1 + pads->friction * pads->friction);
 }
 
-/* The pads' friction alone, in each slice as the simulator judges it. */
+/* Holding by the pads' friction alone, judged in each slice like in the simulator. */
 typedef struct {
     wh_pads_t pads;
     wh_carry_t carry;
 } holding_t;
 
-/* A gripper has stood before the segment. */
+/* Begins with a gripper that stands before the segment. */
 static void begin_holding(holding_t *holding, const wh_layout_t *layout, const wh_pose_t *pose,
                           wh_real_t dt) {
     wh_hold_t hold;
@@ -270,9 +271,9 @@ static void begin_holding(holding_t *holding, const wh_layout_t *layout, const w
     }
 }
 
-static void judge(holding_t *holding, const walk_t *walk, const stands_t *stands, size_t g,
-                  wh_carrying_slip_t *slip) {
-    const wh_pose_t *pose = pose_of(walk, g);
+static void judge_holding(holding_t *holding, const walk_t *walk, const stands_t *stands, size_t g,
+                          wh_carrying_slip_t *slip) {
+    const wh_pose_t *pose = gripper_pose_of(walk, g);
     const wh_real_t dt = (wh_real_t)walk->track.slice_us / WH_REAL(1e6);
     wh_hold_t hold;
     (void)wh_carry_update(&holding->carry, &holding->pads, 0, &pose->R, &pose->r, dt, &hold);
@@ -295,21 +296,22 @@ bool wh_carrying_slips(const wh_track_t *begun, const wh_layout_t *layout, uint3
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         passive |= layout->grips[g].kind == WH_GRIP_PASSIVE ? loaded & 1U << g : 0;
     }
-    if (passive == 0 || !moves(&begun->segment)) {
+    if (passive == 0 || !moves_axes(&begun->segment)) {
         return false;
     }
     begin_walk(&walk, begun, 1);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        begin_holding(&holdings[g], layout, pose_of(&walk, g), (wh_real_t)begun->slice_us / WH_REAL(1e6));
+        begin_holding(&holdings[g], layout, gripper_pose_of(&walk, g),
+                      (wh_real_t)begun->slice_us / WH_REAL(1e6));
     }
     for (int i = 0; i < 3; ++i) {
-        remember(&stands, &walk.track);
+        remember_place(&stands, &walk.track);
     }
     while (walk_on(&walk)) {
-        remember(&stands, &walk.track);
+        remember_place(&stands, &walk.track);
         for (size_t g = 0; passive >> g != 0; ++g) {
             if ((passive >> g & 1U) != 0) {
-                judge(&holdings[g], &walk, &stands, g, slip);
+                judge_holding(&holdings[g], &walk, &stands, g, slip);
             }
         }
     }

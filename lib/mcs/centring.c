@@ -1,7 +1,7 @@
 /* Centring on the way: the beams at a station's door are armed with the next slice's command, the latches
  * that the states bring are collected, and the wafer's centre on its blade is found from them.
  *
- * Motion control remembers where it commanded the blade to be, slice by slice, from the arming on. */
+ * From the arming on, motion control remembers the commanded places of the blade, slice by slice. */
 #include "../script/wh_module_values.h"
 #include "native.h"
 
@@ -14,10 +14,10 @@ static double field_or(lua_State *L, const char *name, double fallback) {
     return value;
 }
 
-/* What is known of the wafer before: of the layout, or as the argument's fields say. */
+/* The known values of the wafer: from the layout, or from the argument's fields. */
 static wh_centring_t known_of(lua_State *L, const wh_mcs_t *mcs) {
     const double radius = field_or(L, "radius", mcs->layout->wafer_diameter / 2);
-    wh_centring_t known = wh_centring_known(mcs->layout, &mcs->pass.order, radius);
+    wh_centring_t known = wh_centring_known(mcs->layout, &mcs->measuring.pass.order, radius);
     known.sd_radius = field_or(L, "sd_radius", known.sd_radius);
     known.sd_notch = field_or(L, "sd_notch", -1);
     known.notch_known = known.sd_notch >= 0;
@@ -26,8 +26,8 @@ static wh_centring_t known_of(lua_State *L, const wh_mcs_t *mcs) {
     return known;
 }
 
-static void keep(wh_mcs_t *mcs) {
-    wh_centring_record_t *centring = &mcs->centring;
+static void keep_centring(wh_mcs_t *mcs) {
+    wh_centring_record_t *centring = &mcs->measuring.centring;
     centring->command = mcs->recorder.running;
     centring->wafer = mcs->state.grippers[centring->gripper].wafer;
     wh_record_add_centring(mcs->recorder.record, centring);
@@ -36,15 +36,15 @@ static void keep(wh_mcs_t *mcs) {
 /* ------------------------------------------------------------------------------------------------ for Lua */
 
 static void push_crossing(lua_State *L, const wh_mcs_t *mcs, size_t i) {
-    const wh_pass_crossing_t *of = &mcs->centring.crossings[i];
+    const wh_pass_crossing_t *of = &mcs->measuring.centring.crossings[i];
     lua_createtable(L, 0, 6);
-    const wh_latch_order_t all = wh_layout_beams_at(mcs->layout, (size_t)mcs->centring.station);
+    const wh_latch_order_t all = wh_layout_beams_at(mcs->layout, (size_t)mcs->measuring.centring.station);
     wh_lua_set_integer(L, "beam", of->crossing.beam - all.first + 1);
     wh_lua_set_text(L, "edge", of->crossing.edge == WH_CROSSING_IN ? "in" : "out");
     wh_lua_set_number(L, "x", of->crossing.x);
     wh_lua_set_number(L, "y", of->crossing.y);
     wh_lua_set_number(L, "time", of->time);
-    wh_lua_set_text(L, "use", wh_centring_use(&mcs->centring, 0, i));
+    wh_lua_set_text(L, "use", wh_centring_use(&mcs->measuring.centring, 0, i));
 }
 
 static void push_centre(lua_State *L, const wh_centre_t *centre) {
@@ -60,7 +60,7 @@ static void push_centre(lua_State *L, const wh_centre_t *centre) {
 }
 
 static void push_centring(lua_State *L, const wh_mcs_t *mcs) {
-    const wh_centring_record_t *centring = &mcs->centring;
+    const wh_centring_record_t *centring = &mcs->measuring.centring;
     lua_createtable(L, 0, 4);
     wh_lua_set_integer(L, "error", centring->status);
     wh_lua_set_integer(L, "missed", centring->missed);
@@ -78,9 +78,9 @@ static void push_centring(lua_State *L, const wh_mcs_t *mcs) {
     lua_setfield(L, -2, "candidates");
 }
 
-/* Where the robot of this gripper takes the beams of a station to stand. They have gone along with a station
- * that a host has moved by the shift at this stack index; its field `beams`, { x, y } in base, mm, is how far
- * TEACH has found them beside that. In a trial they are drawn, too. */
+/* The places of a station's beams as this gripper's robot believes them. If a host has moved the station,
+ * they move with it by the shift at this stack index; its field `beams`, { x, y } in base, mm, is the further
+ * offset that TEACH has found. In a trial they are drawn, too. */
 static wh_pose_t believed_beams(lua_State *L, int shift, const wh_mcs_t *mcs, int32_t station,
                                 int32_t gripper) {
     const size_t robot = mcs->layout->machine.mounts[gripper].robot;
@@ -98,7 +98,7 @@ static wh_pose_t believed_beams(lua_State *L, int shift, const wh_mcs_t *mcs, in
 
 void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t gripper,
                 const wh_pose_t *believed) {
-    wh_pass_t *pass = &mcs->pass;
+    wh_pass_t *pass = &mcs->measuring.pass;
     wh_pass_free(pass);
     *pass = (wh_pass_t){.order = order,
                         .station = station,
@@ -109,7 +109,7 @@ void wh_mcs_arm(wh_mcs_t *mcs, wh_latch_order_t order, int32_t station, int32_t 
                         .seq = pass->seq,
                         .goes_on = true};
     mcs->command.latch = order;
-    mcs->unplayed = "beams at a station's door";
+    mcs->kept.unplayed = "beams at a station's door";
 }
 
 /* The station at stack index 1, and the beams that the robot of the gripper at 2 passes there. */
@@ -122,9 +122,9 @@ static wh_latch_order_t read_pass(lua_State *L, const wh_mcs_t *mcs, int32_t *st
     return order;
 }
 
-/* native.arm_beams(station, gripper, shift): from the end of the next slice on the beams that this gripper
- * passes on its way to the station latch what crosses them, and its way is remembered. Of a station that a
- * host has moved, see native.shift. What was collected before is gone. */
+/* native.arm_beams(station, gripper, shift): from the end of the next slice on, the beams that this
+ * gripper passes on its way to the station latch each crossing, and its way is remembered. For a station
+ * that a host has moved, see native.shift. Data collected before is deleted. */
 static int arm_beams(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
@@ -139,34 +139,33 @@ static int arm_beams(lua_State *L) {
 static int disarm_beams(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     mcs->command.latch = (wh_latch_order_t){.kind = WH_LATCH_DISARM};
-    mcs->pass.goes_on = false;
+    mcs->measuring.pass.goes_on = false;
     return 0;
 }
 
-/* native.centre { notch = , sd_notch = , radius = , sd_radius = }: where the wafer's centre is on the blade
- * that passed the beams since arm_beams. The notch's direction in the blade's frame, rad, with its deviation,
- * and another radius than the layout's, mm, if they are known. Returns { error = the status, 0 if it is sure,
- * missed = how many latches motion control has not, crossings = in their order { beam = from 1 at that
- * station, edge = "in" or "out", x, y = on the blade, mm, time = s, use = "rim", "notch" or "other" by the
- * first candidate, "none" without one }, candidates = { x, y, radius, sd_x, sd_y, sd, mismatch, used } }. */
-static int centre(lua_State *L) {
+/* native.centre { notch = , sd_notch = , radius = , sd_radius = }: the wafer's centre on the blade that
+ * passed the beams since arm_beams. The arguments, if they are known: the notch's direction in the blade's
+ * frame, rad, with its deviation, and a radius other than the layout's, mm. Returns { error = the status, 0
+ * if it is sure, missed = the number of latches that motion control did not get, crossings = in their order {
+ * beam = from 1 at that station, edge = "in" or "out", x, y = on the blade, mm, time = s, use = "rim",
+ * "notch" or "other" by the first candidate, "none" without one }, candidates = { x, y, radius, sd_x, sd_y,
+ * sd, mismatch, used } }. */
+static int centre_wafer(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     luaL_checktype(L, 1, LUA_TTABLE);
-    luaL_argcheck(L, mcs->pass.order.count > 0, 1, "no beams were armed");
-    wh_decisions_measured(mcs->decisions, "centring on the way");
+    luaL_argcheck(L, mcs->measuring.pass.order.count > 0, 1, "no beams were armed");
+    wh_decisions_measured(mcs->wanted.decisions, "centring on the way");
     const wh_centring_t known = known_of(L, mcs);
-    wh_centring_estimate(&mcs->pass, mcs->layout, &known, &mcs->centring);
-    keep(mcs);
-    if (mcs->partners.centring) {
-        mcs->partners.centring(mcs->partners.user, mcs);
-    }
+    wh_centring_estimate(&mcs->measuring.pass, mcs->layout, &known, &mcs->measuring.centring);
+    keep_centring(mcs);
+    wh_mcs_tell(mcs, WH_MCS_CENTRED, NULL);
     push_centring(L, mcs);
     return 1;
 }
 
-/* native.beam(station, gripper, shift): { x, y } in base, mm: where the first beam is that this gripper
- * passes on its way to the station, at the height of slot 1, as motion control believes; and its number
- * there, from 1. Of a station that a host has moved, see native.shift. */
+/* native.beam(station, gripper, shift): { x, y } in base, mm: the believed place of the first beam that
+ * this gripper passes on its way to the station, at the height of slot 1; and the beam's number there,
+ * from 1. For a station that a host has moved, see native.shift. */
 static int push_beam(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
@@ -184,5 +183,5 @@ static int push_beam(lua_State *L) {
 const luaL_Reg wh_mcs_centring_functions[] = {{"beam", push_beam},
                                               {"arm_beams", arm_beams},
                                               {"disarm_beams", disarm_beams},
-                                              {"centre", centre},
+                                              {"centre", centre_wafer},
                                               {NULL, NULL}};

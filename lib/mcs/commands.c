@@ -1,5 +1,5 @@
-/* Commands and what is kept of them: their beginning and end, phases, errors, expectations, cycles,
- * complaints, and why a pick was missed. */
+/* Commands and their records: beginning and end, phases, errors, expectations, cycles, complaints,
+ * and the reasons for missed picks. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,15 +10,15 @@
 #include "../text/utf8.h"
 #include "native.h"
 
-/* What an entry of the record costs of the instruction budget. */
+/* The cost of an entry of the record in the instruction budget. */
 #define STEPS_PER_ENTRY 256
 #define STEPS_PER_BYTE 4
 
-/* Among how many names the nearest one is looked for. */
+/* The most names among which the nearest one is looked for. */
 #define MOST_NAMES 1000
 
-/* An argument that goes into the record. The record is outside of Lua's memory cap, so an entry is paid for
- * from the budget: about as much as a script would spend on making as much text anew. Raises if the budget is
+/* Pays for an argument that goes into the record. The record is outside of Lua's memory cap, so the budget
+ * pays for an entry: about as much as a script would spend on making such a text. Raises if the budget is
  * spent. */
 static const char *pay_for_text(lua_State *L, int argument) {
     size_t length = 0;
@@ -27,17 +27,27 @@ static const char *pay_for_text(lua_State *L, int argument) {
     return wh_lua_whole_text(L, argument);
 }
 
-static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
-    if (mcs->partners.watch) {
-        mcs->partners.watch(mcs->partners.user, mcs, command, ended);
-    }
-    if (mcs->listener.boundary) {
-        mcs->listener.boundary(mcs->listener.user, mcs->layout);
+static void tell_command(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
+    wh_mcs_tell(mcs, ended ? WH_MCS_COMMAND_ENDED : WH_MCS_COMMAND_BEGINS, command);
+    if (mcs->wanted.listener.boundary) {
+        mcs->wanted.listener.boundary(mcs->wanted.listener.user, mcs->layout);
     }
 }
 
-/* native.begin(text): a command starts; the script's line is found on the stack. A metamethod of an argument
- * can get here from within another command. */
+/* The script's line; if a task's body has ended in the call of a word, only the body's last line is known. */
+static int find_line(lua_State *L, const wh_mcs_t *mcs) {
+    const int line = wh_sandbox_line(L, mcs->script);
+    return line > 0 ? line : (int)luaL_optinteger(L, 2, 0);
+}
+
+/* native.line_of(function): the last line of its code. */
+static int find_last_line(lua_State *L) {
+    lua_pushinteger(L, wh_sandbox_last_line(L, 1));
+    return 1;
+}
+
+/* native.begin(text, line): a command starts; the script's line is found on the stack, or else it is `line`.
+ * An argument's metamethod can call this within another command. */
 static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *text = pay_for_text(L, 1);
@@ -46,19 +56,19 @@ static int begin_command(lua_State *L) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
     }
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track); /* of a command that was cut short */
-    wh_mcs_find_callers(L, mcs, mcs->callers);
-    tell(mcs,
-         wh_recorder_begin(&mcs->recorder, wh_sandbox_line(L, mcs->script), text,
-                           wh_recorder_now(&mcs->recorder)),
-         false);
+    wh_mcs_find_callers(L, mcs, mcs->running.callers);
+    wh_origins_look(&mcs->heard.origins, &mcs->state); /* a free run may not hear of each slice */
+    tell_command(mcs,
+                 wh_recorder_begin(&mcs->recorder, find_line(L, mcs), text, wh_recorder_now(&mcs->recorder)),
+                 false);
     return 0;
 }
 
-/* native.begin_word(word): the script uses it. A word may be a command, or a question, which has no
- * record. */
+/* native.begin_word(word): the script uses this word. A word may be a command, or a question, which
+ * has no record. */
 static int begin_word(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
-    (void)snprintf(mcs->word, sizeof mcs->word, "%s", luaL_checkstring(L, 1));
+    (void)snprintf(mcs->running.word, sizeof mcs->running.word, "%s", luaL_checkstring(L, 1));
     return 0;
 }
 
@@ -67,7 +77,7 @@ static const wh_command_record_t *end_command(wh_mcs_t *mcs, wh_status_t error, 
                            mcs->state.wafers);
 }
 
-/* native.finish(number, message): it ended, with an error number unless that is nil. */
+/* native.finish(number, message): the command ended, with an error number unless that is nil. */
 static int finish_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_status_t error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
@@ -77,7 +87,7 @@ static int finish_command(lua_State *L) {
     if (error != WH_OK) {
         (void)pay_for_text(L, 2); /* may raise: not before the command has ended */
     }
-    tell(mcs, command, true);
+    tell_command(mcs, command, true);
     return 0;
 }
 
@@ -85,7 +95,7 @@ static void end_early(wh_mcs_t *mcs, wh_status_t error, const char *message) {
     const wh_command_record_t *command = end_command(mcs, error, message);
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
     if (command) {
-        tell(mcs, command, true);
+        tell_command(mcs, command, true);
     }
 }
 
@@ -110,7 +120,7 @@ void wh_mcs_stop_tasks(wh_mcs_t *mcs) {
 }
 
 void wh_mcs_refuse(wh_mcs_t *mcs, const char *text, wh_status_t error, const char *message) {
-    tell(mcs, wh_recorder_begin(&mcs->recorder, 0, text, wh_recorder_now(&mcs->recorder)), false);
+    tell_command(mcs, wh_recorder_begin(&mcs->recorder, 0, text, wh_recorder_now(&mcs->recorder)), false);
     end_early(mcs, error, message);
 }
 
@@ -133,8 +143,8 @@ const wh_mcs_held_t *wh_mcs_find_held(const wh_mcs_t *mcs, int32_t robot) {
     return NULL;
 }
 
-/* native.hold(robot, text, phase): this command of the robot's is held from its end on. */
-static int hold(lua_State *L) {
+/* native.hold(robot, text, phase): this command of the robot is held after its end. */
+static int hold_command(lua_State *L) {
     wh_mcs_held_t *held = &wh_mcs_of(L)->held[wh_mcs_index(L, 1, WH_MCS_ROBOTS)];
     wh_utf8_clip(held->command, sizeof held->command, wh_lua_whole_text(L, 2));
     (void)snprintf(held->phase, sizeof held->phase, "%s", luaL_checkstring(L, 3));
@@ -142,7 +152,7 @@ static int hold(lua_State *L) {
 }
 
 /* native.release(robot): it is no longer held. */
-static int release(lua_State *L) {
+static int release_command(lua_State *L) {
     wh_mcs_give_up(wh_mcs_of(L), wh_mcs_index(L, 1, WH_MCS_ROBOTS));
     return 0;
 }
@@ -155,18 +165,29 @@ static int find_phase(lua_State *L) {
 }
 
 /* native.expect(ok, text) */
-static int add_expectation(lua_State *L) {
+static int expect_condition(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;
     const char *text = pay_for_text(L, 2);
     wh_record_add_expectation(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
-    if (mcs->partners.expected) {
-        mcs->partners.expected(mcs->partners.user, mcs);
+    wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
+    return 0;
+}
+
+/* native.imply(ok, text): what a command implies. If it is met, only studies count it, and the script does not
+ * pay for the text: its command paid for a longer one. */
+static int add_implied(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_of(L);
+    const bool ok = lua_toboolean(L, 1) != 0;
+    const char *text = ok ? luaL_checkstring(L, 2) : pay_for_text(L, 2);
+    wh_record_add_implied(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
+    if (!ok) {
+        wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
     }
     return 0;
 }
 
-/* native.cycle(name): the next one begins. */
+/* native.cycle(name): the next cycle begins. */
 static int begin_cycle(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     if (mcs->recorder.running != WH_NONE) {
@@ -174,9 +195,7 @@ static int begin_cycle(lua_State *L) {
     }
     const char *name = pay_for_text(L, 1);
     wh_record_add_cycle(mcs->recorder.record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);
-    if (mcs->partners.cycle) {
-        mcs->partners.cycle(mcs->partners.user, mcs);
-    }
+    wh_mcs_tell(mcs, WH_MCS_CYCLE_BEGINS, NULL);
     return 0;
 }
 
@@ -202,13 +221,13 @@ static int find_nearest(lua_State *L) {
 }
 
 /* native.fail(number, detail): raises the numbered error. */
-static int fail(lua_State *L) {
+static int fail_command(lua_State *L) {
     wh_mcs_raise(L, wh_mcs_of(L), (wh_status_t)luaL_checkinteger(L, 1), wh_lua_whole_text(L, 2));
 }
 
 /* ------------------------------------------------------------------------------- missed picks, complaints */
 
-/* Pushes why it was missed: all conditions that failed. */
+/* Pushes the reasons for the missed pick: all conditions that failed. */
 static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *miss) {
     const wh_event_names_t names = {.first = 1, .tolerance = &mcs->layout->grasp.tolerance};
     char reason[WH_EVENT_TEXT_SIZE];
@@ -225,8 +244,7 @@ static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *mi
     luaL_pushresult(&text);
 }
 
-/* The event of the running command, the last one of this kind, that is of the gripper; null: none. A gripper
- * of WH_NONE is any. */
+/* The running command's last event of this kind and gripper; null: none. WH_NONE is any gripper. */
 static const wh_event_t *last_event(const wh_mcs_t *mcs, wh_event_kind_t kind, int32_t gripper) {
     const wh_record_t *record = mcs->recorder.record;
     for (size_t i = record->event_count; i > 0; --i) {
@@ -241,12 +259,12 @@ static const wh_event_t *last_event(const wh_mcs_t *mcs, wh_event_kind_t kind, i
     return NULL;
 }
 
-/* native.closest(gripper): the name of the wafer that came closest to it in the running command, which took
- * nothing with it, and why it was not taken; nothing if no wafer came near and left again. */
+/* native.closest(gripper): for a running command in which this gripper took nothing, the name of the wafer
+ * that came closest, and why it was not taken. Nothing if no wafer came near and left again. */
 static int find_closest(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
+    wh_decisions_measured(mcs->wanted.decisions, "why a wafer was missed");
     const wh_event_t *miss = last_event(mcs, WH_EVENT_NEAR_MISS, gripper);
     if (!miss) {
         return 0;
@@ -256,14 +274,15 @@ static int find_closest(lua_State *L) {
     return 2;
 }
 
-/* native.let_go(chuck): the wafer that the running command let go last and that nobody holds: its name, dx,
- * dy and dz against the chuck, and why that did not take it, no reason if all conditions hold; or nothing. */
+/* native.let_go(chuck): the last wafer that the running command let go, if no gripper holds it: its name, dx,
+ * dy and dz against the chuck, and why the chuck did not take it (no reason if all conditions hold); or
+ * nothing. */
 static int find_let_go(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t chuck = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const int32_t station = mcs->layout->grippers[chuck].station;
     const wh_event_t *released = last_event(mcs, WH_EVENT_RELEASED, WH_NONE);
-    wh_decisions_measured(mcs->decisions, "why a wafer was lost");
+    wh_decisions_measured(mcs->wanted.decisions, "why a wafer was lost");
     if (station == WH_NONE || !released || mcs->state.wafers[released->wafer].holder != WH_NONE) {
         return 0;
     }
@@ -284,20 +303,34 @@ static int find_let_go(lua_State *L) {
     return 5;
 }
 
-/* native.mark(): how many events the record has. */
+/* native.mark(): how many events the record has, and how many expectations. */
 static int count_events(lua_State *L) {
-    lua_pushinteger(L, (lua_Integer)wh_mcs_with_layout(L)->recorder.record->event_count);
-    return 1;
+    const wh_record_t *record = wh_mcs_with_layout(L)->recorder.record;
+    lua_pushinteger(L, (lua_Integer)record->event_count);
+    lua_pushinteger(L, (lua_Integer)record->expectation_count);
+    return 2;
 }
 
-/* True if nobody else's command led to it: of what runs side by side, each is told of its own. */
-static bool is_own(const wh_mcs_t *mcs, const wh_event_record_t *event) {
+/* True if no other task's command caused it: of tasks side by side, each gets only its own events. */
+static bool is_own_event(const wh_mcs_t *mcs, const wh_event_record_t *event) {
     const wh_record_t *record = mcs->recorder.record;
     return event->command == WH_NONE || record->commands[event->command].task == mcs->recorder.number;
 }
 
-/* native.complaints(mark): what the cell complained of since then in this task's commands, a list of
- * { kind, wafer, height }. A wafer or a height that says nothing is left out. */
+/* Adds { kind = text } for each expectation from number `mark` on that was not met: those of PUTs whose wafer
+ * ended elsewhere. */
+static void add_unmet(lua_State *L, const wh_record_t *record, size_t mark) {
+    for (size_t i = mark; i < record->expectation_count; ++i) {
+        if (!record->expectations[i].ok) {
+            lua_createtable(L, 0, 1);
+            wh_lua_set_text(L, "kind", record->expectations[i].text);
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+}
+
+/* native.complaints(mark, expectations): the cell's complaints since then in this task's commands, a list of
+ * { kind, wafer, height }. Unused wafers and heights are left out. */
 static int list_complaints(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
@@ -305,7 +338,7 @@ static int list_complaints(lua_State *L) {
     lua_newtable(L);
     for (size_t i = mark; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
-        if (!wh_record_is_complaint(event->kind) || !is_own(mcs, &record->events[i])) {
+        if (!wh_record_is_complaint(event->kind) || !is_own_event(mcs, &record->events[i])) {
             continue;
         }
         lua_createtable(L, 0, 3);
@@ -318,19 +351,22 @@ static int list_complaints(lua_State *L) {
         }
         lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
     }
+    add_unmet(L, record, (size_t)luaL_checkinteger(L, 2));
     return 1;
 }
 
 const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
+                                             {"line_of", find_last_line},
                                              {"finish", finish_command},
                                              {"begin_word", begin_word},
-                                             {"hold", hold},
-                                             {"release", release},
+                                             {"hold", hold_command},
+                                             {"release", release_command},
                                              {"is_held", find_phase},
-                                             {"expect", add_expectation},
+                                             {"expect", expect_condition},
+                                             {"imply", add_implied},
                                              {"cycle", begin_cycle},
                                              {"nearest", find_nearest},
-                                             {"fail", fail},
+                                             {"fail", fail_command},
                                              {"closest", find_closest},
                                              {"let_go", find_let_go},
                                              {"mark", count_events},

@@ -1,8 +1,12 @@
 #include "definitions.h"
 
+#include <stdlib.h>
+
 #include "../layout/layout_fields.h"
+#include "../layout/layout_tool.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "flow_plan.h"
 #include "native.h"
 
 static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
@@ -17,25 +21,51 @@ static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
     }
 }
 
-/* native.classes(): the tables of layouts, a list of { name, text, fields }; fields is a list of
+/* Cells of times alone, and what a script says of a flow. */
+static const wh_layout_class_t of_flows[] = {
+    {"timed_layout", "A cell whose robots are times alone.", wh_layout_timed_fields},
+    {"timed_robot", "A robot that is times alone.", wh_layout_timed_robot_fields},
+    {"timed_station", "A station of such a cell.", wh_layout_timed_station_fields},
+    {"timed_by", "How one of several robots comes to it.", wh_layout_timed_by_fields},
+    {"timed_door", "Times of a door.", wh_layout_timed_door_fields},
+    {"clean", "A clean of a station's places.", wh_layout_clean_fields},
+    {"pump", "Times of a load lock.", wh_layout_pump_fields},
+    {"flow", "Lots along their routes.", wh_flow_fields},
+    {"lot", "Wafers that arrive together.", wh_flow_lot_fields},
+    {"step", "One station of a route, or parallel ones, by numbers from 1.", wh_flow_step_fields},
+    {"route", "Steps by numbers from 1: a station's name or a waferhand.step.", wh_flow_route_fields},
+    {"lists", "Each robot's transfers in order.", wh_flow_list_fields},
+    {"down", "A station, at 1, that fails for a while.", wh_flow_down_fields},
+    {NULL, NULL, NULL}};
+
+static void push_classes(lua_State *L, const wh_layout_class_t *classes, lua_Integer first) {
+    for (lua_Integer i = 0; classes[i].name; ++i) {
+        lua_createtable(L, 0, 3);
+        wh_lua_set_text(L, "name", classes[i].name);
+        wh_lua_set_text(L, "text", classes[i].text);
+        push_fields(L, classes[i].fields);
+        lua_setfield(L, -2, "fields");
+        lua_rawseti(L, -2, first + i);
+    }
+}
+
+/* native.classes(): the tables of layouts and flows, a list of { name, text, fields }; fields is a list of
  * { name, type, text, required }. */
 static int list_classes(lua_State *L) {
-    lua_newtable(L);
-    for (lua_Integer i = 0; wh_layout_classes[i].name; ++i) {
-        lua_createtable(L, 0, 3);
-        wh_lua_set_text(L, "name", wh_layout_classes[i].name);
-        wh_lua_set_text(L, "text", wh_layout_classes[i].text);
-        push_fields(L, wh_layout_classes[i].fields);
-        lua_setfield(L, -2, "fields");
-        lua_rawseti(L, -2, i + 1);
+    lua_Integer count = 0;
+    while (wh_layout_classes[count].name) {
+        ++count;
     }
+    lua_newtable(L);
+    push_classes(L, wh_layout_classes, 1);
+    push_classes(L, of_flows, count + 1);
     return 1;
 }
 
 const luaL_Reg wh_mcs_definition_functions[] = {{"classes", list_classes}, {NULL, NULL}};
 
 /* Runs protected; the argument is where the text goes. */
-static int define(lua_State *L) {
+static int define_words(lua_State *L) {
     char **text = lua_touserdata(L, 1);
     wh_mcs_push_definitions(L);
     lua_call(L, 0, 1);
@@ -44,19 +74,21 @@ static int define(lua_State *L) {
 }
 
 char *wh_definitions_make(wh_sandbox_result_t *result) {
-    static wh_mcs_t mcs;
+    wh_mcs_t *mcs = wh_array_new(1, sizeof *mcs);
     wh_record_t record = {0};
     char *text = NULL;
     wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
     if (!sandbox) {
         *result = (wh_sandbox_result_t){.status = WH_SANDBOX_MEMORY, .message = "not enough memory"};
+        free(mcs);
         return NULL;
     }
-    if (wh_mcs_open(&mcs, sandbox, "definitions", &record, result)) {
-        (void)wh_sandbox_protect(wh_sandbox_state(sandbox), define, &text, result);
-        wh_mcs_close(&mcs);
+    if (wh_mcs_open(mcs, sandbox, "definitions", &record, result)) {
+        (void)wh_sandbox_protect(wh_sandbox_state(sandbox), define_words, &text, result);
+        wh_mcs_close(mcs);
         wh_record_free(&record);
     }
     wh_sandbox_free(sandbox);
+    free(mcs);
     return text;
 }

@@ -1,4 +1,4 @@
-/* What motion control does, in one line: for STATUS and VERSION. */
+/* Describes what motion control does in one line, for STATUS and VERSION. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static bool is_plain(const char *name) {
     return name[0] != '\0' && name[strspn(name, plain)] == '\0' && strcasecmp(name, "none") != 0;
 }
 
-/* A name as it can be typed, as tokens.spell of lua/mcs writes it; null: none. */
+/* Writes a name as it can be typed, like tokens.spell of lua/mcs; null: none. */
 static void put_name(description_t *to, const char *name) {
     if (!name || is_plain(name)) {
         put(to, "%s", name ? name : "none");
@@ -44,7 +44,7 @@ static void put_name(description_t *to, const char *name) {
     put(to, "\"");
 }
 
-/* So many bytes of a command are told, with a terminator. A script's may be longer than is worth telling. */
+/* The most bytes of a command's text, with a terminator. A script's command may be too long to show. */
 enum { TASK_COMMAND = 101, SCRIPT_COMMAND = 1001 };
 
 static void put_command(description_t *to, const char *text, size_t size) {
@@ -70,8 +70,8 @@ static void put_number(description_t *to, const char *name, double value) {
     put_value(to, value);
 }
 
-/* What the state and these axes, of one slice, tell. */
-static void see(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t axes[WH_AXES]) {
+/* Copies the values of one slice from the state and these axes. */
+static void see_slice(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t axes[WH_AXES]) {
     seen->seq = state->seq;
     seen->utime = state->utime;
     memcpy(seen->axes, axes, sizeof seen->axes);
@@ -83,18 +83,19 @@ static void see(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t ax
 /* In a free run the state is of an earlier slice than the command. */
 static void hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     wh_mcs_t *mcs = user;
-    wh_mcs_sent_t *sent = &mcs->sent[command->seq % WH_MCS_SENT];
+    wh_mcs_sent_t *sent = &mcs->heard.sent[command->seq % WH_MCS_SENT];
     sent->seq = command->seq;
     memcpy(sent->axes, command->axes, sizeof sent->axes);
-    const wh_mcs_sent_t *answered = &mcs->sent[state->seq % WH_MCS_SENT];
-    if (state->seq > mcs->seen.seq && answered->seq == state->seq) {
-        see(&mcs->seen, state, answered->axes);
+    const wh_mcs_sent_t *answered = &mcs->heard.sent[state->seq % WH_MCS_SENT];
+    if (state->seq > mcs->heard.seen.seq && answered->seq == state->seq) {
+        see_slice(&mcs->heard.seen, state, answered->axes);
     }
 }
 
 void wh_mcs_watch_slices(wh_mcs_t *mcs) {
-    see(&mcs->seen, &mcs->state, mcs->track.axes);
-    wh_mcs_listen_first(mcs, hear_slice, mcs); /* who else hears of the slice may ask for STATUS */
+    see_slice(&mcs->heard.seen, &mcs->state, mcs->track.axes);
+    wh_mcs_listen_first(mcs, hear_slice, mcs); /* first, as another listener of the slice may ask
+                                                * for STATUS */
 }
 
 /* "theta", or with several robots "VAC.theta". */
@@ -190,7 +191,8 @@ void wh_mcs_name_mechanisms(const wh_mcs_t *mcs, uint32_t axes, char text[WH_MCS
     }
 }
 
-/* The axis that turns or lifts a gripper of this name, or the one at a station of this name; 0: none. */
+/* The axis, as a bit, that turns or lifts the gripper of this name, or the gripper at a station of this
+ * name; 0: none. */
 static uint32_t find_gripper_axis(const wh_layout_t *layout, size_t g, const char *name) {
     const wh_layout_gripper_t *gripper = &layout->grippers[g];
     const int32_t axis = layout->machine.mounts[g].axis;
@@ -218,13 +220,13 @@ bool wh_mcs_find_mechanism(const wh_mcs_t *mcs, const char *name, uint32_t *axes
 }
 
 /* The command that the task of a lane runs: an index in the record, or WH_NONE. Without tasks the first lane
- * has what runs. */
+ * has the running command. */
 static int32_t running_in(const wh_mcs_t *mcs, size_t lane) {
     const wh_lanes_t *lanes = mcs->lanes;
     return !lanes || (size_t)lanes->current == lane ? mcs->recorder.running : lanes->of[lane].running;
 }
 
-/* Each command that runs; those of tasks with the task's number. False if none does. */
+/* Writes each running command, those of tasks with the task's number. False if none runs. */
 static bool put_running(description_t *to, const wh_mcs_t *mcs) {
     bool is_any = false;
     for (size_t i = 0; i < (mcs->lanes ? WH_MCS_LANES : 1); ++i) {
@@ -243,7 +245,7 @@ static bool put_running(description_t *to, const wh_mcs_t *mcs) {
     return is_any;
 }
 
-/* A second one has its robot's name before it. */
+/* With a robot's name, the name stands before the command. */
 static void put_held(description_t *to, const wh_mcs_held_t *held, const char *robot) {
     static const char *const parts[] = {"command", "stop"};
     for (size_t i = 0; i < 2; ++i) {
@@ -257,8 +259,8 @@ static void put_held(description_t *to, const wh_mcs_held_t *held, const char *r
     }
 }
 
-/* What runs, or else what is held. */
-static void put_phase(description_t *to, const wh_mcs_t *mcs) {
+/* Writes the running commands, or else the held ones. */
+static void put_phases(description_t *to, const wh_mcs_t *mcs) {
     if (put_running(to, mcs)) {
         return;
     }
@@ -274,11 +276,11 @@ static void put_phase(description_t *to, const wh_mcs_t *mcs) {
 
 void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     description_t to = {text, 0};
-    wh_mcs_seen_t seen = mcs->seen;
-    if (!mcs->partners.connect) {
-        see(&seen, &mcs->state, mcs->track.axes);
+    wh_mcs_seen_t seen = mcs->heard.seen;
+    if (!mcs->wanted.partners.connect) {
+        see_slice(&seen, &mcs->state, mcs->track.axes);
     }
-    put_phase(&to, mcs);
+    put_phases(&to, mcs);
     put(&to, " seq=%lld", (long long)seen.seq);
     put_number(&to, "time", (double)seen.utime / 1e6);
     if (mcs->layout) {
@@ -289,8 +291,8 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     put_error(&to, mcs->recorder.record);
 }
 
-/* native.status(): that text. */
-static int describe(lua_State *L) {
+/* native.status(): the text of wh_mcs_describe. */
+static int push_description(lua_State *L) {
     char text[WH_MCS_DESCRIPTION_BYTES];
     wh_mcs_describe(wh_mcs_of(L), text);
     lua_pushstring(L, text);
@@ -303,4 +305,5 @@ static int tell_version(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_describe_functions[] = {{"status", describe}, {"version", tell_version}, {NULL, NULL}};
+const luaL_Reg wh_mcs_describe_functions[] = {
+    {"status", push_description}, {"version", tell_version}, {NULL, NULL}};

@@ -1,8 +1,8 @@
 /* Edge scans: the sensor at a prealigner is armed with the next slice's command, and the samples that the
  * states bring are collected.
  *
- * Each state carries the samples of its own slice, and how many were taken up to it. So states that come
- * twice add nothing; states that never came (of a free run) leave holes, which are counted. */
+ * Each state carries the samples of its own slice, and the number of samples up to it. So states that
+ * come twice add nothing. States that never came (in a free run) leave holes, which are counted. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "../text/array.h"
 #include "native.h"
 
-static int32_t magnitude(int32_t count) {
+static int32_t magnitude_of_count(int32_t count) {
     return count < 0 ? -count : count;
 }
 
@@ -22,8 +22,8 @@ static bool is_of(const wh_mcs_edge_t *edge, const wh_scan_t *scan) {
            scan->count == order->count && scan->first == order->first;
 }
 
-/* How fast the chuck turns, as the sensor sees it. A scan's last state does not tell the turn. */
-static void follow(wh_mcs_edge_t *edge, const wh_scan_t *scan, double slice_s) {
+/* Follows the chuck's speed, as the sensor sees it. A scan's last state does not tell the turn. */
+static void follow_chuck(wh_mcs_edge_t *edge, const wh_scan_t *scan, double slice_s) {
     if (!scan->armed) {
         return;
     }
@@ -34,7 +34,7 @@ static void follow(wh_mcs_edge_t *edge, const wh_scan_t *scan, double slice_s) {
     edge->turn_seq = edge->seq;
 }
 
-static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
+static void collect_samples(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
     const int32_t begin = scan->taken - scan->sample_count;
     for (; edge->taken < begin; ++edge->taken) {
         edge->samples[edge->taken] = WH_NONE;
@@ -47,9 +47,9 @@ static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
     edge->armed = scan->armed;
 }
 
-/* Only a state of a slice after the last one that was heard of: in a free run it may come again. */
+/* Takes only a state of a later slice than the last one: in a free run a state may come again. */
 void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
-    wh_mcs_edge_t *edge = &mcs->edge;
+    wh_mcs_edge_t *edge = &mcs->measuring.edge;
     if (!state->physics || state->seq <= edge->seq) {
         return;
     }
@@ -57,19 +57,19 @@ void wh_mcs_hear(wh_mcs_t *mcs, const wh_state_t *state) {
     const bool was_armed = edge->armed;
     edge->seq = state->seq;
     edge->number = scan->number;
-    wh_pass_hear(&mcs->pass, state);
+    wh_pass_hear(&mcs->measuring.pass, state);
     if (is_of(edge, scan)) {
-        follow(edge, scan, (double)mcs->layout->slice_us / 1e6);
-        collect(edge, scan);
-        if (was_armed && !edge->armed && mcs->partners.edge) {
-            mcs->partners.edge(mcs->partners.user, mcs);
+        follow_chuck(edge, scan, (double)mcs->layout->slice_us / 1e6);
+        collect_samples(edge, scan);
+        if (was_armed && !edge->armed) {
+            wh_mcs_tell(mcs, WH_MCS_EDGE_SCANNED, NULL);
         }
     }
 }
 
 void wh_mcs_hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     wh_mcs_t *mcs = user;
-    wh_pass_follow(&mcs->pass, command);
+    wh_pass_follow(&mcs->measuring.pass, command);
     wh_mcs_hear(mcs, state);
 }
 
@@ -81,11 +81,11 @@ void wh_mcs_free_edge(wh_mcs_edge_t *edge) {
 }
 
 /* native.arm_edge(gripper, first, count): from the end of the next slice on the sensor at this chuck takes
- * `count` samples, each when the chuck turns past its angle; below 0 the chuck turns clockwise. What was
- * collected before is gone. */
+ * `count` samples, each when the chuck turns past its angle. If `count` is below 0, the chuck turns
+ * clockwise. Data collected before is deleted. */
 static int arm_edge(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_mcs_edge_t *edge = &mcs->edge;
+    wh_mcs_edge_t *edge = &mcs->measuring.edge;
     const wh_scanning_t scanning = wh_layout_scanning(mcs->layout);
     const int64_t count = luaL_checkinteger(L, 3);
     const int64_t most = (int64_t)WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
@@ -94,8 +94,8 @@ static int arm_edge(lua_State *L) {
                                    luaL_checkinteger(L, 2)};
     luaL_argcheck(L, wh_scanning_check(&scanning, &order) == WH_OK, 3, "no scan of an edge sensor");
     wh_mcs_free_edge(edge);
-    edge->samples = wh_array_new((size_t)magnitude(order.count), sizeof *edge->samples);
-    edge->speeds = wh_array_new((size_t)magnitude(order.count), sizeof *edge->speeds);
+    edge->samples = wh_array_new((size_t)magnitude_of_count(order.count), sizeof *edge->samples);
+    edge->speeds = wh_array_new((size_t)magnitude_of_count(order.count), sizeof *edge->speeds);
     edge->speed = 0;
     edge->turn_seq = 0;
     edge->order = order;
@@ -104,31 +104,30 @@ static int arm_edge(lua_State *L) {
     edge->missed = 0;
     edge->armed = true;
     mcs->command.scan = order;
-    mcs->unplayed = "a scan of a wafer's edge";
+    mcs->kept.unplayed = "a scan of a wafer's edge";
     return 0;
 }
 
-/* native.disarm_edge(): with the next slice, if samples are still to come. What was collected stays. */
+/* native.disarm_edge(): disarms with the next slice, if samples are still to come. Collected data stays. */
 static int disarm_edge(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    if (mcs->edge.armed) {
+    if (mcs->measuring.edge.armed) {
         mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_DISARM};
     }
     return 0;
 }
 
-/* native.edge(): what was collected since arm_edge, nil without one. `samples` are as many as were asked for,
- * `count`: dark pixels, or -1 where none has come (`missed` of them), be it that its state was lost or that
- * the scan has ended before. `first` is the number of the first of them, `is_armed` if there are more to
- * come. */
+/* native.edge(): the data collected since arm_edge, nil without one. `samples` are as many as were asked for,
+ * `count`: dark pixels, or -1 if none has come (`missed` of them), because its state was lost or the scan has
+ * ended before. `first` is the number of the first sample, `is_armed` tells whether more will come. */
 static int read_edge(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_edge_t *edge = &mcs->edge;
+    const wh_mcs_edge_t *edge = &mcs->measuring.edge;
     if (!edge->samples) {
         return 0;
     }
-    wh_decisions_measured(mcs->decisions, "a scan of a wafer's edge");
-    const int32_t count = magnitude(edge->order.count);
+    wh_decisions_measured(mcs->wanted.decisions, "a scan of a wafer's edge");
+    const int32_t count = magnitude_of_count(edge->order.count);
     wh_sandbox_charge(L, (uint64_t)count);
     lua_createtable(L, 0, 5);
     lua_createtable(L, count, 0);
@@ -144,7 +143,7 @@ static int read_edge(lua_State *L) {
     return 1;
 }
 
-/* How far the chuck turns from rest to its full speed. */
+/* The angle in which the chuck comes from rest to its full speed. */
 static double run_up(const wh_limits_t *limits) {
     const double speed = limits->speed;
     const bool is_short = speed * limits->jerk < limits->acceleration * limits->acceleration;

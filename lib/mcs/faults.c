@@ -1,4 +1,4 @@
-/* Faults on purpose: a script's go to the simulator with the next slice's command. */
+/* Injected faults: a script's faults go to the simulator with the next slice's command. */
 #include <string.h>
 
 #include "../script/wh_module_values.h"
@@ -10,15 +10,15 @@ static int64_t next_slice(const wh_mcs_t *mcs) {
 
 void wh_mcs_start_faults(wh_mcs_t *mcs) {
     const wh_physics_t *physics = &mcs->layout->physics;
-    mcs->fault_count = physics->fault_count;
-    memcpy(mcs->faults, physics->faults, sizeof mcs->faults);
+    mcs->armed.fault_count = physics->fault_count;
+    memcpy(mcs->armed.faults, physics->faults, sizeof mcs->armed.faults);
 }
 
-/* A slot that was never used, so that a number stands for one fault as long as possible; then the first slot
- * whose fault is over in the simulator, too. */
-static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
-    size_t slot = mcs->fault_count < WH_FAULTS ? mcs->fault_count : 0;
-    while (slot < mcs->fault_count && mcs->faults[slot].until > mcs->track.slice) {
+/* Finds a slot that was never used, so that a number means one fault as long as possible; else the first
+ * slot whose fault is over, also in the simulator. */
+static size_t find_fault_slot(lua_State *L, wh_mcs_t *mcs) {
+    size_t slot = mcs->armed.fault_count < WH_FAULTS ? mcs->armed.fault_count : 0;
+    while (slot < mcs->armed.fault_count && mcs->armed.faults[slot].until > mcs->track.slice) {
         ++slot;
     }
     if (slot == WH_FAULTS) {
@@ -28,8 +28,8 @@ static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
     return slot;
 }
 
-/* Sends the fault of a slot with the next command, instead of what was to be sent for that slot. */
-static void send(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fault) {
+/* Sends the fault of a slot with the next command, in place of a pending one for that slot. */
+static void send_fault(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fault) {
     wh_command_t *command = &mcs->command;
     size_t place = 0;
     while (place < command->fault_count && command->faults[place].index != (int32_t)slot) {
@@ -43,7 +43,7 @@ static void send(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fau
     command->faults[place].index = (int32_t)slot;
     command->faults[place].fault = *fault;
     command->fault_count += place == command->fault_count ? 1 : 0;
-    mcs->faults[slot] = *fault;
+    mcs->armed.faults[slot] = *fault;
 }
 
 /* native.fault(description): the fault's number, from 1. */
@@ -54,9 +54,9 @@ static int add_fault(lua_State *L) {
     lua_settop(L, 1);
     wh_reader_start(&reader, L, "fault");
     const wh_fault_t fault = wh_layout_read_fault(&reader, mcs->layout, mcs->state.wafers, next_slice(mcs));
-    const size_t slot = find_slot(L, mcs);
-    send(L, mcs, slot, &fault);
-    mcs->fault_count += slot == mcs->fault_count ? 1 : 0;
+    const size_t slot = find_fault_slot(L, mcs);
+    send_fault(L, mcs, slot, &fault);
+    mcs->armed.fault_count += slot == mcs->armed.fault_count ? 1 : 0;
     lua_pushinteger(L, (lua_Integer)slot + 1);
     return 1;
 }
@@ -65,23 +65,24 @@ static int add_fault(lua_State *L) {
 
 static bool is_alarm(const wh_mcs_t *mcs, lua_Integer number) {
     return number > WH_FAULTS && number <= WH_FAULTS + WH_MCS_ALARMS &&
-           mcs->alarms[number - WH_FAULTS - 1] != WH_OK;
+           mcs->armed.alarms[number - WH_FAULTS - 1] != WH_OK;
 }
 
-/* One that a host has armed waits for a command of its own. */
+/* An alarm that a host has armed waits for one of this host's commands. */
 static bool waits_for(const wh_mcs_t *mcs, size_t alarm, int32_t job) {
-    return mcs->alarms[alarm] != WH_OK && (mcs->alarm_jobs[alarm] == 0 || mcs->alarm_jobs[alarm] == job);
+    return mcs->armed.alarms[alarm] != WH_OK &&
+           (mcs->armed.alarm_jobs[alarm] == 0 || mcs->armed.alarm_jobs[alarm] == job);
 }
 
 static int32_t current_job(const wh_mcs_t *mcs) {
     const int32_t job = mcs->lanes ? mcs->lanes->of[mcs->lanes->current].job : 0;
-    return job != 0 ? job : mcs->asking;
+    return job != 0 ? job : mcs->asker.controller;
 }
 
 bool wh_mcs_take_alarm(wh_mcs_t *mcs, wh_status_t error, int32_t job) {
     for (size_t i = 0; error != WH_OK && i < WH_MCS_ALARMS; ++i) {
-        if (mcs->alarms[i] == error && waits_for(mcs, i, job)) {
-            mcs->alarms[i] = WH_OK;
+        if (mcs->armed.alarms[i] == error && waits_for(mcs, i, job)) {
+            mcs->armed.alarms[i] = WH_OK;
             return true;
         }
     }
@@ -93,21 +94,21 @@ static int arm_alarm(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_status_t error = (wh_status_t)luaL_checkinteger(L, 1);
     size_t place = 0;
-    while (place < WH_MCS_ALARMS && mcs->alarms[place] != WH_OK) {
+    while (place < WH_MCS_ALARMS && mcs->armed.alarms[place] != WH_OK) {
         ++place;
     }
     if (place == WH_MCS_ALARMS) {
         wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
                      "16 errors wait for a command already (expected at most 16: clear one)");
     }
-    mcs->alarms[place] = error;
-    mcs->alarm_jobs[place] = current_job(mcs);
+    mcs->armed.alarms[place] = error;
+    mcs->armed.alarm_jobs[place] = current_job(mcs);
     lua_pushinteger(L, (lua_Integer)(WH_FAULTS + place + 1));
     return 1;
 }
 
-/* native.alarms(): what is armed for the running task, a list of { number, error } in the order of numbers;
- * nil: nothing is. */
+/* native.alarms(): the errors armed for the running task, a list of { number, error } in the order of
+ * numbers; nil: none. */
 static int list_alarms(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     lua_Integer count = 0;
@@ -120,40 +121,40 @@ static int list_alarms(lua_State *L) {
         }
         lua_createtable(L, 0, 2);
         wh_lua_set_integer(L, "number", (lua_Integer)(WH_FAULTS + i + 1));
-        wh_lua_set_integer(L, "error", mcs->alarms[i]);
+        wh_lua_set_integer(L, "error", mcs->armed.alarms[i]);
         lua_rawseti(L, -2, ++count);
     }
     return count > 0 ? 1 : 0;
 }
 
-/* native.disarm(number): it no longer waits. */
-static int disarm(lua_State *L) {
+/* native.disarm(number): this error no longer waits. */
+static int disarm_alarm(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
     const lua_Integer number = luaL_checkinteger(L, 1);
     if (is_alarm(mcs, number)) {
-        mcs->alarms[number - WH_FAULTS - 1] = WH_OK;
+        mcs->armed.alarms[number - WH_FAULTS - 1] = WH_OK;
     }
     return 0;
 }
 
 /* ----------------------------------------------------------------------------------------------- clearing */
 
-/* native.clear_fault(number): it ends with the next slice; an error that waits no longer does. */
+/* native.clear_fault(number): the fault ends with the next slice; a waiting error is disarmed. */
 static int clear_fault(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const lua_Integer number = luaL_checkinteger(L, 1);
     if (is_alarm(mcs, number)) {
-        return disarm(L);
+        return disarm_alarm(L);
     }
-    if (number < 1 || number > (lua_Integer)mcs->fault_count ||
-        mcs->faults[number - 1].until <= mcs->track.slice) {
+    if (number < 1 || number > (lua_Integer)mcs->armed.fault_count ||
+        mcs->armed.faults[number - 1].until <= mcs->track.slice) {
         lua_pushfstring(L, "number: %I (expected that of a fault that is not over)", (LUAI_UACINT)number);
         wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, lua_tostring(L, -1));
     }
-    wh_fault_t fault = mcs->faults[number - 1];
+    wh_fault_t fault = mcs->armed.faults[number - 1];
     if (fault.until > next_slice(mcs)) {
         fault.until = next_slice(mcs);
-        send(L, mcs, (size_t)number - 1, &fault);
+        send_fault(L, mcs, (size_t)number - 1, &fault);
     }
     return 0;
 }
@@ -173,5 +174,5 @@ const luaL_Reg wh_mcs_fault_functions[] = {{"fault", add_fault},
                                            {"fault_kinds", list_kinds},
                                            {"arm_alarm", arm_alarm},
                                            {"alarms", list_alarms},
-                                           {"disarm", disarm},
+                                           {"disarm", disarm_alarm},
                                            {NULL, NULL}};

@@ -1,4 +1,4 @@
-/* Jobs: lines that come while others are played, each of a task of its own. */
+/* Jobs: lines that come while others are played; each job has its own task. */
 #include "../script/wh_module_values.h"
 #include "playing.h"
 
@@ -12,7 +12,7 @@ static wh_lane_t *lane_of(const wh_mcs_t *mcs, int32_t job) {
 }
 
 void wh_mcs_call(wh_mcs_t *mcs) {
-    mcs->is_called = true;
+    mcs->stop.is_called = true;
 }
 
 bool wh_mcs_job_waits(const wh_mcs_t *mcs, int32_t job) {
@@ -26,7 +26,7 @@ void wh_mcs_end_job(wh_mcs_t *mcs, int32_t job, wh_status_t status, const char *
         lane->told = status;
         lane->told_why = why;
         lane->is_busy = lane->is_drawn = false;
-        mcs->is_called = true;
+        mcs->stop.is_called = true;
     }
 }
 
@@ -68,8 +68,8 @@ static int begin_job(lua_State *L) {
     return 0;
 }
 
-/* native.end_line(job, number, answer): a line of it was carried out. Returns the next one; nil: the job
- * is over. */
+/* native.end_line(job, number, answer): a line of the job was executed. Returns the next one; nil: the
+ * job is over. */
 static int end_line(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *next = mcs->jobs.ended(mcs->jobs.user, (int32_t)luaL_checkinteger(L, 1),
@@ -78,21 +78,21 @@ static int end_line(lua_State *L) {
     return 1;
 }
 
-/* native.has_jobs(): jobs are played, among which nothing can be undone. */
+/* native.has_jobs(): true while jobs are played; then nothing can be undone. */
 static int has_jobs(lua_State *L) {
     lua_pushboolean(L, wh_mcs_of(L)->jobs.take != NULL);
     return 1;
 }
 
-/* native.is_told(lane): its job, or its command that waits, is to end where it is. */
-static int is_told(lua_State *L) {
+/* native.is_told(lane): true if the lane's job, or its waiting command, must end where it is. */
+static int is_told_to_end(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     lua_pushboolean(L, mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)].told != WH_OK);
     return 1;
 }
 
-/* native.heed(): raises what this task was told to end with. */
-static int heed(lua_State *L) {
+/* native.heed(): raises the status with which this task must end. */
+static int heed_end(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
     const wh_status_t told = lane->told;
@@ -103,8 +103,8 @@ static int heed(lua_State *L) {
     return 0;
 }
 
-/* native.command_waits(waits, is_patient): this task's command does, or no longer does, for what another one
- * has; however long that takes. */
+/* native.command_waits(waits, is_patient): this task's command waits, or no longer waits, for something that
+ * another one has; if patient, without a limit. */
 static int note_wait(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_lane_t *lane = &mcs->lanes->of[mcs->lanes->current];
@@ -113,7 +113,7 @@ static int note_wait(lua_State *L) {
     return 0;
 }
 
-/* native.refuse_wait(lane): nothing runs that could give back what this job waits for. */
+/* native.refuse_wait(lane): nothing runs that could release what this job waits for. */
 static int refuse_wait(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_lane_t *lane = &mcs->lanes->of[wh_mcs_index(L, 1, WH_MCS_LANES)];
@@ -122,19 +122,20 @@ static int refuse_wait(lua_State *L) {
     return 0;
 }
 
-/* native.asked_robot(): that of the robot's own controller whose question is answered; nil: of another. */
+/* native.asked_robot(): the robot whose own controller asked the question; nil: it came from another
+ * controller. */
 static int push_asked_robot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
-    if (mcs->asking_robot == 0) {
+    if (mcs->asker.robot == 0) {
         return 0;
     }
-    lua_pushinteger(L, mcs->asking_robot);
+    lua_pushinteger(L, mcs->asker.robot);
     return 1;
 }
 
-/* native.is_part(): true of a line that UNDO takes back with the one before it. */
+/* native.is_part(): true for a line that UNDO takes back with the one before it. */
 static int push_is_part(lua_State *L) {
-    lua_pushboolean(L, wh_mcs_of(L)->is_part);
+    lua_pushboolean(L, wh_mcs_of(L)->asker.is_part);
     return 1;
 }
 
@@ -144,8 +145,8 @@ const luaL_Reg wh_mcs_job_functions[] = {{"is_part", push_is_part},
                                          {"begin_job", begin_job},
                                          {"end_line", end_line},
                                          {"has_jobs", has_jobs},
-                                         {"is_told", is_told},
-                                         {"heed", heed},
+                                         {"is_told", is_told_to_end},
+                                         {"heed", heed_end},
                                          {"command_waits", note_wait},
                                          {"refuse_wait", refuse_wait},
                                          {NULL, NULL}};

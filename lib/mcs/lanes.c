@@ -27,9 +27,9 @@ static void take_valves(wh_mcs_t *mcs, const wh_lane_t *lane) {
     }
 }
 
-/* Each running segment is asked for the slice that comes. One that is over takes none: its end has exactly
- * its target's bits. True if any is over. */
-static bool draw(wh_mcs_t *mcs) {
+/* Asks each running segment for the next slice. A finished segment takes none: its end has exactly its
+ * target's bits. True if any is finished. */
+static bool draw_lanes(wh_mcs_t *mcs) {
     bool is_any_over = false;
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
@@ -63,7 +63,7 @@ static void tell_recorder(wh_mcs_t *mcs) {
     }
 }
 
-/* What comes next is decided by the state of a slice that ends a segment. */
+/* The state of a slice that ends a segment decides what comes next. */
 static void await_ends(const wh_mcs_t *mcs) {
     bool is_any_last = false;
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
@@ -71,13 +71,13 @@ static void await_ends(const wh_mcs_t *mcs) {
         is_any_last =
             is_any_last || (lane->is_busy && lane->track.segment_slice == lane->track.segment_slices);
     }
-    if (is_any_last && mcs->partners.await) {
-        mcs->partners.await(mcs->partners.user);
+    if (is_any_last && mcs->wanted.partners.lossy) {
+        mcs->wanted.partners.lossy->await(mcs->wanted.partners.user);
     }
 }
 
-/* One slice of all that run. What was refused has not taken place, and its segments are given up where they
- * were. */
+/* Plays one slice of all running segments. A refused slice has not taken place, and its segments are given
+ * up where they were. */
 static wh_status_t play_slice(wh_mcs_t *mcs) {
     wh_real_t before[WH_AXES];
     memcpy(before, mcs->track.axes, sizeof before);
@@ -100,8 +100,8 @@ static wh_status_t play_slice(wh_mcs_t *mcs) {
     return status;
 }
 
-/* What moves one of these axes goes on no more; WH_MCS_ALL: nothing does. */
-static void give_up(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
+/* Stops the segments that move one of these axes; WH_MCS_ALL: all segments. */
+static void give_up_segments(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
         wh_lane_t *lane = &mcs->lanes->of[i];
         if (lane->is_busy && (axes == WH_MCS_ALL || (lane->axes & axes) != 0)) {
@@ -111,31 +111,31 @@ static void give_up(wh_mcs_t *mcs, uint32_t axes, wh_status_t status) {
     }
 }
 
-/* Once slices have gone out: a STOP that has come, and what the last one was answered with. A slice that was
- * given up because of a STOP is no other reason. */
+/* After slices have gone out: takes a STOP that has come, and the answer to the last slice. A slice that was
+ * given up because of a STOP is not a separate reason. */
 static void take_end(wh_mcs_t *mcs, wh_status_t status) {
     uint32_t axes = 0;
     if (wh_mcs_stop_has_come(mcs)) {
         mcs->lanes->stopped_by = wh_mcs_take_stop(mcs, &axes);
-        give_up(mcs, axes, WH_STATUS_STOPPED);
+        give_up_segments(mcs, axes, WH_STATUS_STOPPED);
         if (axes == WH_MCS_ALL) {
             wh_mcs_end_waits(mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
         }
     }
     if (status != WH_OK && axes != WH_MCS_ALL) {
-        give_up(mcs, WH_MCS_ALL, status);
+        give_up_segments(mcs, WH_MCS_ALL, status);
         wh_mcs_note_refused(mcs, status);
         mcs->lanes->stopped_by = NULL;
     }
 }
 
-/* At most as many slices as are charged for at once. True once no more are to go out. */
+/* Plays at most as many slices as are charged at once. True if no more may go out. */
 static bool play_charge(wh_mcs_t *mcs, wh_status_t *status) {
     bool is_over = false;
     for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && !is_over; ++i) {
-        is_over = draw(mcs);
+        is_over = draw_lanes(mcs);
         *status = is_over ? WH_OK : play_slice(mcs);
-        is_over = is_over || *status != WH_OK || wh_mcs_stop_has_come(mcs) || mcs->is_called;
+        is_over = is_over || *status != WH_OK || wh_mcs_stop_has_come(mcs) || mcs->stop.is_called;
         if (wh_sandbox_stopping(mcs->sandbox)) {
             break;
         }
@@ -144,12 +144,12 @@ static bool play_charge(wh_mcs_t *mcs, wh_status_t *status) {
 }
 
 /* native.advance(): slices go out until a segment is over, or all were given up, or a job has come. At
- * least one must run. */
-static int advance(lua_State *L) {
+ * least one segment must run. */
+static int advance_lanes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    mcs->is_called = false;
-    wh_status_t status = mcs->stop_requested ? WH_OK : wh_mcs_resume(mcs);
-    bool is_over = status != WH_OK || mcs->stop_requested;
+    mcs->stop.is_called = false;
+    wh_status_t status = mcs->stop.is_requested ? WH_OK : wh_mcs_resume(mcs);
+    bool is_over = status != WH_OK || mcs->stop.is_requested;
     while (!is_over) {
         const int64_t first = mcs->track.slice;
         const double begin = wh_clock_seconds();
@@ -173,17 +173,18 @@ void wh_mcs_free_lanes(wh_mcs_t *mcs) {
     mcs->lanes = NULL;
 }
 
-static wh_lane_t *current(const wh_mcs_t *mcs) {
+static wh_lane_t *current_lane(const wh_mcs_t *mcs) {
     return &mcs->lanes->of[mcs->lanes->current];
 }
 
 static void tell_turn(const wh_mcs_t *mcs, const char *what) {
-    if (mcs->partners.turn) {
-        mcs->partners.turn(mcs->partners.user, mcs, what);
+    if (mcs->wanted.partners.turn) {
+        mcs->wanted.partners.turn(mcs->wanted.partners.user, mcs, what);
     }
 }
 
-/* native.waits(text): the task waits from now on for what the text says; nil: no more. */
+/* native.waits(text): from now on the task waits for the thing that the text names; nil: it waits
+ * no more. */
 static int wait_for(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *what = lua_isnil(L, 1) ? NULL : wh_lua_whole_text(L, 1);
@@ -203,9 +204,9 @@ static int wait_for(lua_State *L) {
 static int open_lanes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     if (!mcs->lanes) {
-        wh_decisions_measured(mcs->decisions, "tasks");
-        mcs->unplayed = "tasks";
-        mcs->keep_segments = false;
+        wh_decisions_measured(mcs->wanted.decisions, "tasks");
+        mcs->kept.unplayed = "tasks";
+        mcs->wanted.keeps_segments = false;
         mcs->lanes = wh_array_new(1, sizeof *mcs->lanes);
         mcs->lanes->count = 1;
         for (size_t i = 0; i < WH_MCS_LANES; ++i) {
@@ -217,29 +218,29 @@ static int open_lanes(lua_State *L) {
     return 0;
 }
 
-/* native.switch(lane, number): from 1; the script's is 1, and its number 0. What is kept of a command is its
- * task's. */
+/* native.switch(lane, number): lanes count from 1; the script's lane is 1, and its number 0. The kept data
+ * of a command belongs to its task. */
 static int switch_lane(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
     const int32_t to = wh_mcs_index(L, 1, WH_MCS_LANES);
-    wh_lane_t *lane = current(mcs);
+    wh_lane_t *lane = current_lane(mcs);
     lane->running = mcs->recorder.running;
     lane->planned = mcs->rehearsal.planned;
-    memcpy(lane->callers, mcs->callers, sizeof lane->callers);
-    memcpy(lane->word, mcs->word, sizeof lane->word);
+    memcpy(lane->callers, mcs->running.callers, sizeof lane->callers);
+    memcpy(lane->word, mcs->running.word, sizeof lane->word);
     mcs->lanes->current = to;
     mcs->lanes->count = (size_t)to < mcs->lanes->count ? mcs->lanes->count : (size_t)to + 1;
-    lane = current(mcs);
+    lane = current_lane(mcs);
     lane->number = (int32_t)luaL_checkinteger(L, 2);
     mcs->recorder.number = lane->number;
     mcs->recorder.running = lane->running;
     mcs->rehearsal.planned = lane->planned;
-    memcpy(mcs->callers, lane->callers, sizeof mcs->callers);
-    memcpy(mcs->word, lane->word, sizeof mcs->word);
+    memcpy(mcs->running.callers, lane->callers, sizeof mcs->running.callers);
+    memcpy(mcs->running.word, lane->word, sizeof mcs->running.word);
     return 0;
 }
 
-static uint32_t own_grippers(const wh_machine_t *machine, int32_t robot) {
+static uint32_t grippers_of_robot(const wh_machine_t *machine, int32_t robot) {
     uint32_t grippers = 0;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const bool is_its = machine->mounts[g].axis == WH_NONE && machine->mounts[g].robot == robot;
@@ -249,15 +250,16 @@ static uint32_t own_grippers(const wh_machine_t *machine, int32_t robot) {
 }
 
 /* native.hold_mechanisms(robot, chucks, pins and doors...): the running command has these, the robot from 1,
- * false: none; doors count on from the grippers. They are what its segments move. Then it no longer waits. */
+ * false: none; doors count on from the grippers. Its segments move these. After this call it no longer
+ * waits. */
 static int hold_mechanisms(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_machine_t *machine = &mcs->layout->machine;
     wh_lane_t alone = {0};
-    wh_lane_t *lane = mcs->lanes ? current(mcs) : &alone;
+    wh_lane_t *lane = mcs->lanes ? current_lane(mcs) : &alone;
     const int32_t robot = lua_toboolean(L, 1) ? wh_mcs_index(L, 1, wh_machine_robots(machine)) : WH_NONE;
     lane->axes = robot != WH_NONE ? wh_mcs_robot_axes(machine, (size_t)robot) : 0;
-    lane->grippers = own_grippers(machine, robot);
+    lane->grippers = grippers_of_robot(machine, robot);
     for (int i = 2; i <= lua_gettop(L); ++i) {
         const int32_t g = wh_mcs_index(L, i, machine->gripper_count + machine->door_count);
         const bool is_door = (size_t)g >= machine->gripper_count;
@@ -265,7 +267,7 @@ static int hold_mechanisms(lua_State *L) {
                               : wh_mount_moved_by(&machine->mounts[g]);
         lane->grippers |= is_door ? 0 : 1U << g;
     }
-    mcs->held_axes = lane->axes;
+    mcs->running.axes = lane->axes;
     if (mcs->lanes) {
         wh_recorder_go_on(&mcs->recorder);
     }
@@ -275,11 +277,11 @@ static int hold_mechanisms(lua_State *L) {
     return 0;
 }
 
-/* native.start(segment or the number of a planned one): it runs from the next slice on, in this task's
- * lane. */
-static int start(lua_State *L) {
+/* native.start(segment or the number of a planned one): the segment runs from the next slice on, in
+ * this task's lane. */
+static int start_segment(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_lane_t *lane = current(mcs);
+    wh_lane_t *lane = current_lane(mcs);
     const wh_track_t stands = mcs->track;
     wh_planned_t planned;
     wh_mcs_begin_segment(L, mcs, &planned);
@@ -293,8 +295,8 @@ static int start(lua_State *L) {
     return 0;
 }
 
-/* native.runs(lane): true while its segment does. Without a lane: true while any does. */
-static int runs(lua_State *L) {
+/* native.runs(lane): true while the lane's segment runs. Without a lane: true while any segment runs. */
+static int push_runs(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     bool is_any = false;
     if (!lua_isnoneornil(L, 1)) {
@@ -308,10 +310,11 @@ static int runs(lua_State *L) {
     return 1;
 }
 
-/* native.outcome(): of this task's segment, what native.play returns; raises if it was given up. */
-static int outcome(lua_State *L) {
+/* native.outcome(): the result of this task's segment, as native.play returns it; raises if it was
+ * given up. */
+static int push_outcome(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_lane_t *lane = current(mcs);
+    const wh_lane_t *lane = current_lane(mcs);
     if (lane->status == WH_STATUS_STOPPED && mcs->lanes->stopped_by) {
         wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, mcs->lanes->stopped_by);
     } else if (lane->status != WH_OK) {
@@ -326,9 +329,9 @@ static int outcome(lua_State *L) {
     return 2;
 }
 
-/* native.drop_segment(): this task's segment goes on no more. */
+/* native.drop_segment(): stops this task's segment. */
 static int drop_segment(lua_State *L) {
-    wh_lane_t *lane = current(wh_mcs_with_layout(L));
+    wh_lane_t *lane = current_lane(wh_mcs_with_layout(L));
     lane->is_busy = lane->is_drawn = false;
     return 0;
 }
@@ -346,10 +349,10 @@ const luaL_Reg wh_mcs_lane_functions[] = {{"open_lanes", open_lanes},
                                           {"switch", switch_lane},
                                           {"hold_mechanisms", hold_mechanisms},
                                           {"waits", wait_for},
-                                          {"start", start},
-                                          {"advance", advance},
-                                          {"runs", runs},
-                                          {"outcome", outcome},
+                                          {"start", start_segment},
+                                          {"advance", advance_lanes},
+                                          {"runs", push_runs},
+                                          {"outcome", push_outcome},
                                           {"drop_segment", drop_segment},
                                           {"free_lane", free_lane},
                                           {NULL, NULL}};

@@ -27,16 +27,57 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count) {
     return (int32_t)index - 1;
 }
 
+void wh_mcs_tell(const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command) {
+    if (mcs->wanted.partners.tell) {
+        mcs->wanted.partners.tell(mcs->wanted.partners.user, mcs, news, command);
+    }
+}
+
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
-    mcs->listeners[mcs->listener_count].hear = hear;
-    mcs->listeners[mcs->listener_count++].user = user;
+    mcs->listeners.of[mcs->listeners.count].hear = hear;
+    mcs->listeners.of[mcs->listeners.count++].user = user;
 }
 
 void wh_mcs_listen_first(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
-    memmove(mcs->listeners + 1, mcs->listeners, mcs->listener_count * sizeof mcs->listeners[0]);
-    ++mcs->listener_count;
-    mcs->listeners[0].hear = hear;
-    mcs->listeners[0].user = user;
+    memmove(mcs->listeners.of + 1, mcs->listeners.of, mcs->listeners.count * sizeof mcs->listeners.of[0]);
+    ++mcs->listeners.count;
+    mcs->listeners.of[0].hear = hear;
+    mcs->listeners.of[0].user = user;
+}
+
+/* ---------------------------------------------------------------------------------------------- questions */
+
+const wh_layout_t *wh_mcs_layout(const wh_mcs_t *mcs) {
+    return mcs->layout;
+}
+
+const wh_layout_t *wh_mcs_true_layout(const wh_mcs_t *mcs) {
+    return mcs->real;
+}
+
+wh_link_t *wh_mcs_link(const wh_mcs_t *mcs) {
+    return mcs->link;
+}
+
+const wh_record_t *wh_mcs_record(const wh_mcs_t *mcs) {
+    return mcs->recorder.record;
+}
+
+const char *wh_mcs_running_text(const wh_mcs_t *mcs) {
+    const wh_recorder_t *recorder = &mcs->recorder;
+    return recorder->running != WH_NONE ? recorder->record->commands[recorder->running].text : NULL;
+}
+
+const wh_lane_t *wh_mcs_current_lane(const wh_mcs_t *mcs) {
+    return &mcs->lanes->of[mcs->lanes->current];
+}
+
+const wh_mcs_measuring_t *wh_mcs_measuring(const wh_mcs_t *mcs) {
+    return &mcs->measuring;
+}
+
+const wh_mcs_kept_t *wh_mcs_kept(const wh_mcs_t *mcs) {
+    return &mcs->kept;
 }
 
 /* ---------------------------------------------------------------------------------------- numbered errors */
@@ -77,20 +118,21 @@ static void push_callers(lua_State *L, const int callers[WH_MCS_CALLERS]) {
 }
 
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail) {
-    /* Within a pattern L is the pattern's coroutine, on whose stack the script is not: the command knows. */
+    /* Within a pattern L is the pattern's coroutine, and the script is not on its stack: the command has the
+     * line. */
     const wh_recorder_t *recorder = &mcs->recorder;
     const bool runs = recorder->running != WH_NONE;
     const int line =
         runs ? recorder->record->commands[recorder->running].line : wh_sandbox_line(L, mcs->script);
-    const char *command = runs ? recorder->record->commands[recorder->running].text : mcs->word;
+    const char *command = runs ? recorder->record->commands[recorder->running].text : mcs->running.word;
     lua_createtable(L, 0, 4);
     wh_lua_set_integer(L, "number", status);
     wh_lua_set_text(L, "name", wh_status_name(status));
     wh_lua_set_integer(L, "line", line);
     if (!runs) {
-        wh_mcs_find_callers(L, mcs, mcs->callers);
+        wh_mcs_find_callers(L, mcs, mcs->running.callers);
     }
-    push_callers(L, mcs->callers);
+    push_callers(L, mcs->running.callers);
     lua_pushfstring(L, "error %d %s: %s%s%s%s", (int)status, wh_status_name(status),
                     wh_record_error_text(status), detail ? "; " : "", detail ? detail : "",
                     lua_tostring(L, -1));
@@ -107,7 +149,7 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-/* native.module(name): what an embedded file of lua/mcs returns. */
+/* native.module(name): returns the result of an embedded file of lua/mcs. */
 static int load_module(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
     wh_sandbox_result_t result;
@@ -130,17 +172,17 @@ static void hear_collisions(void *user, const wh_command_t *command, const wh_st
     }
 }
 
-/* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
-static int connect(lua_State *L) {
+/* native.connect(): the cell is set up; from now on slices go over the caller's link, if it has one. */
+static int connect_cell(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     char unread[WH_SANDBOX_MESSAGE_BYTES];
-    if (mcs->refuses_unread && wh_sandbox_find_unread(mcs->sandbox, unread)) {
+    if (mcs->wanted.refuses_unread && wh_sandbox_find_unread(mcs->sandbox, unread)) {
         return luaL_error(L, "%s: %s", mcs->layout->path, unread);
     }
     mcs->link = &mcs->local.simulator.link;
-    if (mcs->partners.connect) {
+    if (mcs->wanted.partners.connect) {
         wh_mcs_watch_slices(mcs);
-        mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
+        mcs->link = mcs->wanted.partners.connect(mcs->wanted.partners.user, mcs);
     }
     if (!mcs->link) {
         return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
@@ -151,7 +193,7 @@ static int connect(lua_State *L) {
     return 0;
 }
 
-/* native.parameters(function): how many it takes. */
+/* native.parameters(function): the number of its parameters. */
 static int count_parameters(lua_State *L) {
     lua_Debug function;
     luaL_checktype(L, 1, LUA_TFUNCTION);
@@ -168,13 +210,13 @@ static int strip_place(lua_State *L) {
 }
 
 static const luaL_Reg module_functions[] = {{"module", load_module},
-                                            {"connect", connect},
+                                            {"connect", connect_cell},
                                             {"parameters", count_parameters},
                                             {"outside", strip_place},
                                             {NULL, NULL}};
 
-/* Registry keys of what lua/mcs/init.lua returned: what opens the prompt, what opens a survey, what makes
- * definitions, what waits for tasks. */
+/* Registry keys of the functions that lua/mcs/init.lua returned: they open the prompt, open a survey,
+ * make definitions, and wait for tasks. */
 static char prompt_key;
 static char survey_key;
 static char definitions_key;
@@ -183,14 +225,17 @@ static char tasks_key;
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {
-        module_functions,         wh_mcs_cell_functions,       wh_mcs_command_functions,
-        wh_mcs_fault_functions,   wh_mcs_describe_functions,   wh_mcs_plan_functions,
-        wh_mcs_play_functions,    wh_mcs_query_functions,      wh_mcs_scan_functions,
-        wh_mcs_survey_functions,  wh_mcs_definition_functions, wh_mcs_saved_functions,
-        wh_mcs_edge_functions,    wh_mcs_align_functions,      wh_mcs_calibration_functions,
-        wh_mcs_arrival_functions, wh_mcs_centring_functions,   wh_mcs_teaching_functions,
-        wh_mcs_lane_functions,    wh_mcs_job_functions,        wh_mcs_believed_functions};
+    const luaL_Reg *const groups[] = {module_functions,          wh_mcs_cell_functions,
+                                      wh_mcs_command_functions,  wh_mcs_fault_functions,
+                                      wh_mcs_describe_functions, wh_mcs_plan_functions,
+                                      wh_mcs_play_functions,     wh_mcs_query_functions,
+                                      wh_mcs_scan_functions,     wh_mcs_definition_functions,
+                                      wh_mcs_saved_functions,    wh_mcs_edge_functions,
+                                      wh_mcs_align_functions,    wh_mcs_calibration_functions,
+                                      wh_mcs_arrival_functions,  wh_mcs_centring_functions,
+                                      wh_mcs_teaching_functions, wh_mcs_lane_functions,
+                                      wh_mcs_job_functions,      wh_mcs_believed_functions,
+                                      wh_mcs_flow_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -233,7 +278,7 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     memset(mcs, 0, sizeof *mcs);
     mcs->script = script;
     mcs->sandbox = sandbox;
-    mcs->stop_slice = INT64_MAX;
+    mcs->stop.at_slice = INT64_MAX;
     wh_recorder_open(&mcs->recorder, record, script);
     return wh_sandbox_protect(wh_sandbox_state(sandbox), open_words, mcs, result);
 }
@@ -242,26 +287,25 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
 
 static void add_expectation(wh_mcs_t *mcs, const char *text, bool ok) {
     wh_record_add_expectation(mcs->recorder.record, 0, text, ok);
-    if (mcs->partners.expected) {
-        mcs->partners.expected(mcs->partners.user, mcs);
-    }
+    wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
 }
 
 /* A free-running simulator may miss some slices, but no more than the user allows. */
 static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
     char text[100];
-    if (mcs->limits_missed) {
+    if (mcs->wanted.limits_missed) {
         snprintf(text, sizeof text, "at most %lld missed slices; the simulator missed %lld",
-                 (long long)mcs->most_missed, (long long)missed);
-        add_expectation(mcs, text, missed <= mcs->most_missed);
+                 (long long)mcs->wanted.most_missed, (long long)missed);
+        add_expectation(mcs, text, missed <= mcs->wanted.most_missed);
     }
 }
 
-/* What a script asked of the cell as its layout says it, while no simulator has answered, is not shown. */
+/* If no state has come, a script's commands and expectations saw only the layout: they prove nothing. */
 static void judge_heard(wh_mcs_t *mcs) {
     const wh_record_t *record = mcs->recorder.record;
     const bool asked = record->expectation_count + record->command_count > 0;
-    if (asked && mcs->partners.is_heard && !mcs->partners.is_heard(mcs->partners.user)) {
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
+    if (asked && partners->lossy && !partners->lossy->is_heard(partners->user)) {
         add_expectation(mcs, "a simulator that answers; no state has come from one", false);
     }
 }
@@ -269,12 +313,19 @@ static void judge_heard(wh_mcs_t *mcs) {
 /* A script that ends while a command is held has left the robot in a station. One that failed says why. */
 static void judge_held(wh_mcs_t *mcs) {
     char text[WH_MCS_HELD_BYTES + 100];
+    wh_record_t *record = mcs->recorder.record;
     const wh_mcs_held_t *held = wh_mcs_find_held(mcs, WH_NONE);
-    if (held && !mcs->recorder.record->failure) {
-        snprintf(text, sizeof text, "CONTINUE or STOP after %s; at the script's end it is held, %s",
-                 held->command, held->phase);
-        add_expectation(mcs, text, false);
+    if (record->failure) {
+        return;
     }
+    if (!held) {
+        wh_record_add_implied(record, 0, "CONTINUE or STOP after each command that stops on its way", true);
+        return;
+    }
+    snprintf(text, sizeof text, "CONTINUE or STOP after %s; at the script's end it is held, %s",
+             held->command, held->phase);
+    wh_record_add_implied(record, 0, text, false);
+    wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
 }
 
 void wh_mcs_finish(wh_mcs_t *mcs) {
@@ -288,20 +339,20 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
     }
     judge_held(mcs);
     wh_recorder_finish(&mcs->recorder, &end);
-    if (mcs->layout && mcs->partners.finished) {
-        mcs->partners.finished(mcs->partners.user, mcs);
+    if (mcs->layout) {
+        wh_mcs_tell(mcs, WH_MCS_FINISHED, NULL);
     }
 }
 
 void wh_mcs_close(wh_mcs_t *mcs) {
-    free(mcs->segments);
-    free(mcs->kept_faults);
-    mcs->segments = NULL;
-    mcs->kept_faults = NULL;
-    mcs->segment_count = 0;
+    free(mcs->kept.segments);
+    free(mcs->kept.faults);
+    mcs->kept.segments = NULL;
+    mcs->kept.faults = NULL;
+    mcs->kept.segment_count = 0;
     wh_mcs_free_lanes(mcs);
-    wh_mcs_free_edge(&mcs->edge);
-    wh_mcs_free_turns(&mcs->turns);
-    wh_pass_free(&mcs->pass);
+    wh_mcs_free_edge(&mcs->measuring.edge);
+    wh_mcs_free_turns(&mcs->measuring.turns);
+    wh_pass_free(&mcs->measuring.pass);
     wh_rehearsal_free(&mcs->rehearsal);
 }

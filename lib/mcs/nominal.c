@@ -50,7 +50,7 @@ static bool lies_in_the_same_slot(const wh_nominal_t *nominal, const wh_pose_t *
     return is_here == is_there && (!is_here || (here.station == there.station && here.slot == there.slot));
 }
 
-static bool agrees(const wh_nominal_t *nominal, size_t w, const wh_state_t *truth) {
+static bool agrees_with_truth(const wh_nominal_t *nominal, size_t w, const wh_state_t *truth) {
     const wh_wafer_t *believed = &nominal->wafers[w];
     const wh_wafer_t *real = &truth->wafers[w];
     return believed->holder == real->holder &&
@@ -58,7 +58,7 @@ static bool agrees(const wh_nominal_t *nominal, size_t w, const wh_state_t *trut
             lies_in_the_same_slot(nominal, &believed->base_from_wafer, &real->base_from_wafer));
 }
 
-/* In the middle of its slot as taught; a wafer that lies in none is where it is. */
+/* The middle of the wafer's slot as taught; a wafer that lies in no slot stays where it is. */
 static wh_pose_t taught_place(const wh_nominal_t *nominal, const wh_pose_t *truth) {
     wh_place_t place;
     wh_pose_t taught = *truth;
@@ -69,7 +69,7 @@ static wh_pose_t taught_place(const wh_nominal_t *nominal, const wh_pose_t *trut
     return taught;
 }
 
-/* The gripper of the true cell, at its believed place; who passes by is not asked. */
+/* Copies the gripper of the true cell, at its believed place; encounters in progress are not copied. */
 static void correct_gripper(wh_gripper_t *gripper, const wh_gripper_t *real) {
     const wh_pose_t base_from_gripper = gripper->base_from_gripper;
     *gripper = *real;
@@ -80,7 +80,7 @@ static void correct_gripper(wh_gripper_t *gripper, const wh_gripper_t *real) {
 }
 
 /* False if no table can be in that state. */
-static bool correct(wh_nominal_t *nominal, const wh_state_t *truth) {
+static bool correct_nominal(wh_nominal_t *nominal, const wh_state_t *truth) {
     const wh_grasp_t *table = &nominal->simulator.table;
     memcpy(nominal->next, nominal->wafers, truth->wafer_count * sizeof *nominal->next);
     memcpy(nominal->next_grippers, nominal->grippers, sizeof nominal->next_grippers);
@@ -91,7 +91,7 @@ static bool correct(wh_nominal_t *nominal, const wh_state_t *truth) {
     }
     for (size_t w = 0; w < truth->wafer_count; ++w) {
         const int32_t holder = truth->wafers[w].holder;
-        if (agrees(nominal, w, truth)) {
+        if (agrees_with_truth(nominal, w, truth)) {
             continue;
         }
         nominal->next[w] = truth->wafers[w];
@@ -117,10 +117,10 @@ static void correct_grips(wh_nominal_t *nominal, const wh_state_t *truth) {
 void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state_t *believed) {
     bool all = true;
     for (size_t w = 0; all && w < truth->wafer_count; ++w) {
-        all = agrees(nominal, w, truth);
+        all = agrees_with_truth(nominal, w, truth);
     }
     *believed = *truth;
-    if (!all && !correct(nominal, truth)) {
+    if (!all && !correct_nominal(nominal, truth)) {
         return;
     }
     correct_grips(nominal, truth);

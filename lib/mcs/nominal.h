@@ -1,10 +1,10 @@
-/* A trial's cell as motion control believes it to be: the layout's own, without what the trial has drawn.
+/* A trial's cell as motion control believes it to be: the layout's own, without the drawn errors.
  *
  * A look ahead must not know a trial's errors, or a study would judge true wafers against taught stations. So
- * the layout's cell is stepped beside the real one, with the same commands and a vacuum that is there at
- * once. Where the two disagree on what a robot can tell, that is who holds a wafer, in which slot it lies,
- * and what an edge grip does, the real cell is right: the wafer then lies in the middle of that slot as it
- * was taught, or as it is on its gripper.
+ * the layout's cell is stepped beside the real one, with the same commands and an immediate vacuum. A robot
+ * can tell which gripper holds a wafer, in which slot it lies, and what an edge grip does. If the two cells
+ * disagree on that, the real cell is right: the wafer then lies in the middle of the taught slot, or as it is
+ * on its gripper.
  */
 #ifndef WH_MCS_NOMINAL_H
 #define WH_MCS_NOMINAL_H
@@ -24,19 +24,19 @@ typedef struct {
     wh_wafer_t wafers[];
 } wh_nominal_t;
 
-/* What a wh_nominal_t takes. */
+/* The size of a wh_nominal_t and its arrays. */
 size_t wh_nominal_bytes(const wh_layout_t *layout);
 
 /* Begins a run in memory of wh_nominal_bytes, aligned as malloc's. The layouts must outlive it. Null if the
- * table cannot be set up, which a layout that was read never causes. */
+ * table cannot be set up; that never happens with a layout that was read. */
 wh_nominal_t *wh_nominal_begin(void *memory, const wh_layout_t *layout, const wh_layout_t *real);
 
 /* Steps the command of a slice, as motion control sent it. Cost: wh_simulator_step. */
 void wh_nominal_slice(wh_nominal_t *nominal, const wh_command_t *command);
 
-/* Brings the believed cell in line with what a robot can tell of the true one; `wafers`, `grippers` and
- * `physics` of `believed` then are its own, the rest is the truth's. If no table can be in such a state, all
- * is the truth's. Cost: wafers times stations. */
+/* Corrects the believed cell by what a robot can tell of the true one. `wafers`, `grippers` and `physics` of
+ * `believed` are then its own, the rest comes from `truth`. If no table can be in such a state, all comes
+ * from `truth`. Cost: wafers times stations. */
 void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state_t *believed);
 
 #endif

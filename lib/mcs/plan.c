@@ -1,9 +1,11 @@
-/* Planning: where the axes must go, segments as Lua asks for them, and rehearsals. */
+/* Planning: where the axes must go, and rehearsals. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "../layout/along_arm.h"
 #include "../layout/axes.h"
+#include "../layout/links.h"
 #include "../layout/transit.h"
 #include "../layout/travel.h"
 #include "../math/trig.h"
@@ -19,22 +21,35 @@ static int read_axes(lua_State *L) {
     return 1;
 }
 
-/* Raises the error of a request, the table at stack index 1. Its `where` and its `target` say where the arm
- * would be: "on the way into A slot 3". */
-static void refuse(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *reason) {
-    lua_getfield(L, 1, "where");
-    if (lua_isstring(L, -1) && lua_getfield(L, 1, "target") == LUA_TTABLE) {
-        lua_getfield(L, -1, "station");
-        lua_getfield(L, -2, "slot");
-        lua_pushfstring(L, "%s %s slot %d%s%s", lua_tostring(L, -4), lua_tostring(L, -2),
-                        (int)lua_tointeger(L, -1), reason[0] ? ": " : "", reason);
-        reason = lua_tostring(L, -1);
+/* True if the request at stack index 1 leads a blade to a station that is not the station's effector:
+ * `gripper`, or that of its target if it is WH_NONE. The lengths of the links are those for the effector. */
+static bool is_of_another_blade(lua_State *L, const wh_mcs_t *mcs, int32_t gripper) {
+    const int top = lua_gettop(L);
+    bool is_another = false;
+    if (lua_getfield(L, 1, "target") == LUA_TTABLE) {
+        lua_getfield(L, top + 1, "station");
+        lua_getfield(L, top + 1, "gripper");
+        const int32_t station = wh_layout_find_station(mcs->layout, luaL_optstring(L, top + 2, ""));
+        const int32_t leads = gripper == WH_NONE ? (int32_t)luaL_optinteger(L, top + 3, 0) - 1 : gripper;
+        is_another = station == WH_NONE || mcs->layout->stations[station].effector != leads;
     }
-    wh_mcs_raise(L, mcs, status, reason[0] ? reason : NULL);
+    lua_settop(L, top);
+    return is_another;
 }
 
-/* Of a goal that is before a slot, the request's `place` says how a robot with a carrier comes there: the
- * table at stack index 2 has it. The flip stays as it is at these axes. False: it has none. */
+/* Within a command: refuses axes at which a robot's links would not reach. All stations are looked at before a
+ * run. */
+static void check_links(lua_State *L, wh_mcs_t *mcs, int32_t gripper, const wh_real_t from[],
+                        const wh_real_t to[]) {
+    char reason[WH_LINKS_BYTES];
+    if (mcs->recorder.running != WH_NONE && !wh_links_reach(mcs->layout, from, to, reason) &&
+        !is_of_another_blade(L, mcs, gripper)) {
+        wh_mcs_refuse_request(L, mcs, WH_STATUS_OUT_OF_REACH, reason);
+    }
+}
+
+/* For a goal before a slot, the request's `place`, in the table at stack index 2, says how a robot with a
+ * carrier comes there. The flip stays as it is at these axes. False: there is no `place`. */
 static bool read_pose(lua_State *L, const wh_travel_goal_t *goal, const wh_carrier_t *carrier,
                       const wh_real_t axes[], wh_pose_t *pose, wh_chain_choice_t *choice) {
     if (lua_getfield(L, 2, "place") != LUA_TTABLE) {
@@ -60,8 +75,32 @@ static bool read_pose(lua_State *L, const wh_travel_goal_t *goal, const wh_carri
     return true;
 }
 
-/* native.inverse(request): the axes with the gripper of request.to there, from request.from, or from where
- * they stand. */
+/* Appends to a reason the needed heading of the blade of an arm without a wrist in the slot of
+ * request.target. The request is at index 1. */
+static void say_along_arm(lua_State *L, const wh_mcs_t *mcs, const wh_travel_goal_t *goal,
+                          char reason[WH_TRAVEL_BYTES]) {
+    const wh_carrier_t *carrier =
+        wh_machine_carrier(&mcs->layout->machine, mcs->layout->machine.mounts[goal->gripper].robot, NULL);
+    if (!carrier || !goal->pose || lua_getfield(L, 1, "target") != LUA_TTABLE) {
+        return;
+    }
+    (void)lua_getfield(L, -1, "station");
+    (void)lua_getfield(L, -2, "slot");
+    const int32_t station = wh_layout_find_station(mcs->layout, luaL_optstring(L, -2, ""));
+    if (station == WH_NONE || !lua_isinteger(L, -1)) {
+        return;
+    }
+    const wh_pose_t slot = wh_station_slot(&mcs->layout->places[station], (int32_t)lua_tointeger(L, -1));
+    const double along = wh_along_arm(&carrier->chain, (double)goal->choice->rail, &slot.r);
+    const double heading = (double)wh_atan2(goal->pose->R.m[1][0], goal->pose->R.m[0][0]);
+    const size_t used = strlen(reason);
+    (void)snprintf(reason + used, WH_TRAVEL_BYTES - used,
+                   "; the blade comes in at %.6f degrees, and straight into the slot are %.6f",
+                   (double)wh_deg_from_rad((wh_real_t)heading), (double)wh_deg_from_rad((wh_real_t)along));
+}
+
+/* native.inverse(request): the axes that bring the gripper to request.to, from request.from or from their
+ * present places. */
 static int find_axes(lua_State *L) {
     static const char *const fields[] = {"x", "y", "z", "heading"};
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -96,180 +135,20 @@ static int find_axes(lua_State *L) {
     if (status != WH_OK) {
         char reason[WH_TRAVEL_BYTES];
         wh_travel_say_point(mcs->layout, &goal, from, reason);
-        refuse(L, mcs, status, reason);
+        if (status == WH_STATUS_NOT_ALONG_ARM) {
+            say_along_arm(L, mcs, &goal, reason);
+        }
+        wh_mcs_refuse_request(L, mcs, status, reason);
     }
+    check_links(L, mcs, (int32_t)goal.gripper, from, axes);
     wh_lua_push_numbers(L, axes, machine->axis_count);
     return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------ reading */
-
-static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_AXES;
-    wh_mcs_read_numbers(L, lua_gettop(L), segment->target, mcs->layout->machine.axis_count);
-}
-
-/* A leg that turns must be within the transit as a whole: by via points nothing comes in by itself. */
-static void check_legs(lua_State *L, wh_mcs_t *mcs, size_t robot, const wh_segment_t *segment) {
-    const wh_layout_t *layout = mcs->layout;
-    size_t first = 0;
-    (void)wh_machine_carrier(&layout->machine, robot, &first);
-    const wh_real_t *from = &mcs->track.axes[first];
-    for (size_t i = 0; i <= segment->point_count; ++i) {
-        const wh_real_t *to = i < segment->point_count ? segment->points[i].q : &segment->target[first];
-        wh_transit_t transit;
-        if (wh_transit_leaves(layout, robot, from, to, &transit)) {
-            char reason[WH_TRAVEL_BYTES];
-            snprintf(
-                reason, sizeof reason,
-                "leg %zu by `via` turns with r at %.6g mm: beyond `%s%s.transit` of %.10g mm nothing may",
-                i + 1, transit.r, layout->robot_count > 1 ? "robots." : "", layout->robots[robot].name,
-                layout->robots[robot].transit);
-            refuse(L, mcs, WH_STATUS_OUT_OF_REACH, reason);
-        }
-        from = to;
-    }
-}
-
-/* Where the robot turns before a point or behind it, the arm is within the circle before it may go on. */
-static void limit_corners(wh_mcs_t *mcs, size_t robot, const wh_segment_t *segment) {
-    const wh_layout_t *layout = mcs->layout;
-    size_t first = 0;
-    (void)wh_machine_carrier(&layout->machine, robot, &first);
-    const wh_real_t *from = &mcs->track.axes[first];
-    for (size_t i = 0; i < segment->point_count; ++i) {
-        wh_via_point_t *point = &mcs->via_points[i];
-        const bool is_last = i + 1 == segment->point_count;
-        const wh_real_t *to = is_last ? &segment->target[first] : mcs->via_points[i + 1].q;
-        memset(point->reach, 0, sizeof point->reach);
-        if (wh_transit_corner(layout, robot, from, point->q, to, point->reach)) {
-            point->reach[0] = wh_real_max(point->reach[0], WH_SLACK_MM);
-            point->reach[1] = wh_real_max(point->reach[1], WH_SLACK_MM);
-        }
-        from = point->q;
-    }
-}
-
-/* A point at the top of the stack: the robot's own axes in order, and `blend`. */
-static void read_point(lua_State *L, wh_via_point_t *point, size_t axis_count) {
-    for (size_t axis = 0; axis < axis_count; ++axis) {
-        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
-        point->q[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-    lua_getfield(L, -1, "blend");
-    point->blend = luaL_checknumber(L, -1);
-    lua_pop(L, 1);
-}
-
-/* The request's `via`, a list of points, and the `robot` that goes by them. False: it has none. */
-static bool read_vias(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
-    lua_settop(L, 1);
-    if (lua_getfield(L, 1, "via") != LUA_TTABLE) {
-        return false;
-    }
-    lua_getfield(L, 2, "robot");
-    const size_t robot = (size_t)wh_mcs_index(L, -1, mcs->layout->robot_count);
-    lua_settop(L, 2);
-    size_t first;
-    const wh_carrier_t *carrier = wh_machine_carrier(&mcs->layout->machine, robot, &first);
-    segment->kind = WH_SEGMENT_VIA;
-    segment->gripper = wh_layout_first_gripper(mcs->layout, robot);
-    segment->points = mcs->via_points;
-    segment->point_count = (size_t)lua_rawlen(L, -1);
-    for (size_t i = 0; i < segment->point_count && i < WH_VIA_POINTS; ++i) {
-        lua_rawgeti(L, 2, (lua_Integer)i + 1);
-        read_point(L, &mcs->via_points[i], carrier ? carrier->axis_count : WH_ROBOT_AXES);
-        lua_pop(L, 1);
-    }
-    lua_settop(L, 1);
-    check_legs(L, mcs, robot, segment);
-    limit_corners(mcs, robot, segment);
-    return true;
-}
-
-static void read_line_field(lua_State *L, wh_segment_t *segment) {
-    wh_real_t *const parts[] = {&segment->travel.x, &segment->travel.y, &segment->travel.z};
-    segment->kind = WH_SEGMENT_LINE;
-    for (int i = 0; i < 3; ++i) {
-        lua_rawgeti(L, -1, i + 1);
-        *parts[i] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-    lua_getfield(L, 1, "speed");
-    segment->speed = luaL_optnumber(L, -1, 0);
-    lua_getfield(L, 1, "acceleration");
-    segment->acceleration = luaL_optnumber(L, -1, 0);
-    lua_getfield(L, 1, "gripper");
-    segment->gripper = (int32_t)luaL_optinteger(L, -1, 0) - 1;
-    lua_pop(L, 3);
-}
-
-static void read_valves_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_VALVES;
-    for (int g = 0; g < WH_GRIPPERS; ++g) {
-        lua_rawgeti(L, -1, g + 1);
-        segment->valves[g] = (int32_t)luaL_optinteger(L, -1, WH_NONE);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_sensor_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_SENSOR;
-    segment->gripper = (int32_t)luaL_checkinteger(L, -1) - 1;
-    lua_getfield(L, 1, "timeout");
-    segment->seconds = luaL_checknumber(L, -1);
-    lua_pop(L, 1);
-}
-
-/* By via points, within the transit, or straight there. */
-static void read_motion(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment) {
-    read_axes_field(L, mcs, segment);
-    if (!read_vias(L, mcs, segment) && lua_getfield(L, 1, "stays") != LUA_TBOOLEAN) {
-        wh_transit_keep(mcs->layout, mcs->track.axes, segment);
-    }
-}
-
-/* The segment table at stack index 1: one of axes, line (with speed, acceleration and the gripper that
- * goes), valves, dwell, sensor (with timeout), arrives (likewise). Raises if it is none. */
-static wh_segment_t read_segment(lua_State *L, wh_mcs_t *mcs, wh_awaited_t *awaited) {
-    static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor", "arrives"};
-    wh_segment_t segment = wh_track_blank(&mcs->track);
-    size_t kind = 0;
-    luaL_checktype(L, 1, LUA_TTABLE);
-    while (kind < 6 && lua_getfield(L, 1, kinds[kind]) == LUA_TNIL) {
-        lua_pop(L, 1);
-        ++kind;
-    }
-    switch (kind) {
-    case 0:
-        read_motion(L, mcs, &segment);
-        break;
-    case 1:
-        read_line_field(L, &segment);
-        break;
-    case 2:
-        read_valves_field(L, &segment);
-        break;
-    case 3:
-        segment.seconds = luaL_checknumber(L, -1);
-        break;
-    case 4:
-        read_sensor_field(L, &segment);
-        break;
-    case 5:
-        wh_mcs_await_arrival(L, mcs, &segment, awaited);
-        break;
-    default:
-        luaL_error(L, "a segment needs one of axes, line, valves, dwell, sensor, arrives");
-    }
-    lua_settop(L, 1);
-    return segment;
-}
-
 /* ----------------------------------------------------------------------------------------------- planning */
 
-/* A wafer could be lost from what the segment carries, and from a gripper on the robot in any segment. */
+/* A wafer could be lost from a gripper that the segment carries, and from a gripper on the robot in any
+ * segment. */
 static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
     uint32_t grippers = task->carried;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
@@ -282,21 +161,22 @@ static void refuse_segment(lua_State *L, wh_mcs_t *mcs, wh_status_t status, cons
     char reason[WH_TRAVEL_BYTES] = "";
     if (status == WH_STATUS_BAD_SEGMENT) {
         snprintf(reason, sizeof reason, "it would take more than 1e6 s");
-    } else if (segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_VIA) {
+    } else if (segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_VIA ||
+               segment->kind == WH_SEGMENT_WAY) {
         wh_travel_say_axes(mcs->layout, segment->target, reason);
-    } else if (segment->kind == WH_SEGMENT_WAY) {
-        wh_travel_say_axes(mcs->layout, segment->target, reason);
-        if (reason[0] == '\0') {
+        if (reason[0] != '\0') { /* of axes that were named, and no point */
+            status = status == WH_STATUS_OUT_OF_REACH ? WH_STATUS_LIMIT_EXCEEDED : status;
+        } else if (segment->kind == WH_SEGMENT_WAY) {
             wh_transit_say(mcs->layout, mcs->track.axes, segment, reason, sizeof reason);
         }
     } else if (segment->kind == WH_SEGMENT_LINE) {
         wh_travel_say_line(mcs->layout, segment->gripper, mcs->track.axes, &segment->travel, reason);
     }
-    refuse(L, mcs, status, reason);
+    wh_mcs_refuse_request(L, mcs, status, reason);
 }
 
-/* Motion control reckons with a wafer where a valve is open. Passive pads have none: the request at stack
- * index 1 tells of what the pattern has done (`told`, by gripper), else their sensor does. */
+/* Motion control assumes a wafer where a valve is open. Passive pads have no valve: for them the request
+ * at stack index 1 says what the pattern has done (`told`, by gripper), else their sensor decides. */
 static uint32_t find_loaded(lua_State *L, wh_mcs_t *mcs) {
     uint32_t loaded = 0;
     const int told = lua_getfield(L, 1, "told");
@@ -307,7 +187,7 @@ static uint32_t find_loaded(lua_State *L, wh_mcs_t *mcs) {
                 carries = lua_toboolean(L, -1) != 0;
             } else {
                 carries = (mcs->state.sensors >> g & 1U) != 0;
-                wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, (int32_t)g, carries);
+                wh_decisions_read(mcs->wanted.decisions, WH_DECISION_SENSOR, (int32_t)g, carries);
             }
             lua_settop(L, 2);
         }
@@ -322,7 +202,7 @@ static void refuse_slip(lua_State *L, wh_mcs_t *mcs, const wh_carrying_slip_t *s
     const char *name = layout->grippers[slip->gripper].name;
     char axis[2 * WH_NAME_SIZE], reason[8 * WH_NAME_SIZE];
     wh_layout_name_axis(layout, slip->axis, axis, sizeof axis);
-    const int digits = slip->asked - slip->held < 1 ? 4 : 0; /* else both would read the same */
+    const int digits = slip->asked - slip->held < 1 ? 4 : 0; /* else both would print alike */
     if (slip->enough >= 1) {
         snprintf(reason, sizeof reason,
                  "%s asks the wafer on %s for %.*f mm/s^2, friction holds %.*f (expected loaded = { "
@@ -335,10 +215,10 @@ static void refuse_slip(lua_State *L, wh_mcs_t *mcs, const wh_carrying_slip_t *s
             "holds %.0f",
             axis, name, slip->asked, slip->held);
     }
-    refuse(L, mcs, WH_STATUS_SLIP_AHEAD, reason);
+    wh_mcs_refuse_request(L, mcs, WH_STATUS_SLIP_AHEAD, reason);
 }
 
-/* Begins the segment as slowly as wafers that are carried ask for. */
+/* Begins the segment as slowly as the carried wafers need. */
 static wh_status_t begin_carrying(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
     const uint32_t loaded = find_loaded(L, mcs);
     wh_carrying_slip_t slip;
@@ -351,9 +231,35 @@ static wh_status_t begin_carrying(lua_State *L, wh_mcs_t *mcs, const wh_segment_
     return status;
 }
 
+/* The links are stretched most at one end of a segment, or at a point between them. */
+static void check_segment_links(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment,
+                                const wh_real_t from[]) {
+    wh_track_t end = mcs->track;
+    size_t first = 0, count = WH_ROBOT_AXES;
+    if (segment->kind == WH_SEGMENT_VALVES || segment->kind == WH_SEGMENT_DWELL ||
+        segment->kind == WH_SEGMENT_SENSOR) {
+        return;
+    }
+    if (segment->kind == WH_SEGMENT_VIA) {
+        const wh_mount_t *mount = &mcs->layout->machine.mounts[segment->gripper];
+        const wh_carrier_t *carrier = wh_machine_carrier(&mcs->layout->machine, mount->robot, &first);
+        count = carrier ? carrier->axis_count : count;
+    }
+    wh_track_skip(&end);
+    for (size_t i = 0; segment->kind == WH_SEGMENT_VIA && i < segment->point_count; ++i) {
+        wh_real_t axes[WH_AXES];
+        memcpy(axes, end.axes, sizeof axes);
+        memcpy(&axes[first], segment->points[i].q, count * sizeof axes[0]);
+        check_links(L, mcs, WH_NONE, from, axes);
+    }
+    check_links(L, mcs, WH_NONE, from, end.axes);
+}
+
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
+    wh_real_t from[WH_AXES];
+    memcpy(from, mcs->track.axes, sizeof from);
     planned->awaited = (wh_awaited_t){WH_AWAITED_VACUUM, 0};
-    const wh_segment_t segment = read_segment(L, mcs, &planned->awaited);
+    const wh_segment_t segment = wh_mcs_read_segment(L, mcs, &planned->awaited);
     lua_getfield(L, 1, "vacuum");
     const bool for_vacuum = segment.kind == WH_SEGMENT_DWELL && lua_toboolean(L, -1) != 0;
     lua_pop(L, 1);
@@ -367,10 +273,11 @@ void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     if (status != WH_OK) {
         refuse_segment(L, mcs, status, &segment);
     }
+    check_segment_links(L, mcs, &segment, from);
     planned->track = mcs->track;
 }
 
-/* What the other tasks play. */
+/* Finds the segments that the other tasks play. */
 static size_t find_others(const wh_mcs_t *mcs, wh_other_t others[WH_OTHERS]) {
     const wh_record_t *record = mcs->recorder.record;
     size_t count = 0;
@@ -384,7 +291,8 @@ static size_t find_others(const wh_mcs_t *mcs, wh_other_t others[WH_OTHERS]) {
     return count;
 }
 
-/* Of the segment that was just planned; without one, of what the others do when the command is over. */
+/* Looks ahead for the segment that was just planned; without one, for the others' segments after the
+ * command's end. */
 static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_track_t *track) {
     const wh_rehearsal_t *rehearsal = &mcs->rehearsal;
     const bool is_first = rehearsal->planned.count == 0;
@@ -396,16 +304,16 @@ static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_track_t *track) {
     }
     const wh_ahead_start_t start = {&mcs->state, others, is_first ? find_others(mcs, others) : 0};
     if (rehearsal->look_ahead(rehearsal->look_ahead_user, track, is_first ? &start : NULL, &slices, reason)) {
-        if (!track) { /* no request is to blame */
+        if (!track) { /* no request is the cause */
             wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
         }
-        refuse(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+        wh_mcs_refuse_request(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
     }
     wh_sandbox_charge(L, wh_mcs_steps(track ? track->segment_slices : slices));
 }
 
-/* native.look_on(): at the end of a rehearsal; what others play goes on to its end beside what was
- * planned. */
+/* native.look_on(): at the end of a rehearsal; the others' segments go on to their end beside the
+ * planned ones. */
 static int look_on(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
@@ -413,9 +321,9 @@ static int look_on(lua_State *L) {
     return 0;
 }
 
-/* native.plan(segment): within a rehearsal; the number by which the segment can then be played as it was
- * planned. */
-static int plan(lua_State *L) {
+/* native.plan(segment): within a rehearsal; returns the number with which the planned segment can be
+ * played. */
+static int plan_segment(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
@@ -428,8 +336,8 @@ static int plan(lua_State *L) {
     return 1;
 }
 
-/* native.try_segment(segment): within a rehearsal; raises if the segment could not be planned from where the
- * rehearsed ones end, and plans nothing. */
+/* native.try_segment(segment): within a rehearsal; raises if the segment could not be planned from the end
+ * of the rehearsed ones, and plans nothing. */
 static int try_segment(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_track_t kept = mcs->track;
@@ -440,9 +348,9 @@ static int try_segment(lua_State *L) {
     return 0;
 }
 
-/* native.rehearse(on, judged): from now on segments are only planned, and looked at for collisions if judged;
- * off: everything is where it was. */
-static int rehearse(lua_State *L) {
+/* native.rehearse(on, judged): from now on segments are only planned, and checked for collisions if judged;
+ * off: everything is back where it was. */
+static int rehearse_segments(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
     if (lua_toboolean(L, 1)) {
@@ -451,8 +359,8 @@ static int rehearse(lua_State *L) {
     return 0;
 }
 
-/* native.reach(station, slot, robot): what is rehearsed from now on goes there; without arguments: the
- * reach is no longer noted. */
+/* native.reach(station, slot, robot): the following rehearsed segments go there; without arguments:
+ * the reach is no longer noted. */
 static int set_reach(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t stations = mcs->layout->station_count;
@@ -465,6 +373,50 @@ static int set_reach(lua_State *L) {
     return 0;
 }
 
+/* ------------------------------------------------------------------------------------------- whole turns */
+
+/* One turn, rad. */
+static const wh_real_t turn = 2 * WH_PI;
+
+/* Theta of the robot, from 1, at stack index 2. */
+static size_t theta_of(lua_State *L, const wh_mcs_t *mcs) {
+    const wh_machine_t *machine = &mcs->layout->machine;
+    size_t first;
+    (void)wh_machine_carrier(machine, (size_t)wh_mcs_index(L, 2, wh_machine_robots(machine)), &first);
+    return first + WH_AXIS_THETA;
+}
+
+/* native.windings(theta, robot): the places farthest below and above theta, within its travel, at which
+ * the robot points the same way: a list of none to two, rad. Thetas between them have more room than
+ * both. */
+static int list_windings(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_travel_t *travel = wh_machine_travel(&mcs->layout->machine, theta_of(L, mcs));
+    const wh_real_t theta = luaL_checknumber(L, 1);
+    const wh_real_t turns[2] = {floor((theta - travel->min + WH_SLACK_RAD) / turn),
+                                floor((travel->max - theta + WH_SLACK_RAD) / turn)};
+    lua_newtable(L);
+    for (int i = 0; i < 2; ++i) {
+        if (turns[i] >= 1) {
+            lua_pushnumber(L, theta + (i == 0 ? -turns[i] : turns[i]) * turn);
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    return 1;
+}
+
+/* native.stand(theta, robot): the next rehearsal begins there; without theta: at home. */
+static int stand_robot(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const size_t theta = theta_of(L, mcs);
+    wh_real_t home[WH_AXES];
+    wh_machine_home(&mcs->layout->machine, home);
+    mcs->track.axes[theta] = luaL_optnumber(L, 1, home[theta]);
+    return 0;
+}
+
 const luaL_Reg wh_mcs_plan_functions[] = {
-    {"axes", read_axes}, {"inverse", find_axes},       {"rehearse", rehearse}, {"look_on", look_on},
-    {"plan", plan},      {"try_segment", try_segment}, {"reach", set_reach},   {NULL, NULL}};
+    {"axes", read_axes},  {"inverse", find_axes},      {"rehearse", rehearse_segments},
+    {"look_on", look_on}, {"plan", plan_segment},      {"try_segment", try_segment},
+    {"reach", set_reach}, {"windings", list_windings}, {"stand", stand_robot},
+    {NULL, NULL}};

@@ -8,29 +8,30 @@
 #include "native.h"
 #include "playing.h"
 
-/* Of a slice that goes out: its faults, and that the running segment takes one more. */
+/* Notes a slice that goes out: its faults, and one more slice of the running segment. */
 static void keep_slice(wh_mcs_t *mcs) {
     const wh_command_t *command = &mcs->command;
     for (size_t i = 0; i < command->fault_count; ++i) {
-        mcs->kept_faults = wh_array_grow(mcs->kept_faults, mcs->kept_fault_count, &mcs->kept_fault_capacity,
-                                         sizeof *mcs->kept_faults);
-        mcs->kept_faults[mcs->kept_fault_count++] = (wh_played_fault_t){command->seq, command->faults[i]};
+        mcs->kept.faults = wh_array_grow(mcs->kept.faults, mcs->kept.fault_count, &mcs->kept.fault_capacity,
+                                         sizeof *mcs->kept.faults);
+        mcs->kept.faults[mcs->kept.fault_count++] = (wh_played_fault_t){command->seq, command->faults[i]};
     }
-    ++mcs->segments[mcs->segment_count - 1].slices;
+    ++mcs->kept.segments[mcs->kept.segment_count - 1].slices;
 }
 
-/* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
-static wh_status_t exchange(wh_mcs_t *mcs) {
+/* Plays one slice: the command goes in, the state comes out, and the listeners get both. */
+static wh_status_t exchange_slice(wh_mcs_t *mcs) {
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
-    if (mcs->partners.await && !mcs->lanes && mcs->track.segment_slice == mcs->track.segment_slices) {
-        mcs->partners.await(mcs->partners.user);
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
+    if (partners->lossy && !mcs->lanes && mcs->track.segment_slice == mcs->track.segment_slices) {
+        partners->lossy->await(partners->user);
     }
-    if (mcs->keep_segments) {
+    if (mcs->wanted.keeps_segments) {
         keep_slice(mcs);
     }
     const wh_status_t status = mcs->link->exchange(mcs->link, &mcs->command, &mcs->state);
-    for (size_t i = 0; i < mcs->listener_count; ++i) {
-        mcs->listeners[i].hear(mcs->listeners[i].user, &mcs->command, &mcs->state);
+    for (size_t i = 0; i < mcs->listeners.count; ++i) {
+        mcs->listeners.of[i].hear(mcs->listeners.of[i].user, &mcs->command, &mcs->state);
     }
     mcs->command.fault_count = 0;
     mcs->command.scan = (wh_scan_order_t){.kind = WH_SCAN_KEEP};
@@ -39,37 +40,37 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
 }
 
 bool wh_mcs_stop_has_come(const wh_mcs_t *mcs) {
-    return mcs->stop_requested || mcs->track.slice >= mcs->stop_slice;
+    return mcs->stop.is_requested || mcs->track.slice >= mcs->stop.at_slice;
 }
 
 void wh_mcs_stop(wh_mcs_t *mcs) {
-    mcs->stop_requested = true;
-    mcs->stopped_axes = WH_MCS_ALL;
+    mcs->stop.is_requested = true;
+    mcs->stop.axes = WH_MCS_ALL;
 }
 
-/* With tasks it is looked at when the slice has come back: who then has the mechanism. */
+/* With tasks, the mechanism's user is looked up when the slice has come back. */
 bool wh_mcs_stop_mechanism(wh_mcs_t *mcs, const char *name) {
     uint32_t axes = 0;
     if (!wh_mcs_find_mechanism(mcs, name, &axes)) {
         return false;
     }
     if (mcs->lanes) {
-        mcs->stopped_axes = axes | (mcs->stop_requested ? mcs->stopped_axes : 0);
-        mcs->stop_requested = true;
-    } else if (mcs->recorder.running != WH_NONE && (mcs->held_axes & axes) != 0) {
+        mcs->stop.axes = axes | (mcs->stop.is_requested ? mcs->stop.axes : 0);
+        mcs->stop.is_requested = true;
+    } else if (mcs->recorder.running != WH_NONE && (mcs->running.axes & axes) != 0) {
         wh_mcs_stop(mcs);
     }
     return true;
 }
 
 const char *wh_mcs_take_stop(wh_mcs_t *mcs, uint32_t *axes) {
-    const bool requested = mcs->stop_requested;
-    *axes = requested ? mcs->stopped_axes : mcs->stop_slice_axes;
+    const bool requested = mcs->stop.is_requested;
+    *axes = requested ? mcs->stop.axes : mcs->stop.slice_axes;
     if (!requested) {
-        mcs->stop_slice = INT64_MAX;
+        mcs->stop.at_slice = INT64_MAX;
     }
-    mcs->stop_requested = false;
-    return requested || mcs->stop_is_asked ? "by a request" : "by stop_in";
+    mcs->stop.is_requested = false;
+    return requested || mcs->stop.is_asked ? "by a request" : "by stop_in";
 }
 
 __attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
@@ -78,52 +79,53 @@ __attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs)
 }
 
 void wh_mcs_note_refused(wh_mcs_t *mcs, wh_status_t status) {
-    if (status == WH_STATUS_STOPPED && mcs->link_stopped) {
+    if (status == WH_STATUS_STOPPED && mcs->stop.is_by_link) {
         wh_sandbox_stop(mcs->sandbox);
     }
-    mcs->link_stopped = status == WH_STATUS_STOPPED;
+    mcs->stop.is_by_link = status == WH_STATUS_STOPPED;
 }
 
 void wh_mcs_raise_refused(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
-    const wh_mcs_partners_t *partners = &mcs->partners;
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
     wh_mcs_raise(L, mcs, status,
-                 partners->explain ? partners->explain(partners->user, status)
-                                   : "the simulator refused a slice");
+                 partners->lossy ? partners->lossy->explain(partners->user, status)
+                                 : "the simulator refused a slice");
 }
 
-__attribute__((noreturn)) static void refuse(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
+__attribute__((noreturn)) static void refuse_slice(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
     wh_mcs_note_refused(mcs, status);
     wh_mcs_raise_refused(L, mcs, status);
 }
 
 /* A slice that was refused, or did not go out, has not taken place: the next one has its number, and begins
- * where it began. One that got no answer may have. */
+ * where it began. A slice without an answer may have taken place. */
 static bool has_gone_out(const wh_mcs_t *mcs) {
-    return mcs->partners.reached && mcs->partners.reached(mcs->partners.user) >= mcs->track.slice;
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
+    return partners->lossy && partners->lossy->reached(partners->user) >= mcs->track.slice;
 }
 
 wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
-    const wh_status_t status = exchange(mcs);
+    const wh_status_t status = exchange_slice(mcs);
     if (status != WH_OK && !has_gone_out(mcs)) {
         memcpy(mcs->track.axes, before, sizeof mcs->track.axes);
         --mcs->track.slice;
-        if (mcs->keep_segments) {
-            --mcs->segments[mcs->segment_count - 1].slices;
+        if (mcs->wanted.keeps_segments) {
+            --mcs->kept.segments[mcs->kept.segment_count - 1].slices;
         }
     }
-    wh_vacuum_watch_slice(&mcs->watch, mcs->state.sensors);
+    wh_vacuum_watch_slice(&mcs->running.watch, mcs->state.sensors);
     return status;
 }
 
-/* Plays up to WH_MCS_SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a
- * link at a wall-clock rate a portion may take seconds. */
+/* Plays up to WH_MCS_SLICES_PER_CHARGE slices of the segment; fewer if the sandbox must stop: over a link
+ * at a wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
     const double begin = wh_clock_seconds();
     for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
         wh_real_t before[WH_AXES];
         memcpy(before, mcs->track.axes, sizeof before);
-        state = wh_track_next(&mcs->track, wh_mcs_sensors(mcs, &mcs->awaited));
+        state = wh_track_next(&mcs->track, wh_mcs_sensors(mcs, &mcs->running.awaited));
         if (state == WH_TRACK_MOVING) {
             *status = wh_mcs_play_slice(mcs, before);
         }
@@ -136,34 +138,36 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
 }
 
 wh_status_t wh_mcs_resume(wh_mcs_t *mcs) {
-    const wh_mcs_partners_t *partners = &mcs->partners;
-    const wh_status_t status = partners->resume ? partners->resume(partners->user) : WH_OK;
-    if (partners->reached && partners->reached(partners->user) < mcs->track.slice) {
-        mcs->track.slice = partners->reached(partners->user);
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
+    if (!partners->lossy) {
+        return WH_OK;
     }
+    const wh_status_t status = partners->lossy->resume(partners->user);
+    const int64_t reached = partners->lossy->reached(partners->user);
+    mcs->track.slice = reached < mcs->track.slice ? reached : mcs->track.slice;
     return status;
 }
 
 static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     wh_status_t status = WH_OK;
     wh_track_state_t state = WH_TRACK_MOVING;
-    if (mcs->stop_requested) {
+    if (mcs->stop.is_requested) {
         raise_stopped(L, mcs);
     }
     status = wh_mcs_resume(mcs);
-    if (status == WH_STATUS_STOPPED && mcs->stop_requested) {
+    if (status == WH_STATUS_STOPPED && mcs->stop.is_requested) {
         raise_stopped(L, mcs);
     }
     if (status != WH_OK) {
-        refuse(L, mcs, status);
+        refuse_slice(L, mcs, status);
     }
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;
         state = play_portion(mcs, &status);
-        /* First, for a link that gave up waiting because of a stop returns with some status too. */
+        /* Charge first: a link that gave up waiting because of a stop also returns a status. */
         wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
-        if (status != WH_OK && !(status == WH_STATUS_STOPPED && mcs->stop_requested)) {
-            refuse(L, mcs, status);
+        if (status != WH_OK && !(status == WH_STATUS_STOPPED && mcs->stop.is_requested)) {
+            refuse_slice(L, mcs, status);
         }
         if (wh_mcs_stop_has_come(mcs)) {
             raise_stopped(L, mcs);
@@ -173,15 +177,15 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
 }
 
 static void keep_segment(wh_mcs_t *mcs) {
-    if (mcs->keep_segments) {
-        mcs->segments =
-            wh_array_grow(mcs->segments, mcs->segment_count, &mcs->segment_capacity, sizeof *mcs->segments);
-        mcs->segments[mcs->segment_count++] =
+    if (mcs->wanted.keeps_segments) {
+        mcs->kept.segments = wh_array_grow(mcs->kept.segments, mcs->kept.segment_count,
+                                           &mcs->kept.segment_capacity, sizeof *mcs->kept.segments);
+        mcs->kept.segments[mcs->kept.segment_count++] =
             (wh_kept_segment_t){mcs->track.segment, 0, false, mcs->recorder.running};
     }
 }
 
-/* A segment of the last rehearsal begins as it was planned there, in the slice that the track has come to. */
+/* Begins a segment of the last rehearsal as planned there, in the track's present slice. */
 static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     *planned = mcs->rehearsal.planned.segments[wh_mcs_index(L, 1, mcs->rehearsal.planned.count)];
     planned->track.slice = mcs->track.slice;
@@ -202,24 +206,25 @@ void wh_mcs_begin_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
 
 /* native.play(segment or the number of a planned one): true if it ran to its end, false if its sensor did not
  * come on in time; then the gripper that lost its wafer meanwhile, or nil. */
-static int play(lua_State *L) {
+static int play_segment(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     wh_mcs_begin_segment(L, mcs, &planned);
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
-    mcs->awaited = planned.awaited;
-    mcs->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
+    mcs->running.awaited = planned.awaited;
+    mcs->running.watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
     const wh_segment_t *segment = &mcs->track.segment;
-    wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
+    wh_decisions_read(mcs->wanted.decisions, WH_DECISION_BEGIN,
                       segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,
                       (int32_t)planned.may_lose);
     const bool done = play_through(L, mcs) == WH_TRACK_DONE;
-    if (mcs->keep_segments) {
-        mcs->segments[mcs->segment_count - 1].ended = true;
+    if (mcs->wanted.keeps_segments) {
+        mcs->kept.segments[mcs->kept.segment_count - 1].ended = true;
     }
-    const int32_t lost = wh_vacuum_watch_lost(&mcs->watch, mcs->track.valves, mcs->state.gripper_count);
-    wh_decisions_read(mcs->decisions, WH_DECISION_END, lost, done);
+    const int32_t lost =
+        wh_vacuum_watch_lost(&mcs->running.watch, mcs->track.valves, mcs->state.gripper_count);
+    wh_decisions_read(mcs->wanted.decisions, WH_DECISION_END, lost, done);
     lua_pushboolean(L, done);
     if (lost == WH_NONE) {
         return 1;
@@ -228,9 +233,9 @@ static int play(lua_State *L) {
     return 2;
 }
 
-/* native.stop_in(seconds, mechanism, asked): a STOP of that mechanism, nil: of all, comes at the first slice
- * at or after so many simulated seconds from now; seconds nil: none comes. True for `asked`: an operator has
- * said STOP. False if there is no such mechanism. With one there must be tasks. */
+/* native.stop_in(seconds, mechanism, asked): a STOP of that mechanism (nil: of all) comes at the first slice
+ * at or after this many simulated seconds from now; seconds nil: none comes. `asked` true: an operator has
+ * said STOP. Returns false if there is no such mechanism. With a mechanism there must be tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     uint32_t axes = WH_MCS_ALL;
@@ -238,16 +243,16 @@ static int stop_in(lua_State *L) {
         lua_pushboolean(L, false);
         return 1;
     }
-    mcs->stop_slice_axes = axes;
-    mcs->stop_is_asked = lua_toboolean(L, 3);
+    mcs->stop.slice_axes = axes;
+    mcs->stop.is_asked = lua_toboolean(L, 3);
     if (lua_isnoneornil(L, 1)) {
-        mcs->stop_slice = INT64_MAX;
+        mcs->stop.at_slice = INT64_MAX;
         return 0;
     }
     const double slices = ceil(luaL_checknumber(L, 1) * 1e6 / (double)mcs->track.slice_us);
-    mcs->stop_slice = mcs->track.slice + (int64_t)slices;
+    mcs->stop.at_slice = mcs->track.slice + (int64_t)slices;
     lua_pushboolean(L, true);
     return 1;
 }
 
-const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"stop_in", stop_in}, {NULL, NULL}};
+const luaL_Reg wh_mcs_play_functions[] = {{"play", play_segment}, {"stop_in", stop_in}, {NULL, NULL}};

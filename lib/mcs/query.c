@@ -1,6 +1,6 @@
-/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to
- * what. What a trial's errors change is noted in the decisions: a script that reads it is run anew for each
- * trial. */
+/* The questions about the cell: where wafers are and which gripper holds them, where frames are, which
+ * parts came near to each other. Answers that a trial's errors change are noted in the decisions: a script
+ * that reads them is run for each trial. */
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +20,7 @@ static int read_utime(lua_State *L) {
 static int32_t read_held(lua_State *L, const wh_mcs_t *mcs) {
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const int32_t wafer = mcs->state.grippers[gripper].wafer;
-    wh_decisions_read(mcs->decisions, WH_DECISION_HELD, gripper, wafer);
+    wh_decisions_read(mcs->wanted.decisions, WH_DECISION_HELD, gripper, wafer);
     return wafer;
 }
 
@@ -35,7 +35,7 @@ static int find_held(lua_State *L) {
     return 1;
 }
 
-/* native.wafer_names(most): a list of all, or of the first so many. */
+/* native.wafer_names(most): a list of all, or of the first `most`. */
 static int list_wafers(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
     const lua_Integer most = luaL_optinteger(L, 1, WH_LAYOUT_WAFERS);
@@ -57,7 +57,9 @@ static int find_wafer(lua_State *L) {
 }
 
 static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
-    return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
+    const int32_t wafer = wh_mcs_index(L, argument, mcs->state.wafer_count);
+    wh_decisions_look(mcs->wanted.decisions, wafer);
+    return &mcs->state.wafers[wafer];
 }
 
 /* native.sensor(gripper): true if its vacuum sensor is on. */
@@ -65,7 +67,7 @@ static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
-    wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, gripper, on);
+    wh_decisions_read(mcs->wanted.decisions, WH_DECISION_SENSOR, gripper, on);
     lua_pushboolean(L, on);
     return 1;
 }
@@ -75,30 +77,30 @@ static const char *plunger_word(const wh_grip_state_t *state, const wh_edge_t *e
     return state->phase == WH_GRIP_CLOSING && state->s <= edge->retracted ? "still" : words[state->phase];
 }
 
-/* native.grip(gripper): what the plunger of its edge grip does, a word of lua/mcs/patterns.lua, where it is,
- * mm, and how far beyond the clearance a wafer jams, mm. */
+/* native.grip(gripper): the state of its edge grip's plunger, a word of lua/mcs/patterns.lua; its place, mm;
+ * and how far beyond the clearance a wafer jams, mm. */
 static int read_grip(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->layout->machine.gripper_count);
     const wh_edge_t *edge = &mcs->layout->grips[gripper].edge;
     const wh_grip_state_t open = {.s = edge->retracted, .wafer = WH_NONE};
     const wh_grip_state_t *state = mcs->state.physics ? &mcs->state.physics->grips[gripper] : &open;
-    wh_decisions_measured(mcs->decisions, "what a plunger does");
+    wh_decisions_measured(mcs->wanted.decisions, "what a plunger does");
     lua_pushstring(L, plunger_word(state, edge));
     lua_pushnumber(L, state->s);
     lua_pushnumber(L, state->excess);
     return 3;
 }
 
-/* native.weight(gripper): the force of its pads and the weight that would hang on them as they look now,
- * N, if that is more than they carry; else nothing. */
+/* native.weight(gripper): the force of its pads and the weight that would hang on them in their present
+ * direction, N, if that is more than they carry; else nothing. */
 static int read_weight(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const wh_pads_t *pads = &mcs->layout->physics.pads;
     const wh_real_t down = -mcs->state.grippers[gripper].base_from_gripper.R.m[2][2];
     const wh_real_t weight = pads->mass * pads->gravity * down;
-    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
+    wh_decisions_measured(mcs->wanted.decisions, "why a wafer was missed");
     if (pads->mass <= 0 || pads->force >= weight || mcs->layout->grips[gripper].kind != WH_GRIP_VACUUM) {
         return 0;
     }
@@ -107,7 +109,7 @@ static int read_weight(lua_State *L) {
     return 2;
 }
 
-/* native.is_open(gripper): true if its valve is told to be open. */
+/* native.is_open(gripper): true if its valve is commanded open. */
 static int read_valve(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
@@ -120,18 +122,20 @@ static int find_holder(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     const int32_t holder = mcs->state.wafers[wafer].holder;
-    wh_decisions_read(mcs->decisions, WH_DECISION_HOLDER, wafer, holder);
+    wh_decisions_read(mcs->wanted.decisions, WH_DECISION_HOLDER, wafer, holder);
     wh_lua_push_index(L, holder);
     return 1;
 }
 
 /* native.measure(wafer, station, slot): dx, dy, dz, tilt_deg in that slot's frame. */
-static int measure(lua_State *L) {
+static int measure_wafer(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
-    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const int32_t index = wh_mcs_index(L, 2, mcs->layout->station_count);
+    const wh_station_t *station = &mcs->real->places[index];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
-    wh_decisions_measured(mcs->decisions, "offset");
+    wh_decisions_measured(mcs->wanted.decisions, "offset");
+    wh_decisions_visit(mcs->wanted.decisions, index, WH_NONE);
     const wh_place_t place = wh_cell_measure(&mcs->real->cell, station, slot, &wafer->base_from_wafer);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
@@ -152,22 +156,22 @@ static int push_place(lua_State *L, const wh_mcs_t *mcs, const wh_pose_t *base_f
 }
 
 /* native.locate(wafer): the station's name and the slot, or nil if it lies in none. */
-static int locate(lua_State *L) {
+static int locate_wafer(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_decisions_measured(mcs->decisions, "where a wafer lies");
+    wh_decisions_measured(mcs->wanted.decisions, "where a wafer lies");
     return push_place(L, mcs, &wafer_argument(L, mcs, 1)->base_from_wafer);
 }
 
 /* native.face(wafer): "up" or "down", by the direction of its front face in base. */
 static int read_face(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_decisions_measured(mcs->decisions, "a wafer's face");
+    wh_decisions_measured(mcs->wanted.decisions, "a wafer's face");
     lua_pushstring(L, wh_layout_face_of(&wafer_argument(L, mcs, 1)->base_from_wafer));
     return 1;
 }
 
-/* native.held_face(gripper): "up" or "down" of the wafer that it holds, or nil. Who holds which wafer is all
- * that a trial may change of it. */
+/* native.held_face(gripper): "up" or "down" of the wafer that it holds, or nil. A trial may change this only
+ * through which gripper holds which wafer. */
 static int read_held_face(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = read_held(L, mcs);
@@ -178,10 +182,9 @@ static int read_held_face(lua_State *L) {
     return 1;
 }
 
-/* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict, 0 if the wafer does not lie in that
- * slot, 1 if it does, 2 if it does with that offset; its offset there and its height; then the name of the
- * station and the slot that it lies in, or nothing. Only the verdict may decide anything, the rest is for
- * messages. */
+/* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict: 0 if the wafer does not lie in that slot,
+ * 1 if it does, 2 if it does with that offset; its offset there and its height; then the name of the station
+ * and the slot that it lies in, or nothing. Only the verdict may decide, the rest is for messages. */
 static int judge_place(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_decisions_claim_t claim;
@@ -193,7 +196,7 @@ static int judge_place(lua_State *L) {
     claim.tolerance = luaL_checknumber(L, 6);
     claim.height = mcs->layout->grasp.tolerance.projz;
     const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
-    wh_decisions_claim(mcs->decisions, &claim, verdict);
+    wh_decisions_claim(mcs->wanted.decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
     const wh_place_t place = wh_cell_measure(&mcs->real->cell, &mcs->real->cell.stations[claim.station],
                                              claim.slot, base_from_wafer);
@@ -204,12 +207,46 @@ static int judge_place(lua_State *L) {
     return 4 + push_place(L, mcs, base_from_wafer);
 }
 
+/* native.is_elsewhere(wafer's name, station, slot): after a PUT there, true if the wafer lies in another
+ * slot; then the name of the station and the slot that it lies in, or nothing, for messages. */
+static int judge_put(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_asked_t put = {.wafer = wh_layout_find_wafer(mcs->layout, wh_lua_word(L, 1)),
+                                .gripper = WH_NONE};
+    luaL_argcheck(L, put.wafer != WH_NONE, 1, "no such wafer");
+    put.station = wh_mcs_index(L, 2, mcs->layout->station_count);
+    put.slot = wh_mcs_index(L, 3, (size_t)mcs->layout->places[put.station].slots) + 1;
+    const wh_pose_t *place = &mcs->state.wafers[put.wafer].base_from_wafer;
+    const bool is_elsewhere = wh_decisions_is_elsewhere(&put, &mcs->real->cell, place);
+    wh_decisions_asked(mcs->wanted.decisions, WH_DECISION_PUT, &put, is_elsewhere);
+    lua_pushboolean(L, is_elsewhere);
+    return 1 + push_place(L, mcs, place);
+}
+
+/* native.was_elsewhere(gripper, station, slot): after a GET there, true if the wafer that the gripper holds lay
+ * in another slot; then, for messages, the wafer's name, the name of the station and the slot. */
+static int judge_get(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_asked_t get = {.wafer = WH_NONE, .gripper = wh_mcs_index(L, 1, mcs->state.gripper_count)};
+    get.station = wh_mcs_index(L, 2, mcs->layout->station_count);
+    get.slot = wh_mcs_index(L, 3, (size_t)mcs->layout->places[get.station].slots) + 1;
+    const wh_pose_t *place = wh_origins_find(&mcs->heard.origins, get.gripper);
+    const bool was_elsewhere = wh_decisions_is_elsewhere(&get, &mcs->real->cell, place);
+    wh_decisions_asked(mcs->wanted.decisions, WH_DECISION_GET, &get, was_elsewhere);
+    lua_pushboolean(L, was_elsewhere);
+    if (!was_elsewhere) {
+        return 1;
+    }
+    lua_pushstring(L, mcs->layout->wafers[mcs->heard.origins.of[get.gripper].wafer].name);
+    return 2 + push_place(L, mcs, place);
+}
+
 /* native.wafer_pose(wafer, gripper): { r, R }, as the module wh takes it; with a gripper the frame of the
  * face that looks at it. */
 static int read_wafer_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_pose_t pose = wafer_argument(L, mcs, 1)->base_from_wafer;
-    wh_decisions_measured(mcs->decisions, "a wafer's pose");
+    wh_decisions_measured(mcs->wanted.decisions, "a wafer's pose");
     if (!lua_isnoneornil(L, 2) && mcs->layout->has_faces) {
         const wh_pose_t wafer = pose;
         const int32_t gripper = wh_mcs_index(L, 2, mcs->state.gripper_count);
@@ -220,35 +257,37 @@ static int read_wafer_pose(lua_State *L) {
     return 1;
 }
 
-/* native.gripper_pose(gripper, real): where motion control has it, also before the first slice; or, if
- * `real`, where it is, for a fault may keep it from there. */
+/* native.gripper_pose(gripper, real): its commanded pose, also before the first slice; or, if `real`,
+ * its true pose, which a fault may change. */
 static int read_gripper_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const bool is_real = lua_toboolean(L, 2) && mcs->state.seq > 0;
     wh_pose_t poses[WH_GRIPPERS];
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
-        wh_decisions_measured(mcs->decisions, "a chuck's pose");
+        wh_decisions_measured(mcs->wanted.decisions, "a chuck's pose");
     }
     wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
     wh_lua_push_pose(L, is_real ? &mcs->state.grippers[gripper].base_from_gripper : &poses[gripper]);
     return 1;
 }
 
-/* native.slot_pose(station, slot): where that slot really is. */
+/* native.slot_pose(station, slot): the true pose of that slot. */
 static int read_slot_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const int32_t index = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const wh_station_t *station = &mcs->real->places[index];
     const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
-    wh_decisions_measured(mcs->decisions, "where a slot is");
+    wh_decisions_measured(mcs->wanted.decisions, "where a slot is");
+    wh_decisions_visit(mcs->wanted.decisions, index, WH_NONE);
     wh_lua_push_pose(L, &pose);
     return 1;
 }
 
-/* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy,
- * dz, in degrees the angle, the whole turn, and the heading: the direction of the second's x about the
- * first's z, from the first's x. */
-static int relate(lua_State *L) {
+/* native.relate(first, second): the second of two poses relative to the first: distance, dx, dy, dz, and
+ * in degrees the angle, the whole turn, and the heading. The heading is the direction of the second's x
+ * about the first's z, from the first's x. */
+static int relate_frames(lua_State *L) {
     const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
     wh_pose_t poses[2];
     for (int i = 0; i < 2; ++i) {
@@ -280,11 +319,22 @@ static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2])
     lua_setfield(L, -2, "parts");
 }
 
+/* Refuses a question about what nobody looks for. A budget that leaves collisions out for a first look goes
+ * on. */
+static void check_looks(lua_State *L, wh_mcs_t *mcs, const char *word, bool looks) {
+    if (!looks && !mcs->wanted.without_collisions) {
+        lua_pushfstring(L, "%s: collisions are not looked for (expected a layout with collision = true)",
+                        word);
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, lua_tostring(L, -1));
+    }
+}
+
 /* native.hits(): a list of { kind, parts, at, time } so far. */
 static int list_hits(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    check_looks(L, mcs, "hits", mcs->layout->collision);
     lua_newtable(L);
-    wh_decisions_measured(mcs->decisions, "hits");
+    wh_decisions_measured(mcs->wanted.decisions, "hits");
     for (size_t i = 0; i < mcs->recorder.record->event_count; ++i) {
         const wh_event_record_t *record = &mcs->recorder.record->events[i];
         const wh_event_kind_t kind = record->event.kind;
@@ -300,7 +350,7 @@ static int list_hits(lua_State *L) {
     return 1;
 }
 
-static int find_kind(const char *name) {
+static int find_question_kind(const char *name) {
     int kind = 0;
     while (kind < WH_CLEARANCES && strcmp(name, wh_clearance_name((wh_clearance_kind_t)kind)) != 0) {
         ++kind;
@@ -318,16 +368,17 @@ static int list_clearances(lua_State *L) {
     return 1;
 }
 
-/* native.clearance(kind): { gap, limit, time, parts, at } so far; only `limit` until something was near. Nil
- * if nobody looks for collisions, false for an unknown kind. */
+/* native.clearance(kind): { gap, limit, time, parts, at } so far; only `limit` until parts came near. Nil if
+ * a budget does not look for collisions, false for an unknown kind. */
 static int find_clearance(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int kind = find_kind(wh_lua_word(L, 1));
-    wh_decisions_measured(mcs->decisions, "clearance");
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int kind = find_question_kind(wh_lua_word(L, 1));
+    wh_decisions_measured(mcs->wanted.decisions, "clearance");
     if (kind == WH_CLEARANCES) {
         lua_pushboolean(L, 0);
         return 1;
     }
+    check_looks(L, mcs, "clearance", mcs->local.collision.world != NULL);
     if (!mcs->local.collision.world) {
         return 0;
     }
@@ -350,9 +401,11 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"sensor", read_sensor},
                                            {"is_open", read_valve},
                                            {"holder", find_holder},
-                                           {"measure", measure},
-                                           {"locate", locate},
+                                           {"measure", measure_wafer},
+                                           {"locate", locate_wafer},
                                            {"lies", judge_place},
+                                           {"is_elsewhere", judge_put},
+                                           {"was_elsewhere", judge_get},
                                            {"face", read_face},
                                            {"held_face", read_held_face},
                                            {"grip", read_grip},
@@ -360,7 +413,7 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
                                            {"slot_pose", read_slot_pose},
-                                           {"relate", relate},
+                                           {"relate", relate_frames},
                                            {"hits", list_hits},
                                            {"clearance", find_clearance},
                                            {"clearance_kinds", list_clearances},

@@ -50,7 +50,7 @@ static void note_axis(const wh_travel_t *travel, wh_real_t at, int32_t slot, wh_
     }
 }
 
-/* A SCARA's elbow is looked at at the line's ends alone: it bends most where the line passes the shoulder. */
+/* A SCARA's elbow is checked only at the line's ends: it bends most where the line passes the shoulder. */
 static bool passes_axis(const wh_track_t *track, const wh_carrier_t *carrier, wh_real_t *least_R) {
     if (carrier) {
         return carrier->chain.kind != WH_CHAIN_SCARA &&
@@ -59,7 +59,7 @@ static bool passes_axis(const wh_track_t *track, const wh_carrier_t *carrier, wh
     return wh_travel_passes_axis(&track->plan.line, least_R);
 }
 
-/* R of the arm that goes in a line, among its robot's axes. */
+/* The index, among its robot's axes, of R of the arm that goes in a line. */
 static size_t reach_axis(const wh_track_t *track, const wh_carrier_t *carrier) {
     const wh_machine_t *machine = track->machine;
     const bool is_second =
@@ -106,9 +106,10 @@ typedef struct {
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_grips_room_t grips;
     wh_track_t own;            /* stands where the command's last segment ends */
-    going_t others[WH_OTHERS]; /* what others play */
+    going_t others[WH_OTHERS]; /* the others' segments */
     size_t other_count;
-    int32_t switched[WH_GRIPPERS]; /* by others since the command began; WH_NONE: as it was */
+    int32_t switched[WH_GRIPPERS]; /* the valve's setting by others since the command began;
+                                    * WH_NONE: unchanged */
     void *world_memory;
     wh_wafer_t wafers[];
 } ahead_t;
@@ -122,14 +123,14 @@ size_t wh_rehearsal_ahead_bytes(const wh_layout_t *layout) {
     return own_bytes(layout) + wh_collision_bytes(layout);
 }
 
-/* Before anything is held. */
+/* Sets up the edge grips, before anything is held. */
 static bool give_grips(ahead_t *ahead) {
     return wh_layout_give_doors(ahead->layout, &ahead->simulator) == WH_OK &&
            wh_layout_give_grips(ahead->layout, &ahead->simulator, &ahead->grips) == WH_OK;
 }
 
-/* The copy stands where motion control stands. */
-static bool begin(ahead_t *ahead, const wh_state_t *state) {
+/* Puts the copy where motion control stands. */
+static bool begin_ahead(ahead_t *ahead, const wh_state_t *state) {
     const wh_layout_t *layout = ahead->layout;
     const wh_grasp_storage_t storage = {.wafers = ahead->wafers,
                                         .wafer_count = layout->wafer_count,
@@ -177,7 +178,7 @@ static int32_t robot_of(const ahead_t *ahead, int32_t part) {
                : layout->machine.mounts[gripper].robot;
 }
 
-/* What plays on the robot; null: nothing. */
+/* The segment that plays on the robot; null: none. */
 static const going_t *find_other(const ahead_t *ahead, int32_t robot) {
     for (size_t i = 0; robot != WH_NONE && i < ahead->other_count; ++i) {
         size_t first;
@@ -189,7 +190,7 @@ static const going_t *find_other(const ahead_t *ahead, int32_t robot) {
     return NULL;
 }
 
-static void describe(const ahead_t *ahead, const wh_event_t *hit, char *reason) {
+static void describe_hit(const ahead_t *ahead, const wh_event_t *hit, char *reason) {
     const char *one = wh_layout_part_name(ahead->layout, hit->parts[0]);
     const char *two = wh_layout_part_name(ahead->layout, hit->parts[1]);
     const going_t *other = find_other(ahead, robot_of(ahead, hit->parts[0]));
@@ -211,7 +212,7 @@ static void take_others(ahead_t *ahead, const wh_ahead_start_t *start) {
     }
 }
 
-/* One slice of what another task plays. False if it stands. */
+/* Plays one slice of another task's segment. False if it stands. */
 static bool go_on(ahead_t *ahead, going_t *other) {
     if (other->goes && !other->is_drawn) {
         other->goes = wh_track_next(&other->track, 0) == WH_TRACK_MOVING;
@@ -224,7 +225,7 @@ static bool go_on(ahead_t *ahead, going_t *other) {
     return other->goes;
 }
 
-/* The others' axes and valves in place of those of the command's track. True if any of them goes on. */
+/* Puts the others' axes and valves into the command's track. True if any of them goes on. */
 static bool show_others(ahead_t *ahead, wh_track_t *shown) {
     bool any = false;
     for (size_t i = 0; i < ahead->other_count; ++i) {
@@ -241,7 +242,7 @@ static bool show_others(ahead_t *ahead, wh_track_t *shown) {
 }
 
 /* Plays the command's segment, or lets it stand while the others go on. */
-static const wh_event_t *play(ahead_t *ahead, bool stands, int64_t *slices, wh_state_t *state) {
+static const wh_event_t *play_ahead(ahead_t *ahead, bool stands, int64_t *slices, wh_state_t *state) {
     wh_command_t command = {.fault_count = 0};
     wh_machine_cache_t cache = {.is_taken = false};
     wh_track_t shown = ahead->own;
@@ -263,21 +264,21 @@ static const wh_event_t *play(ahead_t *ahead, bool stands, int64_t *slices, wh_s
     return NULL;
 }
 
-static void begin_command(ahead_t *ahead, const wh_ahead_start_t *start) {
+static void begin_other_command(ahead_t *ahead, const wh_ahead_start_t *start) {
     wh_state_t state = *start->state;
     if (ahead->nominal) {
         wh_nominal_believe(ahead->nominal, start->state, &state);
     }
-    ahead->is_begun = begin(ahead, &state);
+    ahead->is_begun = begin_ahead(ahead, &state);
     take_others(ahead, start);
 }
 
-static bool judge(void *user, const wh_track_t *track, const wh_ahead_start_t *start, int64_t *slices,
-                  char *reason) {
+static bool judge_ahead(void *user, const wh_track_t *track, const wh_ahead_start_t *start, int64_t *slices,
+                        char *reason) {
     ahead_t *ahead = user;
     wh_state_t state;
     if (start) {
-        begin_command(ahead, start);
+        begin_other_command(ahead, start);
     }
     if (!ahead->is_begun) {
         snprintf(reason, WH_REHEARSAL_REASON_BYTES, "nothing can be said, the cell's state was refused");
@@ -288,11 +289,11 @@ static bool judge(void *user, const wh_track_t *track, const wh_ahead_start_t *s
         ahead->own.machine = &ahead->layout->machine;
     }
     if (track && track->segment.kind == WH_SEGMENT_SENSOR) {
-        return false; /* nothing of it moves */
+        return false; /* no part of it moves */
     }
-    const wh_event_t *hit = play(ahead, !track, slices, &state);
+    const wh_event_t *hit = play_ahead(ahead, !track, slices, &state);
     if (hit) {
-        describe(ahead, hit, reason);
+        describe_hit(ahead, hit, reason);
     }
     return hit != NULL;
 }
@@ -304,6 +305,6 @@ void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layou
     ahead->layout = layout;
     ahead->nominal = nominal;
     ahead->world_memory = (unsigned char *)memory + own_bytes(layout);
-    rehearsal->look_ahead = judge;
+    rehearsal->look_ahead = judge_ahead;
     rehearsal->look_ahead_user = ahead;
 }

@@ -1,4 +1,4 @@
-/* The state of a session, kept whole and put back: motion control's, and the simulator's. */
+/* The whole state of a session, kept and put back: motion control's and the simulator's. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,20 +8,21 @@
 /* The name of the type of userdata. */
 #define SAVED "wh.saved_state"
 
-/* Of motion control; what the other side of the link is follows as bytes. */
+/* The state of motion control; the bytes of the link's other side follow. */
 typedef struct {
     wh_track_t track;
     wh_command_t command;
     wh_machine_cache_t cache;
     wh_mcs_seen_t seen;
+    wh_origin_t origins[WH_GRIPPERS];
     wh_mcs_held_t held[WH_MCS_ROBOTS];
     int64_t stop_slice;
     wh_fault_t faults[WH_FAULTS];
     size_t fault_count;
     wh_status_t alarms[WH_MCS_ALARMS];
-    int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
+    int64_t edge_seq; /* of the scans so far: their samples are not kept */
     uint32_t edge_number;
-    uint32_t pass_number; /* of the armings of beams, likewise */
+    uint32_t pass_number; /* of the armings of beams so far, likewise */
     size_t size;          /* of `bytes` */
     uint8_t bytes[];
 } saved_t;
@@ -30,45 +31,48 @@ static bool is_local(const wh_mcs_t *mcs) {
     return mcs->link == &mcs->local.simulator.link;
 }
 
-static void keep(const wh_mcs_t *mcs, saved_t *saved) {
+static void keep_state(const wh_mcs_t *mcs, saved_t *saved) {
     saved->track = mcs->track;
     saved->command = mcs->command;
     saved->cache = mcs->cache;
-    saved->seen = mcs->seen;
+    saved->seen = mcs->heard.seen;
+    memcpy(saved->origins, mcs->heard.origins.of, sizeof saved->origins);
     memcpy(saved->held, mcs->held, sizeof saved->held);
-    saved->stop_slice = mcs->stop_slice;
-    memcpy(saved->faults, mcs->faults, sizeof saved->faults);
-    saved->fault_count = mcs->fault_count;
-    memcpy(saved->alarms, mcs->alarms, sizeof saved->alarms);
-    saved->edge_seq = mcs->edge.seq;
-    saved->edge_number = mcs->edge.number;
-    saved->pass_number = mcs->pass.number;
+    saved->stop_slice = mcs->stop.at_slice;
+    memcpy(saved->faults, mcs->armed.faults, sizeof saved->faults);
+    saved->fault_count = mcs->armed.fault_count;
+    memcpy(saved->alarms, mcs->armed.alarms, sizeof saved->alarms);
+    saved->edge_seq = mcs->measuring.edge.seq;
+    saved->edge_number = mcs->measuring.edge.number;
+    saved->pass_number = mcs->measuring.pass.number;
 }
 
 static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->track = saved->track;
     mcs->command = saved->command;
     mcs->cache = saved->cache;
-    mcs->seen = saved->seen;
+    mcs->heard.seen = saved->seen;
+    memcpy(mcs->heard.origins.of, saved->origins, sizeof saved->origins);
+    wh_origins_look(&mcs->heard.origins, &mcs->state);
     memcpy(mcs->held, saved->held, sizeof mcs->held);
-    mcs->stop_slice = saved->stop_slice;
-    memcpy(mcs->faults, saved->faults, sizeof mcs->faults);
-    mcs->fault_count = saved->fault_count;
-    memcpy(mcs->alarms, saved->alarms, sizeof mcs->alarms);
-    wh_mcs_free_edge(&mcs->edge);
-    mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
-    wh_pass_free(&mcs->pass);
-    mcs->pass = (wh_pass_t){.seq = saved->edge_seq, .number = saved->pass_number};
+    mcs->stop.at_slice = saved->stop_slice;
+    memcpy(mcs->armed.faults, saved->faults, sizeof mcs->armed.faults);
+    mcs->armed.fault_count = saved->fault_count;
+    memcpy(mcs->armed.alarms, saved->alarms, sizeof mcs->armed.alarms);
+    wh_mcs_free_edge(&mcs->measuring.edge);
+    mcs->measuring.edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
+    wh_pass_free(&mcs->measuring.pass);
+    mcs->measuring.pass = (wh_pass_t){.seq = saved->edge_seq, .number = saved->pass_number};
     mcs->recorder.slice = saved->track.slice;
-    /* The check begins anew: it would take what was put back for a motion. */
+    /* The check begins anew: it would take the restored places for a motion. */
     mcs->local.collision.world = NULL;
 }
 
-/* Pushes room for so many bytes, and what motion control is. */
+/* Pushes room for these bytes, with the state of motion control. */
 static saved_t *push_saved(lua_State *L, const wh_mcs_t *mcs, size_t size) {
     saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 0);
     memset(saved, 0, sizeof *saved);
-    keep(mcs, saved);
+    keep_state(mcs, saved);
     saved->size = size;
     if (!luaL_getmetatable(L, SAVED)) {
         lua_pop(L, 1);
@@ -86,7 +90,7 @@ static void save_local(lua_State *L, const wh_mcs_t *mcs) {
 }
 
 static void save_partner(lua_State *L, wh_mcs_t *mcs) {
-    const wh_mcs_partners_t *partners = &mcs->partners;
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
     uint8_t *bytes = lua_newuserdatauv(L, WH_MCS_SAVED_BYTES, 0);
     const size_t size = partners->save ? partners->save(partners->user, bytes) : 0;
     if (size == 0) {
@@ -97,9 +101,9 @@ static void save_partner(lua_State *L, wh_mcs_t *mcs) {
     memcpy(push_saved(L, mcs, size)->bytes, bytes, size);
 }
 
-/* native.save(): all that the next slice depends on, as a value for native.restore. Raises if the link cannot
- * tell what its other side is. */
-static int save(lua_State *L) {
+/* native.save(): everything that the next slice depends on, as a value for native.restore. Raises if the link
+ * cannot tell the state of its other side. */
+static int save_state(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     if (is_local(mcs)) {
         save_local(L, mcs);
@@ -123,9 +127,9 @@ static wh_status_t restore_local(lua_State *L, wh_mcs_t *mcs, const saved_t *sav
     return status;
 }
 
-/* Before the first slice the link has no state: it is as the layout says. */
+/* Before the first slice the link has no state: the cell is as in the layout. */
 static wh_status_t restore_partner(wh_mcs_t *mcs, const saved_t *saved) {
-    const wh_mcs_partners_t *partners = &mcs->partners;
+    const wh_mcs_partners_t *partners = &mcs->wanted.partners;
     wh_state_t state;
     memset(&state, 0, sizeof state);
     wh_simulator_view(&mcs->local.simulator, &state);
@@ -138,13 +142,15 @@ static wh_status_t restore_partner(wh_mcs_t *mcs, const saved_t *saved) {
     return status;
 }
 
-/* native.restore(saved): all is as it was. Raises if the link does not take it; then nothing has changed. */
-static int restore(lua_State *L) {
+/* native.restore(saved): restores everything. Raises if the link does not take it; then nothing has
+ * changed. */
+static int restore_state(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     const wh_status_t status = is_local(mcs) ? restore_local(L, mcs, saved) : restore_partner(mcs, saved);
     if (status != WH_OK) {
-        const char *why = mcs->partners.explain ? mcs->partners.explain(mcs->partners.user, status) : NULL;
+        const wh_mcs_partners_t *partners = &mcs->wanted.partners;
+        const char *why = partners->lossy ? partners->lossy->explain(partners->user, status) : NULL;
         wh_mcs_raise(L, mcs, status, status == WH_STATUS_NOT_RESTORED ? "all is as it was" : why);
     }
     put_back(mcs, saved);
@@ -159,23 +165,26 @@ static bool is_held_otherwise(const saved_t *saved, const wh_mcs_t *mcs) {
     return differs;
 }
 
-/* native.differs(saved): a slice was played since, a fault is on its way, an error was armed or no longer is,
- * or a command is held or no longer is. */
-static int differs(lua_State *L) {
+/* native.differs(saved): true if a slice was played since, a fault is on its way, or an armed error or a held
+ * command has come or gone. */
+static int differs_from_saved(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
                            saved->command.fault_count != mcs->command.fault_count ||
-                           memcmp(saved->alarms, mcs->alarms, sizeof saved->alarms) != 0 ||
+                           memcmp(saved->alarms, mcs->armed.alarms, sizeof saved->alarms) != 0 ||
                            is_held_otherwise(saved, mcs));
     return 1;
 }
 
-/* native.most_undone(): how many commands UNDO takes back. */
+/* native.most_undone(): the most commands that UNDO takes back. */
 static int count_most(lua_State *L) {
     lua_pushinteger(L, WH_MCS_UNDONE);
     return 1;
 }
 
-const luaL_Reg wh_mcs_saved_functions[] = {
-    {"save", save}, {"restore", restore}, {"differs", differs}, {"most_undone", count_most}, {NULL, NULL}};
+const luaL_Reg wh_mcs_saved_functions[] = {{"save", save_state},
+                                           {"restore", restore_state},
+                                           {"differs", differs_from_saved},
+                                           {"most_undone", count_most},
+                                           {NULL, NULL}};

@@ -6,12 +6,12 @@
 #include "../text/array.h"
 #include "../text/utf8.h"
 
-static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message) {
+static wh_script_run_outcome_t refuse_run(wh_script_run_t *run, const char *message) {
     snprintf(run->message, sizeof run->message, "%s", message);
     return WH_RUN_BAD_INPUT;
 }
 
-/* True if a numbered error ended the script: a result, not bad input, as a stop past all Lua is. */
+/* True if a numbered error ended the script: a result, not bad input, like a stop outside of Lua. */
 static bool ended_by_numbered_error(lua_State *L) {
     wh_sandbox_push_error(L);
     bool numbered = false;
@@ -39,8 +39,8 @@ static bool is_layout(lua_State *L) {
     return false;
 }
 
-/* What is wrong with a script that ended well: it set up no cell, or took no notice of a parameter. What it
- * returned is on top of the stack. False if nothing is wrong. */
+/* Finds the fault of a script that ended without error: it set up no cell, or did not read a parameter. Its
+ * result is on top of the stack. False if there is no fault. */
 static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *options,
                        wh_sandbox_result_t *result) {
     lua_State *L = wh_sandbox_state(run->sandbox);
@@ -65,7 +65,7 @@ static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *opti
     return true;
 }
 
-/* Which option allows more. */
+/* Names the option that allows more. */
 static void name_option(wh_sandbox_result_t *result) {
     const size_t length = strlen(result->message);
     if (result->status == WH_SANDBOX_BUDGET) {
@@ -74,8 +74,8 @@ static void name_option(wh_sandbox_result_t *result) {
     }
 }
 
-static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_run_options_t *options,
-                                        wh_sandbox_result_t *result) {
+static wh_script_run_outcome_t conclude_run(wh_script_run_t *run, const wh_script_run_options_t *options,
+                                            wh_sandbox_result_t *result) {
     lua_State *L = wh_sandbox_state(run->sandbox);
     const bool ended = result->status == WH_SANDBOX_OK;
     const bool is_unusable = ended && find_fault(run, options, result);
@@ -95,12 +95,12 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_ru
     }
     wh_mcs_finish(&run->mcs);
     if (is_bad_input) {
-        return refuse(run, result->message);
+        return refuse_run(run, result->message);
     }
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
 }
 
-/* With errors that are given every trial is the same. */
+/* With given errors every trial is the same. */
 static const wh_trial_t any_trial = {0, 0};
 
 wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_options_t *options) {
@@ -109,33 +109,33 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
     if (!run->sandbox) {
-        return refuse(run, result.message);
+        return refuse_run(run, result.message);
     }
     if (!wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
         name_option(&result);
-        (void)refuse(run, "");
+        (void)refuse_run(run, "");
         (void)snprintf(run->message, sizeof run->message, "%.500s: %.500s", options->script, result.message);
         return WH_RUN_BAD_INPUT;
     }
-    run->mcs.is_file = true;
-    run->mcs.keep_segments = options->keep_segments;
-    run->mcs.limits_missed = options->limits_missed;
-    run->mcs.most_missed = options->most_missed;
-    run->mcs.partners = options->partners;
-    run->mcs.trial = options->error_count > 0 && !options->trial ? &any_trial : options->trial;
-    run->mcs.errors = options->errors;
-    run->mcs.error_count = options->error_count;
+    run->mcs.wanted.is_file = true;
+    run->mcs.wanted.keeps_segments = options->keep_segments;
+    run->mcs.wanted.limits_missed = options->limits_missed;
+    run->mcs.wanted.most_missed = options->most_missed;
+    run->mcs.wanted.partners = options->partners;
+    run->mcs.wanted.trial = options->error_count > 0 && !options->trial ? &any_trial : options->trial;
+    run->mcs.wanted.errors = options->errors;
+    run->mcs.wanted.error_count = options->error_count;
     run->record.errors = options->errors;
     run->record.error_count = options->error_count;
     run->record.trial = options->error_count > 0 ? NULL : options->trial;
-    run->mcs.without_collisions = options->without_collisions;
-    run->mcs.decisions = options->decisions;
-    run->mcs.listener = options->listener;
+    run->mcs.wanted.without_collisions = options->without_collisions;
+    run->mcs.wanted.decisions = options->decisions;
+    run->mcs.wanted.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);
     if (result.status == WH_SANDBOX_OK && run->mcs.lanes) {
         (void)wh_sandbox_protect(wh_sandbox_state(run->sandbox), wh_mcs_wait_for_tasks, NULL, &result);
     }
-    return conclude(run, options, &result);
+    return conclude_run(run, options, &result);
 }
 
 void wh_script_run_close(wh_script_run_t *run) {

@@ -10,34 +10,35 @@ typedef struct {
     const char *const *parameters; /* NAME=VALUE, as --set hands them over */
     size_t parameter_count;
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
-    wh_mcs_listener_t listener; /* all null: nobody listens */
-    bool keep_segments;         /* run->mcs.segments then holds what was played */
+    wh_mcs_listener_t listener; /* all null: no listener */
+    bool keep_segments;         /* run->mcs.kept.segments then holds the played segments */
     bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
-    bool unread_parameters;  /* are no fault: a trial may end before it reads them */
-    const wh_trial_t *trial; /* of a study: the cell has its errors, if layout or script says which */
-    /* Errors that the cell has, by name, as wh_layout_give_errors takes them: then it draws none. */
+    bool unread_parameters;  /* are accepted: a trial may end before it reads them */
+    const wh_trial_t *trial; /* a study's trial: the cell has its errors, if layout or script lists
+                              * them */
+    /* The cell's errors by name, for wh_layout_give_errors: with these it draws none. */
     const char *const *errors;
     size_t error_count;
-    bool without_collisions;   /* nobody looks for them, whatever the layout says */
-    wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
+    bool without_collisions;   /* no collision check, whatever the layout says */
+    wh_decisions_t *decisions; /* all zero at first: keeps commands and readings; null: they are not kept */
 } wh_script_run_options_t;
 
-/* What is left when the script has ended. wh_script_run_close frees it. */
+/* The results when the script has ended. wh_script_run_close frees it. */
 typedef struct {
     wh_sandbox_t *sandbox;
     wh_mcs_t mcs;
     wh_record_t record;
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* why the input was bad */
-    bool is_no_script; /* for it returned something and set up no cell: it is a layout or a module */
+    bool is_no_script; /* it returned something and set up no cell, so it is a layout or a module */
 } wh_script_run_t;
 
 typedef enum {
-    WH_RUN_MET,    /* the script ended and all it expected came true */
-    WH_RUN_FAILED, /* an expectation, the cell, or an uncaught numbered error: the record tells */
-    /* Script, layout or parameter is not usable, the script set up no cell, or it ended well and a parameter
-     * was never read: `message` tells. The record has what came before, and the
-     * message as its failure; its layout is null if there was no cell yet. */
+    WH_RUN_MET,    /* the script ended and all its expectations were met */
+    WH_RUN_FAILED, /* an expectation, the cell, or an uncaught numbered error: see the record */
+    /* Script, layout or parameter is not usable, the script set up no cell, or it ended without error and
+     * never read a parameter: see `message`. The record has everything up to then, with the message as its
+     * failure; its layout is null if there was no cell yet. */
     WH_RUN_BAD_INPUT
 } wh_script_run_outcome_t;
 

@@ -10,7 +10,7 @@
 #include "../text/array.h"
 #include "../text/utf8.h"
 
-/* The record forgets what it holds once it has so many commands. */
+/* The record forgets its commands once it has this many. */
 #define REMEMBERED_COMMANDS 1000
 
 /* Registry keys: the three functions, and the list that keeps the last completion's texts alive. */
@@ -19,15 +19,15 @@ static char complete_key;
 static char play_key;
 static char candidates_key;
 
-static bool refuse(wh_session_t *session, const char *message) {
+static bool refuse_session(wh_session_t *session, const char *message) {
     snprintf(session->message, sizeof session->message, "%s", message);
     return false;
 }
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-/* Runs protected: the prompt, then cell(layout), which connects as the last thing of all: what can fail fails
- * before the link leaves an earlier run. */
+/* Runs protected: the prompt, then cell(layout), which connects last: other failures come before the link
+ * leaves an earlier run. */
 static int open_cell(lua_State *L) {
     wh_mcs_push_prompt(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &play_key);
@@ -44,18 +44,18 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
     const char *layout = options->layout;
     memset(session, 0, sizeof *session);
     session->options = *options;
-    /* A "script" without a folder: so layouts are looked for from the working directory. */
+    /* A "script" without a folder: layouts are then looked for from the working directory. */
     session->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
     if (!session->sandbox ||
         !wh_mcs_open(&session->mcs, session->sandbox, "prompt", &session->record, &result)) {
-        return refuse(session, result.message);
+        return refuse_session(session, result.message);
     }
-    session->mcs.refuses_unread = true;
-    session->mcs.partners = options->partners;
-    session->mcs.listener = options->listener;
+    session->mcs.wanted.refuses_unread = true;
+    session->mcs.wanted.partners = options->partners;
+    session->mcs.wanted.listener = options->listener;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result)) {
-        return refuse(session, result.message);
+        return refuse_session(session, result.message);
     }
     return true;
 }
@@ -68,9 +68,9 @@ bool wh_session_says(const char *line, const char *word) {
     return strncasecmp(begin, word, length) == 0 && begin[length + strspn(begin + length, " ")] == '\0';
 }
 
-/* The session that was is put aside and comes back to the same place, where all that points to it finds it,
- * if the new one cannot be opened. */
-static bool reset(wh_session_t *session, char message[WH_SANDBOX_MESSAGE_BYTES]) {
+/* Puts the old session aside. If the new one cannot be opened, the old one comes back to its place, so
+ * pointers to it stay valid. */
+static bool reset_session(wh_session_t *session, char message[WH_SANDBOX_MESSAGE_BYTES]) {
     const wh_session_options_t options = session->options;
     wh_session_t *before = wh_array_new(1, sizeof *before);
     *before = *session;
@@ -85,6 +85,7 @@ static bool reset(wh_session_t *session, char message[WH_SANDBOX_MESSAGE_BYTES])
         *session = *before;
     }
     session->complaints = before->complaints;
+    session->unmet = before->unmet;
     session->executing = before->executing;
     free(before);
     return opened;
@@ -95,6 +96,44 @@ void wh_session_close(wh_session_t *session) {
     wh_record_free(&session->record);
     wh_sandbox_free(session->sandbox);
     session->sandbox = NULL;
+}
+
+/* ---------------------------------------------------------------------------------------------- questions */
+
+int64_t wh_session_slice(const wh_session_t *session) {
+    return session->mcs.track.slice;
+}
+
+const wh_record_t *wh_session_record(const wh_session_t *session) {
+    return &session->record;
+}
+
+int32_t wh_session_task(const wh_session_t *session) {
+    return session->mcs.recorder.number;
+}
+
+int64_t wh_session_slice_us(const wh_session_t *session) {
+    return session->mcs.track.slice_us;
+}
+
+int64_t wh_session_time_us(const wh_session_t *session) {
+    return session->mcs.track.slice * session->mcs.track.slice_us;
+}
+
+const wh_layout_t *wh_session_layout(const wh_session_t *session) {
+    return session->mcs.layout;
+}
+
+uint64_t wh_session_hash(const wh_session_t *session) {
+    return session->mcs.link->hash(session->mcs.link);
+}
+
+uint32_t wh_session_sensors(const wh_session_t *session) {
+    return session->mcs.state.sensors;
+}
+
+bool wh_session_has_stop(const wh_session_t *session) {
+    return session->mcs.stop.is_requested;
 }
 
 /* ------------------------------------------------------------------------------------------------ answers */
@@ -147,15 +186,18 @@ static wh_status_t status_of(wh_sandbox_reason_t reason) {
     return spent ? WH_STATUS_OUT_OF_BUDGET : WH_STATUS_BAD_ARGUMENT;
 }
 
-static void count_complaints(wh_session_t *session, size_t from) {
+static void count_complaints(wh_session_t *session, size_t from, size_t expectations) {
     for (size_t i = from; i < session->record.event_count; ++i) {
         session->complaints += wh_record_is_complaint(session->record.events[i].event.kind) ? 1 : 0;
+    }
+    for (size_t i = expectations; i < session->record.expectation_count; ++i) {
+        session->unmet += session->record.expectations[i].ok ? 0 : 1;
     }
 }
 
 static void perform_reset(wh_session_t *session, request_t *request) {
     char message[WH_SANDBOX_MESSAGE_BYTES];
-    if (reset(session, message)) {
+    if (reset_session(session, message)) {
         request->status = WH_OK;
         wh_utf8_visible(request->answer, request->size, "OK");
     } else {
@@ -171,7 +213,7 @@ static void forget_old(wh_session_t *session) {
     }
 }
 
-static void perform(wh_session_t *session, request_t *request) {
+static void perform_request(wh_session_t *session, request_t *request) {
     wh_sandbox_result_t result;
     if (wh_session_says(request->line, "RESET")) {
         perform_reset(session, request);
@@ -179,14 +221,15 @@ static void perform(wh_session_t *session, request_t *request) {
     }
     forget_old(session);
     const size_t events = session->record.event_count;
+    const size_t expectations = session->record.expectation_count;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), execute_line, request, &result)) {
         request->status = status_of(result.status);
         write_error(request->answer, request->size, request->status,
                     request->status == WH_STATUS_STOPPED ? "" : result.message);
-        /* An exhausted limit ends a command past all Lua: its record is closed here. */
+        /* An exhausted limit ends a command outside of Lua: its record is closed here. */
         wh_mcs_cut_short(&session->mcs, request->status, result.message);
     }
-    count_complaints(session, events);
+    count_complaints(session, events, expectations);
 }
 
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size) {
@@ -195,17 +238,28 @@ wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *an
         write_error(answer, size, WH_STATUS_BUSY, "");
         return WH_STATUS_BUSY;
     }
-    wh_sandbox_renew(session->sandbox); /* before a stop may come: it would take that back */
+    wh_sandbox_renew(session->sandbox); /* before a stop may come: it would cancel that */
     session->executing = 1;
     if (session->options.report) {
         session->options.report(session->options.report_user, line, WH_OK, NULL);
     }
-    perform(session, &request);
+    perform_request(session, &request);
     if (session->options.report) {
         session->options.report(session->options.report_user, line, request.status, answer);
     }
     session->executing = 0;
     return request.status;
+}
+
+wh_status_t wh_session_execute_for(wh_session_t *session, const wh_mcs_asker_t *asker, const char *line,
+                                   char *answer, size_t size) {
+    if (session->executing) {
+        return wh_session_execute(session, line, answer, size);
+    }
+    session->mcs.asker = *asker;
+    const wh_status_t status = wh_session_execute(session, line, answer, size);
+    session->mcs.asker = (wh_mcs_asker_t){0};
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------- jobs */
@@ -225,6 +279,7 @@ wh_status_t wh_session_play(wh_session_t *session, const wh_mcs_jobs_t *jobs, ch
     session->executing = 1;
     forget_old(session);
     const size_t events = session->record.event_count;
+    const size_t expectations = session->record.expectation_count;
     session->mcs.jobs = *jobs;
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), play_jobs, NULL, &result)) {
         status = status_of(result.status);
@@ -233,7 +288,7 @@ wh_status_t wh_session_play(wh_session_t *session, const wh_mcs_jobs_t *jobs, ch
         wh_mcs_stop_tasks(&session->mcs);
     }
     session->mcs.jobs = (wh_mcs_jobs_t){0};
-    count_complaints(session, events);
+    count_complaints(session, events, expectations);
     session->executing = 0;
     return status;
 }

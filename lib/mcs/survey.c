@@ -1,57 +1,12 @@
 #include "survey.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "../math/trig.h"
 #include "../sim/event_text.h"
 #include "native.h"
 
-/* One turn, rad. */
-static const wh_real_t turn = 2 * WH_PI;
-
-/* ------------------------------------------------------------------------------------------ words for Lua */
-
-/* Theta of the robot, from 1, at stack index 2. */
-static size_t theta_of(lua_State *L, const wh_mcs_t *mcs) {
-    const wh_machine_t *machine = &mcs->layout->machine;
-    size_t first;
-    (void)wh_machine_carrier(machine, (size_t)wh_mcs_index(L, 2, wh_machine_robots(machine)), &first);
-    return first + WH_AXIS_THETA;
-}
-
-/* native.windings(theta, robot): the places farthest below and above theta, within its travel, at which
- * the robot points the same way: a list of none to two, rad. What lies between them is freer than both. */
-static int list_windings(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_travel_t *travel = wh_machine_travel(&mcs->layout->machine, theta_of(L, mcs));
-    const wh_real_t theta = luaL_checknumber(L, 1);
-    const wh_real_t turns[2] = {floor((theta - travel->min + WH_SLACK_RAD) / turn),
-                                floor((travel->max - theta + WH_SLACK_RAD) / turn)};
-    lua_newtable(L);
-    for (int i = 0; i < 2; ++i) {
-        if (turns[i] >= 1) {
-            lua_pushnumber(L, theta + (i == 0 ? -turns[i] : turns[i]) * turn);
-            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
-        }
-    }
-    return 1;
-}
-
-/* native.stand(theta, robot): what is rehearsed next begins there; without theta: at home. */
-static int stand(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const size_t theta = theta_of(L, mcs);
-    wh_real_t home[WH_AXES];
-    wh_machine_home(&mcs->layout->machine, home);
-    mcs->track.axes[theta] = luaL_optnumber(L, 1, home[theta]);
-    return 0;
-}
-
-const luaL_Reg wh_mcs_survey_functions[] = {{"windings", list_windings}, {"stand", stand}, {NULL, NULL}};
-
-/* Registry keys of what looks at a station, of what plays there, and of what turns over there. */
+/* Registry keys of the functions that check a station, play there, and turn over there. */
 static char look_key, play_key, flip_key;
 
 /* -------------------------------------------------------------------------------------------- one station */
@@ -62,10 +17,11 @@ typedef struct {
     const wh_layout_t *layout;
     wh_feasibility_t *check;
     size_t station;
-    size_t from;         /* whose wafers are put down there: its own, or another one's */
-    bool is_home;        /* the robots turn over at home */
-    int32_t blade;       /* WH_NONE: the station's effector; else another gripper on the robot */
-    int32_t first, last; /* slots; 0: none yet */
+    size_t from;          /* the station whose wafers are put there: its own, or another one */
+    bool is_home;         /* the robots turn over at home */
+    int32_t blade;        /* WH_NONE: the station's effector; else another gripper on the robot */
+    int32_t first, last;  /* slots; 0: none yet */
+    size_t round, rounds; /* of all tryouts to be played */
     char word[8];
     char reason[WH_SANDBOX_MESSAGE_BYTES];
 } job_t;
@@ -124,7 +80,7 @@ static void push_function(lua_State *L, job_t *job, lua_CFunction function) {
 
 /* ------------------------------------------------------------------------------------------------ playing */
 
-/* " with UP", unless it is the station's effector that is played. */
+/* " with UP", unless the station's effector is played. */
 static const char *with_blade(const job_t *job, char text[WH_NAME_SIZE + 8]) {
     text[0] = '\0';
     if (job->blade != WH_NONE) {
@@ -133,15 +89,14 @@ static const char *with_blade(const job_t *job, char text[WH_NAME_SIZE + 8]) {
     return text;
 }
 
-/* failed(slot, word, reason), of lua/mcs/reach.lua: a GET or PUT that was played. A wafer that lies on the
- * blade as another station has it may touch this one's ledges: of a cell that does not look for collisions
- * that is a warning. So is what only a command that names the blade meets. */
+/* failed(slot, word, reason), of lua/mcs/reach.lua: a GET or PUT that failed when played. A wafer that
+ * lies on the blade as another station has it may touch this one's ledges: in a cell without a collision
+ * check that is a warning. A failure that only a command naming the blade meets is a warning, too. */
 static int take_failure(lua_State *L) {
     job_t *job = lua_touserdata(L, lua_upvalueindex(1));
-    char unused[WH_EVENT_TEXT_SIZE];
     char with[WH_NAME_SIZE + 8];
     const int32_t slot = (int32_t)luaL_checkinteger(L, 1);
-    const bool touches = wh_tryout_complained(&job->survey->tryout, unused, sizeof unused);
+    const bool touches = wh_tryout_touched(&job->survey->tryout);
     wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station, "%s slot %d: %s%s: %s",
                        job->layout->stations[job->station].name, (int)slot, luaL_checkstring(L, 2),
                        with_blade(job, with), luaL_checkstring(L, 3))
@@ -160,7 +115,7 @@ static int64_t count_slices(const wh_rehearsal_t *rehearsal) {
     return slices;
 }
 
-static const wh_real_t *read_axes(lua_State *L, const wh_layout_t *layout, wh_real_t axes[WH_AXES]) {
+static const wh_real_t *read_cell_axes(lua_State *L, const wh_layout_t *layout, wh_real_t axes[WH_AXES]) {
     luaL_checktype(L, 1, LUA_TTABLE);
     for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
         lua_rawgeti(L, 1, (lua_Integer)axis + 1);
@@ -170,7 +125,7 @@ static const wh_real_t *read_axes(lua_State *L, const wh_layout_t *layout, wh_re
     return axes;
 }
 
-/* `what`: a FLIP and where; null: GET, which a PUT follows. */
+/* `what`: a FLIP and its place; null: GET, followed by a PUT. */
 static void say_too_long(const job_t *job, const char *what, int64_t slices) {
     const int32_t station = job->is_home ? WH_NONE : (int32_t)job->station;
     char with[WH_NAME_SIZE + 8];
@@ -186,15 +141,15 @@ static void say_too_long(const job_t *job, const char *what, int64_t slices) {
     wh_feasibility_warn(job->check);
 }
 
-/* cell.stage(axes, empty, what): a full cell in which the robot stands there; with `empty` a wafer is to be
- * put into that slot. False: what was planned last takes too long to be played, and a warning says so. */
-static int stage(lua_State *L) {
+/* cell.stage(axes, empty, what): makes a full cell in which the robot stands there; with `empty` a wafer
+ * will be put into that slot. False: the last plan takes too long to be played, and a warning says so. */
+static int stage_cell(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     wh_survey_t *survey = job->survey;
     wh_real_t axes[WH_AXES] = {0};
     const int64_t slices = count_slices(&survey->mcs.rehearsal);
     const int32_t empty = (int32_t)luaL_optinteger(L, 2, 0);
-    (void)read_axes(L, job->layout, axes);
+    (void)read_cell_axes(L, job->layout, axes);
     const bool fits = 2 * slices <= WH_TRYOUT_SLICES;
     if (!fits) {
         say_too_long(job, luaL_optstring(L, 3, NULL), slices);
@@ -208,23 +163,23 @@ static int stage(lua_State *L) {
     return 1;
 }
 
-/* cell.move(axes): the robot stands there, with what it holds. */
-static int move(lua_State *L) {
+/* cell.move(axes): the robot stands there, with its held wafers. */
+static int move_robot(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     wh_real_t axes[WH_AXES] = {0};
-    wh_tryout_move(&job->survey->tryout, read_axes(L, job->layout, axes));
+    wh_tryout_move(&job->survey->tryout, read_cell_axes(L, job->layout, axes));
     return 0;
 }
 
-/* cell.begin(): what has been does not count. */
+/* cell.begin(): earlier complaints do not count. */
 static int begin_anew(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     wh_tryout_move(&job->survey->tryout, NULL);
     return 0;
 }
 
-/* cell.complaint(): the cell's first one since then, or nil. */
-static int find_complaint(lua_State *L) {
+/* cell.complaint(): the cell's first complaint since then, or nil. */
+static int find_cell_complaint(lua_State *L) {
     const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
     char text[WH_EVENT_TEXT_SIZE];
     if (wh_tryout_complained(&job->survey->tryout, text, sizeof text)) {
@@ -237,7 +192,7 @@ static int find_complaint(lua_State *L) {
     return 0;
 }
 
-/* What is wrong with a station already would be found here again. */
+/* A station that already has a finding is not played: the finding would come again. */
 static bool is_to_be_played(const job_t *job) {
     bool good = job->layout->stations[job->station].taught;
     for (size_t i = 0; good && i < job->check->count; ++i) {
@@ -250,8 +205,11 @@ static bool is_to_be_played(const job_t *job) {
 }
 
 static void push_cell(lua_State *L, job_t *job) {
-    static const luaL_Reg cell[] = {
-        {"stage", stage}, {"move", move}, {"begin", begin_anew}, {"complaint", find_complaint}, {NULL, NULL}};
+    static const luaL_Reg cell[] = {{"stage", stage_cell},
+                                    {"move", move_robot},
+                                    {"begin", begin_anew},
+                                    {"complaint", find_cell_complaint},
+                                    {NULL, NULL}};
     lua_newtable(L);
     lua_pushlightuserdata(L, job);
     luaL_setfuncs(L, cell, 1);
@@ -308,7 +266,7 @@ static int turn_over(lua_State *L) {
 /* ---------------------------------------------------------------------------------------------- all of it */
 
 /* Runs protected. */
-static int begin(lua_State *L) {
+static int begin_survey(lua_State *L) {
     const job_t *job = lua_touserdata(L, 1);
     wh_mcs_push_survey(L);
     wh_mcs_set_up(L, &job->survey->mcs, job->layout);
@@ -330,18 +288,26 @@ static int look_at_station(lua_State *L) {
     return 0;
 }
 
+static void tell_survey(const job_t *job) {
+    const wh_survey_t *survey = job->survey;
+    if (survey->tell) {
+        survey->tell(survey->user, "visits to stations played", job->round, job->rounds);
+    }
+}
+
 static bool play_by(job_t *job, lua_CFunction function, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+    tell_survey(job);
     wh_sandbox_renew(sandbox);
     const bool good = wh_sandbox_protect(wh_sandbox_state(sandbox), function, job, result);
     wh_tryout_end(&job->survey->tryout);
     return good;
 }
 
-static bool play(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+static bool play_survey(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
     return play_by(job, play_at_station, sandbox, result);
 }
 
-/* What is left of a large cell is not played, and that is said. */
+/* The rest of a large cell is not played, and a warning says so. */
 static bool is_spent_by(const job_t *job, const char *words) {
     const bool spent = job->survey->tryout.slices > WH_TRYOUT_ALL_SLICES;
     char with[WH_NAME_SIZE + 8];
@@ -360,14 +326,14 @@ static bool is_spent(const job_t *job) {
     return is_spent_by(job, "GET and PUT");
 }
 
-/* A station with wafers of others, up to the first finding. */
+/* Plays a station with wafers of others, up to the first finding. */
 static bool play_carried(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
     const size_t found = job->check->count;
     bool good = true;
     for (job->from = 0; good && !*spent && job->from < job->layout->station_count; ++job->from) {
         if (is_to_be_played(job) && wh_tryout_is_new(&job->survey->tryout, job->from, job->station)) {
             *spent = is_spent(job);
-            good = *spent || play(job, sandbox, result);
+            good = *spent || play_survey(job, sandbox, result);
         }
         if (job->check->count > found) {
             break;
@@ -376,7 +342,7 @@ static bool play_carried(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t 
     return good;
 }
 
-/* Wafers of other stations are not played in a cell that is too large, and that is said. */
+/* Wafers of other stations are not played in a cell that is too large, and a warning says so. */
 static bool is_too_large(const job_t *job) {
     const size_t slots = wh_tryout_slots(&job->survey->tryout);
     const bool large = slots > WH_TRYOUT_WAFERS;
@@ -390,7 +356,7 @@ static bool is_too_large(const job_t *job) {
     return large;
 }
 
-/* A station with the robot's other blades. */
+/* Plays a station with the robot's other blades. */
 static bool play_blades(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
     const wh_layout_t *layout = job->layout;
     const int32_t count = (int32_t)layout->machine.gripper_count;
@@ -403,21 +369,21 @@ static bool play_blades(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *
             is_to_be_played(job)) {
             job->blade = g;
             *spent = is_spent(job);
-            good = *spent || play(job, sandbox, result);
+            good = *spent || play_survey(job, sandbox, result);
         }
     }
     job->blade = WH_NONE;
     return good;
 }
 
-/* A station with its own wafers. */
+/* Plays a station with its own wafers. */
 static bool play_own(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
     job->from = job->station;
     *spent = is_spent(job);
-    return *spent || !is_to_be_played(job) || play(job, sandbox, result);
+    return *spent || !is_to_be_played(job) || play_survey(job, sandbox, result);
 }
 
-/* The layout can turn wafers over. */
+/* True if the layout can turn wafers over. */
 static bool has_flips(const wh_layout_t *layout) {
     bool has = false;
     for (const wh_carrier_t *robot = layout->machine.carrier; robot; robot = robot->next) {
@@ -429,7 +395,7 @@ static bool has_flips(const wh_layout_t *layout) {
     return has;
 }
 
-/* FLIP at home, in a cell that is not spent yet. */
+/* Plays FLIP at home, while slices are left. */
 static bool play_home(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
     job->is_home = true;
     const bool good = !has_flips(job->layout) || play_by(job, turn_over, sandbox, result);
@@ -437,7 +403,7 @@ static bool play_home(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *re
     return good;
 }
 
-/* FLIP in front of a station and in its clamp. */
+/* Plays FLIP in front of a station and in its clamp. */
 static bool play_flips(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
     if (!has_flips(job->layout)) {
         return true;
@@ -449,16 +415,18 @@ static bool play_flips(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *r
 
 typedef bool (*step_t)(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent);
 
-/* Each station with its own wafers, then with those that lie on the blade as other stations have them, then
- * with the other blades; and what turns over. */
+/* Plays each station with its own wafers, then with wafers that lie on the blade as other stations have
+ * them, then with the other blades; then the FLIPs. */
 static bool play_all(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
     static const step_t steps[] = {play_own, play_carried, play_blades, play_flips};
     bool good = true, spent = false;
+    job->rounds = sizeof steps / sizeof *steps * job->layout->station_count;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i) {
         if (steps[i] == play_carried && good && !spent && is_too_large(job)) {
             continue;
         }
         for (job->station = 0; good && !spent && job->station < job->layout->station_count; ++job->station) {
+            job->round = i * job->layout->station_count + job->station;
             good = steps[i](job, sandbox, result, &spent);
         }
     }
@@ -469,10 +437,14 @@ bool wh_survey_open(wh_survey_t *survey, wh_sandbox_t *sandbox, const wh_layout_
                     wh_feasibility_t *check, wh_sandbox_result_t *result) {
     lua_State *L = wh_sandbox_state(sandbox);
     job_t job = {.survey = survey, .layout = layout, .check = check, .blade = WH_NONE};
+    wh_survey_tell_t *const told = survey->tell;
+    void *const user = survey->user;
     memset(survey, 0, sizeof *survey);
+    survey->tell = told;
+    survey->user = user;
     wh_sandbox_renew(sandbox);
     bool good = wh_mcs_open(&survey->mcs, sandbox, layout->path, &survey->record, result) &&
-                wh_sandbox_protect(L, begin, &job, result);
+                wh_sandbox_protect(L, begin_survey, &job, result);
     wh_tryout_open(&survey->tryout, &survey->mcs, layout);
     for (; good && job.station < layout->station_count; ++job.station) {
         wh_sandbox_renew(sandbox);

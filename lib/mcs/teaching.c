@@ -1,5 +1,5 @@
-/* Teaching: what a blade that carried a wafer through a station's beam tells of where the station is, and the
- * beam; and what a probe tells that touched the station's block. lua/mcs/teaching.lua moves the arm. */
+/* Teaching finds where a station is, and its beam, from a blade that carried a wafer through the beam, or
+ * from a probe that touched the station's block. lua/mcs/teaching.lua moves the arm. */
 #include "../align/teaching.h"
 
 #include <math.h>
@@ -8,16 +8,16 @@
 #include "../script/wh_module_values.h"
 #include "native.h"
 
-/* How well nobody knows where a beam is, nor a station before it was taught, mm. */
+/* The deviation of a beam's place, and of a station's before it was taught, mm. */
 #define SD_BEAM 1
 #define SD_PLACE 0.5
 /* The least deviation of a crossing, mm. */
 #define LEAST_SD 0.001
 
-/* Where the gripper was as a beam changed; between two slices its heading is the one's. */
+/* The gripper's place when a beam changed; between two slices it has the heading of the first. */
 static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing,
                        wh_pose_t *base_from_gripper) {
-    const wh_pass_t *pass = &mcs->pass;
+    const wh_pass_t *pass = &mcs->measuring.pass;
     const double slices = crossing->time * 1e6 / (double)mcs->layout->slice_us - (double)pass->armed_seq;
     const size_t slice = (size_t)slices;
     if (slice + 1 >= pass->place_count) {
@@ -31,15 +31,15 @@ static bool find_place(const wh_mcs_t *mcs, const wh_pass_crossing_t *crossing,
     return true;
 }
 
-/* native.begin_teaching(station, shift, gripper): nothing is measured yet. Returns the pose that is the guess
- * for the gripper's robot: the station's as the layout has it, or moved by what a host has set, see
- * native.shift; and where that robot takes it to be, which in a trial it may have been taught elsewhere. */
+/* native.begin_teaching(station, shift, gripper): nothing is measured yet. Returns the guess for the
+ * gripper's robot: the station's pose from the layout, or as a host has set it, see native.shift. Also
+ * returns the pose that the robot believes; in a trial it may have been taught another one. */
 static int begin_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t station = (size_t)wh_mcs_index(L, 1, mcs->layout->station_count);
     const int32_t gripper = wh_mcs_index(L, 3, mcs->layout->machine.gripper_count);
     const size_t robot = mcs->layout->machine.mounts[gripper].robot;
-    wh_mcs_teaching_t *teaching = &mcs->teaching;
+    wh_mcs_teaching_t *teaching = &mcs->measuring.teaching;
     teaching->count = 0;
     teaching->base_from_station = wh_mcs_believed_station(L, 2, mcs, station, robot);
     wh_lua_push_pose(L, &teaching->base_from_station);
@@ -49,8 +49,8 @@ static int begin_teaching(lua_State *L) {
     return 2;
 }
 
-/* native.way_in(station, robot): of a robot that comes on a way in of its own the pose that has it as x, else
- * nil; and the station's; both as the layout has them. */
+/* native.way_in(station, robot): for a robot with its own way in the pose whose x is that way, else nil; and
+ * the station's pose; both from the layout. */
 static int push_way_in(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
@@ -67,17 +67,17 @@ static int push_way_in(lua_State *L) {
     return 2;
 }
 
-/* native.add_teaching(x, y, heading): the crossings of the last centring were of the rim of the wafer that
- * the gripper took with its middle at (x, y) of base, heading so, rad, or without that as the station's x
- * does. Returns how many there are now. */
+/* native.add_teaching(x, y, heading): adds the crossings of the last centring: of the rim of the wafer
+ * that the gripper took with its middle at (x, y) of base and this heading, rad (without it the heading of
+ * the station's x). Returns the number of crossings now. */
 static int add_teaching(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_centring_record_t *passed = &mcs->centring;
-    wh_mcs_teaching_t *teaching = &mcs->teaching;
+    const wh_centring_record_t *passed = &mcs->measuring.centring;
+    wh_mcs_teaching_t *teaching = &mcs->measuring.teaching;
     for (size_t i = 0; i < passed->count && teaching->count < WH_MCS_LESSONS; ++i) {
         const wh_crossing_t *crossing = &passed->crossings[i].crossing;
         const double jitter = mcs->layout->doors[crossing->beam].jitter;
-        const double sd = hypot(crossing->vx, crossing->vy) * jitter;
+        const double sd = sqrt(crossing->vx * crossing->vx + crossing->vy * crossing->vy) * jitter;
         wh_teach_measurement_t *lesson = &teaching->lessons[teaching->count];
         memset(lesson, 0, sizeof *lesson);
         lesson->kind = WH_TEACH_CARRIED;
@@ -113,8 +113,8 @@ static void set_triple(lua_State *L, const char *name, const double values[3]) {
     lua_setfield(L, -2, name);
 }
 
-/* native.block(station): what a probe touches there: { at, size = in the station's frame, mm, gripper = with
- * the probe, ball = its centre in that gripper's frame, radius = its own }. */
+/* native.block(station): the block that a probe touches there: { at, size = in the station's frame, mm,
+ * gripper = with the probe, ball = its centre in that gripper's frame, radius = its own }. */
 static int push_block(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
@@ -130,13 +130,13 @@ static int push_block(lua_State *L) {
 }
 
 /* native.touched(): { closed = if the switch that was armed is closed now, latched = if it has closed since,
- * missed = latches that no state brought, skipped = if slices were lost meanwhile, so that nobody knows where
- * the ball was }. */
+ * missed = latches that no state brought, skipped = if slices were lost meanwhile, so that the ball's place
+ * is not known }. */
 static int push_touched(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_pass_t *pass = &mcs->pass;
+    const wh_pass_t *pass = &mcs->measuring.pass;
     const uint32_t bit = UINT32_C(1) << pass->order.first;
-    wh_decisions_measured(mcs->decisions, "what a probe feels");
+    wh_decisions_measured(mcs->wanted.decisions, "what a probe feels");
     lua_createtable(L, 0, 3);
     wh_lua_set_boolean(L, "closed", (mcs->state.physics->latches.broken & bit) != 0);
     wh_lua_set_boolean(L, "latched", pass->latch_count > 0 && pass->latches[0].edge == WH_CROSSING_IN);
@@ -145,19 +145,19 @@ static int push_touched(lua_State *L) {
     return 1;
 }
 
-/* native.add_touch(station, face): the switch closed where the pass's first latch says, at this face of the
- * block, from 1. Returns false if motion control cannot tell where the gripper was then. */
+/* native.add_touch(station, face): adds the touch of the pass's first latch, at this face of the block,
+ * from 1. Returns false if motion control cannot tell where the gripper was then. */
 static int add_touch(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     int32_t station = 0;
     const wh_layout_block_t *block = block_of(L, mcs, &station);
     const wh_layout_probe_t *probe = &mcs->layout->probe;
     const wh_block_face_t face = wh_layout_block_face(block, (size_t)wh_mcs_index(L, 2, WH_BLOCK_FACES));
-    const wh_latch_t *latch = &mcs->pass.latches[0];
+    const wh_latch_t *latch = &mcs->measuring.pass.latches[0];
     const double slice_s = (double)mcs->layout->slice_us / 1e6;
     const double since = (double)(latch->slice - 1) + latch->part;
-    const wh_pass_crossing_t at = {.time = ((double)mcs->pass.armed_seq + since) * slice_s};
-    wh_mcs_teaching_t *teaching = &mcs->teaching;
+    const wh_pass_crossing_t at = {.time = ((double)mcs->measuring.pass.armed_seq + since) * slice_s};
+    wh_mcs_teaching_t *teaching = &mcs->measuring.teaching;
     wh_teach_measurement_t lesson = {.kind = WH_TEACH_TOUCH,
                                      .sd = probe->noise > LEAST_SD ? probe->noise : LEAST_SD,
                                      .x = probe->at[0],
@@ -166,7 +166,7 @@ static int add_touch(lua_State *L) {
                                      .radius = probe->radius,
                                      .distance = face.sign * face.middle[face.axis]};
     lesson.normal[face.axis] = face.sign;
-    const bool is_known = mcs->pass.latch_count > 0 && teaching->count < WH_MCS_LESSONS &&
+    const bool is_known = mcs->measuring.pass.latch_count > 0 && teaching->count < WH_MCS_LESSONS &&
                           find_place(mcs, &at, &lesson.base_from_gripper);
     if (is_known) {
         teaching->lessons[teaching->count] = lesson;
@@ -191,7 +191,7 @@ static int arm_touch(lua_State *L) {
 
 /* -------------------------------------------------------------------------------------------- the whole */
 
-/* What is believed of the station, and of the beam if there was one: it stands where the layout says. */
+/* The believed places of the station, and of the beam if there was one: as in the layout. */
 static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pass,
                                  const wh_pose_t *believed) {
     const int32_t first = pass->order.first;
@@ -205,16 +205,16 @@ static wh_teach_guess_t guess_of(const wh_layout_t *layout, const wh_pass_t *pas
     return guess;
 }
 
-/* native.solve_teaching(): the last pass's station and its first beam by all that was added: { error = the
- * status, x, y, z = by how much the station is off in base, mm, yaw = rad, sd_x, sd_y, sd_z, sd_yaw, beam_x,
- * beam_y = the beam likewise, largest = what remains of the worst measurement, in deviations }; of an error
- * only that. */
+/* native.solve_teaching(): the last pass's station and its first beam from all that was added: { error = the
+ * status, x, y, z = the station's offset in base, mm, yaw = rad, sd_x, sd_y, sd_z, sd_yaw, beam_x, beam_y =
+ * the beam likewise, largest = the residual of the worst measurement, in deviations }; with an error only
+ * `error`. */
 static int solve_teaching(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_mcs_teaching_t *teaching = &mcs->teaching;
-    const wh_teach_guess_t guess = guess_of(mcs->layout, &mcs->pass, &teaching->base_from_station);
+    const wh_mcs_teaching_t *teaching = &mcs->measuring.teaching;
+    const wh_teach_guess_t guess = guess_of(mcs->layout, &mcs->measuring.pass, &teaching->base_from_station);
     wh_taught_t taught;
-    wh_decisions_measured(mcs->decisions, "teaching");
+    wh_decisions_measured(mcs->wanted.decisions, "teaching");
     const wh_status_t status = wh_teach_solve(&guess, teaching->lessons, teaching->count, &taught, NULL);
     lua_createtable(L, 0, 12);
     wh_lua_set_integer(L, "error", status);

@@ -8,7 +8,7 @@
 #include "../layout/grips.h"
 #include "../math/trig.h"
 
-/* What wh_vacuum_validate allows, s. */
+/* The longest time that wh_vacuum_validate allows, s. */
 #define LONGEST_BUILD 3600
 
 static wh_mat3_t turn_of(const wh_displacement_t *drawn) {
@@ -21,7 +21,8 @@ static void place_station(wh_pose_t *base_from_station, const wh_displacement_t 
     base_from_station->r = wh_vec3_add(&base_from_station->r, &drawn->moved);
 }
 
-/* Noise is the trial's own. With errors by name it is the plain run's: they change what they name alone. */
+/* The noise is the trial's own. With errors by name it is the plain run's: they change only what they
+ * name. */
 static uint64_t noise_of(const wh_trial_cell_t *trial_cell, uint64_t seed) {
     if (trial_cell->layout.errors->given) {
         return seed;
@@ -29,7 +30,7 @@ static uint64_t noise_of(const wh_trial_cell_t *trial_cell, uint64_t seed) {
     return wh_hash_word(wh_hash_word(seed, trial_cell->trial.seed), trial_cell->trial.trial);
 }
 
-/* A chuck goes with its station, and so does its edge sensor. */
+/* A chuck moves with its station, and so does its edge sensor. */
 static void place_chucks(wh_trial_cell_t *trial_cell, int32_t station, const wh_displacement_t *drawn) {
     wh_machine_t *machine = &trial_cell->layout.machine;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
@@ -61,7 +62,7 @@ static void place_scanners(wh_trial_cell_t *trial_cell) {
     }
 }
 
-/* Beams go with their station, too; faces are not off in it. */
+/* Beams move with their station, too; faces have no own offset in it. */
 static void place_beams(wh_trial_cell_t *trial_cell) {
     wh_layout_t *layout = &trial_cell->layout;
     for (size_t b = 0; b < layout->beam_count; ++b) {
@@ -75,7 +76,7 @@ static void place_beams(wh_trial_cell_t *trial_cell) {
     }
 }
 
-/* To the last bit. */
+/* True if they are equal to the last bit. */
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
 }
@@ -102,7 +103,7 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
     }
 }
 
-/* Only edge sensors and beams see them, and edge grips meet them. */
+/* Only edge sensors and beams see rims, and only edge grips touch them. */
 static void place_rims(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_room_t *room) {
     const bool has_edge = wh_layout_has_edge(layout);
     const bool has_rims = wh_layout_has_rims(layout);
@@ -147,7 +148,7 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
 }
 
 /* The angle by which the slot's way in must turn about base's z, so that an arm without a wrist still comes
- * there: the slot has moved, and is as far beside the arm's middle as before. */
+ * there. The slot has moved; its distance from the arm's middle line is unchanged. */
 static wh_real_t turn_along_arm(const wh_chain_t *chain, double rail, const wh_pose_t *before,
                                 const wh_vec3_t *now) {
     const wh_vec3_t along = wh_mat3_column(&chain->base_from_robot.R, 0);

@@ -1,12 +1,12 @@
-/* A trial's cell: what a layout describes, with the errors that the trial has drawn.
+/* A trial's cell: the layout's cell with the errors that the trial has drawn.
  *
- * Motion control goes by the layout, the simulator by this cell: stations, with the wafers in them, stand
- * beside where they were taught, wafers lie beside their places and have rims of their own, beams stand
- * beside where they are taken to be and latch late, valves and vacuum act late. Of several robots each was
- * taught a station by itself: that stands where the layout has it, only turned, and motion control goes
- * where the robot was taught it, wh_trial_cell_teach. Each trial has noise of its own in its edge sensors
- * and beams, but for errors that are given by name: these change what they name alone, and leave noise as
- * a run without errors has it.
+ * Motion control uses the layout, the simulator uses this cell. Stations, with the wafers in them, stand
+ * beside their taught places. Wafers lie beside their places and have their own rims. Beams stand beside
+ * their assumed places and latch late; valves and vacuum act late. With several robots each robot was
+ * taught a station separately: the station stands where the layout has it, only turned, and motion control
+ * goes where the robot was taught it, see wh_trial_cell_teach. Each trial has its own noise in its edge
+ * sensors and beams. But errors given by name change only what they name; the noise is then as in a run
+ * without errors.
  */
 #ifndef WH_MCS_TRIAL_CELL_H
 #define WH_MCS_TRIAL_CELL_H
@@ -14,11 +14,11 @@
 #include "../layout/layout.h"
 #include "../sim/simulator.h"
 
-/* So many slices back it is remembered what the valves were told: a power of two above
+/* The slices for which the valves' commands are remembered: a power of two above
  * WH_STUDY_LAG_SLICES. */
 #define WH_TRIAL_CELL_PAST 8192
 
-/* Room for what a trial's cell has of its own: of the layout's stations and wafers. */
+/* Room for the trial's own stations and wafers. */
 typedef struct {
     wh_station_t *places;
     wh_wafer_t *start;
@@ -28,13 +28,13 @@ typedef struct {
     wh_pose_t *supports; /* wh_layout_count_supports of them */
 } wh_trial_room_t;
 
-/* `layout` shares all but places, start, rims, edge_wafers, supports, machine, physics and cell with the
- * layout that it was made of. */
+/* `layout` shares everything except places, start, rims, edge_wafers, supports, machine, physics and
+ * cell with the layout that it was made from. */
 typedef struct {
     wh_trial_t trial;
     wh_layout_t layout;
-    bool chucks_moved;                /* a gripper on a chuck is elsewhere than the layout has it */
-    int64_t lag[WH_GRIPPERS];         /* slices that the gripper's valve acts late */
+    bool chucks_moved;                /* a gripper on a chuck is not where the layout has it */
+    int64_t lag[WH_GRIPPERS];         /* the delay of the gripper's valve, in slices */
     uint8_t told[WH_TRIAL_CELL_PAST]; /* bit g of entry n: gripper g's valve was told to close in slice n */
 } wh_trial_cell_t;
 
@@ -48,16 +48,16 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
  * rail stands at `rail`. */
 void wh_taught_move(const wh_chain_t *chain, double rail, const wh_vec3_t *aside, wh_pose_t *base_from_slot);
 
-/* How far beside where the layout has it the trial draws that a robot was taught a station, in base, mm; zero
- * of a robot alone, for which the station stands elsewhere instead. */
+/* The drawn offset, in base, mm, of a station as a robot was taught it from its place in the layout. Zero for
+ * a single robot: the station itself is then moved. */
 wh_vec3_t wh_trial_cell_aside(const wh_trial_cell_t *trial_cell, size_t station, size_t robot);
 
-/* Moves a slot of the station, as motion control takes it, by that. */
+/* Moves a slot of the station, as motion control believes it, by that offset. */
 void wh_trial_cell_teach(const wh_trial_cell_t *trial_cell, size_t station, size_t robot, double rail,
                          wh_pose_t *base_from_slot);
 
-/* Replaces what the valves are told in slice `command->seq` by what they do, late. To be called for each
- * slice in turn, from 1. */
+/* Replaces the valves' commands in slice `command->seq` by the delayed ones. Call it for each slice in
+ * order, from 1. */
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command);
 
 #endif

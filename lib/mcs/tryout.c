@@ -17,7 +17,7 @@ void wh_tryout_open(wh_tryout_t *tryout, wh_mcs_t *mcs, const wh_layout_t *layou
     tryout->lifts = wh_array_new(layout->station_count, sizeof *tryout->lifts);
 }
 
-static void forget(wh_tryout_t *tryout) {
+static void forget_tryout(wh_tryout_t *tryout) {
     free(tryout->full.wafers);
     free(tryout->full.start);
     free(tryout->edge_wafers);
@@ -48,7 +48,7 @@ size_t wh_tryout_slots(const wh_tryout_t *tryout) {
     return count;
 }
 
-/* Of a layout without edge grips there are none. */
+/* A layout without edge grips has none. */
 static void set_edge(wh_tryout_t *tryout, size_t w, const wh_rim_t *rim) {
     if (tryout->edge_wafers) {
         tryout->edge_wafers[w] = wh_layout_edge_wafer(rim);
@@ -69,7 +69,7 @@ static void add_station(wh_tryout_t *tryout, size_t station) {
     }
 }
 
-/* The layout's own wafers lie where it puts them. `firsts`: the index of each station's first wafer. */
+/* Moves the layout's own wafers to where it puts them. `firsts`: the index of each station's first wafer. */
 static void move_known(wh_tryout_t *tryout, const size_t firsts[]) {
     const wh_layout_t *layout = tryout->layout;
     wh_layout_t *full = &tryout->full;
@@ -84,14 +84,14 @@ static void move_known(wh_tryout_t *tryout, const size_t firsts[]) {
     }
 }
 
-static void fill(wh_tryout_t *tryout, size_t station) {
+static void fill_station(wh_tryout_t *tryout, size_t station) {
     const wh_layout_t *layout = tryout->layout;
     wh_layout_t *full = &tryout->full;
     const size_t own = slots_of(layout, station);
     const size_t all = wh_tryout_slots(tryout);
     const bool alone = all > own + WH_TRYOUT_WAFERS;
     size_t *firsts = wh_array_new(layout->station_count, sizeof *firsts);
-    forget(tryout);
+    forget_tryout(tryout);
     *full = *layout;
     full->wafer_count = 0;
     full->wafers = wh_array_new(alone ? own : all, sizeof *full->wafers);
@@ -148,7 +148,7 @@ static void take_away(wh_tryout_t *tryout, size_t station, int32_t slot) {
     }
 }
 
-static wh_status_t set_up(wh_tryout_t *tryout) {
+static wh_status_t set_up_tryout(wh_tryout_t *tryout) {
     const wh_layout_t *full = &tryout->full;
     wh_status_t status = wh_simulator_init(&tryout->simulator, &full->grasp, &tryout->storage, &full->cell);
     if (status == WH_OK) {
@@ -175,14 +175,14 @@ wh_status_t wh_tryout_begin(wh_tryout_t *tryout, size_t station, const wh_real_t
                             int32_t empty) {
     wh_mcs_t *mcs = tryout->mcs;
     if (tryout->station != (int32_t)station) {
-        fill(tryout, station);
+        fill_station(tryout, station);
         take_memory(tryout);
     }
     const wh_layout_t *full = &tryout->full;
     tryout->slices += mcs->track.slice;
     memcpy(tryout->storage.wafers, full->start, full->wafer_count * sizeof *full->start);
     take_away(tryout, to, empty);
-    const wh_status_t status = set_up(tryout);
+    const wh_status_t status = set_up_tryout(tryout);
     if (status == WH_OK) {
         use_layout(mcs, full);
         wh_simulator_view(&tryout->simulator, &mcs->state);
@@ -192,7 +192,7 @@ wh_status_t wh_tryout_begin(wh_tryout_t *tryout, size_t station, const wh_real_t
     return status;
 }
 
-/* A command that is tried comes through doors that are open. */
+/* Opens the doors: a tried command goes through open doors. */
 static void open_doors(wh_tryout_t *tryout) {
     const wh_machine_t *machine = &tryout->full.machine;
     for (size_t d = 0; d < machine->door_count; ++d) {
@@ -215,7 +215,7 @@ void wh_tryout_move(wh_tryout_t *tryout, const wh_real_t axes[WH_AXES]) {
 
 /* ------------------------------------------------------------------------------------------- on the blade */
 
-/* Poses that are no farther apart are one, mm. */
+/* Poses that are not farther apart count as equal, mm. */
 #define SAME_PLACE WH_REAL(1e-3)
 #define SAME_TILT WH_REAL(1e-5)
 
@@ -228,7 +228,7 @@ void wh_tryout_note_lift(wh_tryout_t *tryout, size_t station) {
     }
 }
 
-/* Turned about its axis a wafer lies as it did. */
+/* True if they are equal; a turn of the wafer about its axis does not count. */
 static bool is_same_lift(const wh_tryout_t *tryout, size_t a, size_t b) {
     const wh_pose_t *one = &tryout->lifts[a].gripper_from_wafer;
     const wh_pose_t *other = &tryout->lifts[b].gripper_from_wafer;
@@ -270,7 +270,7 @@ static const char *find_name(const void *user, wh_name_kind_t kind, int32_t inde
     return wh_layout_part_name(full, index);
 }
 
-/* Of a contact the two parts alone: one may be the wafer that the whole text begins with. */
+/* For a contact it writes only the two parts: one may be the wafer that the whole text begins with. */
 static void put_event(const wh_event_t *event, const wh_event_names_t *names, char *text, size_t size) {
     const bool close = event->kind == WH_EVENT_TOO_CLOSE;
     const bool contact = close || event->kind == WH_EVENT_HIT || event->kind == WH_EVENT_UNDECIDED;
@@ -282,8 +282,8 @@ static void put_event(const wh_event_t *event, const wh_event_names_t *names, ch
     }
 }
 
-/* The first complaint; but a contact, if what comes first is only too close. */
-static const wh_event_t *find_complaint(const wh_record_t *record) {
+/* The first complaint; or the first contact, if the first complaint is only too close. */
+static const wh_event_t *find_first_complaint(const wh_record_t *record) {
     const wh_event_t *first = NULL;
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
@@ -298,9 +298,14 @@ static const wh_event_t *find_complaint(const wh_record_t *record) {
     return first;
 }
 
+bool wh_tryout_touched(const wh_tryout_t *tryout) {
+    const wh_event_t *complaint = find_first_complaint(tryout->mcs->recorder.record);
+    return complaint && wh_record_is_contact(complaint->kind);
+}
+
 bool wh_tryout_complained(const wh_tryout_t *tryout, char *text, size_t size) {
     const wh_event_names_t names = {find_name, &tryout->full, 1, &tryout->full.grasp.tolerance, NULL};
-    const wh_event_t *complaint = find_complaint(tryout->mcs->recorder.record);
+    const wh_event_t *complaint = find_first_complaint(tryout->mcs->recorder.record);
     if (complaint) {
         put_event(complaint, &names, text, size);
     }
@@ -320,7 +325,7 @@ void wh_tryout_end(wh_tryout_t *tryout) {
 }
 
 void wh_tryout_close(wh_tryout_t *tryout) {
-    forget(tryout);
+    forget_tryout(tryout);
     free(tryout->lifts);
     memset(tryout, 0, sizeof *tryout);
 }

@@ -94,7 +94,7 @@ wh_status_t wh_carrier_init(wh_carrier_t *carrier, const wh_chain_t *chain) {
     *carrier = calls;
     carrier->chain = *chain;
     list_axes(carrier);
-    if (chain->kind == WH_CHAIN_TRZ) { /* a move asks for sound limits of each axis, moved or not */
+    if (chain->kind == WH_CHAIN_TRZ) { /* a move requires sound limits of all axes, moved or not */
         carrier->chain.limits[WH_CHAIN_YAW] = chain->limits[WH_CHAIN_THETA];
     }
     return WH_OK;

@@ -201,7 +201,7 @@ static wh_pose_t wrist_of(const wh_chain_t *chain, const wh_pose_t *base_from_ef
     return wrist;
 }
 
-/* Sets tilts and Z and returns where in the plane the wrist is; false if the wrist is not level. */
+/* Sets tilts and Z and returns the wrist's place in the plane; false if the wrist is not level. */
 static bool find_plane(const wh_chain_t *chain, const wh_pose_t *wrist, wh_real_t q[WH_CHAIN_AXES],
                        wh_plane_t *plane) {
     const wh_vec3_t normal = wh_mat3_column(&wrist->R, 2);

@@ -21,7 +21,7 @@ static wh_status_t check_arguments(const wh_chain_line_t *line, const wh_chain_t
     return status == WH_OK ? wh_chain_check_travel(chain, from_q) : status;
 }
 
-/* The travel as a step in the column's plane, and along the column. */
+/* The travel as a step within the column's plane, and along the column. */
 static wh_vec3_t step_in_plane(const wh_chain_t *chain, const wh_real_t q[WH_CHAIN_AXES],
                                const wh_vec3_t *travel) {
     wh_vec3_t step = *travel;
@@ -35,7 +35,7 @@ static wh_vec3_t step_in_plane(const wh_chain_t *chain, const wh_real_t q[WH_CHA
     return step;
 }
 
-/* Caps along the line in base, as they are along the step, which a tilt makes longer or shorter. */
+/* Converts caps along the line in base to caps along the step, which a tilt makes longer or shorter. */
 static wh_line_caps_t caps_of_step(const wh_line_caps_t *caps, const wh_vec3_t *travel, const wh_vec3_t *step,
                                    bool has_tilt) {
     wh_line_caps_t own = *caps;
@@ -66,7 +66,7 @@ static wh_robot_t robot_of(const wh_chain_t *chain, wh_real_t ahead) {
     return robot;
 }
 
-/* TRZ: the step leads along the arm, and theta stays where it is to the last bit. */
+/* TRZ: the step is along the arm, and theta stays constant to the last bit. */
 static wh_status_t plan_along_arm(wh_line_t *path, const wh_chain_t *chain, const wh_real_t from_q[],
                                   const wh_vec3_t *step, const wh_line_caps_t *caps) {
     wh_real_t s;
@@ -87,7 +87,7 @@ static wh_status_t plan_along_arm(wh_line_t *path, const wh_chain_t *chain, cons
     return status;
 }
 
-/* TRZY: theta of the arm, which its heading leads. */
+/* TRZY: theta of the arm, which its heading is ahead of. */
 static wh_status_t plan_with_wrist(wh_line_t *path, const wh_chain_t *chain, const wh_real_t from_q[],
                                    const wh_vec3_t *step, const wh_line_caps_t *caps) {
     const wh_robot_t robot = robot_of(chain, 0);

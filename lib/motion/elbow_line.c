@@ -7,19 +7,21 @@
 #include "plane_internal.h"
 #include "turns_internal.h"
 
-/* Closer to straight, a joint has no speed that follows a line. */
-#define LEAST_SINE WH_REAL(0.01)
+#define LEAST_SINE WH_CHAIN_LEAST_SINE
 
-#define STRETCHES 64 /* of the way, for the joints' first derivatives and travel */
-#define INSTANTS 16  /* of a phase of the profile, at first */
+/* A line whose level share is less goes straight up or down. */
+#define LEAST_SHARE (WH_SLACK_RAD / 1000)
+
+#define STRETCHES 64 /* parts of the line, for the joints' first derivatives and travel */
+#define INSTANTS 16  /* instants of a phase of the profile, at first */
 #define MOST_INSTANTS 1024
 #define HALVINGS 40
 
-/* Of second differences, as a share of the largest value: below, what lies between instants is bounded
- * well. */
+/* The limit of second differences, as a share of the largest value: below it, values between instants are
+ * bounded well. */
 #define SMOOTH WH_REAL(0.02)
 
-/* The joints, as they stand in arrays here. */
+/* The indices of the joints in the arrays here. */
 enum { SHOULDER, ELBOW, WRIST, JOINTS };
 
 static const size_t joint_axes[JOINTS] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_YAW};
@@ -38,7 +40,22 @@ static wh_real_t side_of(const wh_chain_line_t *line) {
     return line->from[WH_CHAIN_REACH] < 0 ? -WH_REAL(1.0) : WH_REAL(1.0);
 }
 
+/* Straight up or down with the arm nearly stretched or folded: the joints stand, and no root is taken of what
+ * rounding may have made negative. */
+static bool stands(const wh_chain_line_t *line) {
+    const wh_vec3_t *d = &line->path.direction;
+    return wh_real_abs(d->x) <= LEAST_SHARE && wh_real_abs(d->y) <= LEAST_SHARE &&
+           wh_real_abs(line->start_y) < LEAST_SINE * line->links[1];
+}
+
 void wh_elbow_line_axes(const wh_chain_line_t *line, wh_real_t along, wh_real_t q[WH_CHAIN_AXES]) {
+    q[WH_CHAIN_Z] = line->from[WH_CHAIN_Z] + along * line->path.direction.z;
+    if (stands(line)) {
+        for (size_t joint = 0; joint < JOINTS; ++joint) {
+            q[joint_axes[joint]] = line->from[joint_axes[joint]];
+        }
+        return;
+    }
     const wh_real_t x = x_at(line, along);
     const wh_real_t y = y_at(line, along);
     const wh_bend_t bend = wh_bend_for(line->links, x, y);
@@ -51,15 +68,21 @@ void wh_elbow_line_axes(const wh_chain_line_t *line, wh_real_t along, wh_real_t 
     q[WH_CHAIN_THETA] = line->from[WH_CHAIN_THETA] + shoulder;
     q[WH_CHAIN_REACH] = elbow;
     q[WH_CHAIN_YAW] = line->from[WH_CHAIN_YAW] - (shoulder + (elbow - line->from[WH_CHAIN_REACH]));
-    q[WH_CHAIN_Z] = line->from[WH_CHAIN_Z] + along * line->path.direction.z;
 }
 
-/* The joints with their derivatives by the way. With C = 2 L1 L2 cos elbow and S = 2 L1 L2 sin elbow, the
- * lead is the angle of (2 L1^2 + C, S). */
+/* The joints with their derivatives by the distance along the line. With C = 2 L1 L2 cos elbow and S = 2 L1
+ * L2 sin elbow, the lead is the angle of (2 L1^2 + C, S). */
 static void joints_at(const wh_chain_line_t *line, wh_real_t along, wh_jet_t joints[JOINTS]) {
     const wh_real_t *L = line->links;
     wh_real_t q[WH_CHAIN_AXES];
     wh_elbow_line_axes(line, along, q);
+    if (stands(line)) {
+        for (size_t joint = 0; joint < JOINTS; ++joint) {
+            const wh_jet_t at_rest = {q[joint_axes[joint]], 0, 0, 0};
+            joints[joint] = at_rest;
+        }
+        return;
+    }
     const wh_jet_t x = {x_at(line, along), line->path.direction.x, 0, 0};
     const wh_jet_t y = {y_at(line, along), line->path.direction.y, 0, 0};
     const wh_bend_t bend = wh_bend_for(L, x.value, y.value);
@@ -81,28 +104,38 @@ static void joints_at(const wh_chain_line_t *line, wh_real_t along, wh_jet_t joi
 
 /* ------------------------------------------------------------------------------------------------ travel */
 
+/* The elbow's angle without its sign at a place of the line; negative if the links do not reach it. The start
+ * is where the axes are, whatever rounding says. */
+static wh_real_t elbow_at(const wh_chain_line_t *line, wh_real_t along) {
+    if (!(along > 0)) {
+        return wh_real_abs(line->from[WH_CHAIN_REACH]);
+    }
+    const wh_bend_t bend = wh_bend_for(line->links, x_at(line, along), y_at(line, along));
+    return bend.above >= 0 && bend.below >= 0 ? wh_bend_angle(&bend) : -1;
+}
+
 /* The elbow bends most at an end or where the line is closest to the shoulder. */
-static bool elbow_stays(const wh_chain_line_t *line, const wh_chain_t *chain, wh_real_t length) {
+static wh_status_t check_elbow(const wh_chain_line_t *line, const wh_chain_t *chain, wh_real_t length) {
     const wh_vec3_t *d = &line->path.direction;
     const wh_real_t share = d->x * d->x + d->y * d->y;
     wh_real_t closest = share > 0 ? -(line->start_x * d->x + line->start_y * d->y) / share : 0;
     closest = closest < 0 ? 0 : (closest > length ? length : closest);
     const wh_real_t places[] = {0, closest, length};
-    for (size_t i = 0; i < 3; ++i) {
-        const wh_bend_t bend = wh_bend_for(line->links, x_at(line, places[i]), y_at(line, places[i]));
-        if (!(bend.above > 0) || !(bend.below > 0)) {
-            return false;
-        }
-        const wh_real_t angle = wh_bend_angle(&bend);
-        if (wh_sin(angle) < LEAST_SINE ||
+    wh_status_t status = WH_OK;
+    for (size_t i = 0; i < 3 && !stands(line); ++i) {
+        const wh_real_t angle = elbow_at(line, places[i]);
+        if (angle < 0 ||
             !wh_travel_has(&chain->travel[WH_CHAIN_REACH], WH_SLACK_RAD, side_of(line) * angle)) {
-            return false;
+            return WH_STATUS_OUT_OF_REACH;
+        }
+        if (wh_sin(angle) < LEAST_SINE) {
+            status = WH_STATUS_LIMIT_EXCEEDED;
         }
     }
-    return true;
+    return status;
 }
 
-/* A joint's value where it turns back between two places. */
+/* A joint's value at its turning point between two places. */
 static wh_real_t turning_value(const wh_chain_line_t *line, size_t joint, wh_real_t from, wh_real_t to) {
     wh_jet_t joints[JOINTS];
     joints_at(line, from, joints);
@@ -121,7 +154,7 @@ static wh_real_t turning_value(const wh_chain_line_t *line, size_t joint, wh_rea
     return joints[joint].value;
 }
 
-/* The largest first derivatives, and whether all joints stay within travel. */
+/* Finds the largest first derivatives, and whether all joints stay within travel. */
 static bool look_along(const wh_chain_line_t *line, const wh_chain_t *chain, wh_real_t length,
                        wh_real_t slopes[JOINTS]) {
     wh_jet_t before[JOINTS];
@@ -181,7 +214,7 @@ static wh_limits_t path_limits(const wh_chain_line_t *line, const wh_chain_t *ch
     return limits;
 }
 
-/* The largest magnitude of a quantity at instants that follow each other, and what bounds the rest. */
+/* The largest magnitude of a quantity at successive instants, and the bound for values between them. */
 typedef struct {
     wh_real_t most, bend, last, before;
 } peak_t;
@@ -199,7 +232,7 @@ static wh_real_t bound(const peak_t *peak) {
     return peak->most + peak->bend / 4;
 }
 
-/* By which factor in time a joint must be slowed in a phase. */
+/* The factor in time by which a joint must be slowed in a phase. */
 static wh_real_t slowing(const peak_t peaks[3], const wh_limits_t *limits) {
     return wh_real_max(bound(&peaks[0]) / limits->speed,
                        wh_real_max(wh_real_sqrt(bound(&peaks[1]) / limits->acceleration),
@@ -301,8 +334,9 @@ wh_status_t wh_elbow_line_plan(wh_chain_line_t *line, const wh_chain_t *chain, c
     wh_sin_cos(line->from[WH_CHAIN_REACH], &s, &c);
     line->start_x = line->links[0] + line->links[1] * c;
     line->start_y = line->links[1] * s;
-    if (!elbow_stays(line, chain, length)) {
-        return WH_STATUS_OUT_OF_REACH;
+    const wh_status_t bent = check_elbow(line, chain, length);
+    if (bent != WH_OK) {
+        return bent;
     }
     wh_real_t slopes[JOINTS];
     if (!look_along(line, chain, length, slopes)) {

@@ -1,4 +1,4 @@
-/* A quantity along a way with its first three derivatives by the way's length: within the room. */
+/* A quantity along a way with its first three derivatives by the way's length; internal to the room. */
 #ifndef WH_MOTION_JET_INTERNAL_H
 #define WH_MOTION_JET_INTERNAL_H
 
@@ -48,7 +48,7 @@ static inline wh_jet_t wh_jet_root(wh_jet_t a) {
 }
 
 /* The derivatives of the angle of (x, y), whose value is given: angle' = (x y' - y x') / (x^2 + y^2).
- * Numerator and denominator are needed to their second derivatives only. */
+ * Numerator and denominator are needed only up to their second derivatives. */
 static inline wh_jet_t wh_jet_angle(wh_real_t value, wh_jet_t x, wh_jet_t y) {
     const wh_jet_t dx = {x.first, x.second, x.third, 0};
     const wh_jet_t dy = {y.first, y.second, y.third, 0};
@@ -59,7 +59,8 @@ static inline wh_jet_t wh_jet_angle(wh_real_t value, wh_jet_t x, wh_jet_t y) {
     return angle;
 }
 
-/* By time instead of length, along a way whose position, speed and so on are `along` (Faa di Bruno). */
+/* Converts derivatives by length to derivatives by time, along a way whose position, speed and so on are
+ * `along` (Faa di Bruno). */
 static inline wh_motion_t wh_jet_in_time(wh_jet_t by_length, const wh_motion_t *along) {
     const wh_real_t v = along->speed;
     const wh_real_t a = along->acceleration;

@@ -20,7 +20,7 @@ typedef struct {
 static void axes_after(const wh_real_t from[WH_ROBOT_AXES], const wh_vec3_t *step,
                        wh_real_t q[WH_ROBOT_AXES]) {
     const wh_real_t outward = from[WH_AXIS_R] + step->x;
-    /* Straight outward or up the arc tangent is that of a zero, whose sign it keeps. */
+    /* Straight outward or up the arc tangent is that of a zero, and keeps its sign. */
     const bool straight = step->y == 0 && outward > 0;
     const wh_real_t turned = straight ? step->y : wh_atan2(step->y, outward);
     q[WH_AXIS_THETA] = from[WH_AXIS_THETA] + turned;
@@ -41,7 +41,7 @@ static wh_real_t radius(const passage_t *passage, wh_real_t c) {
     return wh_real_sqrt(passage->distance * passage->distance + c * c);
 }
 
-/* `share` is the horizontal part of the direction. If it is 0, the line is a point from above. */
+/* `share` is the horizontal part of the direction. If it is 0, the line is a point when seen from above. */
 static passage_t passage_of(const wh_line_t *line, wh_real_t share, wh_real_t length) {
     const wh_real_t R = line->from[WH_AXIS_R];
     passage_t passage = {0, R, R};
@@ -114,8 +114,8 @@ static wh_real_t slowing_of_line(const wh_line_t *line, const passage_t *passage
     return wh_real_max(arm, slowing(&theta, &peak, &robot->limits[WH_AXIS_YAW]));
 }
 
-/* The limit of a quantity along the line: R's for its horizontal share or Z's for its vertical one, whichever
- * binds. */
+/* The limit of a quantity along the line: R's for its horizontal share or Z's for its vertical one,
+ * whichever is lower. */
 static wh_real_t binding(wh_real_t R_limit, wh_real_t horizontal, wh_real_t Z_limit, wh_real_t vertical) {
     return R_limit * vertical <= Z_limit * horizontal ? R_limit / horizontal : Z_limit / vertical;
 }
@@ -157,7 +157,8 @@ static wh_vec3_t seen_from_arm(wh_real_t theta, const wh_vec3_t *step) {
     return wh_vec3(step->x * c + step->y * s, step->y * c - step->x * s, step->z);
 }
 
-/* Travel at the end and at the closest point; theta, Z and yaw run one way, and R is greatest at an end. */
+/* Checks travel at the end and at the closest point. Theta, Z and yaw move in one direction, and R is
+ * greatest at an end. */
 static wh_status_t check_travel(const wh_line_t *line, const wh_robot_t *robot, const passage_t *passage) {
     const wh_real_t least = radius(passage, passage->nearest);
     if (!(least > 0) || least < robot->travel[WH_AXIS_R].min - WH_SLACK_MM) {

@@ -1,10 +1,10 @@
-/* What lines of every kind of arm are checked for and slowed by: within the room. */
+/* The common checks of lines and their slowing, for every kind of arm; internal to the room. */
 #ifndef WH_MOTION_LINE_INTERNAL_H
 #define WH_MOTION_LINE_INTERNAL_H
 
 #include "line.h"
 
-/* A factor in time this close to 1 is rounding, not a limit. */
+/* A factor in time this close to 1 comes from rounding, not from a limit. */
 #if defined(WH_FLOAT)
 #define WH_LINE_UNSLOWED 1.00001F
 #else

@@ -3,8 +3,7 @@
 #include "../math/exact_internal.h"
 #include "../math/trig.h"
 
-/* A tilt, however slight, shows in one of these entries; a turn about z alone leaves none of it, even with
- * rounding. */
+/* Any tilt changes one of these entries; a turn about z alone changes none of them, even with rounding. */
 static bool is_level(const wh_mat3_t *R) {
     return !(wh_real_abs(R->m[0][2]) > 0 || wh_real_abs(R->m[1][2]) > 0 || wh_real_abs(R->m[2][0]) > 0 ||
              wh_real_abs(R->m[2][1]) > 0 || wh_real_abs(R->m[2][2] - 1) > 0);
@@ -21,7 +20,7 @@ static wh_status_t validate_shift(const wh_mount_t *mount) {
     return is_level(&mount->effector_from_gripper.R) ? WH_OK : WH_STATUS_NOT_LEVEL;
 }
 
-/* Of a stage, whose travel is to both sides, of pins, which go upwards, or of a flipper. */
+/* Checks a stage, whose travel goes to both sides, pins, which go up, or a flipper. */
 static wh_status_t validate_slides(const wh_mount_t *mount) {
     const wh_travel_t *travel = &mount->travel;
     if (mount->kind == WH_MOUNT_CHUCK) {
@@ -149,7 +148,7 @@ const wh_carrier_t *wh_machine_arm(const wh_machine_t *machine, size_t gripper, 
     return arm_of(machine, &machine->mounts[gripper], first);
 }
 
-/* The carrier that has this axis; `axis` becomes its own index. Null: none has it. */
+/* The carrier that has this axis; `axis` becomes its own index. Null: no carrier has it. */
 static const wh_carrier_t *find_carrier(const wh_machine_t *machine, size_t *axis) {
     const wh_carrier_t *carrier = machine->carrier;
     while (carrier && *axis >= carrier->axis_count) {
@@ -173,7 +172,7 @@ int32_t wh_machine_robot_of(const wh_machine_t *machine, size_t axis, size_t *ow
     return robot;
 }
 
-/* The mount of which this axis shifts a stage, lifts pins or turns a flipper; null: none. */
+/* The mount whose stage, pins or flipper this axis moves; null: none. */
 static const wh_mount_t *find_slide(const wh_machine_t *machine, size_t axis) {
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
@@ -300,7 +299,7 @@ static void place_on_robot(const wh_mount_t *mount, const wh_pose_t *base_from_e
     }
 }
 
-/* About the station's x, at the height of the flipper's axis. */
+/* Turns it about the station's x, at the height of the flipper's axis. */
 static WH_OUT_OF_LINE void turn_over(const wh_mount_t *mount, wh_real_t angle, wh_pose_t *pose) {
     const wh_pose_t *station = &mount->base_from_station;
     wh_real_t sine, cosine;
@@ -311,7 +310,7 @@ static WH_OUT_OF_LINE void turn_over(const wh_mount_t *mount, wh_real_t angle, w
     pose->r = wh_pose_point(station, &at);
 }
 
-/* Of a gripper that is not on the robot, with its own axes. */
+/* Places a gripper that is not on a robot, by its own axes. */
 static void place_beside(const wh_mount_t *mount, const wh_real_t own[], wh_pose_t *pose) {
     const wh_pose_t *station = &mount->base_from_station;
     if (mount->kind == WH_MOUNT_PINS) {
@@ -406,7 +405,7 @@ static void move_effector(const wh_real_t q[], uint32_t moved, wh_machine_cache_
     cache->heading = heading;
 }
 
-/* The grippers on one arm, which may be null. */
+/* Places the grippers on one arm, which may be null. */
 static void move_arm(const wh_machine_t *machine, const wh_carrier_t *arm, const wh_real_t axes[],
                      size_t robot, uint8_t number, wh_gripper_input_t grippers[]) {
     wh_pose_t base_from_effector;
@@ -421,11 +420,11 @@ static void move_arm(const wh_machine_t *machine, const wh_carrier_t *arm, const
     }
 }
 
-/* The grippers on robots that carriers describe, of those robots that have moved. */
+/* Places the grippers on robots with carriers, for those robots that have moved. */
 static WH_OUT_OF_LINE void move_carried(const wh_machine_t *machine, const wh_real_t axes[], uint32_t moved,
                                         wh_gripper_input_t grippers[]) {
     const wh_real_t *own = axes;
-    uint32_t own_moved = moved; /* bit 0: of own[0] */
+    uint32_t own_moved = moved; /* bit 0: own[0] has moved */
     size_t robot = 0;
     for (const wh_carrier_t *carrier = machine->carrier; carrier; carrier = carrier->next) {
         if ((own_moved & ((1U << carrier->axis_count) - 1)) != 0) {
@@ -472,7 +471,7 @@ wh_status_t wh_machine_bring(const wh_machine_t *machine, size_t gripper, const 
     return carrier->inverse(carrier, &effector, choice, &near_q[first], &q[first]);
 }
 
-/* Level but for the flip; rail, flip and elbow are as they are. */
+/* Level except for the flip; rail, flip and elbow keep their positions. */
 static wh_status_t bring_level(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,
                                wh_real_t heading, const wh_real_t near_q[], wh_real_t q[]) {
     if (!(wh_real_abs(heading) <= WH_TRIG_MAX_RAD)) {

@@ -2,8 +2,8 @@
 
 #include "profile_internal.h"
 
-/* Plans each axis alone: its times, and the duration of the slowest. It keeps no more of the profiles:
- * planning them twice is cheaper than 1 kB of stack for a second move. */
+/* Plans each axis alone: its times, and the duration of the slowest. It keeps no other part of the
+ * profiles: planning them twice is cheaper than 1 kB of stack for a second move. */
 static wh_status_t plan_alone(size_t count, const wh_real_t from[], const wh_real_t to[],
                               const wh_limits_t limits[], wh_profile_times_t times[], wh_real_t *longest) {
     wh_real_t shortest = 0;
@@ -25,7 +25,7 @@ static wh_status_t plan_alone(size_t count, const wh_real_t from[], const wh_rea
     return shortest > 0 && !wh_real_is_finite(*longest / shortest) ? WH_STATUS_BAD_LIMITS : WH_OK;
 }
 
-/* Reads before it writes: `from` may be move->to. */
+/* It reads before it writes, because `from` may be move->to. */
 static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to,
                       const wh_profile_times_t *times) {
     wh_profile_shape(&move->profile[axis], to - from, times, move->duration);

@@ -1,4 +1,4 @@
-/* A chain's arm in the plane that its column carries: within the room. */
+/* A chain's arm in the plane that its column carries; internal to the room. */
 #ifndef WH_MOTION_PLANE_INTERNAL_H
 #define WH_MOTION_PLANE_INTERNAL_H
 
@@ -10,7 +10,7 @@ typedef struct {
     wh_real_t x, y, heading;
 } wh_plane_t;
 
-/* What Rx(tilt_x) Ry(tilt_y) is made of. */
+/* The parts of Rx(tilt_x) Ry(tilt_y). */
 typedef struct {
     wh_real_t sin_x, cos_x, sin_y, cos_y;
 } wh_tilt_t;
@@ -29,7 +29,7 @@ static inline wh_mat3_t wh_tilt_matrix(const wh_tilt_t *t) {
     return R;
 }
 
-/* The step x, y in the tilted plane and z along the column that together are `step` in the robot's frame. */
+/* The step x, y in the tilted plane and z along the column whose sum is `step` in the robot's frame. */
 static inline wh_vec3_t wh_tilt_solve(const wh_tilt_t *t, const wh_vec3_t *step) {
     const wh_real_t x = step->x / t->cos_y;
     const wh_real_t y = (step->y - x * (t->sin_x * t->sin_y)) / t->cos_x;
@@ -37,7 +37,7 @@ static inline wh_vec3_t wh_tilt_solve(const wh_tilt_t *t, const wh_vec3_t *step)
 }
 
 /* The cosine of a SCARA's elbow whose wrist is at the distance R from the shoulder, as tan^2(elbow / 2) =
- * above / below. Out of reach where one of them is negative. */
+ * above / below. It is out of reach if one of them is negative. */
 typedef struct {
     wh_real_t above, below;
 } wh_bend_t;
@@ -50,12 +50,12 @@ static inline wh_bend_t wh_bend_for(const wh_real_t links[2], wh_real_t x, wh_re
     return bend;
 }
 
-/* 0 to pi. */
+/* The angle, 0 to pi. */
 static inline wh_real_t wh_bend_angle(const wh_bend_t *bend) {
     return 2 * wh_atan2(wh_real_sqrt(bend->above), wh_real_sqrt(bend->below));
 }
 
-/* From the first link to the line from shoulder to wrist, rad. */
+/* The angle from the first link to the line from shoulder to wrist, rad. */
 static inline wh_real_t wh_bend_lead(const wh_real_t links[2], wh_real_t elbow) {
     wh_real_t s;
     wh_real_t c;

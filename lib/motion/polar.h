@@ -1,5 +1,5 @@
-/* A robot's axes as ways move them (motion/way.h, motion/via.h): theta, R or a SCARA's elbow, Z, yaw, and
- * what a carrier has more, in its order. */
+/* A robot's axes as ways use them (motion/way.h, motion/via.h): theta, R or a SCARA's elbow, Z, yaw, and a
+ * carrier's other axes, in its order. */
 #ifndef WH_MOTION_POLAR_H
 #define WH_MOTION_POLAR_H
 
@@ -14,10 +14,10 @@ WH_REFUSE_PACKING(polar);
 typedef struct {
     size_t axis_count; /* WH_ROBOT_AXES to WH_CARRIER_AXES */
     wh_limits_t limits[WH_CARRIER_AXES];
-    size_t rail;                    /* its axis; 0: there is none */
+    size_t rail;                    /* the rail's axis; 0: there is none */
     size_t second;                  /* the R of a second arm; 0: there is none */
-    wh_real_t inner[WH_POLAR_ARMS]; /* where the travel of each arm's R begins, mm; of a SCARA not used */
-    wh_real_t links[2];             /* of a SCARA its links, mm; of a polar arm 0 */
+    wh_real_t inner[WH_POLAR_ARMS]; /* the begin of the travel of each arm's R, mm; unused for a SCARA */
+    wh_real_t links[2];             /* SCARA: its links, mm; polar arm: 0 */
 } wh_polar_t;
 
 /* False if a count, an axis or a link is out of range. Limits are checked where a motion is planned. */

@@ -14,7 +14,8 @@ wh_status_t wh_limits_validate(const wh_limits_t *limits) {
     return sound ? WH_OK : WH_STATUS_BAD_LIMITS;
 }
 
-/* Without cruise: with constant acceleration if there is room for it, else with jerk only. */
+/* The shortest times without cruise: with constant acceleration if there is room for it, otherwise with
+ * jerk only. */
 static wh_profile_times_t shortest_without_cruise(wh_real_t d, const wh_limits_t *limits) {
     wh_profile_times_t times;
     const wh_real_t full = limits->acceleration / limits->jerk;
@@ -107,7 +108,7 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
     return WH_OK;
 }
 
-/* If the times already have that duration, the factor is 1 and they stay the same to the last bit. */
+/* If the times already have that duration, the factor is 1 and they keep every bit. */
 static wh_profile_times_t slowed(const wh_profile_times_t *times, wh_real_t duration) {
     const wh_real_t slower = duration / times->duration;
     const wh_profile_times_t stretched = {times->jerk * slower, times->rise * slower, duration};
@@ -194,7 +195,7 @@ void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion
         *motion = first_half(profile, t);
         return;
     }
-    /* The second half is the first one backwards. */
+    /* The second half is the first one in reverse. */
     *motion = first_half(profile, left);
     motion->position = profile->distance - motion->position;
     motion->acceleration = -motion->acceleration;

@@ -1,4 +1,4 @@
-/* How one axis gets from rest to rest in the shortest time: jerk-limited profiles in closed form.
+/* Jerk-limited profiles in closed form move one axis from rest to rest in the shortest time.
  *
  * A profile has seven phases: jerk, constant acceleration, jerk back, cruise, and the first three mirrored.
  * Distance and limits decide which of them vanish. With v, a, j for the limits of speed, acceleration and
@@ -13,8 +13,8 @@
  * Planning for Automatic Machines and Robots, 2008, section 3.4, for zero speeds and accelerations at both
  * ends.
  *
- * Units: that of the distance (mm or rad), and seconds. A profile is a plain struct without pointers: copy it
- * freely. Nothing keeps a reference to an argument. All functions are reentrant.
+ * Units: that of the distance (mm or rad), and seconds. A profile is a plain struct without pointers: copy
+ * it freely. No function keeps a reference to an argument. All functions are reentrant.
  */
 #ifndef WH_MOTION_PROFILE_H
 #define WH_MOTION_PROFILE_H
@@ -35,7 +35,7 @@ typedef struct {
     wh_real_t position, speed, acceleration, jerk;
 } wh_motion_t;
 
-/* A planned profile. Written by wh_profile_plan and wh_profile_stretch only; reading its fields is fine. */
+/* A planned profile. Only wh_profile_plan and wh_profile_stretch write it; callers may read its fields. */
 typedef struct {
     wh_real_t distance;     /* signed */
     wh_real_t duration;     /* s; 0 for no distance */
@@ -60,11 +60,11 @@ typedef struct {
 /* WH_STATUS_BAD_LIMITS unless all three are finite and > 0. */
 wh_status_t wh_limits_validate(const wh_limits_t *limits) WH_SYMBOL(wh_limits_validate);
 
-/* Plans the fastest profile over `distance` (signed, finite) within the limits. The duration is the analytic
- * optimum to 1e-14 of it (1e-5 in float); no limit is exceeded by more than 1e-14 (1e-5) of it. Errors,
- * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE (distance), WH_STATUS_BAD_LIMITS
- * (also if the limits are so extreme that a time or the jerk cannot be represented). Cost: about 20 ns, 40 if
- * only the jerk limits. */
+/* Plans the fastest profile over `distance` (signed, finite) within the limits. The duration is the
+ * analytic optimum to a relative 1e-14 (1e-5 in float); no limit is exceeded by more than a relative 1e-14
+ * (1e-5). Errors, which leave *profile unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE (distance),
+ * WH_STATUS_BAD_LIMITS (also if the limits are so extreme that a time or the jerk cannot be represented).
+ * Cost: about 20 ns, 40 if only the jerk is limiting. */
 wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_limits_t *limits)
     WH_SYMBOL(wh_profile_plan);
 
@@ -73,11 +73,11 @@ static inline wh_real_t wh_profile_duration(const wh_profile_t *profile) {
     return profile->duration;
 }
 
-/* Slows the whole profile uniformly to `duration` (s), which is then exactly its duration. A factor k in time
- * divides speeds by k, accelerations by k^2, jerks by k^3. Without distance the profile only waits. Errors,
- * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, WH_STATUS_OUT_OF_RANGE if
- * `duration` is shorter than the profile's, or so long that the factor cannot be represented. Cost: 10 to 25
- * ns. */
+/* Slows the whole profile uniformly to `duration` (s), which is then exactly its duration. A factor k in
+ * time divides speeds by k, accelerations by k^2, jerks by k^3. Without distance the profile only waits.
+ * Errors, which leave *profile unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE,
+ * WH_STATUS_OUT_OF_RANGE if `duration` is shorter than the profile's, or so long that the factor cannot be
+ * represented. Cost: 10 to 25 ns. */
 wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) WH_SYMBOL(wh_profile_stretch);
 
 /* The state at `t` seconds after the start. For t <= 0 (and NaN) all is zero; from the duration on the axis
@@ -86,7 +86,7 @@ wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) WH_SYM
  * null. Cost: about 10 ns. */
 void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion) WH_SYMBOL(wh_profile_at);
 
-/* The position alone, bit for bit. Cost: about 5 ns. */
+/* The position alone, with equal bits. Cost: about 5 ns. */
 wh_real_t wh_profile_position(const wh_profile_t *profile, wh_real_t t) WH_SYMBOL(wh_profile_position);
 
 /* The largest magnitudes over the whole profile, analytically. */

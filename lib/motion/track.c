@@ -7,7 +7,7 @@
 #define MAX_SLICE_US 1000000
 #define MAX_SECONDS WH_REAL(1e6)
 
-/* Relative error of a time in seconds that was counted in slices: three roundings. */
+/* The relative error of a time in seconds that was counted in slices: three roundings. */
 #if defined(WH_FLOAT)
 #define ROUNDING (4 * FLT_EPSILON)
 #else
@@ -34,6 +34,7 @@ wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_
         track->valves[g] = WH_VALVE_CLOSED;
     }
     track->segment = wh_track_blank(track);
+    track->mark = WH_TRACK_MARK;
     return WH_OK;
 }
 
@@ -58,15 +59,16 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     return segment;
 }
 
-/* The least number of whole slices that last at least `seconds`, which are at most MAX_SECONDS: 1e12 slices.
- * A number that is above a whole one by rounding alone is that whole one: 2.007 s are 2007 ms, not 2008. */
+/* The least number of whole slices that last at least `seconds`, which are at most MAX_SECONDS: 1e12
+ * slices. A number that exceeds a whole one by rounding alone counts as that whole one: 2.007 s are 2007
+ * ms, not 2008. */
 static int64_t slices_for(const wh_track_t *track, wh_real_t seconds) {
     const wh_real_t exact = seconds * WH_REAL(1e6) / (wh_real_t)track->slice_us;
     const int64_t whole = (int64_t)exact;
     return exact - (wh_real_t)whole > ROUNDING * exact ? whole + 1 : whole;
 }
 
-/* Time since the segment began. Its last slice is at its end exactly, however the two were rounded. */
+/* Time since the segment began. Its last slice is exactly at its end, however the two were rounded. */
 static wh_real_t segment_time(const wh_track_t *track, wh_real_t duration) {
     if (track->segment_slice == track->segment_slices) {
         return duration;
@@ -93,7 +95,7 @@ static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
     return status;
 }
 
-/* A line of `seconds` is taken, unless planning refused it. */
+/* Takes a line of `seconds`, unless planning refused it. */
 static wh_status_t take_line(wh_track_t *track, wh_status_t status, wh_real_t seconds) {
     if (status == WH_OK && seconds > MAX_SECONDS) {
         return WH_STATUS_BAD_SEGMENT;
@@ -104,7 +106,7 @@ static wh_status_t take_line(wh_track_t *track, wh_status_t status, wh_real_t se
     return status == WH_STATUS_OUT_OF_RANGE ? WH_STATUS_BAD_SEGMENT : status;
 }
 
-/* Which robot goes in a LINE or a WAY; SIZE_MAX: none. */
+/* The robot that moves in a LINE or a WAY; SIZE_MAX: none. */
 static size_t robot_of(const wh_machine_t *machine, const wh_segment_t *segment) {
     const wh_carrier_t *carrier = machine->carrier;
     if (!carrier || !(carrier->next || carrier->second) || segment->gripper == WH_NONE) {
@@ -115,7 +117,7 @@ static size_t robot_of(const wh_machine_t *machine, const wh_segment_t *segment)
     return is_one ? machine->mounts[segment->gripper].robot : SIZE_MAX;
 }
 
-/* Which arm goes in a LINE; null: none. */
+/* The arm that moves in a LINE; null: none. */
 static const wh_carrier_t *arm_of(const wh_machine_t *machine, const wh_segment_t *segment, size_t *first) {
     const size_t robot = robot_of(machine, segment);
     if (robot == SIZE_MAX) {
@@ -185,7 +187,7 @@ static wh_status_t plan_wait(wh_track_t *track, const wh_segment_t *segment) {
     return WH_OK;
 }
 
-/* A robot's axes as ways take them, beginning at `first`. A second arm's R is the last one. */
+/* A robot's axes as ways use them, beginning at `first`. A second arm's R is the last one. */
 static void take_robot(const wh_machine_t *machine, size_t number, wh_polar_t *robot, size_t *first) {
     const wh_carrier_t *carrier = wh_machine_carrier(machine, number, first);
     *robot = wh_polar_from_robot(&machine->robot);
@@ -205,8 +207,8 @@ static void take_robot(const wh_machine_t *machine, size_t number, wh_polar_t *r
     robot->links[1] = has_elbow ? carrier->chain.links[1] : 0;
 }
 
-/* A way, by via points or not, is of a robot's own axes; chucks and other robots go in segments of their
- * own. */
+/* A way, with or without via points, moves the axes of one robot; chucks and other robots move in segments
+ * of their own. */
 static bool goes_ways(const wh_track_t *track, const wh_segment_t *segment, wh_polar_t *robot,
                       size_t *first) {
     const size_t number = robot_of(track->machine, segment);
@@ -246,7 +248,7 @@ static wh_status_t plan_way(wh_track_t *track, const wh_segment_t *segment) {
     return status;
 }
 
-/* Each point is one where the robot's axes may be, which are `count` from `first` on. */
+/* Each point must be allowed for the robot's axes, which are `count` from `first` on. */
 static wh_status_t check_points(const wh_track_t *track, const wh_segment_t *segment, size_t first,
                                 size_t count) {
     wh_real_t axes[WH_AXES];
@@ -304,6 +306,9 @@ static wh_status_t plan(wh_track_t *track, const wh_segment_t *segment) {
 wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) {
     if (!track || !segment) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (track->mark != WH_TRACK_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const wh_status_t status = plan(track, segment);
     if (status == WH_OK) {
@@ -372,7 +377,7 @@ static bool sensor_is_on(const wh_track_t *track, uint32_t sensors) {
 }
 
 wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) {
-    if (sensor_is_on(track, sensors)) {
+    if (track->mark != WH_TRACK_MARK || sensor_is_on(track, sensors)) {
         return WH_TRACK_DONE;
     }
     if (track->segment_slice >= track->segment_slices) {
@@ -385,7 +390,7 @@ wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) {
 }
 
 void wh_track_skip(wh_track_t *track) {
-    if (track->segment_slice < track->segment_slices) {
+    if (track->mark == WH_TRACK_MARK && track->segment_slice < track->segment_slices) {
         track->segment_slice = track->segment_slices;
         apply(track);
     }

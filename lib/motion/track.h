@@ -4,12 +4,12 @@
  * when it begins, and then yields axes and valves for each slice until it is over. A segment ends on the
  * first slice at or after its duration (to rounding). There its axes have exactly the target's bits, so the
  * next segment starts from a clean state. A segment without length (below WH_PROFILE_TINY on every axis)
- * takes no slice and moves nothing. Before each slice the caller reports which grippers' sensors are on.
+ * takes no slice and moves no axis. Before each slice the caller reports which grippers' sensors are on.
  *
  *     wh_track_begin(&track, &segment);
  *     while ((state = wh_track_next(&track, sensors)) == WH_TRACK_MOVING) { use track.axes, track.valves }
  *
- * No heap; a track is a plain struct that its owner may copy.
+ * It uses no heap; a track is a plain struct that its owner may copy.
  */
 #ifndef WH_MOTION_TRACK_H
 #define WH_MOTION_TRACK_H
@@ -25,12 +25,12 @@ WH_REFUSE_PACKING(track);
 
 typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
-    WH_SEGMENT_LINE,   /* an end-effector goes by `travel` along a straight line at constant heading */
+    WH_SEGMENT_LINE,   /* an end-effector moves by `travel` along a straight line at constant heading */
     WH_SEGMENT_VALVES, /* valves change; lasts one slice */
     WH_SEGMENT_DWELL,  /* everything stands still for `seconds`, rounded up to whole slices */
     WH_SEGMENT_SENSOR, /* stand still until the sensor of `gripper` is on, at most `seconds` */
-    WH_SEGMENT_WAY,    /* a robot's axes go to target[], R coming in to `reach` while it turns */
-    WH_SEGMENT_VIA     /* a robot's axes go to target[] by way of `points` */
+    WH_SEGMENT_WAY,    /* a robot's axes move to target[]; R comes in to `reach` while it turns */
+    WH_SEGMENT_VIA     /* a robot's axes move to target[] via `points` */
 } wh_segment_kind_t;
 
 typedef struct {
@@ -41,7 +41,7 @@ typedef struct {
     wh_real_t acceleration;      /* LINE: at most this, mm/s^2; 0: the axes' own limits */
     wh_real_t seconds;           /* DWELL, SENSOR: 0 to 1e6 */
     int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED; WH_NONE: unchanged */
-    /* SENSOR; with several robots or arms, LINE and WAY: any gripper on the one that goes, WH_NONE: the
+    /* SENSOR; with several robots or arms, LINE and WAY: any gripper on the one that moves, WH_NONE: the
      * first */
     int32_t gripper;
     wh_real_t reach; /* WAY: mm, see motion/way.h */
@@ -54,24 +54,24 @@ typedef struct {
 typedef enum WH_FOUR_BYTES {
     WH_TRACK_MOVING,   /* axes and valves are those of one more slice */
     WH_TRACK_DONE,     /* the segment is over; no slice was used by this call */
-    WH_TRACK_TIMED_OUT /* SENSOR: it did not come on; no slice was used by this call */
+    WH_TRACK_TIMED_OUT /* SENSOR: it did not turn on; no slice was used by this call */
 } wh_track_state_t;
 
-/* What a track needs for ways; see wh_track_take_ways. */
+/* The data that a track needs for ways; see wh_track_take_ways. */
 typedef struct {
     wh_status_t (*plan)(wh_way_t *way, const wh_polar_t *robot, const wh_real_t from[], const wh_real_t to[],
                         const wh_real_t reach[WH_POLAR_ARMS]);
     void (*at)(const wh_way_t *way, wh_real_t t, wh_real_t q[]);
 } wh_ways_t;
 
-/* What a track needs for via points; see wh_track_take_vias. */
+/* The data that a track needs for via points; see wh_track_take_vias. */
 typedef struct {
     wh_status_t (*plan)(wh_via_t *via, const wh_polar_t *robot, const wh_real_t from[],
                         const wh_via_point_t points[], size_t count, const wh_real_t to[]);
     void (*at)(const wh_via_t *via, wh_real_t t, wh_real_t q[]);
 } wh_vias_t;
 
-/* Callers read axes, valves and slice; the rest is the track's own. */
+/* Callers read axes, valves and slice; the rest is internal. */
 typedef struct {
     const wh_machine_t *machine; /* the caller's, which must outlive the track */
     int64_t slice_us;
@@ -79,38 +79,44 @@ typedef struct {
     wh_real_t axes[WH_AXES];
     int32_t valves[WH_GRIPPERS];
     wh_segment_t segment;
-    int64_t segment_slices; /* how many slices the running segment takes */
-    int64_t segment_slice;  /* how many of them were yielded */
+    int64_t segment_slices; /* the number of slices of the running segment */
+    int64_t segment_slice;  /* the number of those yielded so far */
     union {
         wh_move_t move;
         wh_line_t line;
-        wh_chain_line_t chain_line; /* LINE of a robot that a carrier describes */
+        wh_chain_line_t chain_line; /* LINE of a robot with a carrier */
         wh_way_t way;
         wh_via_t via;
     } plan;
     const wh_ways_t *ways; /* NULL: segments of kind WAY are refused */
     const wh_vias_t *vias; /* NULL: those of kind VIA are */
+    uint32_t mark;         /* WH_TRACK_MARK once wh_track_init has set it up */
 } wh_track_t;
+
+/* A track without this mark was never initialised: it takes no segment, and has no slice. See WH_GRASP_MARK
+ * for what that shows and what it does not. */
+#define WH_TRACK_MARK UINT32_C(0x3c91d0a7)
 
 /* Starts at rest at home (wh_machine_home), all valves closed. `slice_us` is 1 to 1e6. Refuses
  * null pointers, an invalid machine and a slice out of range; the track is then unchanged. */
 wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us)
     WH_SYMBOL(wh_track_init);
 
-/* From now on the track takes segments of kind WAY. Without it a firmware does not link what they need.
- * `track` must not be null, and initialised. */
+/* After this call the track accepts segments of kind WAY. Without it a firmware does not link the code for
+ * them. `track` must not be null, and initialised. */
 void wh_track_take_ways(wh_track_t *track) WH_SYMBOL(wh_track_take_ways);
 
-/* The same for segments of kind VIA. */
+/* After this call the track accepts segments of kind VIA. */
 void wh_track_take_vias(wh_track_t *track) WH_SYMBOL(wh_track_take_vias);
 
 /* A segment that changes nothing, for the caller to fill in: DWELL of 0 s, all valves WH_NONE, target at the
  * track's axes. */
 wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
 
-/* Plans a segment from where the track stands; one that is still running is given up there, at rest from one
- * slice to the next. Refused, the track unchanged:
+/* Plans a segment from the track's present position. A segment that is still running ends there, at rest
+ * from one slice to the next. Errors, which leave the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
+ *   WH_STATUS_NOT_INITIALISED the track
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
  *   WH_STATUS_BAD_SEGMENT     a WAY or VIA of a track that takes none, a WAY of a SCARA, or one that moves
  *                             other axes than the robot's own; a VIA's points, as wh_via_plan says; a
@@ -119,20 +125,21 @@ wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R or the elbow outside its travel, at a VIA's point, too
  *   WH_STATUS_OUT_OF_REACH    R or the elbow outside its travel, at the target or anywhere on a line or at a
  *                             VIA's point; or a WAY's reach
- *   WH_STATUS_NOT_ALONG_ARM   a LINE that leads aside from an arm without a wrist
+ *   WH_STATUS_NOT_ALONG_ARM   a LINE not along an arm without a wrist
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
- * Cost: about 1 us for a move, 2 us for a line, 40 us for a way and for a SCARA's line,
- * 300 us by way of points.
+ * Cost: about 1 us for a move, 2 us for a line, 40 us for a way and for a SCARA's line, 300 us with via
+ * points.
  */
 wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) WH_SYMBOL(wh_track_begin);
 
-/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on. If the
+/* One slice of the running segment. Bit g of `sensors` is set if gripper g's vacuum sensor is on. If the
  * awaited sensor is on already, no slice is used. After the segment's end each call returns the end again.
- * `track` is not checked. Cost: all axes of a profile, or a square root and an arc tangent on a line. */
+ * A track that was never initialised is at its end, DONE. Null is not checked. Cost: all axes of a
+ * profile, or a square root and an arc tangent on a line. */
 wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) WH_SYMBOL(wh_track_next);
 
 /* Jumps to the running segment's end, as if all its slices had been played: a way to check a pattern's reach
- * without playing it. `slice` stays. */
+ * without playing it. `slice` stays. One that was never initialised stays as it is. */
 void wh_track_skip(wh_track_t *track) WH_SYMBOL(wh_track_skip);
 
 WH_HEADER_END

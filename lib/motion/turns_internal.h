@@ -1,4 +1,4 @@
-/* Which of an angle's turns an axis takes: within the room. */
+/* Chooses the turn of an angle that an axis takes; internal to the room. */
 #ifndef WH_MOTION_TURNS_INTERNAL_H
 #define WH_MOTION_TURNS_INTERNAL_H
 
@@ -17,12 +17,12 @@ static inline bool wh_travel_has(const wh_travel_t *travel, wh_real_t slack, wh_
     return position >= travel->min - slack && position <= travel->max + slack;
 }
 
-/* Finite, with min < max, and not beyond `widest`. The comparisons also fail for NaN. */
+/* True if it is finite, with min < max, and not beyond `widest`. The comparisons also fail for NaN. */
 static inline bool wh_travel_is_sound(const wh_travel_t *travel, wh_real_t widest) {
     return travel->min < travel->max && travel->min >= -widest && travel->max <= widest;
 }
 
-/* How many turns to add to `angle` to bring it into (-pi, pi]. */
+/* The number of turns to add to `angle` to bring it into (-pi, pi]. */
 static inline int32_t wh_turns_to_half(wh_real_t angle) {
     const int32_t turns = -wh_nearest_whole(angle / wh_turn.hi);
     const wh_real_t rest = angle + (wh_real_t)turns * wh_turn.hi;
@@ -47,7 +47,7 @@ static inline wh_real_t wh_turns_nearest(const wh_travel_t *travel, wh_real_t th
     return detour ? longer : shorter;
 }
 
-/* From the direction `from` to the direction `to`, in (-pi, pi]. */
+/* The turn from the direction `from` to the direction `to`, in (-pi, pi]. */
 static inline wh_real_t wh_turns_between(wh_real_t from, wh_real_t to) {
     const wh_exact_t between = wh_exact_sum(to, -from);
     return wh_turns_added(between, wh_turns_to_half(between.hi));

@@ -7,10 +7,10 @@
 #include "track.h"
 
 #define OVERLAPS 64
-/* Of each profile: three of its rise, three of its fall, and the end. */
+/* For each profile: three in its rise, three in its fall, and the end. */
 #define BREAKS 7
 
-/* What rounding may add to a limit. */
+/* The excess over a limit that rounding may cause. */
 #if defined(WH_FLOAT)
 #define SLACK (1 + 1e-5F)
 #else
@@ -27,7 +27,7 @@ static void shape(const wh_via_t *via, size_t leg, size_t axis, wh_profile_t *pr
 
 /* ----------------------------------------------------------------------------------------------- a corner */
 
-/* Two legs of which the second begins `overlap` before the end of the first. */
+/* Two legs; the second begins `overlap` before the end of the first. */
 typedef struct {
     const wh_polar_t *robot;
     wh_profile_t first[WH_CARRIER_AXES], second[WH_CARRIER_AXES];
@@ -49,8 +49,8 @@ static bool is_within(wh_real_t value, wh_real_t limit) {
     return wh_real_abs(value) <= limit * SLACK;
 }
 
-/* Between two instants at which no phase begins or ends: there the sum's jerk is constant, so that its
- * acceleration is largest at an end, and its speed there or where the acceleration passes zero. */
+/* Checks between two instants at which no phase begins or ends. There the sum's jerk is constant, so its
+ * acceleration is largest at an end. Its speed is largest there or where the acceleration passes zero. */
 static bool keeps_limits(const corner_t *corner, size_t axis, wh_real_t u, wh_real_t until) {
     const wh_limits_t *limits = &corner->robot->limits[axis];
     const wh_real_t half = (until - u) / 2;
@@ -114,7 +114,7 @@ static bool axis_keeps_limits(const corner_t *corner, size_t axis) {
     return good;
 }
 
-/* Where the end of the arm with this R is, in the robot's frame, with theta as where that arm points. */
+/* The place of the end of the arm with this R, in the robot's frame; theta is the direction of that arm. */
 static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[], size_t arm) {
     const bool has_elbow = robot->links[0] > 0;
     const wh_real_t first = has_elbow ? robot->links[0] : q[arm];
@@ -131,7 +131,7 @@ static wh_vec3_t place_of(const wh_polar_t *robot, const wh_real_t q[], size_t a
     return place;
 }
 
-/* True if the arm's end at axes q is at most the blend from where it is at the point. */
+/* True if the arm's end at axes q is within the blend of its place at the point. */
 static bool is_end_near(const corner_t *corner, const wh_real_t q[], size_t arm) {
     const wh_vec3_t there = place_of(corner->robot, q, arm);
     const wh_vec3_t point = place_of(corner->robot, corner->point->q, arm);
@@ -153,8 +153,8 @@ static bool is_near(const corner_t *corner, bool is_second) {
     return is_end_near(corner, q, WH_AXIS_R) && (second == 0 || is_end_near(corner, q, second));
 }
 
-/* Both profiles go one way: while they overlap R is at most beyond the point by what the first has left when
- * the second begins, and by what the second has done when the first ends. */
+/* Both profiles move in one direction. While they overlap, R exceeds the point at most by the rest of the
+ * first leg when the second begins, or by the second leg's way when the first ends. */
 static bool is_within_reach(const corner_t *corner, size_t arm, size_t axis) {
     const wh_profile_t *first = &corner->first[axis];
     const wh_real_t left = wh_profile_position(first, first->duration - corner->overlap) - first->distance;
@@ -173,7 +173,7 @@ static bool fits(const corner_t *corner) {
     return good;
 }
 
-/* The leg begins so long before the end of the one before it. */
+/* Finds the overlap: the leg begins this long before the end of the one before it. */
 static wh_real_t find_overlap(const wh_via_t *via, const wh_polar_t *robot, size_t leg,
                               const wh_via_point_t *point) {
     corner_t corner = {.robot = robot, .point = point};
@@ -195,7 +195,7 @@ static wh_real_t find_overlap(const wh_via_t *via, const wh_polar_t *robot, size
 
 /* ----------------------------------------------------------------------------------------------- planning */
 
-/* Each leg from 0 to its duration. */
+/* Plans each leg from 0 to its duration. */
 static wh_status_t plan_leg(wh_via_t *via, const wh_polar_t *robot, size_t leg) {
     for (size_t axis = 0; axis < robot->axis_count; ++axis) {
         wh_profile_t alone;
@@ -230,7 +230,7 @@ static bool are_blends(const wh_via_point_t points[], size_t count) {
     return good;
 }
 
-/* Where legs begin and end. */
+/* Takes the points where legs begin and end. */
 static void take_points(wh_via_t *via, size_t axis_count, const wh_real_t from[],
                         const wh_via_point_t points[], size_t count, const wh_real_t to[]) {
     const size_t size = axis_count * sizeof *from;

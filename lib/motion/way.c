@@ -9,23 +9,23 @@
 #define HALVINGS 60  /* of a time: less than rounding */
 #define ROUNDS 3     /* of a search for two arms, in turn */
 
-/* What the search compares: a leg in and a leg out by way of an inner position. */
+/* The values that the search compares: a leg in and a leg out via an inner position. */
 typedef struct {
     wh_profile_t in, out;
     wh_real_t came_in;  /* s after the start, when R is at most `reach` */
     wh_real_t goes_out; /* s after the leg out has begun, when R is at `reach` again */
 } legs_t;
 
-/* What is to be found a way for: an arm. */
+/* The arm for which a way is searched. */
 typedef struct {
     const wh_limits_t *limits;        /* of its R */
     wh_real_t from, to, reach, least; /* mm */
-    wh_real_t turn;                   /* s that the axes which turn need at least */
-    wh_real_t others_in;   /* s after the start, when the other arm has come in; 0: there is none */
-    wh_real_t others_tail; /* s that the other arm takes yet once it has left the circle */
+    wh_real_t turn;                   /* s: the least time of the turning axes */
+    wh_real_t others_in;   /* s after the start, when the other arm has come in; 0: there is no other arm */
+    wh_real_t others_tail; /* s from when the other arm leaves the circle to its end */
 } trip_t;
 
-/* When a profile from `begin` passes `place`, which lies between its ends. */
+/* The time at which a profile from `begin` passes `place`, which lies between its ends. */
 static wh_real_t time_at(const wh_profile_t *profile, wh_real_t begin, wh_real_t place) {
     const bool rises = profile->distance > 0;
     wh_real_t early = 0;
@@ -54,19 +54,19 @@ static wh_status_t plan_legs(const trip_t *task, wh_real_t inner, legs_t *legs) 
     return status;
 }
 
-/* How long the turn takes from when the arm is in: it also waits for the other arm. */
+/* The duration of the turn from when the arm is in; it also waits for the other arm. */
 static wh_real_t turn_of(const trip_t *task, const legs_t *legs) {
     return task->turn + (wh_real_max(legs->came_in, task->others_in) - legs->came_in);
 }
 
-/* How long R waits at its inner position. */
+/* The time that R waits at its inner position. */
 static wh_real_t wait_of(const trip_t *task, const legs_t *legs) {
     const wh_real_t inside = (legs->in.duration - legs->came_in) + legs->goes_out;
     const wh_real_t turn = turn_of(task, legs);
     return turn > inside ? turn - inside : 0;
 }
 
-/* How long the arm takes; if the other one goes out, until that has come to its end, too. */
+/* The duration of the arm's way; if the other arm moves out, until that one is at its end, too. */
 static wh_real_t lasts(const trip_t *task, const legs_t *legs) {
     const wh_real_t own = legs->in.duration + wait_of(task, legs) + legs->out.duration;
     if (task->others_tail > 0) {
@@ -89,7 +89,7 @@ typedef struct {
     wh_status_t status;
 } inner_t;
 
-/* Returns the duration by way of `inner`. */
+/* Returns the duration via `inner`. */
 static wh_real_t try_inner(inner_t *search, wh_real_t inner) {
     legs_t legs;
     const wh_real_t duration = duration_of(search->task, inner, &legs, &search->status);
@@ -100,7 +100,7 @@ static wh_real_t try_inner(inner_t *search, wh_real_t inner) {
     return duration;
 }
 
-/* An end that is inside already may be the inner position itself. */
+/* An end that is already inside may itself be the inner position. */
 static void try_ends(inner_t *search) {
     const trip_t *task = search->task;
     (void)try_inner(search, task->reach);
@@ -131,7 +131,7 @@ static void try_between(inner_t *search, wh_real_t least, wh_real_t most) {
     }
 }
 
-/* The legs of the shortest duration. */
+/* Finds the legs with the shortest duration. */
 static wh_status_t find_legs(const trip_t *task, legs_t *legs) {
     inner_t search = {task, task->reach, (wh_real_t)FLT_MAX, WH_OK};
     try_ends(&search);
@@ -145,8 +145,8 @@ static wh_status_t find_legs(const trip_t *task, legs_t *legs) {
 typedef struct {
     wh_way_t *way;
     const wh_polar_t *robot;
-    wh_real_t turn, along; /* s that those axes need at least */
-    size_t count;          /* of arms that leave the circle */
+    wh_real_t turn, along; /* s: the least times of those axes */
+    size_t count;          /* the number of arms that leave the circle */
     size_t axes[WH_POLAR_ARMS];
     trip_t trips[WH_POLAR_ARMS];
     legs_t legs[WH_POLAR_ARMS];
@@ -156,7 +156,7 @@ static bool turns(const wh_polar_t *robot, size_t axis) {
     return axis == WH_AXIS_THETA || axis == WH_AXIS_YAW || axis == robot->rail;
 }
 
-/* Each axis as it is alone. */
+/* Plans each axis alone. */
 static wh_status_t plan_alone(plan_t *plan) {
     wh_way_t *way = plan->way;
     wh_status_t status = WH_OK;
@@ -176,7 +176,7 @@ static bool is_out(const plan_t *plan, size_t axis) {
     return found;
 }
 
-/* How long the axes need that turn, and those that go all along. */
+/* The times of the axes that turn, and of those that move all the time. */
 static void take_times(plan_t *plan) {
     for (size_t axis = 0; axis < plan->way->axis_count; ++axis) {
         const wh_real_t alone = plan->way->profiles[axis].duration;
@@ -207,7 +207,7 @@ static void take_arms(plan_t *plan, const wh_real_t reach[]) {
     }
 }
 
-/* Two arms in turn, each with the other one as it was found last. */
+/* Searches for two arms in turn, each with the last result of the other. */
 static wh_status_t find_all_legs(plan_t *plan) {
     wh_status_t status = WH_OK;
     const size_t count = plan->count;
@@ -225,7 +225,8 @@ static wh_status_t find_all_legs(plan_t *plan) {
     return status;
 }
 
-/* Of an arm that leaves the circle: it waits for the turn, for what goes all along, and for the other arm. */
+/* Places an arm that leaves the circle: it waits for the turn, for the axes that move all the time, and for
+ * the other arm. */
 static void place_arm(plan_t *plan, size_t arm) {
     const legs_t *legs = &plan->legs[arm];
     wh_way_out_t *out = &plan->way->outs[arm];
@@ -241,7 +242,8 @@ static void place_arm(plan_t *plan, size_t arm) {
     out->begin = legs->in.duration + wh_real_max(waits, 0);
 }
 
-/* Between when all arms are in and when the first of them goes out; without any the whole way. */
+/* The turn lies between the time when all arms are in and the time when the first of them moves out;
+ * without arms it takes the whole way. */
 static void place_arms(plan_t *plan, wh_real_t *turn_begin, wh_real_t *turn_end) {
     wh_way_t *way = plan->way;
     way->out_count = plan->count;

@@ -26,18 +26,18 @@ static const char *station_name(const table_t *table, size_t station) {
 
 /* ----------------------------------------------------------------------------------------- each by itself */
 
-#define WHY 120
+#define WHY 400
 
 /* "42 WAFER_MISSING in GET A 1", "hit in PUT B 2", "line 8 is not met". */
 static void name_failure(const wh_budget_why_t *why, char text[WHY]) {
     char name[sizeof why->name];
     wh_text_words(name, sizeof name, why->name);
     if (why->error != WH_OK) {
-        (void)snprintf(text, WHY, "%d %s in %.40s", (int)why->error, why->name, why->command);
+        (void)snprintf(text, WHY, "%d %s in %s", (int)why->error, why->name, why->command);
     } else if (strcmp(why->name, "expectation") == 0) {
         (void)snprintf(text, WHY, "line %d is not met", why->line);
     } else {
-        (void)snprintf(text, WHY, "%s%s%.40s", name, why->command[0] ? " in " : "", why->command);
+        (void)snprintf(text, WHY, "%s%s%s", name, why->command[0] ? " in " : "", why->command);
     }
 }
 
@@ -152,7 +152,7 @@ static void print_first(const table_t *table) {
     free(point);
 }
 
-/* How far apart the trials are within the widths, at most: of mm and of degrees. */
+/* The largest distance between trials within the widths, in mm and in degrees. */
 static double widest_step(const wh_budget_t *budget, bool turns) {
     int32_t widest = 0;
     for (size_t s = 0; s < budget->study->layout->station_count; ++s) {
@@ -275,7 +275,7 @@ static void print_alike(const table_t *table) {
     }
 }
 
-/* "2.500 mm of z", and of angles what that is at a wafer's rim. */
+/* "2.500 mm of z"; for angles also the distance at a wafer's rim. */
 static void print_width(const table_t *table, size_t station) {
     const wh_budget_t *budget = table->budget;
     const size_t axis = wh_budget_tightest_axis(budget, station);
@@ -299,11 +299,11 @@ static void print_cause(const table_t *table) {
     fputc('\n', table->frame.out);
 }
 
-/* What the numbers do not say. */
+/* Prints warnings that the numbers do not show. */
 static void print_warnings(const table_t *table) {
     const wh_budget_t *budget = table->budget;
     if (!budget->study->layout->collision) {
-        fputs("\n! collisions were not looked for: the layout has no collision = true\n", table->frame.out);
+        fputs("\n! " WH_RECORD_UNLOOKED "\n", table->frame.out);
     }
     if (wh_study_has_noise(budget->study)) {
         fputs("\n! sensors have noise: one sample of it was used, the same in all trials\n",
@@ -315,7 +315,7 @@ static void print_warnings(const table_t *table) {
     }
 }
 
-/* Which station must be taught better, in words: the last line. */
+/* Says which station must be taught better: the last line. */
 static void print_answer(const table_t *table) {
     const wh_budget_t *budget = table->budget;
     FILE *out = table->frame.out;
@@ -325,7 +325,7 @@ static void print_answer(const table_t *table) {
                 number_of(budget->options.most[0]), number_of(budget->options.most[1]));
         return;
     }
-    wh_print_say(&table->frame, "Of all errors %s of %s allows the least: ",
+    wh_print_say(&table->frame, "The tightest error is %s of %s: ",
                  wh_errors_teaching_name(wh_budget_tightest_axis(budget, (size_t)budget->tightest)),
                  station_name(table, (size_t)budget->tightest));
     print_width(table, (size_t)budget->tightest);

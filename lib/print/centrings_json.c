@@ -1,4 +1,4 @@
-/* What a record says of centrings on the way, as JSON. */
+/* A record's centrings on the way, as JSON. */
 #include <math.h>
 
 #include "../math/trig.h"
@@ -76,7 +76,7 @@ json_t *wh_centring_to_json(const void *given, size_t i) {
         from->command != WH_NONE ? (json_int_t)from->command : WH_JSON_NONE,
         wh_record_station_name(record, from->station), wh_record_gripper_name(record, from->gripper),
         wh_record_wafer_name(record, from->wafer), (int)words.verdict, words.is_sure);
-    if (from->repeated) { /* what motion control went by is not in the log */
+    if (from->repeated) { /* the data that motion control used is not in the log */
         (void)wh_json_add(object, "error sure", json_null(), json_null(), NULL);
     }
     (void)wh_json_set(object, "missed %lld skipped %i repeated %i lacking %lld", (json_int_t)from->missed,

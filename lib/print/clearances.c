@@ -1,5 +1,4 @@
-/* The smallest gaps of a run: of what, between which two parts, when, against which limit; and how they went
- * over time. */
+/* The smallest gaps of a run: their kind, the two parts, the time and the limit; and the gaps over time. */
 #include "print_internal.h"
 
 /* Columns of a curve. Its name and its scale stand beside it. */
@@ -11,7 +10,7 @@
 
 enum { PAIR, GAP, LIMIT, AT, BETWEEN };
 
-/* What a kind of clearance is between, in words: at most 24 letters. */
+/* The things that a kind of clearance lies between, in words: at most 24 letters. */
 static const char *const clearances[WH_CLEARANCES] = {
     "blade to the wafer above", "blade to the wafer below", "blade to the cell", "held wafer to another",
     "held wafer to a ledge",    "held wafer to the cell",   "arm to the cell",   "arm to itself"};

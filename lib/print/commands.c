@@ -1,5 +1,5 @@
-/* The commands: when each ran, how it ended, what was taken under which values; what those that failed said;
- * and the hand-overs: what the chuck measured when it took the wafer, in the paper's words. */
+/* The commands: when each ran, how it ended, and which wafers it took with which values. Then the messages of
+ * failed commands, and the hand-overs: the chuck's values when it took the wafer, in the paper's words. */
 #include <stdlib.h>
 
 #include "../text/array.h"
@@ -7,7 +7,7 @@
 
 enum { LINE, COMMAND, BEGIN, END, RESULT, TAKEN, MEASURED };
 
-/* The events that the table shows, in chains by command; the last chain holds what fits none. */
+/* The events that the table shows, in chains by command; the last chain holds events that fit no command. */
 typedef struct {
     size_t *first; /* by command: 1 + index of its first event, 0: none */
     size_t *next;  /* by event: 1 + index of the next one of its command */
@@ -80,7 +80,7 @@ static void add_command(const wh_printer_t *printer, wh_grid_t *grid, const chai
     }
 }
 
-/* What happened while no command ran. */
+/* Adds the events that happened while no command ran. */
 static void add_others(const wh_printer_t *printer, wh_grid_t *grid, const chains_t *chains) {
     size_t event = chains->first[printer->record->command_count];
     for (; event != 0; event = chains->next[event - 1]) {
@@ -141,7 +141,7 @@ void wh_print_errors(const wh_printer_t *printer) {
 
 /* --------------------------------------------------------------------------------------------- hand-overs */
 
-/* As many are shown in full. */
+/* The most hand-overs that are shown in full. */
 #define SHOWN 8
 
 /* Columns of its table. */

@@ -1,4 +1,4 @@
-/* The first steady cycle by itself: how long it takes, what is in it, and its wafers per hour. */
+/* The first steady cycle by itself: its duration, its commands, and its wafers per hour. */
 #include "../record/steady.h"
 #include "print_internal.h"
 

@@ -7,7 +7,7 @@
 
 #define FORMAT 1
 
-/* What was found: 0 and OK, or the error and why. */
+/* The outcome: 0 and OK, or the error and its reason. */
 static json_t *outcome(const char *name, wh_status_t status, const char *reason) {
     return wh_json_set(json_object(), "name %s error %d status %s reason %s", name, (int)status,
                        wh_status_name(status), reason[0] != '\0' ? reason : NULL);
@@ -86,7 +86,7 @@ int wh_frames_print_json(const wh_point_table_t *table, FILE *out) {
 
 /* ------------------------------------------------------------------------------------------------- limits */
 
-/* A limit that is not determined is null, with what it is at least, or null. */
+/* A limit that is not determined is null, with its least value, or null. */
 static void put_limit(json_t *object, const wh_limits_estimate_t *limits, int k) {
     const wh_estimate_value_t *value = &limits->values[k];
     const bool told = value->is_determined;
@@ -140,7 +140,7 @@ int wh_limits_print_json(const wh_move_table_t *table, FILE *out) {
 
 /* ----------------------------------------------------------------------------------------------- geometry */
 
-/* The lines of what was set aside: touches, or headings of touches. */
+/* The lines that were set aside: touches, or headings of touches. */
 static json_t *lines_aside(const wh_touch_table_t *table, bool of_headings) {
     json_t *lines = json_array();
     for (size_t i = 0; i < table->count; ++i) {

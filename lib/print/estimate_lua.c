@@ -34,7 +34,7 @@ static void put_list(FILE *out, const double values[3], const double sds[3]) {
 
 /* ------------------------------------------------------------------------------------------------- frames */
 
-/* True for what Lua takes as a field's name without quotes; of a word of Lua's, quotes do no harm. */
+/* True for a text that Lua takes as a field's name without quotes. Quotes around a word of Lua do no harm. */
 static bool is_plain(const char *name) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
     static const char *const words[] = {
@@ -191,10 +191,9 @@ static void put_base(const wh_geometry_estimate_t *found, FILE *out) {
         fputs("-- base is not determined\n", out);
         return;
     }
-    fputs(
-        "-- A layout's robot stands at the origin of base, level. Of base, the touched points' frame says:\n"
-        "-- base = { at = ",
-        out);
+    fputs("-- A layout's robot stands at the origin of base, level. From the touched points' frame:\n"
+          "-- base = { at = ",
+          out);
     put_list(out, (const double[]){r->x, r->y, r->z},
              (const double[]){values[WH_GEOMETRY_X].sd, values[WH_GEOMETRY_Y].sd,
                               values[WH_GEOMETRY_ZERO + WH_AXIS_Z].sd});
@@ -202,10 +201,10 @@ static void put_base(const wh_geometry_estimate_t *found, FILE *out) {
     put_list(out, rpy,
              (const double[]){values[WH_GEOMETRY_TILT_X].sd * deg, values[WH_GEOMETRY_TILT_Y].sd * deg,
                               values[WH_GEOMETRY_ZERO + WH_AXIS_THETA].sd * deg});
-    fputs(" }\n-- What is known in that frame goes into base before it is a station's at and rpy.\n", out);
+    fputs(" }\n-- Poses known in that frame go into base before they are a station's at and rpy.\n", out);
 }
 
-/* How a layout's axes go with the controller's. */
+/* How a layout's axes relate to the controller's. */
 static void put_axes(const wh_geometry_estimate_t *found, FILE *out) {
     for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         const wh_estimate_value_t *scale = &found->values[WH_GEOMETRY_SCALE + axis];

@@ -1,4 +1,5 @@
-/* The Gantt table of a run or of a part of it: the commands, then who was busy when, time along the line. */
+/* The Gantt table of a run or of a part of it: the commands, then the busy times of each part, with time
+ * along the line. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,13 +8,13 @@
 #include "../text/array.h"
 #include "print_internal.h"
 
-/* How many columns the time takes: what the terminal has room for, within these limits; PIPED_COLUMNS without
- * a terminal. */
+/* The number of columns for the time: as many as fit on the terminal, within these limits; PIPED_COLUMNS
+ * without a terminal. */
 #define LEAST_COLUMNS 20
 #define MOST_COLUMNS 400
 #define PIPED_COLUMNS 100
 
-/* Ticks are at least so many columns apart, so that their numbers fit. */
+/* The least distance of ticks, in columns, so that their numbers fit. */
 #define TICK_COLUMNS 10
 
 #define LABEL_SIZE (WH_NAME_SIZE + 16)
@@ -36,7 +37,7 @@ typedef struct {
 
 /* -------------------------------------------------------------------------------------------------- marks */
 
-/* What stands for a share, one column wide. */
+/* The mark of a share, one column wide. */
 static const char *share_mark(const wh_style_t *style, wh_share_t share) {
     static const char *const ascii[WH_SHARES] = {"#", "-", "v", "x", "."};
     static const char *const utf8[WH_SHARES] = {"█", "▒", "v", "x", "·"};
@@ -52,7 +53,7 @@ static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interv
 
 /* --------------------------------------------------------------------------------------------------- rows */
 
-/* A row as wide as the terminal leaves beside labels of so many columns. */
+/* A row with the width that the terminal leaves beside labels of this number of columns. */
 static gantt_t open_gantt(const wh_printer_t *printer, const wh_print_window_t *window,
                           size_t label_columns) {
     const size_t width = printer->style->width;
@@ -191,8 +192,8 @@ static void draw_span(gantt_t *gantt, int64_t begin, int64_t end, const char *te
     write_over(gantt, first + (has_bar ? 1 : 0), last, text);
 }
 
-/* Of the robot's commands that are left, WH_NONE: of no robot's, the first, and what comes after its end, and
- * so on. True if any is left then. */
+/* Draws one row of the robot's remaining commands (WH_NONE: commands of no robot): the first one, then the
+ * first one after its end, and so on. True if any are left then. */
 static bool draw_commands(gantt_t *gantt, int32_t robot, bool is_drawn[]) {
     const wh_record_t *record = gantt->printer->record;
     double free_from = 0;
@@ -233,7 +234,7 @@ static void print_commands(gantt_t *gantt) {
     free(is_drawn);
 }
 
-/* From a bar on waiting's marks, and over them who waits for what if there is room. */
+/* Draws the marks of waiting behind a bar, and over them who waits for what if there is room. */
 static void draw_wait(gantt_t *gantt, const wh_wait_record_t *wait) {
     char who[32] = "script";
     const wh_busy_span_t span = {WH_BUSY_ROBOT, WH_NONE, 1 + (int32_t)WH_SHARE_WAITING, wait->begin,

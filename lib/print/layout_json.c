@@ -36,7 +36,7 @@ static json_t *axis(const void *subject, size_t i) {
                        limits->speed * unit, limits->acceleration * unit, limits->jerk * unit);
 }
 
-/* Of a chuck on a stage, and of pins. */
+/* Puts the slides of a chuck on a stage, and of pins. */
 static void put_slides(json_t *object, const wh_mount_t *mount) {
     if (wh_mount_axes(mount) > 0 && mount->kind == WH_MOUNT_STAGE) {
         wh_json_put(object, "stage", wh_json_set(json_object(), "travel %g", mount->travel.max));
@@ -46,7 +46,7 @@ static void put_slides(json_t *object, const wh_mount_t *mount) {
     }
 }
 
-/* Of one that has another grip than vacuum. */
+/* Puts the grip of a gripper that has another one than vacuum. */
 static void put_grip(json_t *object, const wh_grip_t *grip) {
     const wh_edge_t *edge = &grip->edge;
     if (grip->kind == WH_GRIP_VACUUM) {
@@ -129,7 +129,7 @@ static json_t *beams_at(const wh_layout_t *layout, size_t s) {
     return list;
 }
 
-/* Those of several robots that come there: which of them does unless a command says otherwise. */
+/* Puts those of several robots that come there, and the one that does so unless a command says otherwise. */
 static json_t *servers(const wh_layout_t *layout, const wh_layout_station_t *station) {
     json_t *list = json_array();
     for (size_t r = 0; r < layout->robot_count; ++r) {
@@ -159,10 +159,10 @@ static json_t *station(const void *subject, size_t i) {
     put_pose(object, &place->base_from_station);
     (void)wh_json_set(object,
                       "slots %d pitch %g stroke %g offset %g retract %g pickup_speed %g taught %i "
-                      "effector %s counts %i wafers %lld",
+                      "by_axes %i effector %s counts %i wafers %lld",
                       place->slots, place->pitch, from->stroke, from->offset, from->retract,
-                      from->pickup_speed, from->taught, layout->grippers[from->effector].name, from->counts,
-                      (json_int_t)entry->wafers);
+                      from->pickup_speed, from->taught, from->by_axes, layout->grippers[from->effector].name,
+                      from->counts, (json_int_t)entry->wafers);
     json_t *room = wh_json_set(
         json_object(), "above %g below %g beside %g before %g lifted %g",
         entry->has_above ? entry->above : HUGE_VAL, entry->has_below ? entry->below : HUGE_VAL,
@@ -198,7 +198,7 @@ static json_t *shapes(const wh_shapes_t *from) {
 
 static json_t *part(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
-    static const char *const kinds[] = {"wall", "ledge", "arm", "blade", "chuck", "wafer"};
+    static const char *const kinds[] = {"wall", "ledge", "arm", "blade", "chuck", "door", "wafer"};
     static const char *const shapes_of[] = {"box", "cylinder", "capsule", "mesh"};
     const wh_layout_t *layout = check->layout;
     const wh_part_t *from = &layout->world.parts[i];
@@ -207,6 +207,9 @@ static json_t *part(const void *subject, size_t i) {
                                  kinds[from->kind], shapes_of[from->convex.kind]);
     wh_json_put(object, "half",
                 from->convex.kind == WH_CONVEX_MESH ? json_null() : wh_json_vector(from->convex.half));
+    if (from->convex.kind == WH_CONVEX_MESH) {
+        wh_json_put(object, "extent", wh_json_vector(wh_feasibility_extent(&from->convex)));
+    }
     put_pose(object, &pose);
     return object;
 }
@@ -240,7 +243,7 @@ static json_t *pads(const wh_pads_t *from) {
                           : json_null();
 }
 
-/* Null for what the fault is not of. */
+/* Null for a thing that the fault does not concern. */
 static void put_target(json_t *object, const char *key, bool is_its, const char *name) {
     wh_json_put(object, key, is_its ? wh_json_text(name) : json_null());
 }
@@ -285,7 +288,7 @@ static json_t *finding(const wh_feasibility_t *check, size_t i) {
     return object;
 }
 
-/* Those that are warnings, or those that are not. */
+/* Puts the findings that are warnings, or those that are not. */
 static json_t *findings(const wh_feasibility_t *check, bool warnings) {
     json_t *list = json_array();
     for (size_t i = 0; i < check->count; ++i) {

@@ -1,4 +1,4 @@
-/* A layout and what was found wrong with it: tables for people, JSON for programs. */
+/* A layout and its findings: tables for people, JSON for programs. */
 #ifndef WH_PRINT_LAYOUT_PRINT_H
 #define WH_PRINT_LAYOUT_PRINT_H
 

@@ -6,12 +6,13 @@
 #include "../layout/axes.h"
 #include "../layout/grips.h"
 #include "../math/trig.h"
+#include "../text/array.h"
 #include "layout_print.h"
 #include "print_internal.h"
 
 #define MS WH_REAL(1e3)
 
-/* What every part of the listing is given. */
+/* The data that every part of the listing is given. */
 typedef struct {
     const wh_feasibility_t *check;
     const wh_layout_t *layout;
@@ -46,7 +47,7 @@ static void print_axes(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Robot", grid);
 }
 
-/* Of a gripper on a prealigner, if it is not a chuck that turns only. */
+/* The kind of a gripper on a prealigner, unless it is a chuck that only turns. */
 static const char *what_it_is(const wh_mount_t *mount) {
     static const char *const words[] = {"", ", on a stage", ", pins", ", clamp"};
     return wh_mount_axes(mount) > 0 ? words[mount->kind] : "";
@@ -63,7 +64,7 @@ static void name_arm(const wh_layout_t *layout, size_t gripper, char *name, size
     }
 }
 
-/* Only where there are others than vacuum. */
+/* Printed only if a gripper has another grip than vacuum. */
 static void print_grips(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
@@ -105,7 +106,8 @@ static void print_grippers(const listing_t *listing) {
 
 /* The stations that it is the door of, for any robot. */
 static void list_stations(const wh_layout_t *layout, wh_grid_t *grid, int32_t door) {
-    char names[WH_NAME_SIZE * 4] = "";
+    const size_t size = layout->station_count * (WH_NAME_SIZE + 2) + 1;
+    char *names = wh_array_new(size, 1);
     for (size_t s = 0; s < layout->station_count; ++s) {
         bool is_its = false;
         for (size_t r = 0; r < layout->robot_count; ++r) {
@@ -113,11 +115,12 @@ static void list_stations(const wh_layout_t *layout, wh_grid_t *grid, int32_t do
         }
         const size_t length = strlen(names);
         if (is_its) {
-            (void)snprintf(names + length, sizeof names - length, "%s%s", length > 0 ? ", " : "",
+            (void)snprintf(names + length, size - length, "%s%s", length > 0 ? ", " : "",
                            layout->stations[s].name);
         }
     }
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", names);
+    free(names);
 }
 
 static void print_doors(const listing_t *listing) {
@@ -140,7 +143,7 @@ static void print_doors(const listing_t *listing) {
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
-/* What looks at wafers there. */
+/* The sensors that see wafers there. */
 static const char *seen_by(const wh_layout_t *layout, size_t s) {
     const bool has_beams = wh_layout_beams_at(layout, s).count > 0;
     if (wh_layout_scanner(layout, layout->places[s].chuck)) {
@@ -157,8 +160,9 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
     const char *kind = station->foup ? "foup" : station->flipper ? "flipper" : "slots";
     wh_grid_named_row(grid, station->name);
-    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s", station->prealigner ? "prealigner" : kind,
-                 seen_by(listing->layout, s), station->taught ? "" : ", not taught");
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s%s", station->prealigner ? "prealigner" : kind,
+                 seen_by(listing->layout, s), station->by_axes ? ", by axes" : "",
+                 station->taught ? "" : ", not taught");
     const double values[] = {r->x,
                              r->y,
                              r->z,
@@ -186,7 +190,7 @@ static void print_stations(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Stations", grid);
 }
 
-/* Of several robots which come to a station, and which of them does unless a command says otherwise. */
+/* Prints which of several robots come to a station, and which one does so unless a command says otherwise. */
 static void print_servers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     if (layout->robot_count < 2) {
@@ -271,7 +275,7 @@ static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault)
                                              : layout->grippers[fault->target].name;
 }
 
-/* Of the value. */
+/* The unit of the value. */
 static const char *unit_of(wh_fault_kind_t kind) {
     switch ((int)kind) {
     case WH_FAULT_LEAK:
@@ -311,7 +315,7 @@ static void print_faults(const listing_t *listing) {
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
-/* Of each robot. */
+/* Prints the arms of each robot. */
 static void print_arms(const wh_layout_t *layout, wh_grid_t *grid) {
     for (size_t robot = 0; robot < wh_machine_robots(&layout->machine); ++robot) {
         const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, NULL);
@@ -353,6 +357,13 @@ static void print_shapes(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Shapes, mm", grid);
 }
 
+static void describe_mesh(wh_grid_t *grid, size_t column, const char *what, const char *points,
+                          const wh_convex_t *mesh) {
+    const wh_vec3_t edges = wh_feasibility_extent(mesh);
+    wh_grid_text(grid, column, WH_INK_PLAIN, "%s, %zu %s, %g by %g by %g", what, mesh->point_count, points,
+                 edges.x, edges.y, edges.z);
+}
+
 static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *convex) {
     const double x = 2 * convex->half.x;
     const double z = 2 * convex->half.z;
@@ -367,7 +378,7 @@ static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *con
         wh_grid_text(grid, column, WH_INK_PLAIN, "capsule, %g wide, %g high and its caps", x, z);
         break;
     case WH_CONVEX_MESH:
-        wh_grid_text(grid, column, WH_INK_PLAIN, "mesh of %zu points", convex->point_count);
+        describe_mesh(grid, column, "mesh", "points", convex);
         break;
     }
 }
@@ -393,14 +404,14 @@ static void add_link(const listing_t *listing, wh_grid_t *grid, const char *part
     wh_grid_named_row(grid, part_name);
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part, name, sizeof name));
     if (part->convex.kind == WH_CONVEX_MESH) {
-        wh_grid_text(grid, 2, WH_INK_PLAIN, "convex hull of a mesh, %zu corners", part->convex.point_count);
+        describe_mesh(grid, 2, "convex hull of a mesh", "corners", &part->convex);
     } else {
         describe_size(grid, 2, &part->convex);
     }
     wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
 }
 
-/* What the robots' URDFs say of their arms. */
+/* Prints the data of the arms from the robots' URDFs. */
 static void print_urdfs(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "link;moves with;shape;x{0,6};y{0,6};z{0,6}");

@@ -1,4 +1,4 @@
-/* What the tables' parts share: names, numbers and the columns of measured values. */
+/* Shared by the tables' parts: names, numbers and the columns of measured values. */
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -15,7 +15,7 @@
 
 /* ----------------------------------------------------------------------------------------------- commands */
 
-/* What a time went into. */
+/* The parts of a time. */
 static json_t *split_of(const wh_record_t *record, const int64_t shares[WH_SHARES]) {
     static const char *const keys[WH_SHARES] = {"loaded_s", "empty_s", "vacuum_s", "handover_s", "waiting_s"};
     const int64_t motion = shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY];
@@ -110,7 +110,7 @@ static bool is_unmeasured(wh_event_kind_t kind) {
     static const uint32_t kinds = 1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
                                   1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED |
                                   1U << WH_EVENT_VACUUM_LOST | 1U << WH_EVENT_FAULT_ARMED |
-                                  1U << WH_EVENT_FAULT_CLEARED;
+                                  1U << WH_EVENT_FAULT_CLEARED | 1U << WH_EVENT_PUSHED_THROUGH;
     return (kinds >> (unsigned)kind & 1U) != 0;
 }
 
@@ -122,11 +122,12 @@ static json_t *part_names(const wh_record_t *record, const int32_t parts[2]) {
     return json_pack("[o, o]", part_name(record, parts[0]), part_name(record, parts[1]));
 }
 
-/* What was found against which limit, between which parts, by which fault. */
+/* Puts the finding: the value with its limit, the parts, the fault. */
 static void put_found(const wh_record_t *record, json_t *object, const wh_event_t *event) {
     static const uint32_t with_values = 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_PLACED_OFF_CENTRE |
                                         1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_SETTLED |
-                                        1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST;
+                                        1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST |
+                                        1U << WH_EVENT_PUSHED_THROUGH;
     static const uint32_t of_faults = 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
     const uint32_t kind = 1U << (unsigned)event->kind;
     if (wh_record_is_contact(event->kind)) {
@@ -145,7 +146,7 @@ static void put_found(const wh_record_t *record, json_t *object, const wh_event_
     }
 }
 
-/* What only this kind of event has. */
+/* Puts the members that only this kind of event has. */
 static void put_particulars(const wh_record_t *record, json_t *object, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_HANDED_OVER:
@@ -221,8 +222,8 @@ static json_t *clearance(const void *subject, size_t kind) {
                        found ? wh_json_vector(from->at) : json_null(), NULL);
 }
 
-/* The smallest gap in each bin, by the time at which it ends; null where it was wider than what is kept. Only
- * of a kind that was ever near. */
+/* The smallest gap in each bin, by the bin's end time; null where it was wider than the gaps that are kept.
+ * Only kinds that were ever near appear. */
 static json_t *curve(const void *subject, size_t kind) {
     const wh_record_t *record = subject;
     const wh_curves_t *curves = record->curves;
@@ -243,7 +244,7 @@ static json_t *curve(const void *subject, size_t kind) {
 
 /* --------------------------------------------------------------------------------------------- throughput */
 
-/* The stations of which a put is a wafer done. */
+/* The stations where a put wafer counts as done. */
 static json_t *counting(const wh_record_t *record) {
     json_t *list = json_array();
     for (size_t s = 0; record->layout && s < record->layout->station_count; ++s) {
@@ -355,7 +356,7 @@ static json_t *wait_of(const void *subject, size_t i) {
 
 /* -------------------------------------------------------------------------------------------------- reach */
 
-/* By station and axis; null where the axis was not looked at. */
+/* By station and axis; null where the axis was not checked. */
 static json_t *reach(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_machine_t *machine = &record->layout->machine;
@@ -394,6 +395,9 @@ static json_t *log_of(const wh_record_log_t *log) {
     if (!log->has_id) {
         wh_json_put(object, "id", json_null());
     }
+    if (log->is_part) {
+        wh_json_put(object, "is_part", json_true());
+    }
     wh_json_put(object, "notes", wh_json_list(log_note, log, log->note_count));
     return object;
 }
@@ -430,8 +434,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
     if (record->crowded > 0) {
         (void)wh_json_set(root, "crowded_slices %lld", (json_int_t)record->crowded);
     }
-    wh_json_put(root, "throughput", wh_throughput_to_json(record));
+    wh_json_put(root, "not_looked_for", wh_json_text(record->unlooked));
     wh_json_put(root, "steady_cycle", steady_cycle(record));
+    wh_json_put(root, "throughput", wh_throughput_to_json(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));
 }
 
@@ -469,6 +474,9 @@ static void put_centrings(const wh_record_t *record, json_t *root) {
 json_t *wh_record_to_json(const wh_record_t *record) {
     json_t *root = json_object();
     put_head(record, root);
+    if (record->flow && record->flow->figures.tool) {
+        wh_json_put(root, "flow", wh_flow_to_json(record->flow));
+    }
     put_lists(record, root);
     put_centrings(record, root);
     return root;

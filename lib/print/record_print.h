@@ -1,34 +1,34 @@
 /* A run's record, for people and for programs.
  *
- * As tables, in this order, with what has nothing to say left out: what ran and with which tolerance, and by
- * which errors the cell was off; the
- * commands, each with the wafers that it took and the values (2)-(5) of each pick beside their limits; what
- * the commands that failed said; each hand-over as the chuck saw it; misses and complaints in plain words;
- * where the wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour; and
- * the verdict.
+ * The tables come in this order; empty ones are left out: the script, its tolerance, and the errors of the
+ * cell; the commands, each with the wafers that it took and the values (2)-(5) of each pick beside their
+ * limits; the messages of failed commands; each hand-over as the chuck saw it; misses and complaints in plain
+ * words; where the wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour;
+ * and the verdict.
  *
- * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have as many decimals as it takes
- * not to be rounded onto a limit or across it; offsets show 1e-9 mm. The same record gives the same bytes,
- * but for the wall time in the last lines. Nothing is cut off at any width.
+ * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have enough decimals that rounding
+ * never moves them onto a limit or across it; offsets show 1e-9 mm. Equal records give equal bytes, except
+ * for the wall time in the last lines. Nothing is cut off at any width.
  *
  * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if a
  * log does not show it, and if no command came), nothing_moved (true, only when no command came), failure
  * (only when the run ended in one), errors (only when the cell was given some: [NAME.FIELD=VALUE]), log (only
  * when the run was read from one: { verdict, reason (null if it is the same), id (16 hex digits; null: it is
- * no recording of ours), part, notes [text] }), script, layout (path or null), slices, missed, simulated_s,
- * wall_s, hash (16 hex digits),
- *   throughput:   { wafers_per_hour (null: there is no figure), reason (why not, in words, or null),
- *                 wafers, seconds, first_cycle, last_cycle (of the marked cycles that count, from 1; null:
- *                 the whole run counts), puts (all of the run), counting (the names of the stations that
- *                 count) }: see record/throughput.h
+ * no recording of ours), part, is_part (true, only when other parts were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s,
+ * wall_s, hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
  *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
  *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
  *                 a row), cycle (which of the marked ones it is, from 1; null: none is), first_command (its
  *                 index, from 0), commands (how many) }, all null but reason and found where there is none:
  *                 see record/steady.h
+ *   throughput:   { wafers_per_hour (null: there is no figure), reason (why not, in words, or null),
+ *                 wafers, seconds, first_cycle, last_cycle (of the marked cycles that count, from 1; null:
+ *                 the whole run counts), puts (all of the run), counting (the names of the stations that
+ *                 count) }: see record/throughput.h
  *   split:        { motion_s, of it loaded_s and empty_s, vacuum_s, handover_s (valves switching),
  *                 waiting_s }: what the run's time went into; motion, vacuum, handover and waiting add up
  *                 to simulated_s
+ *   flow:         (only of a cell whose robots are times alone: see flow_json.c)
  * and the lists
  *   commands:     line, text, error (0: none), begin_s, end_s, split (of the command); message where there
  *                 is one
@@ -89,11 +89,12 @@
 
 /* Sections that are printed when asked for, before the expectations. Zero it to begin with. */
 typedef struct {
-    /* Who was busy when, time along the line, as wide as the terminal; what each command's time went into. */
+    /* The busy times of each part, with time along the line, as wide as the terminal; and the parts of each
+     * command's time. */
     bool gantt;
-    double from_s, to_s; /* of the run, in this section: all that lies between; to_s 0: up to the end */
-    /* The same of the first steady cycle alone, with how long it takes and its wafers per hour; or why there
-     * is none (record/steady.h). */
+    double from_s, to_s; /* the stretch of the run that this section shows; to_s 0: up to the end */
+    /* The Gantt section of the first steady cycle alone, with its duration and its wafers per hour; or why
+     * there is none (record/steady.h). */
     bool cycle;
     /* How near the axes come to the ends of their travel at each station. */
     bool margins;
@@ -111,6 +112,7 @@ int wh_record_print_json(const wh_record_t *record, FILE *out);
 /* The object itself, and its `throughput` alone; the caller releases it. */
 json_t *wh_throughput_to_json(const wh_record_t *record);
 json_t *wh_record_to_json(const wh_record_t *record);
+json_t *wh_flow_to_json(const wh_flow_t *flow);
 
 /* One element of `events`, and of `centrings`; the caller releases it. `record` is a wh_record_t. */
 json_t *wh_event_to_json(const wh_record_t *record, size_t i);

@@ -36,7 +36,9 @@ static void print_heading(const wh_printer_t *printer) {
     wh_print_say(printer, "%s on %s", record->script ? record->script : "(no script)",
                  record->layout ? record->layout->path : "no layout");
     fputc('\n', printer->out);
-    if (record->layout) {
+    if (record->layout && record->layout->tool) {
+        fprintf(printer->out, "times alone: the robots are of kind \"timed\", and nothing stands anywhere\n");
+    } else if (record->layout) {
         print_tolerance(printer);
     }
     for (size_t i = 0; i < record->error_count; ++i) {
@@ -53,12 +55,13 @@ static void print_heading(const wh_printer_t *printer) {
 
 /* --------------------------------------------------------------------------------------------- complaints */
 
-/* Misses and complaints: what almost happened or should not have, and which condition failed by how much. */
+/* Misses and complaints: events that almost happened or should not have happened, and which condition failed
+ * by how much. */
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
 
 static const char *part_name(const wh_layout_t *layout, int32_t part) {
     const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
-    return name ? name : "more than can be looked at";
+    return name ? name : "none";
 }
 
 static const char *find_name(const void *user, wh_name_kind_t kind, int32_t index) {
@@ -126,10 +129,10 @@ static void print_complaints(const wh_printer_t *printer) {
 /* Where the wafers are at the end, and which of them a gripper carries tilted. */
 enum { NAME, HELD_BY, LIES_IN, DX, FACE = DX + 4 };
 
-/* Above this many wafers only those are listed that something happened to. */
+/* Above this number of wafers, only those with an event are listed. */
 #define LISTED_ALL 30
 
-/* A tilt that is worth a sentence, degrees: what the table shows as more than 0.000. */
+/* The least tilt that gets a sentence, degrees: the table shows it as more than 0.000. */
 #define TILT_SHOWN_DEG 0.0005
 
 /* By wafer: 1 + index of the last event that names it, and of the last pick by an end-effector; 0: none. */
@@ -212,7 +215,7 @@ static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t
     }
 }
 
-/* Of a wafer that the robot took in its own plane, where it began out of level. */
+/* Says that the robot took a wafer in the wafer's own plane, if the wafer began out of level. */
 static void say_no_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
     const wh_layout_t *layout = printer->record->layout;
     const bool tilts = robot_tilts(layout, pick->gripper);
@@ -318,8 +321,18 @@ static void print_expectations(const wh_printer_t *printer) {
 
 /* ------------------------------------------------------------------------------------------------ summary */
 
+static void print_times_alone(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    fprintf(printer->out, "\n%.6f s by events; %.3f s of wall time\nhash %016llx\n", record->simulated_s,
+            record->wall_s, (unsigned long long)record->hash);
+}
+
 static void print_times(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
+    if (record->layout && record->layout->tool) {
+        print_times_alone(printer);
+        return;
+    }
     fputc('\n', printer->out);
     wh_print_counted(printer->out, (int64_t)record->command_count, "command", "commands");
     fprintf(printer->out, ", %.3f s simulated in ", record->simulated_s);
@@ -391,6 +404,10 @@ static void print_summary(const wh_printer_t *printer) {
         ink = WH_INK_WARN;
     }
     print_times(printer);
+    if (record->unlooked) {
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        fprintf(printer->out, "%s\n", record->unlooked);
+    }
     wh_style_print(printer->style, printer->out, ink, "%s", verdict);
     if (!record->ok) {
         put_reasons(printer);
@@ -430,7 +447,10 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     const wh_record_sections_t *wanted = sections ? sections : &none;
     const wh_printer_t printer = {record, style, out};
     print_heading(&printer);
-    wh_print_commands(&printer);
+    if (!record->layout || !record->layout->tool) {
+        wh_print_commands(&printer);
+    }
+    wh_print_flow(&printer);
     wh_print_errors(&printer);
     wh_print_handovers(&printer);
     print_complaints(&printer);

@@ -6,18 +6,19 @@
 
 #include "study_print.h"
 
-/* A drawn error, and what goes with it. */
+/* A drawn error, and its correlations. */
 typedef struct {
     const wh_cause_t *cause;
     size_t index;              /* among the study's causes */
-    wh_correlation_t by_size;  /* of failing with the size of what is drawn */
-    wh_correlation_t by_value; /* with the value; not determined of delays, which have one direction */
+    wh_correlation_t by_size;  /* of failing with the size of the draw */
+    wh_correlation_t by_value; /* with the value; not determined for delays, which have one direction */
     wh_correlation_t end;      /* the strongest of those with the ends of wafers */
-    size_t wafer, quantity;    /* which it is of, when it is determined */
+    size_t wafer, quantity;    /* to which it belongs, when it is determined */
 } wh_cause_told_t;
 
-/* All of them, to be freed: the one that goes with failing most strongly first; then those of which that is
- * not determined, by `end`; then the rest as they are drawn. Their count is study->cause_count. */
+/* All of them, to be freed. The one that correlates with failing most strongly comes first; then those whose
+ * correlation is not determined, by `end`; then the rest in the order of drawing. Their count is
+ * study->cause_count. */
 wh_cause_told_t *wh_causes_told(const wh_study_result_t *result);
 
 /* "Wafer 1 dx mm", "vacuum s". */

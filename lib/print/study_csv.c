@@ -18,9 +18,9 @@ static void put_head(const wh_study_t *study, FILE *out) {
             wh_print_csv_text(name, out);
         }
     }
-    for (size_t i = 0; i < study->cause_count; ++i) {
+    for (size_t i = 0; i < study->drawn_count; ++i) {
         char cause[WH_CAUSE_NAME];
-        wh_cause_name(&study->causes[i], study->layout, cause);
+        wh_cause_name(&study->drawn[i], study->layout, cause);
         (void)snprintf(name, sizeof name, "drawn %s", cause);
         fputc(',', out);
         wh_print_csv_text(name, out);
@@ -39,7 +39,7 @@ int wh_study_print_csv(const wh_study_result_t *result, FILE *out) {
     const wh_study_t *study = result->study;
     const wh_trial_lines_t *lines = &result->tally->lines;
     const size_t width = study->wafer_count * WH_TRIAL_LINE_ENDS;
-    double *drawn = wh_array_new(study->cause_count, sizeof *drawn);
+    double *drawn = wh_array_new(study->drawn_count, sizeof *drawn);
     put_head(study, out);
     for (size_t i = 0; i < lines->count; ++i) {
         const wh_trial_line_t *line = &lines->lines[i];
@@ -48,8 +48,8 @@ int wh_study_print_csv(const wh_study_result_t *result, FILE *out) {
                 line->ended, line->missed, line->errors, line->complaints, line->elsewhere);
         put_numbers(&line->off, 1, out);
         put_numbers(&lines->ends[i * width], width, out);
-        wh_causes_draw(study->causes, study->cause_count, study->layout, &trial, drawn);
-        put_numbers(drawn, study->cause_count, out);
+        wh_causes_draw(study->drawn, study->drawn_count, study->layout, &trial, drawn);
+        put_numbers(drawn, study->drawn_count, out);
         fputc('\n', out);
     }
     free(drawn);

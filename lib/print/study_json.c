@@ -17,10 +17,14 @@ static json_int_t number_of(uint64_t trial) {
 
 /* --------------------------------------------------------------------------------------------------- rows */
 
+/* Null for one that is not told. */
 static json_t *expectation(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_row_t *row = &result->tally->expectations.rows[i];
     char expected[4096];
+    if (!wh_tally_is_told(row)) {
+        return NULL;
+    }
     wh_study_expected(row->text, expected, sizeof expected);
     json_t *object = wh_json_set(json_object(), "line %d text %s seen %lld met %lld", row->line, expected,
                                  (json_int_t)row->seen, (json_int_t)(row->seen - row->bad));
@@ -91,7 +95,7 @@ static json_t *wafer(const void *subject, size_t i) {
 
 /* -------------------------------------------------------------------------------------------------- worst */
 
-/* What a trial drew. What it drew nothing for is null. */
+/* The draws of a trial; null for things without a draw. */
 typedef struct {
     const wh_layout_t *layout;
     wh_trial_t trial;
@@ -203,6 +207,7 @@ static void put_head(const wh_study_result_t *result, json_t *root) {
                       result->require > 0 ? result->require : HUGE_VAL, (json_int_t)tally->ended,
                       (json_int_t)tally->whole, study->whole);
     wh_json_put(root, "noise_alone", json_boolean(wh_study_is_of_noise(study)));
+    (void)wh_json_set(root, "drawn_aside %lld", (json_int_t)(study->drawn_count - study->cause_count));
     wh_json_put(root, "run_without_errors", run_without_errors(result));
 }
 

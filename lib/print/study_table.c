@@ -7,7 +7,7 @@
 #include "study_causes.h"
 #include "study_print.h"
 
-/* The parts of the run's result that are of use here take its frame. */
+/* The parts of the run's result that are useful here take its frame. */
 typedef struct {
     const wh_study_result_t *study;
     const wh_tally_t *tally;
@@ -20,7 +20,7 @@ bool wh_study_is_kept(const wh_study_result_t *result) {
 }
 
 void wh_study_expected(const char *text, char *expected, size_t size) {
-    static const char *const found[] = {"; found dX ", "; it lies in "};
+    static const char *const found[] = {"; found dX ", "; it lies in ", "; at the script's end "};
     size_t length = strlen(text);
     for (size_t i = 0; i < sizeof found / sizeof found[0]; ++i) {
         const char *at = strstr(text, found[i]);
@@ -56,6 +56,9 @@ static void print_expectations(const table_t *table) {
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
+        if (!wh_tally_is_told(row)) {
+            continue;
+        }
         wh_study_expected(row->text, expected, sizeof expected);
         wh_grid_row(grid);
         wh_grid_number(grid, 0, WH_INK_PLAIN, row->line);
@@ -156,7 +159,7 @@ static void print_wafers(const table_t *table) {
 
 /* ------------------------------------------------------------------------------------------------- causes */
 
-/* So many of the drawn errors are told. */
+/* The most drawn errors that are told. */
 #define MOST_CAUSES 8
 
 static void put_correlation(wh_grid_t *grid, size_t column, const wh_correlation_t *found) {
@@ -193,6 +196,15 @@ static void add_cause(const table_t *table, wh_grid_t *grid, const wh_cause_told
     }
 }
 
+/* Says how many drawn errors are left out. */
+static void print_aside(const wh_study_t *study, FILE *out) {
+    const size_t aside = study->drawn_count - study->cause_count;
+    if (aside > 0) {
+        fprintf(out, "%zu drawn error%s left out: the run without errors neither moves nor goes to what %s\n",
+                aside, aside == 1 ? " is" : "s are", aside == 1 ? "it is of" : "they are of");
+    }
+}
+
 static void print_causes(const table_t *table) {
     const size_t count = table->study->study->cause_count;
     wh_cause_told_t *told = wh_causes_told(table->study);
@@ -210,6 +222,7 @@ static void print_causes(const table_t *table) {
     if (count > MOST_CAUSES) {
         fprintf(table->frame.out, "and %zu more, which --json tells\n", count - MOST_CAUSES);
     }
+    print_aside(table->study->study, table->frame.out);
 }
 
 /* -------------------------------------------------------------------------------------------------- worst */
@@ -267,7 +280,7 @@ static void print_how(const table_t *table) {
     }
 }
 
-/* What the rate does not say. */
+/* Prints warnings that the rate does not show. */
 static void print_warnings(const table_t *table) {
     const wh_trial_lines_t *lines = &table->tally->lines;
     size_t caught = 0;
@@ -275,7 +288,7 @@ static void print_warnings(const table_t *table) {
         caught += lines->lines[i].met && lines->lines[i].errors > 0 ? 1 : 0;
     }
     if (!table->study->study->layout->collision) {
-        fputs("! collisions were not looked for: the layout has no collision = true\n", table->frame.out);
+        fputs("! " WH_RECORD_UNLOOKED "\n", table->frame.out);
     }
     if (caught > 0) {
         fprintf(table->frame.out, "! in %zu trial%s that count%s as ok the script caught errors%s\n", caught,

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "../text/grid.h"
 #include "../text/json.h"
 
@@ -48,20 +49,24 @@ static bool has_any(const wh_script_sweep_t *sweep, size_t k) {
 
 static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *style,
                            const bool shown[FIGURES + 1]) {
-    char columns[800] = "";
-    size_t length = 0;
+    char columns[400] = "";
+    wh_grid_t *grid = wh_grid_new(style, sweep->axis_count, NULL);
     for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
-        length += (size_t)snprintf(columns + length, sizeof columns - length, "%.60s{0,12};",
-                                   sweep->axes[axis].name);
+        const size_t size = strlen(sweep->axes[axis].name) + sizeof "{0,12}";
+        char *heading = wh_array_new(size, 1);
+        (void)snprintf(heading, size, "%s{0,12}", sweep->axes[axis].name);
+        wh_grid_columns(grid, heading);
+        free(heading);
     }
-    length += (size_t)snprintf(columns + length, sizeof columns - length, "result");
+    size_t length = (size_t)snprintf(columns, sizeof columns, "result");
     for (size_t k = 0; k < FIGURES; ++k) {
         length += shown[k]
                       ? (size_t)snprintf(columns + length, sizeof columns - length, "%s", figures[k].heading)
                       : 0;
     }
     (void)snprintf(columns + length, sizeof columns - length, "%s", shown[FIGURES] ? ";why" : "");
-    return wh_grid_new(style, sweep->axis_count, columns);
+    wh_grid_columns(grid, columns);
+    return grid;
 }
 
 static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i,
@@ -138,7 +143,7 @@ static size_t count_unchecked(const wh_script_sweep_t *sweep) {
     return unchecked;
 }
 
-/* What the rows do not say. */
+/* Prints warnings that the rows do not show. */
 static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
     const size_t unchecked = count_unchecked(sweep);
     size_t caught = 0;

@@ -83,6 +83,18 @@ void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *
     }
 }
 
+/* Like that of a sweep: in how many nobody looked for collisions. */
+static void put_unlooked(const wh_test_result_t results[], size_t count, FILE *out, const char *before) {
+    size_t unlooked = 0;
+    for (size_t i = 0; i < count; ++i) {
+        unlooked += results[i].is_unlooked ? 1 : 0;
+    }
+    if (unlooked > 0) {
+        fprintf(out, "%scollisions were not looked for in %zu script%s: the layout has no collision = true\n",
+                before, unlooked, unlooked == 1 ? "" : "s");
+    }
+}
+
 void wh_test_print_sum(const wh_test_result_t results[], size_t count, FILE *out, const wh_style_t *style) {
     size_t counts[WH_TEST_VERDICTS] = {0};
     for (size_t i = 0; i < count; ++i) {
@@ -90,6 +102,7 @@ void wh_test_print_sum(const wh_test_result_t results[], size_t count, FILE *out
     }
     const size_t passed_over = counts[WH_TEST_PASSED_OVER];
     const size_t scripts = count - passed_over;
+    put_unlooked(results, count, out, "! ");
     fprintf(out, "%zu %s: ", scripts, scripts == 1 ? "script" : "scripts");
     wh_style_print(style, out, scripts > 0 && counts[WH_TEST_OK] == scripts ? WH_INK_GOOD : WH_INK_BAD,
                    "%zu ok", counts[WH_TEST_OK]);
@@ -146,14 +159,15 @@ void wh_test_print_tap(const wh_test_result_t *result, size_t number, FILE *out)
     }
 }
 
-void wh_test_print_plan(size_t scripts, FILE *out) {
+void wh_test_print_plan(const wh_test_result_t results[], size_t count, size_t scripts, FILE *out) {
+    put_unlooked(results, count, out, "# ");
     fprintf(out, "1..%zu%s\n", scripts, scripts == 0 ? " # no scripts found" : "");
 }
 
 /* -------------------------------------------------------------------------------------------------- JUnit */
 
-/* How many bytes a character has that XML 1.0 has not: controls but for tab and line ends, U+FFFE and
- * U+FFFF. 0: it has it. */
+/* The number of bytes of a character that XML 1.0 does not allow: controls except tab and line ends, U+FFFE
+ * and U+FFFF. 0: it is allowed. */
 static size_t forbidden_bytes(const char *text) {
     const unsigned char first = (unsigned char)text[0];
     if (first < 0x20 && !strchr("\t\n\r", first)) {

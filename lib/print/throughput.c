@@ -1,4 +1,4 @@
-/* What a customer asks of a layout: wafers per hour, what the time goes into, reach. */
+/* A customer's questions about a layout: wafers per hour, the parts of the time, reach. */
 #include "../record/steady.h"
 
 #include <math.h>
@@ -10,9 +10,10 @@
 
 /* ---------------------------------------------------------------------------------------- wafers per hour */
 
-static void put_figure(const wh_printer_t *printer, const wh_throughput_t *throughput) {
-    fprintf(printer->out, "%.1f wafers per hour: %zu in %.3f s, ", throughput->wafers_per_hour,
-            throughput->wafers, throughput->seconds);
+/* Prints the wafers per hour of a whole run, or of its marked cycles without the first. */
+static void put_figure(const wh_printer_t *printer, const wh_throughput_t *throughput, const char *what) {
+    fprintf(printer->out, "%.1f %s: %zu in %.3f s, ", throughput->wafers_per_hour, what, throughput->wafers,
+            throughput->seconds);
     if (throughput->first == 0) {
         fputs("the whole run", printer->out);
     } else if (throughput->first == throughput->last) {
@@ -30,14 +31,22 @@ static void put_share(const wh_printer_t *printer, int64_t slices, const char *w
     }
 }
 
+/* A steady cycle first: what the run is with its start and its end comes behind it. */
 bool wh_print_figure(const wh_printer_t *printer) {
     const wh_throughput_t throughput = wh_throughput(printer->record);
-    if (throughput.figure == WH_FIGURE_GIVEN) {
-        put_figure(printer, &throughput);
-    } else {
-        fprintf(printer->out, "no wafers per hour: %s", wh_throughput_reason(throughput.figure));
+    const wh_steady_cycle_t steady = wh_steady_cycle(printer->record);
+    const bool is_steady = steady.found == WH_STEADY_FOUND && steady.figure == WH_FIGURE_GIVEN;
+    if (is_steady) {
+        fprintf(printer->out, "%.1f wafers per hour: %zu in %.3f s, the first steady cycle; ",
+                steady.wafers_per_hour, steady.wafers, steady.seconds);
     }
-    return throughput.figure == WH_FIGURE_GIVEN;
+    if (throughput.figure == WH_FIGURE_GIVEN) {
+        put_figure(printer, &throughput, is_steady ? "in all" : "wafers per hour");
+    } else {
+        fprintf(printer->out, is_steady ? "none in all: %s" : "no wafers per hour: %s",
+                wh_throughput_reason(throughput.figure));
+    }
+    return is_steady || throughput.figure == WH_FIGURE_GIVEN;
 }
 
 void wh_print_throughput(const wh_printer_t *printer) {
@@ -73,21 +82,26 @@ static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *
     wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
 }
 
-/* The commands that are shown, `count` from `first` on, and how long they took together. */
+/* The commands that are shown are those of a window, which need not follow one another where several run at
+ * once; and how long they took together. */
 typedef struct {
-    size_t first, count;
+    const wh_print_window_t *window;
     double seconds;
 } shown_t;
 
-/* A text and how much of it names a kind of command. What goes on after a phase is told with the kind of what
- * it goes on with. */
+static bool is_shown(const wh_printer_t *printer, const shown_t *shown, size_t command) {
+    return wh_print_is_within(printer, shown->window, &printer->record->commands[command]);
+}
+
+/* A text, and the length of the part that names a kind of command. A command that goes on after a phase
+ * counts with the kind of the command that it continues. */
 typedef struct {
     const char *text; /* null: none */
     size_t length;
     bool goes_on;
 } kind_t;
 
-/* What a CONTINUE goes on with: the last command before it, of its task, that was to stop in a phase. */
+/* The command that a CONTINUE continues: the last one before it, of its task, that stopped in a phase. */
 static const char *find_phased(const wh_record_t *record, size_t command) {
     for (size_t i = command; i-- > 0;) {
         const wh_command_record_t *before = &record->commands[i];
@@ -125,9 +139,9 @@ static void add_total(const wh_printer_t *printer, wh_grid_t *grid, const shown_
     double most = 0;
     size_t count = 0;
     size_t failed = 0;
-    for (size_t i = first; i < shown->first + shown->count; ++i) {
+    for (size_t i = first; i < record->command_count; ++i) {
         const kind_t other = kind_of(record, i);
-        if (is_same(&kind, &other)) {
+        if (is_shown(printer, shown, i) && is_same(&kind, &other)) {
             const double seconds = record->commands[i].end_s - record->commands[i].begin_s;
             sum += seconds;
             least = seconds < least ? seconds : least;
@@ -147,26 +161,26 @@ static void add_total(const wh_printer_t *printer, wh_grid_t *grid, const shown_
     wh_grid_numbers(grid, MEAN, values, sizeof values / sizeof *values);
 }
 
-/* True if no command from `first` on and before this one is of its kind. */
-static bool is_first_of_kind(const wh_record_t *record, size_t first, size_t command) {
+/* True if no command that is shown before this one is of its kind. */
+static bool is_first_of_kind(const wh_printer_t *printer, const shown_t *shown, size_t command) {
+    const wh_record_t *record = printer->record;
     const kind_t kind = kind_of(record, command);
-    for (size_t i = first; i < command; ++i) {
+    for (size_t i = 0; i < command; ++i) {
         const kind_t other = kind_of(record, i);
-        if (is_same(&kind, &other)) {
+        if (is_shown(printer, shown, i) && is_same(&kind, &other)) {
             return false;
         }
     }
-    return kind.text != NULL;
+    return kind.text != NULL && is_shown(printer, shown, command);
 }
 
-/* What a long run's rows above do not show at a glance. */
+/* Prints totals, which the rows of a long run do not show at a glance. */
 static void print_totals(const wh_printer_t *printer, const shown_t *shown, const char *of) {
-    const wh_record_t *record = printer->record;
     char title[100];
     wh_grid_t *grid = wh_grid_new(printer->style, 1,
                                   "command;count{0};failed{0};mean s{3};least s{3};most s{3};share %{1}");
-    for (size_t i = shown->first; i < shown->first + shown->count; ++i) {
-        if (is_first_of_kind(record, shown->first, i)) {
+    for (size_t i = 0; i < printer->record->command_count; ++i) {
+        if (is_first_of_kind(printer, shown, i)) {
             add_total(printer, grid, shown, i);
         }
     }
@@ -175,19 +189,14 @@ static void print_totals(const wh_printer_t *printer, const shown_t *shown, cons
     wh_print_titled(printer, title, grid);
 }
 
-/* Of a window whole commands are shown, also those that it cuts. */
+/* Chooses the commands of a window: whole ones, also those that it cuts. */
 static shown_t choose(const wh_printer_t *printer, const wh_print_window_t *window) {
     const wh_record_t *record = printer->record;
-    shown_t shown = {0, 0, 0};
-    while (shown.first < record->command_count &&
-           !wh_print_is_within(printer, window, &record->commands[shown.first])) {
-        ++shown.first;
+    shown_t shown = {window, 0};
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const double seconds = record->commands[i].end_s - record->commands[i].begin_s;
+        shown.seconds += is_shown(printer, &shown, i) ? seconds : 0;
     }
-    size_t i = shown.first;
-    for (; i < record->command_count && wh_print_is_within(printer, window, &record->commands[i]); ++i) {
-        shown.seconds += record->commands[i].end_s - record->commands[i].begin_s;
-    }
-    shown.count = i - shown.first;
     shown.seconds = window->is_whole ? record->simulated_s : shown.seconds;
     return shown;
 }
@@ -202,8 +211,11 @@ void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window
     wh_grid_t *grid = wh_grid_new(printer->style, 2,
                                   "line{0};command;s{3,6};with wafer{3,6};without{3,6};vacuum{3,6};"
                                   "valves{3,6};waiting{3,6}");
-    for (size_t i = shown.first; i < shown.first + shown.count; ++i) {
+    for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
+        if (!is_shown(printer, &shown, i)) {
+            continue;
+        }
         for (size_t share = 0; share < WH_SHARES; ++share) {
             shares[share] += command->shares[share];
         }
@@ -222,7 +234,7 @@ void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window
 
 /* -------------------------------------------------------------------------------------------------- reach */
 
-/* Below so many mm or degrees a margin is nothing to build upon. */
+/* The least margin, in mm or degrees, that one can rely on. */
 #define SLENDER 1.0
 
 static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t station) {
@@ -247,12 +259,12 @@ void wh_print_margins(const wh_printer_t *printer) {
         return;
     }
     const wh_machine_t *machine = &record->layout->machine;
-    char columns[800] = "station";
+    char columns[40 * WH_GRID_COLUMNS] = "station";
     for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
         if (wh_axis_exists(machine, axis)) {
             const size_t length = strlen(columns);
             size_t own = 0;
-            char robot[16] = ""; /* names may have what a column's heading cannot */
+            char robot[16] = ""; /* names may have characters that a column's heading cannot have */
             if (record->layout->robot_count > 1) {
                 (void)snprintf(robot, sizeof robot, "%d ", (int)wh_machine_robot_of(machine, axis, &own) + 1);
             }

@@ -28,7 +28,7 @@ static bool moves_by_itself(const wh_mount_t *mount, const bool moving[WH_AXES])
     return moves;
 }
 
-/* Bit r: robot r goes. */
+/* Bit r: robot r moves. */
 static uint32_t find_going(const wh_machine_t *machine, const bool moving[WH_AXES]) {
     uint32_t going = 0;
     for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
@@ -57,7 +57,7 @@ wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_A
     return task;
 }
 
-/* False also where each valve is told to stay as it is, as when RECOVER closes one that is closed. */
+/* False also if each valve keeps its position, as when RECOVER closes a closed valve. */
 static bool switches(const wh_track_t *track, const wh_segment_t *segment) {
     bool any = false;
     for (size_t g = 0; segment->kind == WH_SEGMENT_VALVES && g < track->machine->gripper_count; ++g) {
@@ -73,7 +73,7 @@ static wh_share_t share_standing(const wh_track_t *track, const wh_segment_t *se
     return segment->kind == WH_SEGMENT_SENSOR || for_vacuum ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
 }
 
-/* If a LINE moves this axis: of the first robot, or of its gripper's. */
+/* True if a LINE moves this axis; it moves the first robot or the one of its gripper. */
 static bool goes_straight(const wh_machine_t *machine, const wh_segment_t *segment, size_t axis) {
     size_t own = 0;
     const int32_t robot = wh_machine_robot_of(machine, axis, &own);
@@ -91,7 +91,7 @@ wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment,
                                : wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
     }
     wh_task_t task = wh_activity_motion(track->machine, moving, share_standing(track, segment, for_vacuum));
-    /* A motion of no length is one, but keeps nobody busy. */
+    /* A motion of length zero is a motion, but it keeps no robot busy. */
     task.robot = task.robot && (task.moves || !is_motion);
     task.moves = is_motion;
     return task;
@@ -112,16 +112,16 @@ void wh_activity_narrow(wh_task_t *task, const wh_machine_t *machine, uint32_t a
 
 /* ----------------------------------------------------------------------------------------------- counting */
 
-/* Of the resources. */
+/* Indices of resources. */
 enum { FIRST_GRIPPER = WH_BUSY_ROBOTS, FIRST_DOOR = FIRST_GRIPPER + 3 * WH_GRIPPERS };
 
-/* True for a wafer that is held and for a valve: of both a slice tells how they are at its end. A robot and
- * a chuck are busy during the slice. */
+/* True for a held wafer and for a valve: a slice tells the state of both at its end. A robot and a chuck
+ * are busy during the slice. */
 static bool is_state(size_t resource) {
     return resource >= FIRST_GRIPPER && resource < FIRST_DOOR && (resource - FIRST_GRIPPER) % 3 != 0;
 }
 
-/* A resource as an interval is of it. */
+/* The kind and index of a resource, as an interval has them. */
 static wh_busy_span_t span_of(size_t resource) {
     if (resource >= FIRST_DOOR) {
         return (wh_busy_span_t){.who = WH_BUSY_DOOR, .gripper = (int32_t)(resource - FIRST_DOOR)};
@@ -167,7 +167,7 @@ static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t
     }
 }
 
-/* `turns`: it is a chuck that turns. */
+/* `turns`: it is a chuck, and it turns. */
 static void note_gripper(wh_activity_t *activity, size_t g, bool turns, const wh_command_t *command,
                          int32_t held) {
     const size_t first = FIRST_GRIPPER + 3 * g;
@@ -177,7 +177,7 @@ static void note_gripper(wh_activity_t *activity, size_t g, bool turns, const wh
     note(activity, first + 2, command->grippers[g].valve == WH_VALVE_OPEN ? 1 : 0, command->seq);
 }
 
-/* True if the slice is like the one counted last. */
+/* True if the slice is like the last counted one. */
 static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const wh_command_t *command,
                     const wh_state_t *state) {
     const wh_task_t *last = &activity->last.task;
@@ -201,7 +201,7 @@ static bool is_loaded(const wh_machine_t *machine, size_t robot, const wh_state_
     return is_any;
 }
 
-/* Each of several robots by itself. */
+/* Counts each of several robots by itself. */
 static void note_robots(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
                         const wh_state_t *state, int64_t slice) {
     static const uint8_t nobody[WH_BUSY_ROBOTS] = {0};

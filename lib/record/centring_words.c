@@ -6,13 +6,13 @@
 
 #include "../math/trig.h"
 
-/* Standard deviations in um and degrees have so many digits, and a least one, for none is 0. */
+/* Standard deviations in um and degrees have this precision, and a least value, because none is 0. */
 #define LEAST_UM 0.01
 #define LEAST_DEG 1e-4
 
 enum { VERDICT, CENTRE, RADIUS, CROSSINGS, NOTCH, COMMAND };
 
-/* How the command ended of which the centring is. */
+/* The end of the centring's command. */
 typedef enum { NOT_TOLD, WENT_ON, FAILED_SO, FAILED_ELSE } end_t;
 
 static double um_of(double mm) {
@@ -39,7 +39,7 @@ static end_t end_of(const wh_command_record_t *command) {
                : FAILED_ELSE;
 }
 
-/* True if the states that a log has say anything else than motion control did. */
+/* True if the log's states contradict what motion control did. */
 static bool is_other(const wh_centring_record_t *centring, const wh_command_record_t *command) {
     const end_t end = end_of(command);
     const wh_status_t status = centring->status;
@@ -55,7 +55,7 @@ static void put_reason(char *line, wh_status_t why) {
                    wh_status_name(why));
 }
 
-/* A log's states against the command's end. */
+/* Writes that a log's states contradict the command's end. */
 static void put_other(char *line, wh_status_t status, const wh_command_record_t *command) {
     const int length =
         snprintf(line, WH_CENTRING_LINE_BYTES, "not told: this log's states alone give %d %s, but ",

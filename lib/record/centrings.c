@@ -3,27 +3,32 @@
 #include <math.h>
 #include <string.h>
 
-/* How well a latch's time and a wafer's place are known at best, s and mm. */
+/* The least error of a latch's time and of a wafer's place, s and mm. */
 #define LEAST_SD_TIME 1e-6
 #define BEYOND_CORRECTIONS 5
-/* Two places of a wafer that are as near to each other are one, mm. */
+/* Two places of a wafer this near to each other count as one, mm. */
 #define AGREE 0.02
-/* The least way that tells a direction, mm. */
+/* The shortest way that gives a direction, mm. */
 #define LEAST_WAY 1
+
+/* It does not use hypot, whose last bit differs between systems. */
+static double length_of(double x, double y) {
+    return sqrt(x * x + y * y);
+}
 
 /* ----------------------------------------------------------------------------------------------- estimate */
 
 wh_centring_t wh_centring_known(const wh_layout_t *layout, const wh_latch_order_t *order, double radius) {
     wh_centring_t known = wh_centring_nominal(radius);
     known.sd_radius = layout->wafer_spread / 2;
-    const double far = hypot(layout->corrections.x, layout->corrections.y) + BEYOND_CORRECTIONS;
+    const double far = length_of(layout->corrections.x, layout->corrections.y) + BEYOND_CORRECTIONS;
     known.reach = far < known.radius / 3 ? far : known.radius / 3;
     known.sd_time = LEAST_SD_TIME;
     known.agree = AGREE;
     for (int32_t b = order->first; b < order->first + order->count; ++b) {
         const double jitter = layout->doors[b].jitter;
         known.sd_time = jitter > known.sd_time ? jitter : known.sd_time;
-        /* Both crossings of a beam have one error: as if each had its own that is larger. */
+        /* Both crossings of a beam share one error; it is modelled as a larger error for each. */
         const double place = M_SQRT2 * layout->beams[b].sd;
         known.sd_place = place > known.sd_place ? place : known.sd_place;
     }
@@ -37,7 +42,7 @@ static void find_slot(const wh_pass_t *pass, double slot_from_blade[2][2]) {
     const double none = (double)NAN;
     const wh_pose_t *last = pass->place_count > 0 ? &pass->places[pass->place_count - 1] : NULL;
     const wh_vec3_t way = last ? wh_vec3_subtract(&last->r, &pass->places[0].r) : wh_vec3(0, 0, 0);
-    const double length = hypot(way.x, way.y);
+    const double length = length_of(way.x, way.y);
     for (size_t axis = 0; axis < 2; ++axis) {
         slot_from_blade[0][axis] = slot_from_blade[1][axis] = none;
         if (last && length > LEAST_WAY) {
@@ -84,8 +89,8 @@ wh_centring_offset_t wh_centring_offset(const wh_centring_record_t *centring, in
     const double(*m)[2] = centring->slot_from_blade;
     return (wh_centring_offset_t){m[0][0] * centre->x + m[0][1] * centre->y,
                                   m[1][0] * centre->x + m[1][1] * centre->y,
-                                  hypot(m[0][0] * centre->sd_x, m[0][1] * centre->sd_y),
-                                  hypot(m[1][0] * centre->sd_x, m[1][1] * centre->sd_y)};
+                                  length_of(m[0][0] * centre->sd_x, m[0][1] * centre->sd_y),
+                                  length_of(m[1][0] * centre->sd_x, m[1][1] * centre->sd_y)};
 }
 
 double wh_centring_residual(const wh_centring_record_t *centring, int32_t i, size_t k) {
@@ -94,7 +99,7 @@ double wh_centring_residual(const wh_centring_record_t *centring, int32_t i, siz
     }
     const wh_crossing_t *crossing = &centring->crossings[k].crossing;
     const wh_centre_t *centre = &centring->centres.candidates[i];
-    return hypot(crossing->x - centre->x, crossing->y - centre->y) - centre->radius;
+    return length_of(crossing->x - centre->x, crossing->y - centre->y) - centre->radius;
 }
 
 const char *wh_centring_use(const wh_centring_record_t *centring, int32_t i, size_t k) {

@@ -1,6 +1,6 @@
 #include "counterpart.h"
 
-/* The share of a limit that must be larger than the value; all of it if the limit allows nothing. */
+/* The share of a limit that the value uses; all of it if the limit allows nothing. */
 static wh_real_t share(wh_real_t value, wh_real_t limit) {
     if (limit > 0) {
         return value / limit;

@@ -72,7 +72,7 @@ wh_beam_t wh_pass_beam(const wh_layout_t *layout, int32_t beam, const wh_pose_t 
     return wh_beam_at(base_from_station, of->x, of->y, of->low, of->high);
 }
 
-/* Where the blade was as a latch's beam changed. False if that is not known. */
+/* The place of the blade when a latch's beam changed. Returns false if it is not known. */
 static bool find_crossing(const wh_pass_t *pass, const wh_layout_t *layout, const wh_latch_t *latch,
                           wh_pass_crossing_t *found) {
     const wh_layout_beam_t *beam = &layout->beams[latch->beam];

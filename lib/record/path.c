@@ -6,11 +6,12 @@
 
 #include "../text/array.h"
 
-/* So many equal samples are a rest. */
+/* This number of equal samples is a rest. */
 #define REST 32
 
-/* Thinning again compares two cubics in so many places. There they may differ by this share of the tolerance;
- * between the places the difference then stays below the tolerance. At most so many cubics become one. */
+/* The second thinning compares two cubics at this number of places. There they may differ by this share of
+ * the tolerance; between the places the difference then stays below the tolerance. At most this number of
+ * cubics become one. */
 #define PLACES 16
 #define ROOM 0.95
 #define MERGED 64
@@ -98,7 +99,7 @@ static double slope_at(const wh_path_t *curve, size_t i) {
 
 /* ----------------------------------------------------------------------------------------------- thinning */
 
-/* From point to point. */
+/* The cubic from one point to another. */
 static cubic_t cubic_between(const wh_path_t *curve, size_t from, size_t to) {
     return cubic_of(curve->list.points[from].slice, wh_path_value(curve, from), wh_path_slope(curve, from),
                     curve->list.points[to].slice, wh_path_value(curve, to), wh_path_slope(curve, to));
@@ -125,7 +126,7 @@ static bool is_rest(const wh_path_t *curve, size_t from) {
            is_same(wh_path_slope(curve, from), 0) && is_same(wh_path_slope(curve, from + 1), 0);
 }
 
-/* True if one cubic can stand for those from point `i` to point `end`. */
+/* True if one cubic can replace those from point `i` to point `end`. */
 static bool covers(const wh_path_t *curve, size_t i, size_t end) {
     const wh_point_t *points = curve->list.points;
     const cubic_t cubic = cubic_between(curve, i, end);
@@ -138,7 +139,7 @@ static bool covers(const wh_path_t *curve, size_t i, size_t end) {
     return true;
 }
 
-/* Drops points that a cubic between their neighbours can stand for. What is shown is then off by up to the
+/* Drops points that a cubic between their neighbours can replace. The curve may then be off by up to the
  * tolerance once more. */
 static void thin_again(void *fit) {
     wh_path_t *curve = fit;
@@ -159,13 +160,13 @@ static void thin_again(void *fit) {
     list->tolerance *= 2;
 }
 
-/* The sample becomes the last point. */
+/* Makes the sample the last point. */
 static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
     const double numbers[] = {sample->value, slope};
     wh_points_insert(&curve->list, curve->list.count, sample->slice, numbers, exact);
 }
 
-/* Sample `i` becomes a point. The samples before it are forgotten. */
+/* Makes sample `i` a point. It forgets the samples before. */
 static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     add_point(curve, &curve->samples[i], slope, exact);
     curve->sample_count -= i;
@@ -179,8 +180,8 @@ static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
 
 /* ------------------------------------------------------------------------------------------------- search */
 
-/* The last sample that one cubic reaches, by bisection between one that it reaches and one that it does
- * not. */
+/* The last sample that one cubic reaches, found by bisection between a sample that it reaches and one that
+ * it does not. */
 static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     while (bad - good > 1) {
         const size_t middle = good + (bad - good) / 2;
@@ -193,7 +194,8 @@ static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     return good;
 }
 
-/* Adds the points that the samples up to `end` ask for. Their slopes are known: a sample follows each. */
+/* Adds the points that the samples up to `end` require. Their slopes are known, because a sample follows
+ * each. */
 static void advance(wh_path_t *curve, size_t end) {
     while (curve->next <= end) {
         if (!fits(curve, curve->next, slope_at(curve, curve->next))) {
@@ -210,7 +212,7 @@ static void advance(wh_path_t *curve, size_t end) {
     }
 }
 
-/* Sample `end` becomes a point, after as many others as the tolerance asks for. */
+/* Makes sample `end` a point, after the other points that the tolerance requires. */
 static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     while (!fits(curve, end, slope)) {
         const size_t reached = bisect(curve, curve->good < end ? curve->good : 1, end);
@@ -222,7 +224,7 @@ static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
 
 /* ------------------------------------------------------------------------------------------------ samples */
 
-/* The rest's first sample becomes a point; of its samples only the last is kept, so a rest takes no room. */
+/* Makes the rest's first sample a point. Only its last sample is kept, so a rest takes no room. */
 static void come_to_rest(wh_path_t *curve) {
     const size_t last = curve->sample_count - 1;
     size_t first = curve->sample_count - curve->equal;
@@ -285,7 +287,7 @@ void wh_path_force(wh_path_t *curve) {
         return;
     }
     if (curve->sample_count == 1 || curve->is_at_rest) {
-        /* A rest is exact if both its ends are. */
+        /* A rest is exact if both its ends are exact. */
         wh_points_make_exact(&curve->list, curve->list.count - 1);
     }
     curve->is_forced = curve->sample_count > 1;

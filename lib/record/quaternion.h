@@ -4,7 +4,7 @@
 
 #include "../math/pose.h"
 
-/* The quaternion of a rotation; of the two, the one nearer to `near` (null: the one with w >= 0). */
+/* The quaternion of a rotation, with the sign that is nearer to `near` (null: the one with w >= 0). */
 void wh_quaternion_from_matrix(const wh_mat3_t *R, const double near[4], double q[4]);
 
 void wh_quaternion_to_matrix(const double q[4], wh_mat3_t *R);

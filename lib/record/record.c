@@ -7,7 +7,7 @@
 #include "../text/array.h"
 
 bool wh_record_moved_nothing(const wh_record_t *record) {
-    return record->ok && record->command_count == 0 && record->slices == 0;
+    return record->ok && record->command_count == 0 && record->slices == 0 && !record->flow;
 }
 
 const char *wh_record_error_text(wh_status_t status) {
@@ -46,11 +46,23 @@ void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, co
     record->events[record->event_count++] = (wh_event_record_t){utime, command, *event, *seat};
 }
 
-void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
+static wh_expectation_record_t *add_expectation(wh_record_t *record) {
     record->expectations = wh_array_grow(record->expectations, record->expectation_count,
                                          &record->expectation_capacity, sizeof *record->expectations);
-    record->expectations[record->expectation_count++] =
-        (wh_expectation_record_t){line, wh_text_copy(text), ok};
+    return &record->expectations[record->expectation_count++];
+}
+
+void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
+    *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, false};
+}
+
+void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok) {
+    record->implied = wh_array_grow(record->implied, record->implied_count, &record->implied_capacity,
+                                    sizeof *record->implied);
+    record->implied[record->implied_count++] = (wh_expectation_record_t){line, wh_text_copy(text), ok, true};
+    if (!ok) {
+        *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, true};
+    }
 }
 
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
@@ -91,10 +103,11 @@ void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, cons
 }
 
 bool wh_record_is_complaint(wh_event_kind_t kind) {
-    static const uint32_t complaints =
-        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
-        1U << WH_EVENT_PLACED_OFF_CENTRE | 1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_HIT |
-        1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+    static const uint32_t complaints = 1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED |
+                                       1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_PLACED_OFF_CENTRE |
+                                       1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_HIT |
+                                       1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
+                                       1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_PUSHED_THROUGH;
     return (complaints >> (unsigned)kind & 1U) != 0;
 }
 
@@ -102,7 +115,7 @@ bool wh_record_is_contact(wh_event_kind_t kind) {
     return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
 }
 
-/* The first expectation that was not met. False if there is none. */
+/* The first expectation that was not met. Returns false if there is none. */
 static bool find_unmet(const wh_record_t *record, char *reason, size_t size) {
     for (size_t i = 0; i < record->expectation_count; ++i) {
         const wh_expectation_record_t *expectation = &record->expectations[i];
@@ -127,7 +140,7 @@ static void add_contact(const wh_record_t *record, const wh_event_t *event, char
                    (double)((int64_t)event->slice * record->layout->slice_us) / 1e6);
 }
 
-/* The first complaint of the cell. False if there is none. */
+/* The first complaint of the cell. Returns false if there is none. */
 static bool find_complaint(const wh_record_t *record, char *reason, size_t size) {
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
@@ -173,13 +186,17 @@ void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->expectation_count; ++i) {
         free(record->expectations[i].text);
     }
+    for (size_t i = 0; i < record->implied_count; ++i) {
+        free(record->implied[i].text);
+    }
     for (size_t i = 0; i < record->cycle_count; ++i) {
         free(record->cycles[i].name);
     }
     for (size_t i = 0; i < record->wait_count; ++i) {
         free(record->waits[i].what);
     }
-    record->command_count = record->event_count = record->expectation_count = 0;
+    record->command_count = record->event_count = 0;
+    record->expectation_count = record->implied_count = 0;
     record->put_count = record->cycle_count = record->wait_count = 0;
     record->centring_count = record->centrings_left_out = 0;
     record->activity.interval_count = 0;
@@ -207,6 +224,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->commands);
     free(record->events);
     free(record->expectations);
+    free(record->implied);
     free(record->puts);
     free(record->cycles);
     free(record->waits);
@@ -215,6 +233,10 @@ void wh_record_free(wh_record_t *record) {
     free(record->wafers);
     wh_activity_free(&record->activity);
     free(record->curves);
+    if (record->flow) {
+        wh_flow_close(record->flow);
+    }
+    free(record->flow);
     free(record->script);
     free(record->failure);
     memset(record, 0, sizeof *record);

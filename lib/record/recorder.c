@@ -27,7 +27,7 @@ static bool cell_complained(const wh_record_t *record) {
     return complained;
 }
 
-/* The running command's events from `i` on: the next one's index, or the number of all. */
+/* The index of the running command's next event from `i` on, or the number of all events. */
 static size_t next_event(const wh_recorder_t *recorder, size_t i) {
     const wh_record_t *record = recorder->record;
     while (i < record->event_count && record->events[i].command != recorder->running) {
@@ -53,7 +53,7 @@ static bool is_known(const wh_record_t *record, size_t first, int32_t wafer) {
     return known;
 }
 
-/* A wafer that was let go is put if it lies in a slot, and nobody but the chuck there holds it. */
+/* A released wafer is put if it lies in a slot and only the chuck there may hold it. */
 static void add_put(wh_recorder_t *recorder, int32_t w, const wh_wafer_t *wafer) {
     wh_place_t place;
     if (wh_cell_locate(recorder->cell, &wafer->base_from_wafer, &place) &&
@@ -106,7 +106,7 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     return command;
 }
 
-/* The command that began first, of those that run; WH_NONE: none does. */
+/* The running command that began first; WH_NONE: none runs. */
 static int32_t first_command(const wh_recorder_t *recorder) {
     int32_t first = WH_NONE;
     for (size_t i = 0; i < recorder->part_count; ++i) {
@@ -116,7 +116,7 @@ static int32_t first_command(const wh_recorder_t *recorder) {
     return first;
 }
 
-/* The command that has the gripper; else one that runs. */
+/* The command that has the gripper; otherwise a running one. */
 static int32_t command_of(const wh_recorder_t *recorder, const wh_event_t *event) {
     for (size_t i = 0; event->gripper != WH_NONE && i < recorder->part_count; ++i) {
         if ((recorder->parts[i].grippers >> event->gripper & 1U) != 0) {
@@ -135,7 +135,7 @@ void wh_recorder_events(wh_recorder_t *recorder, const wh_state_t *state) {
     recorder->record->crowded += state->has_lost_events ? 1 : 0;
 }
 
-/* Adds what another task asks of the machine; the share stays. */
+/* Adds another task's demands on the machine; the share stays. */
 static void join(wh_task_t *all, const wh_task_t *task) {
     all->moves = all->moves || task->moves;
     all->robot = all->robot || task->robot;
@@ -146,8 +146,8 @@ static void join(wh_task_t *all, const wh_task_t *task) {
     }
 }
 
-/* Several commands at once have a slice each, and what it goes into by their own segments. What the robot
- * stands still for is its command's share; if it does nothing, the first command's. */
+/* If several commands run at once, each has one slice, with the share of its own segment. If the robot
+ * stands still, its command gives the share; if no command has the robot, the first command does. */
 static void count_parts(wh_recorder_t *recorder, const wh_state_t *state) {
     const int32_t first = first_command(recorder);
     wh_task_t all = {.share = WH_SHARE_WAITING};
@@ -178,7 +178,7 @@ void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, con
 
 /* -------------------------------------------------------------------------------------------------- waits */
 
-/* The open wait of the task that goes on, or the number of all. */
+/* The open wait of the running task, or the number of all waits. */
 static size_t find_wait(const wh_recorder_t *recorder) {
     const wh_record_t *record = recorder->record;
     size_t i = record->wait_count;
@@ -256,6 +256,13 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     record->simulated_s = wh_recorder_now(recorder);
     record->hash = end->hash;
     record->missed = end->missed;
+    if (record->flow && record->flow->figures.tool) {
+        record->hash = record->flow->figures.hash;
+        record->simulated_s = (double)record->flow->figures.end_us / 1e6;
+    }
+    record->unlooked = recorder->layout->tool        ? WH_RECORD_TIMES_ALONE
+                       : recorder->layout->collision ? NULL
+                                                     : WH_RECORD_UNLOOKED;
     record->checked = end->world != NULL;
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(end->world), sizeof record->clearances);

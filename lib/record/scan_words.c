@@ -1,4 +1,4 @@
-/* What the estimate says of a scan, in words. */
+/* The estimate of a scan, in words. */
 #include <math.h>
 #include <stdio.h>
 
@@ -6,7 +6,7 @@
 #include "record.h"
 #include "scans.h"
 
-/* Standard deviations in um and degrees have so many digits, and a least one, for none is 0. */
+/* Standard deviations in um and degrees have this precision, and a least value, because none is 0. */
 #define LEAST_UM 0.01
 #define LEAST_DEG 1e-4
 
@@ -16,7 +16,7 @@ static double um_of(double mm) {
     return fmax(1000 * mm, LEAST_UM);
 }
 
-/* 0 to 360, and 0 for what would be printed as 360. */
+/* Converts to 0 to 360 degrees, with 0 for a value that would print as 360. */
 static double degrees_of(double rad) {
     const double turned = wh_deg_from_rad(rad) / 360;
     const double degrees = (turned - floor(turned)) * 360;
@@ -27,7 +27,7 @@ static bool is_not_sure(wh_status_t verdict) {
     return verdict == WH_STATUS_CENTRE_NOT_SURE || verdict == WH_STATUS_NOTCH_NOT_SURE;
 }
 
-/* The centre may be used though the turn may not. */
+/* True if the centre may be used, even if the turn may not. */
 static bool is_centre_sure(wh_status_t verdict) {
     return verdict != WH_STATUS_OFF_SENSOR && verdict != WH_STATUS_CENTRE_NOT_SURE;
 }
@@ -107,7 +107,7 @@ void wh_edge_scan_words(const wh_edge_scan_t *scan, wh_status_t status, const wh
     put_samples(words->lines[SAMPLES], scan, result);
 }
 
-/* The mark lies on the wafer; the axis sees it under another angle than the wafer's centre does. */
+/* The mark lies on the wafer; the axis sees it at another angle than the wafer's centre does. */
 double wh_edge_scan_mark_at(const wh_align_result_t *result) {
     if (result->mark == WH_ALIGN_MARK_NONE) {
         return (double)NAN;
@@ -118,7 +118,7 @@ double wh_edge_scan_mark_at(const wh_align_result_t *result) {
     const double half = flat->length / 2;
     const double from_centre = is_notch ? radius - result->notch.depth : sqrt(radius * radius - half * half);
     const double direction = is_notch ? result->notch.direction : flat->direction;
-    const double at = atan2(result->circle.y + from_centre * sin(direction),
-                            result->circle.x + from_centre * cos(direction));
+    const double at = wh_atan2(result->circle.y + from_centre * wh_sin(direction),
+                               result->circle.x + from_centre * wh_cos(direction));
     return at < 0 ? at + 2 * WH_PI : at;
 }

@@ -100,7 +100,8 @@ wh_rim_t wh_edge_wish_rim(const wh_rim_t *nominal, wh_edge_wish_t wish) {
 
 /* ------------------------------------------------------------------------------------------- estimating */
 
-/* Sample `i` of the scan as a point. What never came hides the rim there, as something on the line would. */
+/* Sample `i` of the scan as a point. A missing sample hides the rim there, as an obstacle on the line
+ * would. */
 static wh_rim_point_t point_of(const wh_edge_scan_t *scan, const wh_sensor_t *sensor, int32_t i) {
     const wh_glance_t glance = {.turn = wh_sensor_angle(sensor, scan->first + (scan->count < 0 ? -i : i))};
     const bool is_here = i < scan->taken && scan->samples[i] != WH_NONE;
@@ -126,7 +127,8 @@ static void keep_residuals(const wh_edge_scan_t *scan, const wh_rim_scan_t *turn
     }
 }
 
-/* Of a whole turn, however much of it was seen: so a notch that was not looked at is not called missing. */
+/* Estimates a whole turn, however much of it was seen, so that a notch outside of the seen part is not
+ * called missing. */
 static wh_status_t estimate(const wh_edge_scan_t *scan, const wh_rim_t *rim, const wh_sensor_t *sensor,
                             wh_edge_point_t samples[], wh_align_result_t *result) {
     const wh_align_limits_t limits = wh_align_limits_default();

@@ -11,15 +11,17 @@
 #include "counterpart.h"
 #include "record.h"
 
-/* Up to so many wafers are compared in each slice. More are compared only in slices with events. */
+/* Up to this number of wafers are compared in each slice. More wafers are compared only in slices with
+ * events. */
 #define WATCHED_WAFERS 64
 
-/* With more wafers than this, those near a gripper are on a list, made anew when it has gone so far, mm. */
+/* With more wafers than this, a list has those near a gripper. It is made again when the gripper has moved
+ * this far, mm. */
 #define FEW_WAFERS 64
 #define ROOM 100.0
 
-/* This near to where its axes put it a gripper is there: another machine's sines may differ in their last
- * bits. */
+/* A gripper this near to the place given by its axes is there: another machine's sines may differ in their
+ * last bits. */
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
@@ -33,7 +35,7 @@ static void open_curve(wh_path_t *curve, double tolerance) {
     wh_path_open(curve, WH_SIGNALS_SHARE * tolerance, WH_SIGNALS_POINTS);
 }
 
-/* An error of theta moves a shifted gripper about the base, one of yaw about the wrist. */
+/* An error of theta moves a shifted gripper about the base, an error of yaw moves it about the wrist. */
 double wh_signals_lever(const wh_layout_t *layout) {
     double shift = 0;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
@@ -54,7 +56,7 @@ static void open_tracks(wh_signals_t *signals) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         open_curve(&signals->vacuum[g], WH_SIGNALS_VACUUM);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            /* Half of the tolerance: points that are inserted later may take the other half. */
+            /* Half of the tolerance: points that are inserted later may use the other half. */
             open_curve(&signals->proximity[g][m], measured[m] / 2);
         }
         wh_thin_open(&signals->own[g], 3, WH_SIGNALS_SHARE * WH_SIGNALS_OWN_MM,
@@ -115,7 +117,7 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
 
 /* ------------------------------------------------------------------------------------------------- motion */
 
-/* True if the two poses differ by at most so much, in place and in each number of the rotation. */
+/* True if the two poses differ by at most `mm` in place and `rotation` in each number of the rotation. */
 static bool is_at(const wh_pose_t *a, const wh_pose_t *b, double mm, double rotation) {
     const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
     bool same = wh_real_abs(way.x) <= mm && wh_real_abs(way.y) <= mm && wh_real_abs(way.z) <= mm;
@@ -131,9 +133,9 @@ static bool is_carried(const wh_signals_t *signals, size_t gripper) {
     return mount->axis == WH_NONE ? machine->carrier != NULL : mount->kind != WH_MOUNT_CHUCK;
 }
 
-/* Adds the poses of grippers that are not where the axes put them; from then on all of them. Of a robot with
- * a carrier, of pins, flippers and chucks on a stage always: a page computes the usual robot and chucks
- * alone. */
+/* Adds the poses of a gripper that is not where the axes put it, and from then on all its poses. A robot
+ * with a carrier, pins, flippers and chucks on a stage always have poses, because a page computes only
+ * usual robots and chucks. */
 static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
     if (axes) {
@@ -222,7 +224,7 @@ static void add_neighbour(wh_neighbours_t *vicinity, int32_t wafer) {
 
 static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
-    /* Within the plot's range a wafer's centre is at most so far from the gripper's. */
+    /* Within the plot's range a wafer's centre is at most this far from the gripper's. */
     const double reach = WH_SIGNALS_REACH + 2 * signals->layout->grasp.near_projxy;
     const double radius = reach + ROOM;
     const bool few = state->wafer_count <= FEW_WAFERS;
@@ -237,7 +239,7 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
 }
 
 /* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may
- * come near without being on the list. */
+ * come near although they are not on the list. */
 static int32_t find_nearest(wh_neighbours_t *vicinity, const wh_state_t *state, size_t g,
                             const wh_cell_t *cell) {
     const size_t listed = vicinity->count;
@@ -335,7 +337,8 @@ static bool is_marked(wh_event_kind_t kind) {
     return (plain >> (unsigned)kind & 1U) == 0;
 }
 
-/* Where the event happened: at the contact, else at the wafer, else at the gripper. False if nowhere. */
+/* The place of the event: the contact, otherwise the wafer, otherwise the gripper. Returns false if there
+ * is none. */
 static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t *at) {
     if (wh_record_is_contact(event->kind)) {
         *at = event->at;

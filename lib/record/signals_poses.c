@@ -1,4 +1,4 @@
-/* Where grippers and links are shown at a slice, and the slices at which to look. */
+/* The shown places of grippers and links at a slice, and the slices to visit. */
 #include "signals.h"
 
 #include <string.h>
@@ -6,10 +6,10 @@
 #include "../layout/arms.h"
 #include "../layout/links.h"
 
-/* wh_signals_walk looks at no more than so many places from one point to the next. */
+/* wh_signals_walk visits at most this number of places from one point to the next. */
 #define PLACES 32
 
-/* Thinned axes and poses agree to this, mm, unless a fault kept the robot from where its axes were. */
+/* Thinned axes and poses agree to this, mm, unless a fault kept the robot away from its axes' positions. */
 #define NEAR_MM 1.0
 
 /* -------------------------------------------------------------------------------------------------- poses */
@@ -89,7 +89,7 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
 
 /* --------------------------------------------------------------------------------------------------- walk */
 
-/* How many points of each signal the walk has passed. */
+/* The number of points of each signal that the walk has passed. */
 typedef struct {
     size_t axes[WH_AXES], own[WH_GRIPPERS];
 } passed_t;

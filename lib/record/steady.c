@@ -6,22 +6,22 @@
 
 #include "../text/array.h"
 
-/* Longest cycle that is looked for, in commands. */
+/* The longest cycle that is searched, in commands. */
 #define MOST_COMMANDS 1000
 
-/* Without marks what comes twice may do so by chance. */
+/* Without marks a sequence that comes only twice may do so by chance. */
 #define LEAST_TIMES 3
 
 typedef struct {
     size_t first, count; /* commands */
     int64_t begin, end;  /* slices */
     size_t mark, wafers;
-    bool is_twice; /* a wafer was put twice where puts count */
+    bool is_twice; /* a wafer was put twice at places where puts count */
 } stretch_t;
 
 typedef struct {
     const wh_record_t *record;
-    size_t *kinds; /* of each command; no two without a text are of one kind */
+    size_t *kinds; /* of each command; commands without a text are all of different kinds */
     stretch_t *cycles;
     size_t count;
 } search_t;
@@ -43,7 +43,7 @@ static bool is_one_kind(const char *a, const char *b) {
     return a && b && length == wh_steady_kind_length(b) && memcmp(a, b, length) == 0;
 }
 
-/* A command's kind is the index of the first one that is of it. */
+/* A command's kind is the index of the first command of that kind. */
 static size_t *kinds_of(const wh_record_t *record) {
     size_t *kinds = wh_array_new(record->command_count, sizeof *kinds);
     size_t *firsts = wh_array_new(record->command_count, sizeof *firsts);
@@ -90,8 +90,8 @@ static void add_marked(search_t *search) {
     }
 }
 
-/* The longest run of commands of which each is of the kind of the one `period` behind it: where it begins,
- * and how many cycles of `period` commands are whole. */
+/* The longest run of commands in which each has the kind of the one `period` later. It gives the begin, and
+ * the number of whole cycles of `period` commands. */
 static size_t longest(const search_t *search, size_t period, size_t *first) {
     size_t most = 0;
     size_t same = 0;
@@ -139,7 +139,7 @@ static void find_repeated(search_t *search) {
 /* Puts are in order, and cycles, too. */
 static void count_wafers(search_t *search) {
     const wh_record_t *record = search->record;
-    /* By wafer: 1 + the last cycle in which it counted. */
+    /* For each wafer: 1 + the last cycle in which it counted. */
     size_t *counted = wh_array_new(record->layout->wafer_count, sizeof *counted);
     size_t at = 0;
     for (size_t i = 0; i < record->put_count; ++i) {

@@ -6,8 +6,8 @@
 #include "../math/vector.h"
 #include "quaternion.h"
 
-/* If the ends of two slerps are at most d apart, the slerps are at most d / cos(angle / 4) apart: 1.24 d for
- * WH_THIN_TURN. So thinning again may use up only this share of what the tolerance grows by. */
+/* If the ends of two slerps are at most d apart, the slerps are at most d / cos(angle / 4) apart: 1.24 d
+ * for WH_THIN_TURN. So the second thinning may use only this share of the tolerance's growth. */
 #define TURN_SHARE 0.8
 
 /* A box's half diagonal is the square root of 3 times its half edge. */
@@ -17,7 +17,7 @@ static size_t linear_width(const wh_thin_t *thin) {
     return thin->list.width - (thin->turns ? 4 : 0);
 }
 
-/* How many numbers `moved` has: a turn counts as three. */
+/* The number of numbers in `moved`: a turn counts as three. */
 static size_t slope_count(const wh_thin_t *thin) {
     return thin->list.width - (thin->turns ? 1 : 0);
 }
@@ -26,7 +26,7 @@ static bool rests(const wh_thin_t *thin, const double a[], const double b[]) {
     return memcmp(a, b, thin->list.width * sizeof *a) == 0;
 }
 
-/* The last point's numbers. Samples are measured from them. */
+/* The last point's numbers. Samples are measured from it. */
 static const double *anchor(const wh_thin_t *thin) {
     return wh_points_numbers(&thin->list, thin->list.count - 1);
 }
@@ -56,7 +56,7 @@ static void keep(wh_thin_t *thin, bool exact) {
     }
 }
 
-/* The coarser fit adds its tolerance to what was off before: the sum is the new tolerance, twice the old
+/* The coarser fit adds its tolerance to the error before: the sum is the new tolerance, twice the old
  * one. */
 static void thin_again(void *fit) {
     wh_thin_t *thin = fit;
@@ -84,7 +84,7 @@ static double turned(const wh_thin_t *thin) {
     return thin->turns ? wh_real_sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]) : 0;
 }
 
-/* How far the sample is from the last point. */
+/* The difference of the sample from the last point. */
 static void move(wh_thin_t *thin, const double values[]) {
     const double *from = anchor(thin);
     const size_t linear = linear_width(thin);
@@ -131,7 +131,7 @@ static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->is_pending = true;
 }
 
-/* If the last sample is forced and the signal moves on from it, it becomes a point before the next one
+/* If the last sample is forced and the signal changes after it, it becomes a point before the next one
  * comes. */
 static void settle(wh_thin_t *thin, const double values[]) {
     if (thin->is_pending && thin->is_forced && !rests(thin, thin->last.values, values)) {
@@ -174,7 +174,7 @@ void wh_thin_force(wh_thin_t *thin) {
     if (!thin->is_pending) {
         wh_points_make_exact(&thin->list, last);
     } else if (rests(thin, anchor(thin), thin->last.values)) {
-        /* A rest is exact if both its ends are. */
+        /* A rest is exact if both its ends are exact. */
         wh_points_make_exact(&thin->list, last);
         thin->is_forced = true;
     } else {

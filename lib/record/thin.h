@@ -1,13 +1,14 @@
-/* Thins a signal that comes sample by sample, such as poses: keeps points between which straight lines stay
- * within a tolerance.
+/* Thins a signal that comes sample by sample, such as poses: it keeps points such that straight lines
+ * between them stay within a tolerance.
  *
- * A sample has up to WH_THIN_WIDTH numbers, linear in time between points. A pose's last four are a
- * quaternion (x, y, z, w), between points the shorter slerp. Every point is a sample. Each number of a sample
- * is off by at most the tolerance, a rotation by at most an angle of `turn`; forced samples are exact.
+ * A sample has up to WH_THIN_WIDTH numbers, linear in time between points. The last four numbers of a pose
+ * are a quaternion (x, y, z, w), with the shorter slerp between points. Every point is a sample. Each
+ * number of a sample differs by at most the tolerance, a rotation by at most an angle of `turn`; forced
+ * samples are exact.
  *
- * Samples come in the order of their slices and none is looked at twice. The fit keeps the range of slopes
- * from the last point that miss no sample since; when a sample lies outside, the one before it becomes a
- * point. A signal that turns by more than WH_THIN_TURN from sample to sample cannot be thinned.
+ * Samples come in the order of their slices, and each is read once. The fit keeps the range of slopes from
+ * the last point that fit all samples since. When a sample lies outside, the one before it becomes a point.
+ * A signal that turns by more than WH_THIN_TURN from sample to sample cannot be thinned.
  */
 #ifndef WH_RECORD_THIN_H
 #define WH_RECORD_THIN_H
@@ -25,32 +26,32 @@ typedef struct {
     double values[WH_THIN_WIDTH];
 } wh_thin_sample_t;
 
-/* Read list, turns, turn, of and last; the rest is its own. */
+/* Read only list, turns, turn, of and last; the rest is internal. */
 typedef struct {
-    wh_points_t list;      /* of a pose the quaternion is among the numbers */
+    wh_points_t list;      /* the numbers of a pose include the quaternion */
     bool turns;            /* the last four are a quaternion */
     double turn;           /* the tolerance of a rotation, rad */
     int64_t of;            /* samples so far */
     wh_thin_sample_t last; /* the last one */
     bool is_pending;       /* `last` is not among the points */
-    bool is_forced;        /* and must be, unless the signal rests from the last point to it */
-    double low[WH_THIN_WIDTH], high[WH_THIN_WIDTH]; /* slopes that miss no sample since the last point */
+    bool is_forced;        /* it must become one, unless the signal rests from the last point to it */
+    double low[WH_THIN_WIDTH], high[WH_THIN_WIDTH]; /* slopes from the last point that fit later samples */
     double moved[WH_THIN_WIDTH];                    /* of `last` from the last point */
 } wh_thin_t;
 
-/* An empty signal of `width` numbers; with `turn` above 0 four more for a quaternion. */
+/* Opens an empty signal of `width` numbers; with `turn` above 0 it has four more for a quaternion. */
 void wh_thin_open(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit);
 
-/* One more sample, of a later slice than the last one. Cost: about 20 ns, 100 ns where a rotation changes. */
+/* Adds a sample, of a later slice than the last one. Cost: about 20 ns, 100 ns where a rotation changes. */
 void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]);
 
-/* Adds a pose: three numbers and a quaternion, of its two signs the one nearer to the last sample's. */
+/* Adds a pose: three numbers and a quaternion, with the sign nearer to the last sample's. */
 void wh_thin_add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose);
 
 /* Makes the last sample exact. */
 void wh_thin_force(wh_thin_t *thin);
 
-/* The last sample becomes a point, so that the points cover all. More samples may follow. */
+/* Makes the last sample a point, so that the points cover all samples. More samples may follow. */
 void wh_thin_finish(wh_thin_t *thin);
 
 /* The signal at a slice; before the first point and after the last one those points' values. Cost: log n. */

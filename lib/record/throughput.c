@@ -10,9 +10,9 @@ static bool does_count(const wh_record_t *record, const wh_put_record_t *put) {
 
 size_t *wh_throughput_cycle_wafers(const wh_record_t *record) {
     size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers);
-    /* By wafer: 1 + the last cycle in which it counted. */
+    /* For each wafer: 1 + the last cycle in which it counted. */
     size_t *counted = wh_array_new(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
-    size_t after = 0; /* how many cycles have begun */
+    size_t after = 0; /* the number of cycles that have begun */
     for (size_t i = 0; i < record->put_count; ++i) {
         const wh_put_record_t *put = &record->puts[i];
         while (after < record->cycle_count && record->cycles[after].begin < put->slice) {
@@ -39,7 +39,8 @@ static int64_t cycle_slices(const wh_record_t *record, size_t cycle) {
     return wh_throughput_cycle_end(record, cycle) - record->cycles[cycle].begin;
 }
 
-/* Counts from the second cycle on, or the first if there is no other; cycles without a slice are none. */
+/* Counts from the second cycle on, or the first if it is the only one; cycles without a slice do not
+ * count. */
 static void count_cycles(const wh_record_t *record, wh_throughput_t *throughput) {
     size_t *wafers = wh_throughput_cycle_wafers(record);
     bool settling = true;
@@ -69,7 +70,7 @@ static bool counts_anywhere(const wh_layout_t *layout) {
     return counts;
 }
 
-/* True if a wafer was put twice where puts count. */
+/* True if a wafer was put twice at places where puts count. */
 static bool is_put_twice(const wh_record_t *record) {
     bool *seen = wh_array_new(record->layout->wafer_count, sizeof *seen);
     bool twice = false;

@@ -73,8 +73,15 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
     wh_json_text_value(text, "parameters", object);
 }
 
+/* Behind the notes of a log, or in their place: what nobody looked for. */
 static void put_note(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    put_text(text, NULL, document->notes[i]);
+    if (i < document->note_count) {
+        put_text(text, NULL, document->notes[i]);
+    } else {
+        char note[200];
+        (void)snprintf(note, sizeof note, "%c%s.", 'C', document->record->unlooked + 1);
+        put_text(text, NULL, note);
+    }
 }
 
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
@@ -85,7 +92,8 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
     put_text(text, "source", document->source);
-    put_each(text, document, "notes", document->note_count, put_note);
+    const size_t unlooked = document->record->unlooked ? 1 : 0;
+    put_each(text, document, "notes", document->note_count + unlooked, put_note);
     wh_json_text_value(text, "run", json_incref(document->run));
     put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
@@ -95,7 +103,8 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
 
 /* -------------------------------------------------------------------------------------------------- names */
 
-/* Null is what is not known: a chuck's travel, or the unit and any value of a log without its layout. */
+/* Null: the value is not known. It may be a chuck's travel, or the unit and any value of a log without its
+ * layout. */
 static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
     const wh_layout_t *layout = document->signals->layout;
     const wh_machine_t *machine = &layout->machine;
@@ -154,7 +163,8 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, '}');
 }
 
-/* On the robot the pose is the gripper's in the end-effector's frame, of a chuck the station's in base. */
+/* The pose of the robot's grippers is in the end-effector's frame. The pose of a chuck's gripper is the
+ * station's in base. */
 static void put_mount(wh_json_text_t *text, const wh_document_t *document, size_t g) {
     const wh_mount_t *mount = &document->signals->layout->machine.mounts[g];
     const wh_pose_t identity = wh_pose_identity();
@@ -228,7 +238,7 @@ static void put_lengths(wh_json_text_t *text, const wh_arm_t *arm) {
     wh_json_text_end(text, '}');
 }
 
-/* Of several arms each one: whose it is, its robot's first axis, and what else a machine has of one. */
+/* Every arm of several: the arm's name, its robot's first axis, and what else a machine has of one arm. */
 static void put_arms(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_begin(text, "arms", '[');
     for (size_t arm = 0; arm < wh_layout_arms(layout); ++arm) {
@@ -298,7 +308,7 @@ static void append(char *text, size_t size, const char *before, const char *part
     }
 }
 
-/* Such as "near miss: Wafer 1, EE" or "hit: A ledge 3 left and EE finger right". */
+/* Writes, for example, "near miss: Wafer 1, EE" or "hit: A ledge 3 left and EE finger right". */
 static void describe(const wh_record_t *record, const wh_event_t *event, char *text, size_t size) {
     wh_text_words(text, size, wh_event_name(event->kind));
     if (wh_record_is_contact(event->kind)) {
@@ -329,8 +339,8 @@ static void put_mark(wh_json_text_t *text, const wh_document_t *document, size_t
 
 /* ---------------------------------------------------------------- tracks: all that changes over time */
 
-/* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
- * up to 4 s. */
+/* With these numbers of decimals rounding adds at most a hundredth of what thinning leaves. A slope's error
+ * counts for up to 4 s. */
 enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
 
 typedef struct {
@@ -371,21 +381,21 @@ static sums_t sum_up(const wh_signals_t *signals) {
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         const wh_path_t *curve = &signals->axes[axis];
         count(&sums, curve, wh_layout_axis_turns(signals->layout, axis) ? &sums.rad : &sums.mm);
-        if (!wh_layout_axis_unit(signals->layout, axis)) { /* it may be of mm as well */
+        if (!wh_layout_axis_unit(signals->layout, axis)) { /* it may be in mm as well */
             sums.mm = fmax(curve->list.tolerance, sums.mm);
         }
     }
     return sums;
 }
 
-/* The greatest distance between a gripper's origin and where its axes' curves put it: R and Z off, and theta
- * and yaw at the robot's full reach. */
+/* The greatest distance between a gripper's origin and the place where its axes' curves put it. R and Z are
+ * off, and theta and yaw are off at the robot's full reach. */
 static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     const double across = sums->mm + wh_signals_lever(signals->layout) * sums->rad;
     return fmax(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
 }
 
-/* The tolerance as it is told: with what rounding adds. */
+/* The document gives the tolerance with what rounding adds. */
 static void put_tolerance(wh_json_text_t *text, const char *key, double thinned) {
     wh_json_text_number(text, key, thinned / WH_SIGNALS_SHARE, 9, false);
 }
@@ -398,7 +408,7 @@ static void put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
     put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
     put_tolerance(text, "gripper_rad", fmax(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
-    /* Twice: points that are inserted may take as much again. */
+    /* Twice, because inserted points may take as much again. */
     put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
     put_tolerance(text, "projxy", 2 * sums.measured[WH_MEASURE_PROJXY]);
     put_tolerance(text, "planar", 2 * sums.measured[WH_MEASURE_PLANAR]);
@@ -423,13 +433,13 @@ static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const w
     wh_json_text_end(text, ']');
 }
 
-/* Some of each point's numbers, `count` from `first` on, times `scale`. */
+/* `count` of each point's numbers from `first` on, times `scale`. */
 typedef struct {
     const char *key;
     size_t first, count;
     double scale;
     int decimals;
-    bool exact; /* as the points are; else always rounded */
+    bool exact; /* as the points are; otherwise always rounded */
 } column_t;
 
 static void put_numbers(wh_json_text_t *text, const wh_points_t *list, const column_t *of) {
@@ -495,18 +505,25 @@ static void put_stays(wh_json_text_t *text, const wh_document_t *document, size_
 }
 
 /* WH_NONE is null. */
+/* Passive pads have no valve. */
+static size_t count_steps(const wh_signals_t *signals, const wh_steps_t lists[], size_t g) {
+    const bool has_none = lists == signals->valves && signals->layout->grips[g].kind == WH_GRIP_PASSIVE;
+    return has_none ? 0 : lists[g].count;
+}
+
 static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
                       const wh_steps_t lists[]) {
     wh_json_text_begin(text, key, '[');
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        const size_t count = count_steps(signals, lists, g);
         wh_json_text_begin(text, NULL, '{');
         wh_json_text_begin(text, "t", '[');
-        for (size_t i = 0; i < lists[g].count; ++i) {
+        for (size_t i = 0; i < count; ++i) {
             put_second(text, NULL, signals, lists[g].steps[i].slice);
         }
         wh_json_text_end(text, ']');
         wh_json_text_begin(text, "v", '[');
-        for (size_t i = 0; i < lists[g].count; ++i) {
+        for (size_t i = 0; i < count; ++i) {
             put_index(text, NULL, lists[g].steps[i].value);
         }
         wh_json_text_end(text, ']');
@@ -529,7 +546,7 @@ static void put_proximity(wh_json_text_t *text, const wh_document_t *document, s
     wh_json_text_end(text, '}');
 }
 
-/* Nothing of a pair that never came near. */
+/* A pair that never came near is not in the document. */
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
     if (document->record->clearances[kind].parts[0] == WH_NONE) {
         return;

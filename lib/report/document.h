@@ -3,52 +3,51 @@
  * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q
  * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
- *   source       "run" or "log"; notes: [text], what a log did not tell
+ *   source       "run", "log" or "session"; notes: [text], what a log did not tell, and what was not looked
+ *                for
  *   run          what `run --json` prints, whole (print/record_print.h), with centrings on the way; of a log
  *                what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
  *   names        wafers, grippers, stations, doors (only if there are any): [name]; axes: [{ name, unit "mm"
- *   or "rad", low, high, speed }]
- *                (nulls: not known)
+ *                or "rad", low, high, speed }] (nulls: not known)
  *   wafer        diameter, thickness, notch (about its z from its x; only if it has one)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
- *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the
- *                robot null and effector_from_gripper; doors [{ axis, way }]: base_from_door is its axis
- *                along
- *                `way`, in base; links: names of the arm's; arm { reach, link,
+ *   machine      grippers [{ axis, r, q }]: for a chuck the axis that turns it and base_from_station, on the
+ *                robot null and effector_from_gripper; doors [{ axis, way }]: base_from_door is the position
+ *                of its axis along `way`, in base; links: names of the arm's links; arm { reach, link,
  *                right_handed } (collision/arm.h)
- *   thinning     how far what tracks say may be off: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz,
+ *   thinning     the largest errors of the tracks: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz,
  *                projxy, planar; `of` samples, `kept` of them. At events and at the begin and end of each
- *                command nothing is off
- *   tracks       axes [curve]. A curve is { t, v, slope } (a second); between two points it is the cubic that
- *                has the value and the slope of both; v and slope null: from there on to the next point there
- *                is none, as before the first; after the last one nothing changes. The slope of an axis is
- *                its speed
+ *                command there is no error
+ *   tracks       axes [curve]. A curve is { t, v, slope } (slope per second). Between two points it is the
+ *                cubic with the value and the slope of both. If v and slope are null, there is no curve from
+ *                there to the next point, as before the first point; after the last point nothing changes.
+ *                The slope of an axis is its speed
  *                grippers [{ t, r, q }]: base_from_gripper from the first of these points on, r linear and q
- *                the shorter slerp; before it, and of those without points, base_from_gripper follows from
- *                the axes (motion/machine.h): on the robot, whose axes are theta, R, Z and yaw, of an
- *                end-effector at (R cos theta, R sin theta, Z), turned about z by theta + yaw; of a chuck,
- *                turned about the station's z by its axis. Links follow from the end-effector
+ *                the shorter slerp. Before it, and without points, base_from_gripper follows from the axes
+ *                (motion/machine.h): on the robot, whose axes are theta, R, Z and yaw, from an end-effector
+ *                at (R cos theta, R sin theta, Z), turned about z by theta + yaw; for a chuck, turned about
+ *                the station's z by its axis. Links follow from the end-effector
  *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or
  *                base_from_wafer
  *                valves (0: open), sensors (1: on), nearest (a wafer or null), for each gripper [{ t, v }]:
  *                from t on
  *                vacuum [curve], 0 to 1
  *                proximity [{ dr_proj_z, dr_proj_xy, n1_proj_n2 }]: curves, the first two as absolute values:
- *                each gripper against `nearest`: the wafer that it holds, or else the one nearest to the
+ *                each gripper against `nearest`: the wafer that it holds, or otherwise the one nearest to the
  *                three limits together (record/counterpart.h), while it is within 20 mm and twice
  *                near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
- *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
- *   scans        what edge sensors saw (record/scans.h), in the chuck's frame: [{ number, begin_s, end_s,
- *                gripper, station (or null), count (ordered; below 0 clockwise), taken, missed (of them),
- *                verdict (math/status.def; 0: sure), sure, words [text], circle { x, y, radius, sd_centre,
- *                sd_radius } (null: none), mark { kind, at (where the axis sees it), turn, sd_turn } (null:
- *                none), and for each sample that was taken theta (in which the sensor looked), rho (null:
- *                missing, or no rim), residual (rho less the circle's; null: no circle), counts (1; 0: not
- *                for the circle) }]
- *   scans_left_out   how many scans more there were than a document holds
+ *   marks        [{ t, kind, text, at (null: nowhere) }]: events that get a mark in the cell
+ *   scans        edge scans (record/scans.h), in the chuck's frame: [{ number, begin_s, end_s, gripper,
+ *                station (or null), count (ordered; below 0 clockwise), taken, missed (of them), verdict
+ *                (math/status.def; 0: sure), sure, words [text], circle { x, y, radius, sd_centre,
+ *                sd_radius } (null: none), mark { kind, at (direction from the axis), turn, sd_turn } (null:
+ *                none), and for each taken sample theta (direction of the sensor), rho (null: missing, or no
+ *                rim), residual (rho minus the circle's; null: no circle), counts (1; 0: not for the
+ *                circle) }]
+ *   scans_left_out   the number of further scans, more than a document holds
  *   scene        glTF 2.0 (view/scene.h), without animation
  */
 #ifndef WH_REPORT_DOCUMENT_H
@@ -62,7 +61,7 @@
 
 typedef struct {
     const char *title, *reproduce;
-    const char *source;            /* "run" or "log" */
+    const char *source;            /* "run", "log" or "session" */
     const char *const *parameters; /* NAME=VALUE */
     size_t parameter_count;
     const char *const *notes;

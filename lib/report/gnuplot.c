@@ -8,8 +8,8 @@
 #include "../text/array.h"
 #include "../text/utf8.h"
 
-/* Pixels: below the last panel, for the axis; right of panels, without limits and with them; for two more
- * rows of a key. */
+/* Pixels: below the last panel for the axis; right of the panels, without limits and with them; for two
+ * more rows of a key. */
 enum { BELOW = 38, RIGHT = 10, RIGHT_OF_LIMITS = 58, KEY_ROWS = 28, COLUMN_MM = 170 };
 
 /* -------------------------------------------------------------------------------------------------- texts */
@@ -25,7 +25,8 @@ static size_t put_character(FILE *out, const char *c) {
     return bytes;
 }
 
-/* Between single quotes; what is in `doubled` gnuplot takes for itself once there are two of it. */
+/* Writes text between single quotes. Characters in `doubled` are written twice; gnuplot then takes them
+ * literally. */
 static void put_quoted(FILE *out, const char *text, const char *doubled) {
     fputc('\'', out);
     for (const char *c = text; *c;) {
@@ -187,7 +188,7 @@ size_t wh_plot_end_block(wh_plot_t *plot) {
 
 /* ------------------------------------------------------------------------------------------------- curves */
 
-/* Slices, in no order. */
+/* A list of slices, in no order. */
 typedef struct {
     int64_t *slices;
     size_t count, capacity;
@@ -198,8 +199,8 @@ static void add(list_t *list, int64_t slice) {
     list->slices[list->count++] = slice;
 }
 
-/* Into how many lines the cubic from point `i` is cut. They miss it by at most an eighth of its greatest
- * second derivative, which is at one of its ends, times a line's length squared. */
+/* The number of lines that the cubic from point `i` is cut into. They miss it by at most an eighth of its
+ * greatest second derivative, which is at one of its ends, times a line's length squared. */
 static int64_t pieces_of(const wh_path_t *curve, size_t i, double tolerance) {
     const int64_t span = curve->list.points[i + 1].slice - curve->list.points[i].slice;
     const double rise = wh_path_value(curve, i + 1) - wh_path_value(curve, i);
@@ -246,7 +247,7 @@ static int compare(const void *a, const void *b) {
     return (first > second) - (first < second);
 }
 
-/* The value that holds at a slice. `at` counts the steps that were passed. */
+/* The value that holds at a slice. `at` counts the steps that are passed. */
 static int32_t follow(const wh_steps_t *steps, size_t *at, int64_t slice) {
     while (*at < steps->count && steps->steps[*at].slice <= slice) {
         ++*at;

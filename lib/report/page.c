@@ -12,10 +12,10 @@
 #define WH_JAVASCRIPT "/usr/share/javascript"
 #endif
 
-/* Longest name between two @. */
+/* The longest name between two @. */
 #define NAME_BYTES 64
 
-/* JavaScript that others wrote: its path below WH_JAVASCRIPT, and the Debian package that has it. */
+/* JavaScript that others wrote: its path below WH_JAVASCRIPT, and the Debian package that contains it. */
 static const struct {
     const char *name, *path, *package;
 } foreign[] = {
@@ -45,7 +45,7 @@ static const wh_embedded_t *find_ours(const char *name) {
 /* ----------------------------------------------------------------------------------------------- inlining */
 
 /* True if an HTML parser would take this within a script or a style for markup. A backslash after the '<'
- * prevents that, and means nothing to JavaScript's strings and to CSS. */
+ * prevents that; JavaScript's strings and CSS ignore it. */
 static bool is_markup(const char *text, size_t size) {
     static const char *const ends[] = {"/script", "/style", "!--"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; ++i) {

@@ -1,13 +1,13 @@
-/* A page, of a report or of a study: one HTML file with everything in it that it needs, for it is read from
- * disk, without a network.
+/* The page of a report or of a study is one HTML file with everything that it needs, because it is read
+ * from disk, without a network.
  *
  * It is lib/report/page/report.html.in or study.html.in, built into the program. A name between two @ in it
- * stands for a file: another one of lib/report/page, or one of the JavaScript that others wrote
- * (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css), read when the page is
- * made from where the distribution puts it: /usr/share/javascript, unless the program was built with another
- * JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@
- * report/document.h's object, or report/study_document.h's, packed (text/packed.h): an hour's is a seventh
- * so.
+ * stands for a file: another one of lib/report/page, or JavaScript that others wrote (three.min.js,
+ * OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css). The program reads the latter when it
+ * makes the page, from where the distribution puts them: /usr/share/javascript, unless the program was
+ * built with another JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title.
+ * @document@ is the object of report/document.h or report/study_document.h, packed (text/packed.h): an
+ * hour's run shrinks to a seventh.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H
@@ -22,8 +22,8 @@
 #define WH_PAGE_STUDY "study.html.in"
 
 /* Writes the page of this name. `document` is text of `size` bytes, as wh_document_write or
- * wh_study_document_write makes it. False, and the reason
- * in `message`, when a file is missing; whether `out` took all is for its owner to ask. */
+ * wh_study_document_write makes it. Returns false, and the reason in `message`, when a file is missing. The
+ * owner of `out` asks whether it took all. */
 bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]);
 

@@ -1,17 +1,17 @@
-/* Plots of centrings on the way: the blade's frame with the crossings and the circles through them, the
- * middle of it enlarged, and the residuals. */
+/* Plots of centrings on the way: the blade's frame with the crossings and the circles through them, its
+ * middle enlarged, and the residuals. */
 #include <math.h>
 
 #include "../math/trig.h"
 #include "../record/centring_words.h"
 #include "plots_internal.h"
 
-/* A circle is drawn through so many points. */
+/* The number of points of a drawn circle. */
 #define CIRCLE_POINTS 181
-/* The residuals' scale reaches so far beyond those that count, and at least so far, um. */
+/* The residuals' scale reaches by this factor beyond those that count, and at least this far, um. */
 #define AIR 1.6
 #define LEAST_SCALE 1.0
-/* Room around the wafer, parts of its radius; the least that the middle shows, mm. */
+/* Room around the wafer, as a part of its radius; the least that the middle shows, mm. */
 #define MARGIN 1.12
 #define LEAST_MIDDLE 0.25
 
@@ -32,8 +32,8 @@ static size_t put_circle(wh_plot_t *plot, const char *of, double x, double y, do
     wh_plot_block(plot, of, "x, y (mm), on the blade");
     for (int i = 0; i < CIRCLE_POINTS; ++i) {
         const double angle = i * 2 * (double)WH_PI / (CIRCLE_POINTS - 1);
-        const double across = y + radius * sin(angle);
-        wh_plot_row(plot, x + radius * cos(angle), &across, 1);
+        const double across = y + radius * wh_sin(angle);
+        wh_plot_row(plot, x + radius * wh_cos(angle), &across, 1);
     }
     return wh_plot_end_block(plot);
 }
@@ -114,7 +114,7 @@ static void put_place(FILE *script, const wh_centring_record_t *centring, int32_
     }
 }
 
-/* What a candidate is called. */
+/* The title of a candidate. */
 static const char *title_of(const wh_centring_record_t *centring, int i) {
     if (centring->status == WH_OK) {
         return i == 0 ? "fitted" : "as near as the same";
@@ -165,12 +165,12 @@ static void draw_block(wh_plot_t *plot, size_t block, const char *look, const ch
     }
 }
 
-/* Where an alignment has the notch. */
+/* Draws the place of the notch as an alignment knows it. */
 static void draw_notch(wh_plot_t *plot, const shown_t *shown) {
     const wh_centring_t *known = &shown->centring->known;
     if (known->notch_width > 0 && known->notch_known) {
-        const double x = known->radius * cos(known->notch_direction);
-        const double y = known->radius * sin(known->notch_direction);
+        const double x = known->radius * wh_cos(known->notch_direction);
+        const double y = known->radius * wh_sin(known->notch_direction);
         fprintf(plot->script,
                 "set arrow 1 from first %.6g, first %.6g to first %.6g, first %.6g lw 0.8\n"
                 "set label 7 'notch' at first %.6g, first %.6g center\n",
@@ -212,14 +212,14 @@ static void draw_blade(wh_plot_t *plot, const shown_t *shown) {
     fputs("\nunset arrow\nset size noratio\n", plot->script);
 }
 
-/* 1, 2 or 5 times a power of ten: one or two of them are within the reach. */
+/* A step of 1, 2 or 5 times a power of ten: one or two steps are within the reach. */
 static double step_within(double reach) {
     const double power = pow(10, floor(log10(reach / 2)));
     const double times = reach / 2 / power;
     return power * (times > 5 ? 10 : times > 2 ? 5 : times > 1 ? 2 : 1);
 }
 
-/* The same panel's right half, below the key. */
+/* Draws the right half of the panel, below the key. */
 static void draw_middle(wh_plot_t *plot, const shown_t *shown) {
     double reach = LEAST_MIDDLE;
     for (int32_t i = 0; i < shown->centring->centres.count; ++i) {
@@ -242,7 +242,7 @@ static void draw_middle(wh_plot_t *plot, const shown_t *shown) {
             plot->frame.left);
 }
 
-/* What the scale leaves out is told by its number. */
+/* A number tells the value that the scale leaves out. */
 static void draw_beyond(wh_plot_t *plot, const shown_t *shown, int32_t i) {
     const wh_centring_record_t *centring = shown->centring;
     for (size_t k = 0; k < centring->count; ++k) {
@@ -289,7 +289,7 @@ static void make_centring(wh_plots_t *plots, size_t number, shown_t *shown) {
     if (!wh_plots_open(plots, &plot, "centring", of)) {
         return;
     }
-    wh_plot_begin(&plot, &frame, "What the beams at a door told of a wafer, in the blade's frame", 0, 0);
+    wh_plot_begin(&plot, &frame, "A wafer as the beams at a door saw it, in the blade's frame", 0, 0);
     for (size_t i = 0; i < WH_CENTRING_LINES; ++i) {
         fprintf(plot.script, "# %s\n", shown->words.lines[i]);
     }

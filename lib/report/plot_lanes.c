@@ -1,4 +1,4 @@
-/* Plots of lanes over time: signals, who holds what, commands and what the time goes into. */
+/* Plots of lanes over time: signals, holders, commands, and how the time is spent. */
 #include <stdlib.h>
 
 #include "../record/packing.h"
@@ -9,7 +9,7 @@
 
 /* -------------------------------------------------------------------------------------------------- lanes */
 
-/* Half of what a bar or a signal takes of its lane. */
+/* Half of the height that a bar or a signal takes in its lane. */
 #define HALF 0.34
 
 /* A plot of lanes; open_lanes sets it up. */
@@ -18,7 +18,7 @@ typedef struct {
     wh_plot_t plot;
     size_t count, named, letters;
     int above;  /* pixels above the lanes; more for a key */
-    FILE *out;  /* of tics */
+    FILE *out;  /* the tics' text */
     char *tics; /* the lanes' names, for gnuplot */
     size_t size;
     size_t drawn; /* curves and blocks of bars in the plot command */
@@ -26,23 +26,23 @@ typedef struct {
     double duration;
 } lanes_t;
 
-/* How a block of bars is filled: a colour, and solid or a pattern in gnuplot's words. `text` is for the key,
- * or null. Bars have a black edge. If there are so many that one would see little but edges, they have none
- * and their colours blend, each by its share of a pixel's time; bars that must not be overlooked keep the
- * edge. */
+/* The look of a block of bars: a colour, and solid or a pattern in gnuplot's words. `text` is for the key,
+ * or null. Bars have a black edge. If there are so many bars that one would see little but edges, they have
+ * none. Their colours then blend, each by its share of a pixel's time. Bars that must not be overlooked
+ * keep the edge. */
 typedef struct {
     const char *text, *colour, *fill;
     bool keeps_edge;
 } look_t;
 
-/* Pixels, but for MOST_LETTERS: so many letters of a name have room. */
+/* Pixels, except MOST_LETTERS: the number of letters of a name that have room. */
 enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
 
 #define EDGED "using 1:3:1:2:($3-%g):($3+%g) with boxxyerror lw 0.6 dt 1 fc"
 #define EDGE "border lc rgb '#000000'"
 
-/* `count` lanes, to be named from the top before they are begun. False when the plot's files cannot be
- * opened, then there is nothing to end. */
+/* Opens `count` lanes; the caller names them from the top before it begins them. Returns false when the
+ * plot's files cannot be opened; then there is nothing to end. */
 static bool open_lanes(lanes_t *lanes, wh_plots_t *plots, const char *name, size_t count) {
     *lanes = (lanes_t){.plots = plots, .count = count, .above = LEAST_ABOVE};
     if (!wh_plots_open(plots, &lanes->plot, name, NULL)) {
@@ -52,7 +52,7 @@ static bool open_lanes(lanes_t *lanes, wh_plots_t *plots, const char *name, size
     return true;
 }
 
-/* A lane's height in the plot; the first is the highest. */
+/* A lane's height in the plot; the first lane is the highest. */
 static double lane_height(const lanes_t *lanes, size_t lane) {
     return (double)(lanes->count - 1 - lane);
 }
@@ -67,7 +67,8 @@ static void name_lane(lanes_t *lanes, const char *name, const char *what) {
     fprintf(lanes->out, " %g", lane_height(lanes, lanes->named++));
 }
 
-/* The script begins. Next come blocks of data and texts of bars, then what draws them, then the end. */
+/* Begins the script. Next come blocks of data and texts of bars, then the commands that draw them, then the
+ * end. */
 static void begin_lanes(lanes_t *lanes, const char *title) {
     const size_t letters = lanes->letters < MOST_LETTERS ? lanes->letters : MOST_LETTERS;
     const wh_plot_frame_t frame = {.panels = 1,
@@ -87,14 +88,14 @@ static void begin_lanes(lanes_t *lanes, const char *title) {
     lanes->tics = NULL;
 }
 
-/* A row of a block of bars. */
+/* Adds a row to a block of bars. */
 static void add_bar(lanes_t *lanes, size_t lane, double begin, double end) {
     const double values[] = {end, lane_height(lanes, lane)};
     wh_plot_row(&lanes->plot, begin, values, 2);
     ++lanes->bars;
 }
 
-/* A bar's text, where there is room for it. */
+/* Adds a bar's text, where there is room for it. */
 static void add_label(lanes_t *lanes, size_t lane, double begin, double end, const char *text, bool on_dark) {
     wh_plot_fitting_label(&lanes->plot, begin, end, text);
     fprintf(lanes->plot.script, ", %g center front%s\n", lane_height(lanes, lane),
@@ -106,9 +107,9 @@ static void put_part(lanes_t *lanes) {
     fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot.script);
 }
 
-/* Defines how bars are drawn: as boxes, or, if those of a lane are nearer to each other than LEAST_PITCH
- * pixels on average, as strokes as wide as a lane. A box without an edge counts for a pixel only if it covers
- * the pixel's middle; strokes are blended. */
+/* Defines how bars are drawn: as boxes, or as strokes as wide as a lane. Strokes are used if the bars of a
+ * lane are nearer to each other than LEAST_PITCH pixels on average. A box without an edge counts for a
+ * pixel only if it covers the pixel's middle; strokes blend. */
 static void put_styles(const lanes_t *lanes) {
     FILE *out = lanes->plot.script;
     fprintf(out,
@@ -155,7 +156,8 @@ static void draw_signal(lanes_t *lanes, size_t block, size_t lane, const char *s
             lanes->plot.name, block, lane_height(lanes, lane) - HALF, 2 * HALF, style);
 }
 
-/* A plot command without anything is an error for gnuplot: it draws the empty lanes with NaN. */
+/* Ends the plot; gnuplot draws the empty lanes with NaN, since it refuses a plot command without
+ * anything. */
 static void end_lanes(lanes_t *lanes) {
     fputs(lanes->drawn == 0 ? "plot NaN notitle\n" : "\n", lanes->plot.script);
     wh_plots_close(lanes->plots, &lanes->plot);
@@ -163,7 +165,7 @@ static void end_lanes(lanes_t *lanes) {
 
 /* ------------------------------------------------------------------------------------------------ signals */
 
-/* Steps of 0 and 1. The last value goes on to the end. */
+/* Writes steps of 0 and 1. The last value goes on to the end. */
 static size_t put_steps(lanes_t *lanes, const wh_steps_t *steps, bool inverted) {
     const wh_signals_t *signals = lanes->plots->document->signals;
     double value = 0;
@@ -233,7 +235,7 @@ void wh_plots_holders(wh_plots_t *plots) {
     for (size_t g = 0; g < grippers; ++g) {
         name_lane(&lanes, layout->grippers[g].name, "holds");
     }
-    begin_lanes(&lanes, "Who holds which wafer");
+    begin_lanes(&lanes, "Wafers and their holders");
     wh_plot_block(&lanes.plot, "holds", "from (s), to (s), lane");
     for (size_t g = 0; g < grippers; ++g) {
         put_holds(&lanes, g);
@@ -244,7 +246,7 @@ void wh_plots_holders(wh_plots_t *plots) {
 
 /* ----------------------------------------------------------------------------------------------- commands */
 
-/* Commands take turns with two looks, so that neighbours can be told apart; those that failed have a
+/* Commands alternate between two looks, so that neighbours can be told apart; failed commands have a
  * third. */
 enum { EVEN, ODD, FAILED, COMMANDS };
 
@@ -256,11 +258,12 @@ static int look_of(const wh_record_t *record, size_t command) {
     return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
 }
 
-/* Which lane is whose: first those of commands, of several robots one each, and of waits, as many as overlap,
- * then the robots', then a lane for each chuck that turns and each door that goes; SIZE_MAX: it does not. */
+/* The order of lanes. Commands come first, one lane for each of several robots. Then come waits, with as
+ * many lanes as overlap, then the robots. Then each chuck that turns and each door that moves has a lane;
+ * SIZE_MAX: it does not. */
 typedef struct {
     wh_packed_t *commands, *waits;
-    size_t own_lanes, command_lanes, wait_lanes, first_robot; /* own_lanes are among command_lanes */
+    size_t own_lanes, command_lanes, wait_lanes, first_robot; /* own_lanes are among the command_lanes */
     size_t of[WH_GRIPPERS], of_door[WH_DOORS];
     size_t count;
 } rows_t;
@@ -296,7 +299,7 @@ static const look_t share_looks[WH_SHARES] = {
     [WH_SHARE_HANDOVER] = {"hand-over", "#2b6b2b", "crossed", false},
     [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
-/* Those of no robot are packed; each robot has the lane of its number. */
+/* Packs the commands of no robot; each robot has the lane of its number. */
 static void pack_commands(rows_t *rows, const wh_record_t *record) {
     wh_packed_t *packed = wh_array_new(record->command_count, sizeof *packed);
     size_t count = 0;
@@ -374,7 +377,7 @@ static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const rows_t
     return wh_plot_end_block(&lanes->plot);
 }
 
-/* Blocks first, then what draws them: labels must not come within a plot command. */
+/* Writes the blocks first, then what draws them: labels must not come within a plot command. */
 static void draw_commands(lanes_t *lanes, const wh_record_t *record, const rows_t *rows) {
     static const look_t waits = {NULL, "#ffffff", "solid", false};
     size_t blocks[COMMANDS + WH_SHARES];
@@ -391,14 +394,14 @@ static void draw_commands(lanes_t *lanes, const wh_record_t *record, const rows_
     draw_bars(lanes, waited, &waits);
 }
 
-/* So many lanes: the first has this name. */
+/* Names `count` lanes; only the first has this name. */
 static void name_alike(lanes_t *lanes, const char *name, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         name_lane(lanes, i == 0 ? name : "beside them", "");
     }
 }
 
-/* Of several robots each. */
+/* Names a lane for each of several robots. */
 static void name_robots(lanes_t *lanes, const wh_layout_t *layout, const char *what) {
     for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
         name_lane(lanes, layout->robots[r].name, what);

@@ -8,10 +8,10 @@
 #include "../text/array.h"
 #include "plots_internal.h"
 
-/* With more wafers than these they are numbered. */
+/* With more wafers than this the plots number them. */
 #define MOST_NAMED 40
 
-/* Half of the least range that is drawn, mm. */
+/* Half of the least range that a plot shows, mm. */
 #define LEAST_OFFSET 0.1
 
 /* ---------------------------------------------------------------------------------------------- proximity */
@@ -35,8 +35,8 @@ static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t grippe
     free(holds);
 }
 
-/* A panel of lengths, from nothing to many times the limit, hence a logarithmic axis. Values below its end
- * are drawn on it. */
+/* Draws a panel of lengths. They range from nothing to many times the limit, hence a logarithmic axis.
+ * Values below the axis' end are drawn on it. */
 static void put_length(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, const char *name, int column,
                        double low, double limit, double high) {
     char label[60];
@@ -104,7 +104,7 @@ void wh_plots_proximity(wh_plots_t *plots) {
 
 typedef struct {
     const char *label;
-    const char *unit; /* of the axes; empty: such as nobody knows */
+    const char *unit; /* the unit of the axes; empty: not known */
     bool is_speed;
 } axis_panel_t;
 
@@ -118,7 +118,7 @@ static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *
     return signals->axes[axis].list.count > 0 && strcmp(panel->unit, unit ? unit : "") == 0;
 }
 
-/* How many curves a panel shows, and between which values. */
+/* The number of curves that a panel shows, and the range of their values. */
 typedef struct {
     size_t curves;
     double low, high;
@@ -190,7 +190,7 @@ void wh_plots_axes(wh_plots_t *plots) {
 
 /* --------------------------------------------------------------------------------------------- clearances */
 
-/* True if a gap below WH_CLEARANCE_RANGE was measured: wider ones are not known. */
+/* True if a gap below WH_CLEARANCE_RANGE was measured; wider gaps are not known. */
 static bool is_known(const wh_record_t *record, size_t kind) {
     const bool is_measured =
         record->checked && record->curves && record->clearances[kind].parts[0] != WH_NONE;
@@ -290,7 +290,7 @@ static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
     return is_seen;
 }
 
-/* Writes "Wafer 1 in B 2" below each. */
+/* Writes a name such as "Wafer 1 in B 2" below each. */
 static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const wh_record_t *record = plots->document->record;

@@ -1,4 +1,4 @@
-/* Plots of what edge sensors saw: rho over theta with the fitted circle, and the residuals. */
+/* Plots of edge scans: rho over theta with the fitted circle, and the residuals. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -6,9 +6,9 @@
 #include "../text/array.h"
 #include "plots_internal.h"
 
-/* The circle is drawn through so many points. */
+/* The number of points of the drawn circle. */
 #define CIRCLE_POINTS 361
-/* The residuals' scale reaches so far beyond those that count. */
+/* The residuals' scale reaches by this factor beyond those that count. */
 #define AIR 1.25
 
 enum { SAMPLES, COUNTING, MASKED, CIRCLE, BLOCKS };
@@ -19,7 +19,7 @@ typedef struct {
     wh_status_t status;
     wh_align_result_t result;
     wh_scan_words_t words;
-    size_t blocks[BLOCKS]; /* SIZE_MAX: nothing of it */
+    size_t blocks[BLOCKS]; /* SIZE_MAX: the plot does not have it */
     double most;           /* residual that counts, um */
 } shown_t;
 
@@ -56,13 +56,13 @@ static void put_circle(wh_plot_t *plot, shown_t *shown) {
     wh_plot_block(plot, "fitted circle", "theta (degrees), rho (mm)");
     for (int i = 0; circle->radius > 0 && i < CIRCLE_POINTS; ++i) {
         const double theta = i * 2 * (double)WH_PI / (CIRCLE_POINTS - 1);
-        const double rho = wh_circle_radius(circle, 0, cos(theta), sin(theta));
+        const double rho = wh_circle_radius(circle, 0, wh_cos(theta), wh_sin(theta));
         wh_plot_row(plot, degrees(theta), &rho, 1);
     }
     shown->blocks[CIRCLE] = wh_plot_end_block(plot);
 }
 
-/* A line where the axis sees the notch or flat, through a panel of any scale. */
+/* Draws a line at the angle where the axis sees the notch or flat; it fits a panel of any scale. */
 static void draw_mark(wh_plot_t *plot, const shown_t *shown) {
     const double at = degrees(wh_edge_scan_mark_at(&shown->result));
     if (!isnan(at)) {
@@ -82,7 +82,7 @@ static void draw_block(wh_plot_t *plot, const shown_t *shown, int block, const c
     }
 }
 
-/* The verdict stands above: a plot that is not sure says so by itself. */
+/* The verdict stands above, so the plot itself says when it is not sure. */
 static void draw_rim(wh_plot_t *plot, const shown_t *shown) {
     wh_plot_panel(plot, "\u03c1 (mm)");
     fputs("set xrange [0:360]\nset xtics 45\nset label 4 ", plot->script);
@@ -92,7 +92,7 @@ static void draw_rim(wh_plot_t *plot, const shown_t *shown) {
     if (shown->blocks[SAMPLES] == SIZE_MAX) {
         fputs("set yrange [0:1]\n", plot->script);
     }
-    /* Below what is shown: a plot of nothing else is one, too. */
+    /* The point is below the visible range: gnuplot needs something to plot. */
     fprintf(plot->script, "plot %s notitle", shown->blocks[SAMPLES] == SIZE_MAX ? "-1" : "NaN");
     draw_block(plot, shown, SAMPLES, "with points lt 1 pt 7 ps 0.12 title 'samples'");
     draw_block(plot, shown, CIRCLE, "with lines lt 3 title 'fitted circle'");
@@ -121,8 +121,8 @@ static void make_scan(wh_plots_t *plots, shown_t *shown) {
     if (!wh_plots_open(plots, &plot, "edge_scan", of)) {
         return;
     }
-    wh_plot_begin(&plot, &frame, "What an edge sensor saw, in the chuck's frame, and the fitted circle", 0,
-                  0);
+    wh_plot_begin(&plot, &frame, "An edge as the sensor saw it, in the chuck's frame, and the fitted circle",
+                  0, 0);
     for (size_t i = 0; i < WH_SCAN_LINES; ++i) {
         fprintf(plot.script, "# %s\n", shown->words.lines[i]);
     }

@@ -15,7 +15,7 @@
 
 extern char **environ;
 
-/* The folder in which plots are made, within the one that they are for: renaming works within a file system
+/* The plots are made in this folder within the target folder, because renaming works within a file system
  * only. */
 #define FOLDER "/.plots.XXXXXX"
 #define PATH_BYTES 4096
@@ -23,7 +23,7 @@ extern char **environ;
 static const char *const endings[] = {"dat", "gp", "svg"};
 #define ENDINGS (sizeof endings / sizeof endings[0])
 
-/* The path of file `i` of all plots' in a folder. False if it is too long. */
+/* The path of file `i` of all plots, in a folder. False if it is too long. */
 static bool path_of(const wh_plots_t *plots, size_t i, const char *folder, char path[PATH_BYTES]) {
     errno = ENAMETOOLONG;
     return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, plots->names[i / ENDINGS], endings[i % ENDINGS]) <
@@ -41,8 +41,8 @@ static bool is_taken(const wh_plots_t *plots, const char *name) {
     return false;
 }
 
-/* Makes a name that a shell, LaTeX and every system accept. Of two that become the same, the second is
- * numbered. */
+/* Makes a name that a shell, LaTeX and every system accept. If two names become equal, the second gets a
+ * number. */
 static void choose_name(const wh_plots_t *plots, char name[WH_PLOT_NAME_BYTES], const char *stem,
                         const char *of) {
     (void)snprintf(name, WH_PLOT_NAME_BYTES - 20, "%s%s%s", stem, of ? "_" : "", of ? of : "");
@@ -113,7 +113,7 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
         if (stay->holder != gripper) {
             continue;
         }
-        /* The same wafer again at once is the same hold. */
+        /* If it holds that wafer again at once, the hold goes on. */
         if (!last || last->wafer != stay->wafer || at > last->end_s) {
             list = wh_array_grow(list, *count, &capacity, sizeof *list);
             last = &list[(*count)++];
@@ -140,8 +140,8 @@ static char *set_letters(const char *letters) {
     return kept;
 }
 
-/* Runs gnuplot in the plots' folder. Returns 0, an errno if it did not start, or -1 if it has said itself
- * what is wrong. */
+/* Runs gnuplot in the plots' folder. Returns 0, an errno if it did not start, or -1 if gnuplot itself
+ * reported the error. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
     pid_t process = 0;
@@ -195,7 +195,7 @@ static bool refuse(const wh_plots_t *plots, size_t i, const char *why, char mess
     return false;
 }
 
-/* Nothing is placed if one of the files is an input or another output. */
+/* No file is placed if one of them is an input or another output. */
 static bool is_free(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char to[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {

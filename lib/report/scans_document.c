@@ -77,7 +77,7 @@ static void put_estimate(wh_json_text_t *text, const wh_edge_scan_t *scan, wh_st
     put_mark(text, result);
 }
 
-/* The chuck's station, else null. */
+/* Writes the chuck's station, or null. */
 static void put_station(wh_json_text_t *text, const wh_layout_t *layout, int32_t gripper) {
     size_t s = 0;
     while (s < layout->station_count && layout->places[s].chuck != gripper) {

@@ -1,4 +1,4 @@
-/* Of a run's document, the member `scans`: see report/document.h. */
+/* The member `scans` of a run's document: see report/document.h. */
 #ifndef WH_REPORT_SCANS_DOCUMENT_H
 #define WH_REPORT_SCANS_DOCUMENT_H
 

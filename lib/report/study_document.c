@@ -7,13 +7,13 @@
 #include "../study/lines.h"
 #include "../text/json.h"
 
-/* A histogram has so many bars. */
+/* The number of bars of a histogram. */
 #define BARS 40
 
-/* Points of more trials would only cover each other. */
+/* The most points of a cloud; more trials would only cover each other. */
 #define MOST_POINTS 5000
 
-/* A bin of the sums, beyond the smallest and the largest value. */
+/* A histogram of the sums, from the smallest to the largest value; a single value gets room around it. */
 static json_t *histogram(const wh_sum_t *sum, double nominal) {
     double counts[BARS];
     const double low = wh_sum_least(sum);
@@ -31,7 +31,7 @@ static json_t *histogram(const wh_sum_t *sum, double nominal) {
     return wh_json_add(object, "counts", list, NULL);
 }
 
-/* A box that the script expects the wafer in; null for one elsewhere. */
+/* The box that the script expects the wafer in; null if the claim is about another wafer or place. */
 static json_t *limit(const wh_study_wafer_t *wafer, const wh_decisions_claim_t *claim) {
     const bool is_its = claim->wafer == wafer->wafer && claim->station == wafer->place.station &&
                         claim->slot == wafer->place.slot;
@@ -76,7 +76,7 @@ static json_t *ok(const void *subject, size_t i) {
     return json_boolean(line_of(subject, i)->met);
 }
 
-/* To a nanometre, which a plot does not show. */
+/* Rounds to a nanometre, which a plot does not show. */
 static double rounded(double value) {
     return floor(value * 1e6 + 0.5) / 1e6;
 }

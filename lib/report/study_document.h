@@ -1,12 +1,12 @@
-/* A study as one JSON object: what the page of a study shows.
+/* A study as one JSON object: the content of its page.
  *
- *   format (1), title, version, command: what plays the study again; with " --trial N" behind it, one trial
- *   result    what `study --json` prints (print/study_print.h), with the 100 worst trials
- *   wafers    of each wafer that the study follows: limits [{ dx, dy, tolerance }]: boxes that the script
- *             expects it in, where the run without errors leaves it (mm); histograms { dx, dy, dz, tilt_deg,
+ *   format (1), title, version, command (it plays the study again; with " --trial N" after it, one trial)
+ *   result    the output of `study --json` (print/study_print.h), with the 100 worst trials
+ *   wafers    for each wafer of the study: limits [{ dx, dy, tolerance }]: boxes that the script
+ *             expects it in, at its place in the run without errors (mm); histograms { dx, dy, dz, tilt_deg,
  *             off }: { low, high, counts } (mm, deg; null: no figures)
- *   points    of the trials whose lines are kept: trial [], ok [], off [] (mm; null: a wafer is elsewhere),
- *             ends [[dx, dy of each wafer]] (mm; null: elsewhere); `of` all trials
+ *   points    for the trials whose lines are kept: trial [], ok [], off [] (mm; null: a wafer is elsewhere),
+ *             ends [[dx, dy of each wafer]] (mm; null: elsewhere); `of`: the number of all trials
  */
 #ifndef WH_REPORT_STUDY_DOCUMENT_H
 #define WH_REPORT_STUDY_DOCUMENT_H
@@ -17,7 +17,7 @@
 
 typedef struct {
     const wh_study_t *study;
-    const wh_tally_t *tally; /* of all trials, sorted */
+    const wh_tally_t *tally; /* all trials, sorted */
     json_t *result;          /* borrowed */
     const char *command;
 } wh_study_document_t;

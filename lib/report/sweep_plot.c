@@ -6,10 +6,10 @@
 
 #include "../text/svg.h"
 
-/* Units of the picture, about a pixel each. */
+/* Units of the picture; each is about a pixel. */
 enum { WIDTH = 760, LEFT = 90, RIGHT = 24, TOP = 56, PANEL = 170, BETWEEN = 26, LANE = 16, BELOW = 54 };
 
-/* So many combinations of the other parameters are named; the rest is grey. */
+/* The number of combinations of the other parameters that get a name; the rest is grey. */
 #define NAMED 8
 
 static const char *const colours[NAMED] = {"#0b5fa5", "#b84a00", "#00745a", "#8b3a8f",
@@ -17,7 +17,7 @@ static const char *const colours[NAMED] = {"#0b5fa5", "#b84a00", "#00745a", "#8b
 
 typedef struct {
     const char *name;
-    size_t offset; /* of the figure in a point */
+    size_t offset; /* of the figure within a point */
 } panel_t;
 
 static const panel_t panels[] = {{"simulated time, s", offsetof(wh_sweep_point_t, simulated_s)},
@@ -27,7 +27,7 @@ static const panel_t panels[] = {{"simulated time, s", offsetof(wh_sweep_point_t
                                  {"smallest gap, mm", offsetof(wh_sweep_point_t, gap)}};
 #define PANELS (sizeof panels / sizeof panels[0])
 
-/* From value to picture, along one direction. */
+/* Maps a value to the picture, along one direction. */
 typedef struct {
     double low, high, from, to;
 } scale_t;
@@ -55,7 +55,7 @@ static const char *colour_of(size_t series) {
 
 /* --------------------------------------------------------------------------------------------------- axes */
 
-/* 1, 2 or 5 times a power of ten, such that about five fit in. */
+/* A step of 1, 2 or 5 times a power of ten; about five steps fit in. */
 static double tick_step(const scale_t *scale) {
     const double rough = (scale->high - scale->low) / 5;
     const double power = pow(10, floor(log10(rough)));
@@ -85,7 +85,7 @@ static void draw_ticks(const drawing_t *d, const scale_t *scale, bool is_x, doub
     }
 }
 
-/* A little beyond the figures; a single value gets room on both sides. */
+/* The scale reaches a little beyond the figures; a single value gets room on both sides. */
 static scale_t scale_of(const drawing_t *d, const panel_t *panel, double top) {
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
@@ -131,7 +131,7 @@ static void draw_curve(const drawing_t *d, const panel_t *panel, const scale_t *
     fputs("\"/>\n", d->out);
 }
 
-/* A disc for a run that is ok, a red cross for another. */
+/* Draws a disc for a run that is ok, and a red cross for another. */
 static void draw_point(const drawing_t *d, size_t i, double y) {
     const double x = x_of(d, i);
     if (d->sweep->points[i].verdict == WH_SWEEP_OK) {
@@ -159,7 +159,7 @@ static void draw_panel(const drawing_t *d, const panel_t *panel, double top) {
     }
 }
 
-/* One line for each combination: which runs are ok. */
+/* Draws one line for each combination, which shows the runs that are ok. */
 static void draw_lanes(const drawing_t *d, double top) {
     fprintf(d->out, "<text class=\"title\" x=\"%d\" y=\"%.1f\">ok, or failed (red cross)</text>\n", LEFT,
             top - 6);
@@ -171,7 +171,7 @@ static void draw_lanes(const drawing_t *d, double top) {
 
 /* --------------------------------------------------------------------------------------------- all of it */
 
-/* What the combination is, beside its lane. */
+/* Writes the combination's values beside its lane. */
 static void draw_names(const drawing_t *d, double top) {
     for (size_t series = 0; series < d->series; ++series) {
         fprintf(d->out, "<text class=\"y\" x=\"%d\" y=\"%.1f\" style=\"fill:%s\">", LEFT - 8,

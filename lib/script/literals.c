@@ -1,4 +1,4 @@
-/* Table literals in which a key stands twice. */
+/* Finds table literals in which a key appears twice. */
 #include <ctype.h>
 #include <string.h>
 
@@ -41,7 +41,7 @@ static void skip(scanner_t *scanner) {
     ++scanner->at;
 }
 
-/* How many bytes the long bracket has that opens here, [[ or [=[; 0 if none does. */
+/* The number of bytes of the long bracket that opens here, [[ or [=[; 0 if none does. */
 static size_t long_bracket(const scanner_t *scanner) {
     size_t length = 1;
     while (look(scanner, length) == '=') {
@@ -81,7 +81,7 @@ static bool goes_on(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* With the sign of an exponent. */
+/* Skips a number, with the sign of an exponent. */
 static void skip_number(scanner_t *scanner) {
     const bool is_hex = look(scanner, 0) == '0' && tolower((unsigned char)look(scanner, 1)) == 'x';
     const char exponent = is_hex ? 'p' : 'e';
@@ -120,7 +120,7 @@ static bool begins_number(const scanner_t *scanner) {
     return isdigit((unsigned char)look(scanner, digit)) != 0;
 }
 
-/* Goes past the token that begins here and returns its kind. */
+/* Skips the token that begins here and returns its kind. */
 static token_kind_t skip_token(scanner_t *scanner) {
     const size_t bracket = long_bracket(scanner);
     const char first = look(scanner, 0);
@@ -156,7 +156,7 @@ static token_t read_token(scanner_t *scanner) {
     return token;
 }
 
-/* True for a quoted text without escapes. */
+/* True for a text in quotes without escapes. */
 static bool is_plain(const token_t *token) {
     return token->kind == TOKEN_TEXT && *token->begin != '[' && !memchr(token->begin, '\\', token->length);
 }
@@ -168,8 +168,8 @@ static bool is(const token_t *token, const char *text) {
 
 /* --------------------------------------------------------------------------------------------------- keys */
 
-/* What is open, the innermost last: '{', '(', '[' or a block, 'b'. For each '{' a table is on L's stack that
- * has the line of each key, and `listed` counts the values that have none. */
+/* The open levels, the innermost last: '{', '(', '[' or a block, 'b'. For each '{' a table on L's stack has
+ * the line of each key; `listed` counts the values without a key. */
 typedef struct {
     lua_State *L;
     const char *source;
@@ -209,7 +209,7 @@ static void note_key(literals_t *literals) {
     lua_rawset(L, -3);
 }
 
-/* A value without a key has its place in the list for one. */
+/* A value without a key uses its place in the list as a key. */
 static void check_list(literals_t *literals) {
     for (lua_Integer i = 1; literals->has_numbers && i <= literals->listed[literals->depth]; ++i) {
         if (lua_rawgeti(literals->L, -1, i) != LUA_TNIL) {
@@ -230,7 +230,8 @@ static bool push_number(lua_State *L, const token_t *token) {
     return lua_stringtonumber(L, text) > 0;
 }
 
-/* The key that begins with `token`, on L's stack. False if it has none, or one that only a run knows. */
+/* Pushes the key that begins with `token` onto L's stack. Returns false if it has none, or one that is
+ * known only at run time. */
 static bool push_key(literals_t *literals, token_t token) {
     scanner_t ahead = literals->scanner;
     token_t next = read_token(&ahead);
@@ -275,7 +276,7 @@ static char opened_by(const token_t *token) {
     return is_one_of(token, blocks) ? 'b' : '\0';
 }
 
-/* False if it is too deep to follow. */
+/* Returns false if it is too deep to follow. */
 static bool open_level(literals_t *literals, char level) {
     if (literals->depth == DEEPEST || !lua_checkstack(literals->L, 8)) {
         return false;
@@ -315,7 +316,7 @@ static bool follow(literals_t *literals, token_t token) {
     return level == '\0' || open_level(literals, level);
 }
 
-/* Runs as a function of its own, for the tables on the stack. */
+/* It runs as a function of its own, because of the tables on the stack. */
 static int refuse_twice(lua_State *L) {
     literals_t *literals = lua_touserdata(L, 1);
     literals->L = L;

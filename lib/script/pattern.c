@@ -7,7 +7,7 @@
 #include "sandbox_internal.h"
 
 #define DEPTH_LIMIT 200
-/* Steps are charged in lots of this size. */
+/* Steps are charged in units of this size. */
 #define CHARGE_LOT 1000
 
 typedef wh_pattern_t pattern_t;
@@ -77,7 +77,7 @@ static void count_steps(pattern_t *m, size_t steps) {
 
 /* -------------------------------------------------------------------------- Single characters and classes */
 
-/* One past the single-character item that begins at p. */
+/* The place after the single-character item that begins at p. */
 static const char *item_end(pattern_t *m, const char *p) {
     const char first = *p++;
     if (first == '%') {
@@ -125,7 +125,7 @@ static bool matches_one(pattern_t *m, const char *s, const char *p, const char *
 
 /* ----------------------------------------------------------------------- Items of more than one character */
 
-/* What `match` does next: go on at another place, or be done. */
+/* The next action of `match`: continue at another place, or end. */
 typedef struct {
     bool go_on;
     const char *s, *p; /* s: the result if done */
@@ -141,7 +141,7 @@ static next_t go_on(const char *s, const char *p) {
 
 static const char *match(pattern_t *m, const char *s, const char *p);
 
-/* %bxy; p is past the 'b'. Returns the end of the balanced text, or null. */
+/* Matches %bxy; p is past the 'b'. Returns the end of the balanced text, or null. */
 static const char *match_balance(pattern_t *m, const char *s, const char *p) {
     if (p + 1 >= m->pattern_end) {
         luaL_error(m->L, "malformed pattern (missing arguments to '%%b')");
@@ -164,7 +164,7 @@ static const char *match_balance(pattern_t *m, const char *s, const char *p) {
     return NULL;
 }
 
-/* %f[set]; p is past the 'f'. */
+/* Matches %f[set]; p is past the 'f'. */
 static next_t match_frontier(pattern_t *m, const char *s, const char *p) {
     if (p >= m->pattern_end || *p != '[') {
         luaL_error(m->L, "missing '[' after '%%f' in pattern");
@@ -176,14 +176,13 @@ static next_t match_frontier(pattern_t *m, const char *s, const char *p) {
     return !in_set(before, p, end - 1) && in_set(here, p, end - 1) ? go_on(s, end) : done(NULL);
 }
 
-/* %1 to %9. */
+/* Matches %1 to %9. */
 static next_t match_back_reference(pattern_t *m, const char *s, const char *p) {
     const int index = *p - '1';
     if (index < 0 || index >= m->captures || m->capture[index].length == WH_CAPTURE_OPEN) {
         luaL_error(m->L, "invalid capture index %%%d", index + 1);
     }
-    /* As an unsigned number, the special length of a position is larger than any subject: it never
-     * matches. */
+    /* The special length of a position, as an unsigned number, exceeds any subject, so it never matches. */
     const size_t length = (size_t)m->capture[index].length;
     count_steps(m, 1 + (length <= (size_t)(m->subject_end - s) ? length >> 4 : 0));
     if ((size_t)(m->subject_end - s) < length || memcmp(m->capture[index].begin, s, length) != 0) {
@@ -249,7 +248,8 @@ static const char *match_shortest(pattern_t *m, const char *s, const char *p, co
     }
 }
 
-/* The item does not match the character: the match goes on only if the item's suffix allows no occurrence. */
+/* The item does not match the character: the match continues only if the item's suffix allows no
+ * occurrence. */
 static next_t match_without(const char *s, const char *end, char suffix) {
     return suffix == '*' || suffix == '?' || suffix == '-' ? go_on(s, end + 1) : done(NULL);
 }

@@ -1,6 +1,6 @@
-/* Lua's string patterns. Each step of the matcher takes one step off the instruction budget.
+/* Lua's string patterns. Each step of the matcher costs one step of the instruction budget.
  *
- * The language is that of the Lua 5.4 manual, section 6.4.1, with the same results and limits (32 captures,
+ * The language is that of the Lua 5.4 manual, section 6.4.1, with equal results and limits (32 captures,
  * 200 levels of backtracking). Lua's own matcher backtracks where no hook reaches it: a pattern of seven
  * stars on a subject of a few hundred bytes takes years. This matcher ends when the budget is spent.
  */
@@ -41,7 +41,7 @@ void wh_pattern_init(wh_pattern_t *matcher, lua_State *L, const char *subject, s
  * spent. */
 const char *wh_pattern_match(wh_pattern_t *matcher, const char *at, const char *pattern);
 
-/* Charges the steps that are not charged yet. To be called after the last match. */
+/* Charges the steps that are not charged yet. Call it after the last match. */
 void wh_pattern_settle(wh_pattern_t *matcher);
 
 /* Pushes capture number `index` (from 0). If the pattern has no captures, index 0 is the whole match [begin,

@@ -1,8 +1,8 @@
 /* The `^` of scripts: liblua calls pow, and the linker finds this one before libm's.
  *
- * Whole-number exponents are computed by repeated squaring, with the same bits on every machine. A script
- * that asks for a fractional exponent is stopped at its next instruction. All other callers get libm's powl,
- * rounded; nothing of this library calls pow.
+ * Whole-number exponents are computed by repeated squaring, with equal bits on every machine. A script that
+ * asks for a fractional exponent is stopped at its next instruction. All other callers get the rounded
+ * result of libm's powl; this library itself never calls pow.
  *
  * The program links liblua5.4.a statically. Build this file with -fno-builtin-pow.
  */
@@ -42,8 +42,8 @@ static double power_of_count(double x, uint64_t count) {
     return result;
 }
 
-/* One division of 1 at the end rounds least. If the divisor is not a normal number, two factors keep the
- * quotient: 2^-1074, for one, is a number although 2^1074 is not. */
+/* A single division of 1 at the end has the smallest rounding error. If the divisor is not a normal number,
+ * two factors keep the quotient: for example 2^-1074 is a number although 2^1074 is not. */
 static double power_of_negative(double x, uint64_t count) {
     const double whole = power_of_count(x, count);
     if (fabs(whole) >= DBL_MIN && fabs(whole) <= DBL_MAX) {
@@ -61,8 +61,8 @@ static double power_whole(double x, double y) {
     return y >= 0 ? power_of_count(x, (uint64_t)size) : power_of_negative(x, (uint64_t)size);
 }
 
-/* True if Lua code asks, not a C function of the host; keeps the place for the message. The count hook keeps
- * the line current. */
+/* True if Lua code calls it, and not a C function of the host; it keeps the place for the message. The
+ * count hook keeps the line current. */
 static bool lua_asks(wh_sandbox_t *sandbox) {
     lua_Debug frame;
     if (sandbox->running == NULL || !lua_getstack(sandbox->running, 0, &frame) ||
@@ -80,7 +80,7 @@ double pow(double x, double y) {
     }
     wh_sandbox_t *const sandbox = strict_sandbox;
     if (sandbox != NULL && sandbox->loading > 0) {
-        return (double)NAN; /* the compiler does not fold NaN: the running script asks again */
+        return (double)NAN; /* the compiler does not fold NaN, so the running script calls again */
     }
     if (sandbox == NULL || !lua_asks(sandbox)) {
         return (double)powl((long double)x, (long double)y);

@@ -8,13 +8,14 @@
 #include <lauxlib.h>
 
 #include "../math/config.h"
+#include "../math/trig.h"
 #include "../text/nearest.h"
 #include "../text/utf8.h"
 #include "wh_module_values.h"
 
 /* ----------------------------------------------------------------------------------------------- messages */
 
-/* Without a sign: that of a NaN differs between machines and says nothing. */
+/* The sign is left out, because that of a NaN differs between machines and has no meaning. */
 static void describe_number(double value, char *text, size_t size) {
     if (value != value) {
         snprintf(text, size, "nan");
@@ -23,8 +24,8 @@ static void describe_number(double value, char *text, size_t size) {
     }
 }
 
-/* A short list of numbers is shown as it was written, { 0, 90, 0 }; of any other table only that it is
- * one. */
+/* A short list of numbers is shown as written, { 0, 90, 0 }; for any other table the text only says that it
+ * is one. */
 static void describe_table(lua_State *L, char *text, size_t size) {
     const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
     bool is_short_list = count >= 1 && count <= 4;
@@ -65,7 +66,7 @@ static void describe(lua_State *L, char *text, size_t size) {
     }
 }
 
-/* The longest text of what was expected. */
+/* The longest text that describes the expected values. */
 #define WANTED_SIZE 512
 
 __attribute__((noreturn)) static void fail(const wh_reader_t *reader, const char *field, const char *wanted) {
@@ -124,7 +125,7 @@ static void name_key(lua_State *L, char *field, size_t size) {
 /* The most fields that a table has. */
 #define MOST_FIELDS 64
 
-/* Refuses the value on top of the stack: its field is none of the known ones. */
+/* Refuses the value on top of the stack: its field is not a known one. */
 __attribute__((noreturn)) static void refuse_field(const wh_reader_t *reader, const char *field,
                                                    const char *name, const wh_reader_field_t *known) {
     const char *names[MOST_FIELDS];
@@ -145,6 +146,7 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const wh_reader_field_t *know
     lua_State *L = reader->L;
     const char *first = NULL;
     size_t first_length = 0;
+    reader->known[reader->depth] = known;
     lua_pushnil(L);
     while (lua_next(L, -2) != 0) {
         if (lua_type(L, -2) != LUA_TSTRING) {
@@ -176,8 +178,8 @@ static bool is_entry(lua_State *L, lua_Integer count) {
     return whole && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= count;
 }
 
-/* Pushes a key that no list of as many entries has, and its value; false if there is none. Counts the
- * entries. */
+/* Pushes a key that is not allowed in a list of this number of entries, and its value; false if there is
+ * none. Counts the entries. */
 static bool push_stray(lua_State *L, size_t *count) {
     *count = 0;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
@@ -230,6 +232,7 @@ static void enter_top(wh_reader_t *reader, const char *name) {
     }
     snprintf(reader->path + length, sizeof reader->path - length, "%s%s", dot, name);
     reader->lengths[reader->depth++] = length;
+    reader->known[reader->depth] = NULL;
 }
 
 int wh_reader_push(const wh_reader_t *reader, const char *field) {
@@ -290,7 +293,7 @@ void wh_reader_leave(wh_reader_t *reader) {
 
 /* ------------------------------------------------------------------------------------------------- fields */
 
-/* Pushes a field. False if it is absent; that is an error if it is required. */
+/* Pushes a field. Returns false if it is absent; that is an error if it is required. */
 static bool push_field(const wh_reader_t *reader, const char *field, bool required, const char *expected) {
     if (wh_reader_push(reader, field) != LUA_TNIL) {
         return true;
@@ -310,15 +313,43 @@ static void pop_field(const wh_reader_t *reader, const char *field, bool is_good
     lua_pop(reader->L, 1);
 }
 
+static const wh_reader_field_t *find_row(const wh_reader_t *reader, const char *field) {
+    const wh_reader_field_t *row = reader->known[reader->depth];
+    while (row && row->name && strcmp(row->name, field) != 0) {
+        ++row;
+    }
+    return row && row->name ? row : NULL;
+}
+
+/* In a cell nothing is longer in metres. */
+#define MOST_METRES 2
+
+/* Appends a question to the text of what was expected, if the number would be within its limits in another unit. */
+static void ask_unit(const wh_reader_t *reader, const char *field, double value, double min, double max,
+                     char *expected, size_t size) {
+    const wh_reader_field_t *row = find_row(reader, field);
+    const bool is_angle = row && strstr(row->text, "degrees") && !strstr(row->text, "degrees or mm");
+    const bool is_length = row && strncmp(row->text, "mm", 2) == 0 && value < MOST_METRES;
+    const double meant = value * (is_angle ? 180 / (double)WH_PI : 1000);
+    const size_t used = strlen(expected);
+    if ((is_angle || is_length) && value < min && meant >= min && meant <= max) {
+        snprintf(expected + used, size - used, "; is that %s? Then it is %.6g",
+                 is_angle ? "radians" : "metres", meant);
+    }
+}
+
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max) {
-    char expected[80];
+    char expected[160];
     snprintf(expected, sizeof expected, "a number from %.12g to %.12g", (double)min, (double)max);
     if (!push_field(reader, field, !wh_real_is_finite(fallback), expected)) {
         return fallback;
     }
     const wh_real_t value = (wh_real_t)lua_tonumber(reader->L, -1);
     const bool is_number = lua_type(reader->L, -1) == LUA_TNUMBER;
+    if (is_number && value < min) {
+        ask_unit(reader, field, value, min, max, expected, sizeof expected);
+    }
     pop_field(reader, field, is_number && value >= min && value <= max, expected);
     return value;
 }

@@ -1,9 +1,8 @@
 /* Reads a Lua table as a description: typed fields with defaults and ranges, and errors that name file,
- * field, value and what was expected.
+ * field, value and the expected values.
  *
- * The table that is read is on top of the Lua stack. Every function raises a Lua error on the first fault
- * that it finds, so a reader owns nothing that would have to be freed. Fields are read raw: no metamethod
- * runs.
+ * The table being read is on top of the Lua stack. Every function raises a Lua error on the first fault, so
+ * a reader owns nothing that must be freed. Fields are read raw: no metamethod runs.
  */
 #ifndef WH_SCRIPT_READER_H
 #define WH_SCRIPT_READER_H
@@ -15,19 +14,21 @@
 #define WH_READER_DEPTH 8
 
 /* A field that tables of one kind may have. Readers refuse all others, and `waferhand definitions` writes
- * them for editors: so both go by the same lists. */
+ * them for editors, so both use these lists. */
 typedef struct {
     const char *name; /* null ends a list */
-    const char *type; /* as the Lua language server writes types, such as number or "a"|"b" */
-    const char *text; /* what it is, with its unit */
+    const char *type; /* in the Lua language server's notation, such as number or "a"|"b" */
+    const char *text; /* its description, with its unit */
     bool required;
 } wh_reader_field_t;
 
 typedef struct {
     lua_State *L;
     const char *file;
-    char path[256]; /* of the table that is read, such as stations.A; cut if longer */
+    char path[256]; /* of the table being read, such as stations.A; cut if longer */
     size_t lengths[WH_READER_DEPTH];
+    const wh_reader_field_t
+        *known[WH_READER_DEPTH + 1]; /* by depth, the fields' rows; null: they have none */
     size_t depth;
 } wh_reader_t;
 
@@ -39,7 +40,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
-/* wh_reader_fail for a value that is a text, which need not be on the stack; null: for nothing. */
+/* wh_reader_fail for a text value, which need not be on the stack; null: no value. */
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) __attribute__((noreturn, format(printf, 4, 5)));
 
@@ -47,35 +48,35 @@ void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *
  * reported. */
 void wh_reader_refuse_unknown(wh_reader_t *reader, const wh_reader_field_t *known);
 
-/* The length of the list that is read. A list with names or gaps is refused: a loop from 1 would miss
+/* The length of the list being read. A list with names or gaps is refused, because a loop from 1 would miss
  * entries. */
 size_t wh_reader_list(const wh_reader_t *reader);
 
 /* True if a text is not empty and has no control characters: see wh_utf8_control_bytes. */
 bool wh_reader_is_plain(const char *text, size_t length);
 
-/* Enters the table in a field or a list entry, which becomes the table that is read until wh_reader_leave.
- * False if there is none; nothing is entered then. */
+/* Enters the table in a field or a list entry; this table is then read until wh_reader_leave. Returns false
+ * if there is none; no table is entered then. */
 bool wh_reader_enter(wh_reader_t *reader, const char *field);
 bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 
 /* wh_reader_enter and then, if there is such a table, wh_reader_refuse_unknown. */
 bool wh_reader_open(wh_reader_t *reader, const char *field, const wh_reader_field_t *known);
 
-/* The same where all fields have defaults: without such a table an empty one is entered, so that all of them
- * are read as absent. */
+/* wh_reader_open for a table whose fields all have defaults. If there is no such table, an empty one is
+ * entered, so that all fields are read as absent. */
 void wh_reader_open_section(wh_reader_t *reader, const char *field, const wh_reader_field_t *known);
 
 void wh_reader_leave(wh_reader_t *reader);
 
-/* Pushes a field of the table that is read, and returns its Lua type. */
+/* Pushes a field of the table being read, and returns its Lua type. */
 int wh_reader_push(const wh_reader_t *reader, const char *field);
 
-/* True if the table that is read has the field. */
+/* True if the table being read has the field. */
 bool wh_reader_has(const wh_reader_t *reader, const char *field);
 
 /* A finite number from min to max, ends included. An absent field gives `fallback`, or an error if that is
- * NaN. */
+ * NaN. Where the row's unit is mm or degrees, and the number would fit as metres or radians, the error asks. */
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max);
 

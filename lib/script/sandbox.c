@@ -21,8 +21,8 @@ static int note_line(lua_State *L) {
     return 1;
 }
 
-/* The text that a person reads. Lua code (__tostring) may yet have to make it. The text of a table without
- * __tostring is its field `message`: numbered errors are such tables. */
+/* The error's text for people. Lua code (__tostring) may have to make it. For a table without __tostring
+ * the text is its field `message`: numbered errors are such tables. */
 static const char *text_of(lua_State *L, size_t *length) {
     const int type = lua_type(L, 1);
     if (type == LUA_TSTRING || type == LUA_TNUMBER || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL) {
@@ -38,7 +38,8 @@ static const char *text_of(lua_State *L, size_t *length) {
     return lua_tolstring(L, -1, length);
 }
 
-/* Makes one line of it, without characters that control a terminal. Line ends and tabs become blanks. */
+/* Makes one line of the text, without characters that control a terminal. Line ends and tabs become
+ * blanks. */
 static int describe(lua_State *L) {
     size_t length = 0;
     const char *const all = text_of(L, &length);
@@ -113,7 +114,8 @@ static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SA
 
 /* -------------------------------------------------------------------------------------------------- files */
 
-/* Why a file is not read, or null. Checks it before Lua opens it: opening a device may move it. */
+/* The reason why a file is not read, or null. It checks the file before Lua opens it, because opening a
+ * device may move it. */
 static const char *file_fault(const char *path, size_t *size) {
     struct stat status;
     wh_output_note_input(path);
@@ -134,7 +136,7 @@ static const char *file_fault(const char *path, size_t *size) {
     return access(path, R_OK) == 0 ? NULL : strerror(errno);
 }
 
-/* What is given in place of a script now and then: a log begins with LCM's sync word or is compressed. */
+/* Users sometimes give a log in place of a script; a log begins with LCM's sync word or is compressed. */
 static bool is_log(const char *path) {
     static const unsigned char begins[2][4] = {{0xED, 0xA1, 0xDA, 0x01}, {0x28, 0xB5, 0x2F, 0xFD}};
     unsigned char begin[4] = {0};
@@ -148,8 +150,8 @@ static bool is_log(const char *path) {
 
 /* ---------------------------------------------------------------------------------------------- a sandbox */
 
-/* Registry key of the last error's value. The slot always exists (false: no error), so that setting it needs
- * no memory. */
+/* Registry key of the last error's value. The slot always exists (false: no error), so setting it needs no
+ * memory. */
 static const char error_key = 0;
 
 static int open_all(lua_State *L) {
@@ -219,7 +221,8 @@ static void keep_error(lua_State *L) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, &error_key);
 }
 
-/* The outermost job starts with a clean slate; inner ones share what the outer one has exhausted. */
+/* The outermost job starts with empty state; inner ones share the limits that the outer one has
+ * exhausted. */
 static void enter(lua_State *L, wh_sandbox_job_t *job) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->job == NULL) {
@@ -248,7 +251,7 @@ static void leave(wh_sandbox_t *sandbox, const wh_sandbox_job_t *job) {
     }
 }
 
-/* base: the index at which the results, or the error, begin. True if all went well. */
+/* `base` is the index at which the results, or the error, begin. Returns true if all went well. */
 static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, wh_sandbox_result_t *result) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (status == LUA_OK && (sandbox->fatal != WH_SANDBOX_OK || sandbox->power_pending)) {
@@ -281,8 +284,8 @@ static bool is_named_by_script(const wh_sandbox_job_t *job) {
     return outer != NULL;
 }
 
-/* Raises why the text is no Lua. A script hears nothing of what stands in another file: all that Lua quotes
- * of it comes behind "near", or the message has no "near". */
+/* Raises the reason why the text is not valid Lua. A script must not see the content of another file.
+ * Everything that Lua quotes of it comes after "near", or the message has no "near". */
 static int raise_syntax(lua_State *L, const wh_sandbox_job_t *job, int status) {
     const char *const text = lua_tostring(L, -1);
     if (status != LUA_ERRSYNTAX || job->text != NULL || !is_named_by_script(job)) {
@@ -300,8 +303,8 @@ static int raise_syntax(lua_State *L, const wh_sandbox_job_t *job, int status) {
     return lua_error(L);
 }
 
-/* Compiles and runs in one protected call, for compiling may run out of memory too. While it compiles, `^`
- * with a fractional exponent is left for the run: constant folding must not raise the error. */
+/* Compiles and runs in one protected call, because compiling may run out of memory, too. During compilation
+ * `^` with a fractional exponent is left for the run: constant folding must not raise the error. */
 static int load_and_run(lua_State *L) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_job_t *const job = lua_touserdata(L, 1);
@@ -317,6 +320,7 @@ static int load_and_run(lua_State *L) {
     }
     job->loaded = true;
     if (is_file) {
+        wh_sandbox_keep_chunk(L, name);
         wh_sandbox_own(L, name);
         wh_literals_refuse_twice(L, job->short_source, text, job->size);
     }
@@ -324,7 +328,7 @@ static int load_and_run(lua_State *L) {
     return job->results;
 }
 
-/* As Lua's luaO_chunkid: of a long path the last 56 bytes. */
+/* Like Lua's luaO_chunkid: the last 56 bytes of a long path. */
 static void abbreviate(wh_sandbox_job_t *job) {
     const size_t length = strlen(job->path);
     if (length < LUA_IDSIZE) {

@@ -1,18 +1,20 @@
-/* The instruction budget: a count hook in every coroutine, charges from C functions, and what happens once a
- * limit is exhausted.
+/* The instruction budget: a count hook in every coroutine, charges from C functions, and the effects of an
+ * exhausted limit.
  *
- * A script cannot catch an exhausted limit: from then on the hook fires at each instruction, and pcall,
+ * A script cannot catch an exhausted limit. From then on the hook fires at each instruction, and pcall,
  * xpcall and the coroutine functions (sandbox_protect.c) pass the error on.
  */
 #include <inttypes.h>
 #include <string.h>
+
+#include <lauxlib.h>
 
 #include "sandbox_internal.h"
 
 /* Levels of the call stack that are searched for a line. A runaway recursion has a hundred thousand. */
 #define SEARCHED_LEVELS 1000
 
-/* Registry keys of the messages. They are made beforehand, for raising must not need memory. */
+/* Registry keys of the messages. They are made beforehand, because raising must not need memory. */
 static const char message_keys[WH_SANDBOX_UNREADABLE + 1] = {0};
 
 wh_sandbox_t *wh_sandbox_of(lua_State *L) {
@@ -34,9 +36,53 @@ void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size)
     }
 }
 
+/* The registry's chunks of files by name, see wh_sandbox_keep_chunk. */
+#define CHUNKS "waferhand.chunks"
+
+void wh_sandbox_keep_chunk(lua_State *L, const char *name) {
+    (void)luaL_getsubtable(L, LUA_REGISTRYINDEX, CHUNKS);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, name);
+    lua_pop(L, 1);
+}
+
+int wh_sandbox_last_line(lua_State *L, int index) {
+    lua_Debug function;
+    int last = 0;
+    lua_pushvalue(L, index);
+    if (!lua_getinfo(L, ">SL", &function) || !lua_istable(L, -1)) {
+        lua_pop(L, 1);
+        return 0;
+    }
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
+        const int line = (int)lua_tointeger(L, -2);
+        const bool is_end = line == function.lastlinedefined && line > function.linedefined;
+        last = line > last && !is_end ? line : last;
+    }
+    lua_pop(L, 1);
+    return last;
+}
+
+/* A chunk that ends with the call of a word as its result has left the stack. */
+static int find_end(lua_State *L, const char *path) {
+    int line = 0;
+    (void)luaL_getsubtable(L, LUA_REGISTRYINDEX, CHUNKS);
+    lua_pushfstring(L, "@%s", path);
+    if (lua_rawget(L, -2) == LUA_TFUNCTION) {
+        line = wh_sandbox_last_line(L, -1);
+    }
+    lua_pop(L, 2);
+    return line;
+}
+
 int wh_sandbox_line(lua_State *L, const char *path) {
     int line = 0;
     (void)wh_sandbox_lines(L, path, &line, 1);
+    if (line == 0) {
+        const bool is_main = lua_pushthread(L) == 1;
+        lua_pop(L, 1);
+        return is_main ? find_end(L, path) : 0;
+    }
     return line;
 }
 
@@ -52,7 +98,7 @@ size_t wh_sandbox_lines(lua_State *L, const char *path, int lines[], size_t room
     return count;
 }
 
-/* The innermost file on L's stack. False if there is none. */
+/* The innermost file on L's stack. Returns false if there is none. */
 static bool find_file(lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {
     lua_Debug frame;
     for (int level = 0; level < SEARCHED_LEVELS && lua_getstack(L, level, &frame); ++level) {
@@ -78,7 +124,8 @@ void wh_sandbox_find_place(const wh_sandbox_t *sandbox, lua_State *L, char place
     }
 }
 
-/* Enters the exhausted state. The first call in a run decides the reason. L is where it happened. */
+/* Enters the exhausted state. The first call in a run decides the reason. L is the state in which it
+ * happened. */
 static void exhaust(lua_State *L, wh_sandbox_reason_t reason) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->fatal != WH_SANDBOX_OK) {
@@ -112,7 +159,7 @@ bool wh_sandbox_is_fatal(lua_State *L, int status) {
 
 static void on_count(lua_State *L, lua_Debug *event);
 
-/* Collects garbage if the memory stands above the brim, and charges for the work. */
+/* Collects garbage if the memory is above the brim, and charges for the work. */
 static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (!sandbox->brimming) {
         return;
@@ -121,7 +168,7 @@ static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     lua_gc(L, LUA_GCCOLLECT);
     sandbox->brimming = false;
     if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
-        /* the line to report is here, not that of an earlier refusal, which a collection healed */
+        /* the line to report is here, not that of an earlier refusal, which a collection repaired */
         sandbox->refused = false;
         exhaust(L, WH_SANDBOX_MEMORY);
     }
@@ -136,7 +183,7 @@ static void check_stop_and_budget(lua_State *L, const wh_sandbox_t *sandbox) {
     }
 }
 
-/* The alarm set the count to 1: after it the hook goes back to its usual pace, so that a false alarm costs
+/* The alarm set the count to 1. After it the hook returns to its usual rate, so that a false alarm costs
  * little. */
 static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
     const int count = lua_gethookcount(L);
@@ -190,6 +237,7 @@ void wh_sandbox_charge(lua_State *L, uint64_t steps) {
 
 void wh_sandbox_renew(wh_sandbox_t *sandbox) {
     sandbox->spent = 0;
+    sandbox->printed = 0;
     sandbox->fatal = WH_SANDBOX_OK;
     sandbox->stop = 0;
     lua_sethook(sandbox->main, on_count, LUA_MASKCOUNT, WH_SANDBOX_GRANULE);

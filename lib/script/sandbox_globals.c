@@ -1,16 +1,16 @@
-/* Reading a global that nobody defined is an error, with the nearest name. */
+/* Reading an undefined global is an error that gives the nearest name. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/nearest.h"
 #include "sandbox_internal.h"
 
-/* Comparing a name takes as long as so many instructions. */
+/* Comparing a name costs this number of instructions. */
 #define STEPS_PER_NAME 100
 
 #define BITS "it has not the same bits on every machine"
 
-/* What people look for in Lua, and what does it here. */
+/* Names that people look for in Lua, and their replacements here. */
 static const struct {
     const char *name, *instead;
 } absent[] = {
@@ -44,8 +44,8 @@ static const char *instead_of(const char *name) {
     return NULL;
 }
 
-/* True if the function that reads is a script's, a layout's or that of a module of theirs. With trust others
- * may ask for globals of other versions of Lua. */
+/* True if the reading function belongs to a script, a layout or a module of theirs. With trust other
+ * functions may read globals of other versions of Lua. */
 static bool is_ours(lua_State *L) {
     lua_Debug frame;
     if (!lua_getstack(L, 1, &frame) || !lua_getinfo(L, "S", &frame) || frame.what[0] == 'C') {

@@ -1,4 +1,4 @@
-/* Builds what a script finds, which sandbox_library.h lists. */
+/* Builds the functions of a script, which sandbox_library.h lists. */
 #include "sandbox_library.h"
 
 #include <string.h>
@@ -53,12 +53,18 @@ static void put_visible(FILE *to, const char *text, size_t size) {
 }
 
 static int base_print(lua_State *L) {
-    FILE *const to = wh_sandbox_of(L)->print_to;
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    FILE *const to = sandbox->print_to;
     const int count = lua_gettop(L);
     for (int i = 1; i <= count; ++i) {
         size_t length = 0;
         const char *const text = wh_library_tostring(L, i, &length);
         wh_sandbox_charge(L, 1 + (length >> 3));
+        if (length >= WH_SANDBOX_PRINT_BYTES - sandbox->printed) {
+            return luaL_error(L, "print: more than %d MiB in one run (expected less)",
+                              (int)(WH_SANDBOX_PRINT_BYTES >> 20));
+        }
+        sandbox->printed += length + 1;
         if (i > 1) {
             fputc('\t', to);
         }
@@ -96,7 +102,7 @@ static int base_rawget(lua_State *L) {
     return wh_library_call_stock(L);
 }
 
-/* Hides the metatables of userdata: they are the host's. */
+/* Hides the metatables of userdata, because they belong to the host. */
 static int base_getmetatable(lua_State *L) {
     luaL_checkany(L, 1);
     if (lua_type(L, 1) == LUA_TTABLE) {
@@ -195,7 +201,7 @@ static void open_untrusted(lua_State *L) {
 }
 
 /* The iterator that utf8.codes returns may skip any number of continuation bytes in one call, so it is
- * charged as well. */
+ * charged, too. */
 static int charged_codes(lua_State *L) {
     const int results = wh_library_call_stock(L);
     lua_pushvalue(L, -results);
@@ -220,7 +226,7 @@ static const luaL_Reg untrusted_base[] = {{"getmetatable", base_getmetatable},
 static const luaL_Reg untrusted_string[] = {{"dump", NULL}, {NULL, NULL}};
 static const luaL_Reg utf8[] = {{"codes", charged_codes}, {NULL, NULL}};
 
-/* What becomes of which table: functions that are set, and others that charge for the texts they read. */
+/* Changes to each table: functions that are set, and others that charge for the texts they read. */
 static const struct {
     const char *table;
     const luaL_Reg *functions;
@@ -258,6 +264,6 @@ int wh_sandbox_library_open(lua_State *L) {
     wh_library_open_string(L);
     wh_library_open_absent(L);
     wh_library_open_params(L);
-    wh_library_open_globals(L); /* last: from here on what is not there is an error */
+    wh_library_open_globals(L); /* last: after it, reading a missing global is an error */
     return 0;
 }

@@ -1,13 +1,13 @@
-/* math: the library's own trigonometry, a random generator with a fixed seed, and nothing of libm that
+/* math: the library's own trigonometry, a random generator with a fixed seed, and no function of libm that
  * differs between machines. */
 #include <math.h>
 
 #include "../math/trig.h"
 #include "sandbox_internal.h"
 
-/* The largest angle for which wh_sin keeps its promise, rad. */
+/* The largest angle for which wh_sin is accurate, rad. */
 #define ANGLE_LIMIT 1e5
-/* Any constant will do; it must never change. */
+/* Any constant is possible, but it must never change. */
 #define RANDOM_SEED 20240229
 
 static double check_within(lua_State *L, int argument, double limit) {

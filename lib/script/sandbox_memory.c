@@ -3,8 +3,8 @@
 
 #include "sandbox_internal.h"
 
-/* Copying and clearing take time that no instruction counts: one step for each 64 bytes of a long string or a
- * large block. */
+/* Copying and clearing take time without counted instructions: one step for each 64 bytes of a long string
+ * or a large block. */
 #define STEP_SHIFT 6
 #define LONG_STRING_BYTES 512
 #define LARGE_BLOCK_BYTES ((size_t)64 << 10)
@@ -29,7 +29,7 @@ static void *refuse(wh_sandbox_t *sandbox) {
     return NULL;
 }
 
-/* Shrinking never fails: Lua relies on it. */
+/* Shrinking never fails, because Lua relies on it. */
 static void *shrink(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
     void *const moved = realloc(block, size);
     if (moved == NULL) {

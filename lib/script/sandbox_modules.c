@@ -1,4 +1,4 @@
-/* A script's own files: their text, and require for modules beside them. */
+/* A script's own files: their text, and require for modules in the same folder. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "sandbox_internal.h"
 #include "wh_module_values.h"
 
-/* The registry's tables of the chunks that are ours, and of what each module's file returned: while it runs,
+/* The registry's tables of our chunks, and of the values that modules' files returned; while one runs,
  * `running`. */
 #define OWN "waferhand.own"
 #define LOADED "waferhand.loaded"
@@ -16,7 +16,7 @@ static char running;
 
 /* --------------------------------------------------------------------------------------------------- text */
 
-/* As Lua's luaL_loadfile does it: what it skips at the beginning leaves its line end. */
+/* Skips like Lua's luaL_loadfile: the skipped beginning keeps its line end. */
 static const char *skip_heading(const char *text, size_t *size) {
     static const char mark[] = "\xEF\xBB\xBF";
     const char *at = text;
@@ -70,7 +70,7 @@ bool wh_sandbox_owns(lua_State *L, const char *chunk_name) {
 
 /* ------------------------------------------------------------------------------------------------ require */
 
-/* The file whose function called, by its path; empty if there is none. */
+/* The path of the file whose function called; empty if there is none. */
 static const char *calling_file(lua_State *L) {
     lua_Debug frame;
     for (int level = 1; lua_getstack(L, level, &frame); ++level) {
@@ -81,7 +81,7 @@ static const char *calling_file(lua_State *L) {
     return lua_pushliteral(L, "");
 }
 
-/* True for names with dots between them: nothing that leads out of the folder. */
+/* True for names with dots between them: no name may lead out of the folder. */
 static bool is_module_name(const char *name) {
     static const char characters[] = "-0123456789_ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
     size_t length = strspn(name, characters);
@@ -92,7 +92,7 @@ static bool is_module_name(const char *name) {
     return length > 0 && name[length] == '\0';
 }
 
-/* Pushes the path of a module beside the file that requires it. */
+/* Pushes the path of a module in the folder of the file that requires it. */
 static const char *push_module_path(lua_State *L, const char *name) {
     const char *const from = calling_file(L);
     const char *const slash = strrchr(from, '/');
@@ -103,7 +103,7 @@ static const char *push_module_path(lua_State *L, const char *name) {
     return lua_tostring(L, -1);
 }
 
-/* Runs the module's file, or raises what it raised: a numbered error stays one. Leaves what it returned, true
+/* Runs the module's file, or raises its error: a numbered error stays one. Leaves the returned value, true
  * if that is nil. */
 static int run_module(lua_State *L, const char *path) {
     wh_sandbox_result_t result;
@@ -126,7 +126,7 @@ static int run_module(lua_State *L, const char *path) {
     return 1;
 }
 
-/* Leaves the module's value, from the file at `path` unless that has run already. */
+/* Leaves the module's value, from the file at `path` unless that has already run. */
 static int load_once(lua_State *L, const char *path) {
     (void)luaL_getsubtable(L, LUA_REGISTRYINDEX, LOADED);
     if (lua_getfield(L, -1, path) == LUA_TLIGHTUSERDATA) {
@@ -135,7 +135,7 @@ static int load_once(lua_State *L, const char *path) {
     return lua_isnil(L, -1) ? run_module(L, path) : 1;
 }
 
-/* The libraries that are globals anyway. */
+/* Pushes one of the libraries that are globals anyway. */
 static bool push_library(lua_State *L, const char *name) {
     static const char *const names[] = {LUA_COLIBNAME,  LUA_MATHLIBNAME, LUA_STRLIBNAME,
                                         LUA_TABLIBNAME, LUA_UTF8LIBNAME, "wh"};
@@ -149,7 +149,7 @@ static bool push_library(lua_State *L, const char *name) {
     return false;
 }
 
-/* require "NAME": of NAME.lua beside the file that calls, else, with trust, as Lua does it. */
+/* require "NAME": NAME.lua in the folder of the calling file, otherwise, with trust, as in Lua. */
 static int require_module(lua_State *L) {
     const bool trust = wh_sandbox_of(L)->trust;
     size_t length = 0;

@@ -9,12 +9,12 @@
 #error "waferhand: keys are compared as long doubles, which must hold each whole number of Lua's"
 #endif
 
-/* A copy of a key. `text` points into the Lua string, which lives as long as its table keeps it. */
+/* A copy of a key. `text` points into the Lua string, which exists as long as its table keeps it. */
 typedef struct {
     enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank;
     bool is_integer;
     union {
-        long double number; /* of a boolean, too: 0 or 1 */
+        long double number; /* also of a boolean: 0 or 1 */
         struct {
             const char *text;
             size_t length;
@@ -56,7 +56,7 @@ static void key_push(lua_State *L, const order_key_t *key) {
     }
 }
 
-/* Below 0, 0 or above 0, as qsort asks for it. */
+/* Returns below 0, 0 or above 0, for qsort. */
 static int key_compare(const void *one, const void *other) {
     const order_key_t *const a = one;
     const order_key_t *const b = other;
@@ -75,7 +75,7 @@ static int key_compare(const void *one, const void *other) {
 
 /* -------------------------------------------------------------------------------------------------- pairs */
 
-/* A search for keys also passes over empty slots: a table that was once large has many of them. */
+/* A search for keys also visits empty slots; a table that was once large has many of them. */
 static void charge_scan(lua_State *L) {
     wh_sandbox_charge(L, 1 + (wh_sandbox_of(L)->largest_block >> 10));
 }
@@ -111,8 +111,8 @@ static void push_sorted_keys(lua_State *L, int table) {
     lua_remove(L, -2);
 }
 
-/* Upvalues: the keys, and how many have been visited. Arguments: the table and the last key; nil begins
- * anew. */
+/* Upvalues: the keys, and the number of visited ones. Arguments: the table and the last key; nil begins
+ * again. */
 static int pairs_step(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_Integer visited = lua_isnoneornil(L, 2) ? 0 : lua_tointeger(L, lua_upvalueindex(2));

@@ -1,4 +1,4 @@
-/* params, for --set NAME=VALUE: its values, and which of them somebody has read. */
+/* params, for --set NAME=VALUE: the values, and which of them were read. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,8 +9,8 @@
 /* The most names that a message lists. */
 #define NAMED 12
 
-/* Registry keys: the values that nobody has read yet, the names that somebody has asked for, and params
- * itself: an empty table that gets a value as a field when somebody reads it. */
+/* Registry keys: the values that were not read yet, the names that were read, and params itself, an empty
+ * table. A value becomes a field of params when it is read. */
 #define VALUES "waferhand.values"
 #define ASKED "waferhand.asked"
 #define PARAMS "waferhand.params"
@@ -26,7 +26,7 @@ static bool looks_like_name(const char *text) {
     return text[0] != '\0' && !isdigit((unsigned char)text[0]) && text[strspn(text, characters)] == '\0';
 }
 
-/* Asks the compiler, which knows the reserved words. */
+/* Tests it with the compiler, which knows the reserved words. */
 static bool is_reserved(lua_State *L, const char *name) {
     const char *const text = lua_pushfstring(L, "local %s", name);
     const int status = luaL_loadbufferx(L, text, strlen(text), "=name", "t");
@@ -52,7 +52,7 @@ static void push_value(lua_State *L, const char *text) {
     }
 }
 
-/* Runs protected, with where the text of the assignment stands. */
+/* Runs protected; the argument holds the place of the assignment's text. */
 static int assign(lua_State *L) {
     const char *const text = *(const char **)lua_touserdata(L, 1);
     const size_t length = strcspn(text, "=");
@@ -84,7 +84,7 @@ bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbo
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-/* Moves the value on top of the stack, whose name is below it, into params. Pops neither. */
+/* Moves the value on top of the stack, whose name is below it, into params. It pops neither. */
 static void hand_over(lua_State *L) {
     const int name = lua_absindex(L, -2);
     push_kept(L, PARAMS);

@@ -4,10 +4,11 @@
 
 /* ------------------------------------------------------------------------------------------ pcall, xpcall */
 
-/* In place of a count: xpcall's handler has run. Its result, or its error, is on top of the stack. */
+/* In place of a count it means that xpcall's handler has run. Its result, or its error, is on top of the
+ * stack. */
 #define HANDLED (-1)
 
-/* left_out: how many values at the bottom of the stack are no results. */
+/* left_out is the number of values at the bottom of the stack that are not results. */
 static int finish(lua_State *L, int status, lua_KContext left_out) {
     const bool failed = status != LUA_OK && status != LUA_YIELD;
     if (!failed && left_out != HANDLED) {
@@ -29,8 +30,8 @@ static int protect_pcall(lua_State *L) {
     return finish(L, status, 0);
 }
 
-/* Calls the handler, at index 2, after the stack has been unwound. Lua itself would call it where the error
- * is. If that is in the count hook, hooks are off and the handler could loop for ever. */
+/* Calls the handler, at index 2, after the stack has been unwound. Lua itself would call it at the place of
+ * the error. If that is in the count hook, hooks are off and the handler could loop for ever. */
 static int finish_xpcall(lua_State *L, int status, lua_KContext left_out) {
     if (status == LUA_OK || status == LUA_YIELD || wh_sandbox_is_fatal(L, status)) {
         return finish(L, status, left_out);
@@ -71,7 +72,7 @@ static int body(lua_State *L) {
     return body_finish(L, status, 0);
 }
 
-/* Charges a granule: up to that many instructions of a coroutine are never counted. */
+/* It charges a granule, because up to that many instructions of a coroutine are never counted. */
 static int coroutine_create(lua_State *L) {
     luaL_checktype(L, 1, LUA_TFUNCTION);
     wh_sandbox_charge(L, WH_SANDBOX_GRANULE);

@@ -1,5 +1,5 @@
-/* string: formatted texts show no address, every loop is charged, patterns go through pattern.c, and the
- * metatable of strings is out of reach. */
+/* string: formatted texts show no address, every loop is charged, patterns use pattern.c, and scripts
+ * cannot reach the metatable of strings. */
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -9,8 +9,8 @@
 
 /* ------------------------------------------------------------------ rep, format and arithmetic on strings */
 
-/* Lua's own rep takes as long to repeat nothing as to repeat something. All else is bounded by the memory
- * cap. */
+/* Lua's own rep takes as long to repeat an empty text as any other. The memory cap bounds everything
+ * else. */
 static int string_rep(lua_State *L) {
     size_t length = 0, separator = 0;
     luaL_checklstring(L, 1, &length);
@@ -83,8 +83,8 @@ static int power_of_strings(lua_State *L) {
 
 /* ----------------------------------------------------------------------------------------- find and match */
 
-/* Turns a start that may count from the end into an offset from the subject's begin; beyond the end if there
- * is none. */
+/* Converts a start that may count from the end into an offset from the subject's begin; beyond the end if
+ * there is none. */
 static size_t start_offset(lua_Integer start, size_t length) {
     if (start > 0) {
         return (size_t)start - 1;
@@ -129,7 +129,7 @@ static int push_found(wh_pattern_t *matcher, const char *begin, const char *end,
     return wh_pattern_push_captures(matcher, NULL, NULL) + 2;
 }
 
-/* find and match differ in what they push. Only find has a plain search. */
+/* find and match push different values. Only find has a plain search. */
 static int search(lua_State *L, bool find) {
     size_t length = 0, pattern_length = 0;
     const char *const subject = luaL_checklstring(L, 1, &length);
@@ -241,7 +241,7 @@ static void add_text(wh_pattern_t *matcher, luaL_Buffer *made, const char *begin
     luaL_addlstring(made, text, (size_t)(text_end - text));
 }
 
-/* The value that a function or a table gave is on top of the stack. True if it replaces the match. */
+/* The value from a function or a table is on top of the stack. Returns true if it replaces the match. */
 static bool add_value(lua_State *L, luaL_Buffer *made, const char *begin, const char *end) {
     if (!lua_toboolean(L, -1)) {
         lua_pop(L, 1);
@@ -272,8 +272,8 @@ static bool add_replacement(wh_pattern_t *matcher, luaL_Buffer *made, const char
     }
 }
 
-/* Writes the result into `made` and returns the number of matches. Sets *changed if the result differs from
- * the subject. */
+/* Writes the result into `made` and returns the number of matches. It sets *changed if the result differs
+ * from the subject. */
 static lua_Integer substitute(wh_pattern_t *matcher, luaL_Buffer *made, const char *pattern, lua_Integer most,
                               bool *changed) {
     const bool anchored = *pattern == '^';

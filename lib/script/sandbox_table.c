@@ -1,10 +1,10 @@
-/* table: Lua's own functions, charged for each element that they touch, and a sort that does the same in each
- * run. Lua's own sort draws pivots from the clock. */
+/* table: Lua's own functions, charged for each element that they touch, and a sort that is equal in each
+ * run. Lua's own sort takes pivots from the clock. */
 #include <limits.h>
 
 #include "sandbox_internal.h"
 
-/* Refuses __len: it could promise any length, and another one at the next call. */
+/* Refuses __len, because it could give any length, and another one at the next call. */
 static lua_Integer check_length(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (luaL_getmetafield(L, 1, "__len") != LUA_TNIL) {
@@ -73,8 +73,8 @@ static bool is_before(lua_State *L, int a, int b) {
     return before;
 }
 
-/* Merges [left, middle) and [middle, end) of one list into the other. Of equal values the left one goes
- * first. */
+/* Merges [left, middle) and [middle, end) of one list into the other. If two values are equal the left one
+ * goes first. */
 static void merge(lua_State *L, int from, int to, lua_Integer left, lua_Integer middle, lua_Integer end) {
     lua_Integer right = middle;
     for (lua_Integer out = left; out < end; ++out) {

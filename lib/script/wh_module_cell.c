@@ -55,12 +55,12 @@ static wh_grasp_config_t read_config(lua_State *L, const wh_field_t *of) {
 /* One userdata. It holds pointers into itself, and Lua never moves a userdata. */
 typedef struct {
     wh_grasp_t table;
-    uint64_t unread; /* calls of step and place whose arguments were refused before they reached the table */
+    uint64_t unread; /* calls of step and place whose arguments were refused before the table saw them */
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_wafer_t wafers[];
 } cell_t;
 
-/* The cell of a method that takes so many arguments, itself included. */
+/* The cell of a method that takes this number of arguments, including the cell. */
 static cell_t *take_cell(lua_State *L, int arguments) {
     cell_t *cell = luaL_checkudata(L, 1, CELL_TYPE);
     wh_lua_take_at_most(L, arguments);
@@ -153,7 +153,8 @@ static void push_events(lua_State *L, const wh_event_list_t *list) {
     }
 }
 
-/* Inputs and events are locals: an __index among the inputs may step this same cell while they are read. */
+/* Inputs and events are locals, because an __index among the inputs may step this very cell while they are
+ * read. */
 static int cell_step(lua_State *L) {
     cell_t *cell = take_cell(L, 2);
     const wh_field_t at = wh_lua_argument("inputs", 2);
@@ -243,7 +244,7 @@ static int cell_counters(lua_State *L) {
     return 1;
 }
 
-/* __metatable keeps a script from changing the methods of everyone's cells. */
+/* __metatable prevents a script from changing the methods of all cells. */
 void wh_lua_open_cell(lua_State *L) {
     static const luaL_Reg methods[] = {
         {"step", cell_step}, {"wafer", cell_wafer},       {"held", cell_held}, {"place", cell_place},

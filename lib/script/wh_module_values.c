@@ -37,7 +37,7 @@ const char *wh_lua_whole_text(lua_State *L, int index) {
 
 /* -------------------------------------------------------------------------------------- fields and errors */
 
-/* From the leaf to the root: each step puts one more part before the rest. */
+/* It goes from the leaf to the root: each step puts one more part before the rest. */
 static const char *push_path(lua_State *L, const wh_field_t *at) {
     lua_pushliteral(L, "");
     for (; at; at = at->of) {
@@ -118,7 +118,7 @@ static bool is_expected(lua_State *L, int key, const keys_t *keys) {
     return *name != NULL;
 }
 
-/* An order among keys: of several wrong keys the same one is always named, whatever lua_next's order. */
+/* An order of keys: if several keys are wrong, one fixed key is named, whatever lua_next's order. */
 static bool precedes(lua_State *L, int key, int other) {
     const int type = lua_type(L, key);
     if (type != lua_type(L, other)) {
@@ -127,7 +127,7 @@ static bool precedes(lua_State *L, int key, int other) {
     return (type == LUA_TNUMBER || type == LUA_TSTRING) && lua_compare(L, key, other, LUA_OPLT);
 }
 
-/* Pushes the first key that should not be there, or nil. */
+/* Pushes the first key that is not allowed, or nil. */
 static void push_stranger(lua_State *L, int index, const keys_t *keys) {
     lua_pushnil(L);
     const int stranger = lua_gettop(L);

@@ -1,4 +1,4 @@
-/* The library's values to and from Lua, with errors that name the field they are about: for the module `wh`,
+/* Converts the library's values to and from Lua, with errors that name their field: for the module `wh`,
  * and for motion control's own module. */
 #ifndef WH_SCRIPT_WH_MODULE_INTERNAL_H
 #define WH_SCRIPT_WH_MODULE_INTERNAL_H
@@ -23,14 +23,15 @@ typedef struct wh_field {
     lua_Integer index;         /* of the entry, from 1; of a whole argument its number */
 } wh_field_t;
 
-/* The text at a stack index of Lua, in which a name is looked for: no text at all, so the name of nothing, if
- * the value is no text or has a byte 0, behind which C would read no further. Lua keeps it. */
+/* The text at a stack index of Lua, for looking up a name. If the value is no text or has a byte 0, after
+ * which C would not read on, it is empty, and so names nothing. Lua owns it. */
 const char *wh_lua_word(lua_State *L, int index);
 
 /* Puts \x00 for each byte 0 of the text at a stack index, so that C reads all of it. */
 const char *wh_lua_whole_text(lua_State *L, int index);
 
-/* Makes room for so many arguments, nil where there are fewer; raises if there are more that are not nil. */
+/* Makes room for this number of arguments, nil for missing ones; raises if there are more that are not
+ * nil. */
 void wh_lua_take_at_most(lua_State *L, int count);
 
 static inline wh_field_t wh_lua_argument(const char *name, int number) {
@@ -48,15 +49,16 @@ static inline wh_field_t wh_lua_entry(const wh_field_t *of, lua_Integer index) {
     return field;
 }
 
-/* Raises "bad argument #n to 'f' (path: what)"; `what` is formatted as by lua_pushfstring. Never returns. */
+/* Raises "bad argument #n to 'f' (path: what)"; `what` is formatted as by lua_pushfstring. It never
+ * returns. */
 int wh_lua_refuse(lua_State *L, const wh_field_t *at, const char *what, ...);
 
-/* Raises the status that wh_pose_validate gave. If a number is not finite, the error names that number. Never
+/* Raises the status of wh_pose_validate. If a number is not finite, the error names that number. It never
  * returns. */
 int wh_lua_refuse_pose(lua_State *L, const wh_field_t *at, const wh_pose_t *pose, wh_status_t status);
 
 /* Refuse a value at an absolute stack index that is not a table, and own keys that are not in `names` (null
- * at its end), or not in 1 to `count`. Nothing is pushed. */
+ * at its end), or not in 1 to `count`. They push nothing. */
 void wh_lua_check_record(lua_State *L, int index, const wh_field_t *at, const char *const *names);
 void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Integer count);
 
@@ -64,9 +66,9 @@ void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Intege
 wh_real_t wh_lua_take_number(lua_State *L, const wh_field_t *at);
 lua_Integer wh_lua_take_integer(lua_State *L, const wh_field_t *at, lua_Integer first, lua_Integer last,
                                 const char *expected);
-/* A wafer's or a gripper's index: 1 to `count` in Lua, one less in the result. */
+/* The index of a wafer or a gripper: 1 to `count` in Lua, one less in the result. */
 size_t wh_lua_take_index(lua_State *L, const wh_field_t *at, size_t count);
-/* Three numbers and three by three; the library checks later if they are a pose. */
+/* Three numbers and three by three; the library checks later whether they are a pose. */
 void wh_lua_take_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
 /* Refuses what wh_pose_validate refuses. */
 void wh_lua_take_valid_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
@@ -99,7 +101,7 @@ void wh_lua_push_event(lua_State *L, const wh_event_t *event);
 /* wh.cell. */
 int wh_lua_cell(lua_State *L);
 
-/* Makes the type of cells known to this state. */
+/* Defines the type of cells in this state. */
 void wh_lua_open_cell(lua_State *L);
 
 #endif

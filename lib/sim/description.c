@@ -1,4 +1,4 @@
-/* What a simulator is, as a hash: a snapshot says of which one it is. */
+/* The description of a simulator, as a hash: a snapshot tells its simulator by it. */
 #include "description_internal.h"
 
 #include "../math/hash.h"

@@ -1,4 +1,4 @@
-/* What of a simulator does not change during a run. */
+/* The parts of a simulator that do not change during a run. */
 #ifndef WH_SIM_DESCRIPTION_INTERNAL_H
 #define WH_SIM_DESCRIPTION_INTERNAL_H
 

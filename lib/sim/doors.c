@@ -18,10 +18,10 @@ void wh_doors_start(const wh_door_set_t *set, wh_doors_t *doors) {
     }
 }
 
-/* Commands of a healthy door pass its speed by rounding alone. */
+/* Commands of a healthy door exceed its speed by rounding alone. */
 #define ROUNDING WH_REAL(1.001)
 
-/* How far the door comes at most in this slice, mm. */
+/* The greatest way of the door in this slice, mm. */
 static wh_real_t most_of(const wh_door_t *door, int32_t d, const wh_faults_t *faults, wh_real_t slice_s) {
     wh_real_t speed = door->limits.speed * ROUNDING;
     for (size_t i = 0; i < faults->count; ++i) {

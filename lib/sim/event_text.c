@@ -4,7 +4,7 @@
 #include "faults.h"
 #include "words_internal.h"
 
-/* Digits of a limit that count: no more than its number type keeps. */
+/* The significant digits of a limit: no more than its number type keeps. */
 #if defined(WH_FLOAT)
 #define LIMIT_DIGITS 6
 #else
@@ -12,7 +12,7 @@
 #endif
 #define SHORT_DIGITS 6
 
-/* A text that is being written about an event. */
+/* The text of an event while it is written. */
 typedef struct {
     wh_words_t words;
     const wh_event_t *event;
@@ -27,7 +27,7 @@ static void put_fixed(said_t *said, wh_real_t value, int decimals) {
     wh_words_fixed(&said->words, value, decimals);
 }
 
-/* A value, what stands between, and its limit. However near they are, they do not read the same. */
+/* Writes a value, the words between, and its limit. However close they are, their texts differ. */
 static void put_against(said_t *said, wh_real_t value, const char *between, wh_real_t limit,
                         const char *unit) {
     const int decimals = wh_words_apart(value, limit, 3);
@@ -40,7 +40,7 @@ static void put_against(said_t *said, wh_real_t value, const char *between, wh_r
     put_text(said, ")");
 }
 
-/* The same for large numbers: no decimals where none are needed. */
+/* Does this for large numbers: no decimals where none are needed. */
 static void put_whole_against(said_t *said, wh_real_t value, const char *between, wh_real_t limit) {
     const int decimals = wh_words_apart(value, limit, 0);
     put_fixed(said, value, decimals);
@@ -59,7 +59,7 @@ static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
     if (name) {
         put_text(said, name);
     } else if (index == WH_NONE) {
-        put_text(said, kind == WH_NAME_PART ? "more than can be looked at" : "none");
+        put_text(said, "none");
     } else {
         put_text(said, kinds[kind]);
         wh_words_integer(&said->words, (int64_t)index + names->first);
@@ -76,14 +76,15 @@ static void put_parts(said_t *said, const char *before, const char *after) {
 
 /* -------------------------------------------------------------------------------------------- near misses */
 
-/* A condition of the check, and how it reads. */
+/* A condition of the check, and its text. */
 typedef struct {
     const char *name, *relation, *unit;
     int decimals;
     wh_real_t value, limit, margin;
 } condition_t;
 
-/* Between two slices the window is smaller; the margin, made by the same operations, shows that. */
+/* Between two slices the window is smaller; the margin, which comes from the same operations, shows
+ * that. */
 static wh_real_t projz_limit(const wh_proximity_t *p, const wh_tolerance_t *limits) {
     const wh_real_t height = wh_real_abs(p->dr_proj_z);
     if (!limits) {
@@ -161,7 +162,7 @@ static void put_condition(said_t *said, unsigned failed) {
     }
 }
 
-/* The index-th of the conditions that failed. */
+/* Writes the failed condition number `index`. */
 static void say_failed(said_t *said, size_t index) {
     unsigned rest = said->event->measured.failed & (WH_FAILED_PROJZ | WH_FAILED_PROJXY | WH_FAILED_PLANAR);
     if (rest == 0 && index == 0) {
@@ -177,7 +178,7 @@ static void say_failed(said_t *said, size_t index) {
 
 /* ------------------------------------------------------------------------------------------ other reasons */
 
-/* Vacuum, holding, faults on purpose. */
+/* Writes about vacuum, holding, and injected faults. */
 static void say_of_physics(said_t *said) {
     const wh_event_t *event = said->event;
     switch ((int)event->kind) {
@@ -221,6 +222,22 @@ static void say_gap(said_t *said) {
     }
 }
 
+/* Writes about a part that has too many near parts to check all of them. */
+static void say_crowd(said_t *said) {
+    put_name(said, WH_NAME_PART, said->event->parts[0]);
+    put_text(said, " is near to ");
+    if (said->event->limit > 0) {
+        put_fixed(said, said->event->value, 0);
+        put_text(said, " parts and wafers at once, of which ");
+        put_fixed(said, said->event->limit, 0);
+        put_text(said, " can be looked at");
+    } else {
+        put_text(said, "more parts and wafers than can be looked at");
+    }
+    put_text(said,
+             ": whether it touches one is not known (keep it farther away, or give it a smaller shape)");
+}
+
 static void say_of_contact(said_t *said) {
     switch ((int)said->event->kind) {
     case WH_EVENT_TOO_CLOSE:
@@ -228,7 +245,11 @@ static void say_of_contact(said_t *said) {
         say_gap(said);
         break;
     case WH_EVENT_UNDECIDED:
-        put_parts(said, "whether ", " touch could not be decided");
+        if (said->event->parts[1] == WH_NONE) {
+            say_crowd(said);
+        } else {
+            put_parts(said, "whether ", " touch could not be decided");
+        }
         break;
     default:
         say_of_physics(said);
@@ -236,7 +257,7 @@ static void say_of_contact(said_t *said) {
     }
 }
 
-/* How a wafer was set down. */
+/* Writes how a wafer was set down. */
 static void say_of_cell(said_t *said) {
     const wh_event_t *event = said->event;
     switch ((int)event->kind) {
@@ -270,6 +291,16 @@ static void say_of_cell(said_t *said) {
     case WH_EVENT_SETTLED:
         put_fixed(said, event->value, 3);
         put_text(said, " mm lower");
+        break;
+    case WH_EVENT_PUSHED_THROUGH:
+        if (event->value > event->limit) {
+            put_text(said, "down through its slot, ");
+            put_against(said, event->value, " below the plane", event->limit, " mm");
+        } else {
+            put_text(said, "up through a slot, its face now at ");
+            put_fixed(said, -event->value, 3);
+            put_text(said, " mm over the plane");
+        }
         break;
     default:
         say_of_contact(said);

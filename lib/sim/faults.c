@@ -42,7 +42,7 @@ wh_real_t wh_fault_most(wh_fault_kind_t kind) {
     return most;
 }
 
-/* Below everything in a cell, mm. */
+/* Below every part of a cell, mm. */
 #define FAR_BELOW WH_REAL(-1e5)
 
 wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until) {
@@ -79,7 +79,7 @@ static bool value_fits(const wh_fault_t *fault) {
     return fault->value >= 0 && fault->value <= wh_fault_most(fault->kind);
 }
 
-/* Byte by byte: a pose has no gaps, and equal bits are what the hash sees. */
+/* Compares byte by byte: a pose has no gaps, and the hash sees equal bits. */
 static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
     const unsigned char *left = (const unsigned char *)a;
     const unsigned char *right = (const unsigned char *)b;
@@ -98,7 +98,7 @@ static bool is_straight(const wh_mat3_t *R) {
     return same == 9;
 }
 
-/* Of a wafer's fault: small enough that adding it to any finite position stays finite. */
+/* True if the offset of a wafer's fault is so small that adding it to any finite position stays finite. */
 static bool offset_fits(const wh_fault_t *fault) {
     const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
     const wh_real_t reach = of_wafer ? WH_FAULT_REACH : WH_REAL(0);
@@ -155,7 +155,7 @@ void wh_faults_clear(wh_faults_t *faults) {
     memset(faults, 0, sizeof *faults);
 }
 
-/* Compares all but `until`. */
+/* Compares everything but `until`. */
 static bool is_same(const wh_fault_t *a, const wh_fault_t *b) {
     return a->kind == b->kind && a->target == b->target && a->other == b->other && a->from == b->from &&
            a->value == b->value && is_same_pose(&a->offset, &b->offset);
@@ -217,7 +217,7 @@ void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], si
 
 /* -------------------------------------------------------------------------------------- beginning, ending */
 
-/* False if the wafer is held, or the one that it is to lie on: the fault must wait then. */
+/* False if the wafer, or the one that it must lie on, is held: the fault must then wait. */
 static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     const wh_fault_t *fault = &slot->fault;
     const wh_wafer_t *wafer = &table->storage.wafers[fault->target];
@@ -234,7 +234,7 @@ static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     return true;
 }
 
-/* The fault that acts on this wafer and has put the wafer there, or (not `placed`) has found it there. */
+/* The fault that acts on this wafer and has put it there, or (not `placed`) has found it there. */
 static wh_fault_slot_t *find_move(wh_faults_t *faults, int32_t wafer, const wh_pose_t *there, bool placed) {
     wh_fault_slot_t *found = NULL;
     for (size_t i = 0; !found && i < faults->count; ++i) {
@@ -247,7 +247,7 @@ static wh_fault_slot_t *find_move(wh_faults_t *faults, int32_t wafer, const wh_p
     return found;
 }
 
-/* If another fault has moved the wafer since, that one puts it back, to where it was before both. */
+/* If another fault has moved the wafer since, that other fault puts it back, to its place before both. */
 static void put_back(const wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
     const int32_t wafer = slot->fault.target;
     wh_fault_slot_t *later = find_move(faults, wafer, &slot->placed, false);
@@ -278,8 +278,8 @@ static bool end(wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
     return acted;
 }
 
-/* A wafer that was taken or moved since the last slice is no fault's any more. It is held for one slice at
- * least, so that no gripper takes it unseen. */
+/* A wafer that was taken or moved since the last slice no longer belongs to a fault. It is held for at
+ * least one slice, so that every taking is seen. */
 static void give_up(wh_faults_t *faults, const wh_grasp_t *table) {
     for (size_t i = 0; i < faults->count; ++i) {
         wh_fault_slot_t *slot = &faults->slots[i];
@@ -377,7 +377,7 @@ void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, cons
     }
 }
 
-/* No bit for a gripper that no command has. */
+/* Returns no bit for a gripper that no command has. */
 static uint32_t sensor_of(int32_t gripper) {
     return wh_is_index(gripper, WH_GRIPPERS) ? UINT32_C(1) << (unsigned)gripper : 0;
 }

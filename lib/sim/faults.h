@@ -1,41 +1,42 @@
-/* Faults on purpose: what goes wrong in a cell, when it begins and when it ends.
+/* Injected faults: what goes wrong in a cell, and its begin and end.
  *
  * A fault occupies one of WH_FAULTS slots from the slice in which a command brings it, or from the start if
- * the layout has it. It acts in the slices with from <= seq < until, on the signals between command and grasp
- * table; or it moves a wafer once, when it begins:
+ * the layout has it. It acts in the slices with from <= seq < until, on the signals between command and
+ * grasp table; or it moves a wafer once, when it begins:
  *
  *   NO_VACUUM       the gripper's pump is dead: the level falls to 0 and stays there
  *   SLOW_VACUUM     the level builds up with a time constant of `value` s, if that is slower than its own
- *   SENSOR_ON/_OFF  the sensor says on or off, whatever the level
- *   LEAK            the level goes no higher than `value`, 0 to 1
+ *   SENSOR_ON/_OFF  the sensor is on or off at any level
+ *   LEAK            the level rises no higher than `value`, 0 to 1
  *   VALVE_STUCK     the gripper's valve stays as it was when the fault began
  *   AXIS_STOPPED    the axes that carry the gripper stand: it stays where it was
  *   COMMAND_LOST    all grippers, valves and doors stay as they were
- *   PLUNGER_STUCK   the edge grip's plunger stays where it is; closed on a wafer it does not let go
- *   PLUNGER_SLOW    the plunger goes no faster than `value` mm/s
+ *   PLUNGER_STUCK   the edge grip's plunger stays in place; closed on a wafer it does not release it
+ *   PLUNGER_SLOW    the plunger moves no faster than `value` mm/s
  *   WAFER_*         the wafer goes to base_from_wafer * offset: missing (out of the cell), shifted, tilted,
  *                   crossed; doubled: to base_from_other * offset, onto the wafer `other`
- *   DOOR_STUCK      the door stays where it is
- *   DOOR_SLOW       the door goes at most `value` mm/s
- *   BEAM_DARK/_LIT  the beam says broken or free, whatever passes
+ *   DOOR_STUCK      the door stays in place
+ *   DOOR_SLOW       the door moves at most at `value` mm/s
+ *   BEAM_DARK/_LIT  the beam's signal is broken or free, whatever passes
  *   BEAM_LATE       its latches come `value` s later
- *   PROBE_CLOSED/_OPEN  the switch of the gripper's probe says closed or open, whatever it touches
+ *   PROBE_CLOSED/_OPEN  the switch of the gripper's probe is closed or open, whatever it touches
  *   EDGE_SENSOR_STUCK   each sample of the chuck's edge sensor has the same part `value` of its pixels
  *   EDGE_SENSOR_LATE    the samples are taken `value` s later
  *
- * If a gripper holds the wafer when its fault should begin, or the one that it is doubled onto, the fault
+ * The wafer, or the one that it is doubled onto, may be held when its fault is due to begin. Then the fault
  * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
- * goes back to where it was, unless it was taken or moved since. Taken is a wafer that a gripper held for a
- * slice, even if it was set down where the fault had put it. Moved is one that wh_grasp_place put elsewhere,
- * and that lies there when a later slice begins; a wafer that was put exactly where a fault had put it counts
- * as unmoved. If another fault has moved the wafer since, the wafer goes back to its place before both when
- * that other fault ends. A command must be valid even if a fault overrules it. In the first slice of a run
- * there is no earlier state: a stuck valve is closed, and axes move.
+ * goes back to its place before, unless it was taken or moved since. A wafer counts as taken if a gripper
+ * held it for a slice, even if it was set down where the fault had put it. A wafer counts as moved if
+ * wh_grasp_place put it elsewhere and it lies there when a later slice begins. A wafer that was put exactly
+ * where a fault had put it counts as unmoved. If another fault has moved the wafer since, the wafer goes
+ * back to its place before both when that other fault ends. A command must be valid even if a fault
+ * overrules it. In the first slice of a run there is no earlier state: a stuck valve is closed, and axes
+ * move.
  *
- * A beam or a switch gives a latch for each change of what it says, so also when a fault changes that, as it
- * begins or ends.
+ * A beam or a switch gives a latch for each change of its signal, also when a fault causes the change at
+ * its begin or end.
  *
- * No heap; a wh_faults_t is a plain struct.
+ * It uses no heap; a wh_faults_t is a plain struct.
  *
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
@@ -63,9 +64,9 @@ WH_REFUSE_PACKING(faults);
 
 /* The most faults of a run at one time. */
 #define WH_FAULTS 16
-/* How far a fault may move a wafer along each axis, mm. */
+/* The greatest offset of a fault along each axis, mm. */
 #define WH_FAULT_REACH WH_REAL(1e6)
-/* No plunger goes faster, mm/s (grasp/edge.h). */
+/* No plunger is faster, mm/s (grasp/edge.h). */
 #define WH_PLUNGER_FAST 10000
 /* The most beams of a cell (latching.h). */
 #define WH_BEAMS 16
@@ -81,7 +82,7 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_VALVE_STUCK,
     WH_FAULT_AXIS_STOPPED,
     WH_FAULT_COMMAND_LOST,
-    WH_FAULT_WAFER_MISSING, /* from here to WAFER_TILTED faults of wafers */
+    WH_FAULT_WAFER_MISSING, /* faults of wafers, from here to WAFER_TILTED */
     WH_FAULT_WAFER_DOUBLED,
     WH_FAULT_WAFER_CROSSED,
     WH_FAULT_WAFER_SHIFTED,
@@ -104,11 +105,11 @@ typedef enum WH_FOUR_BYTES {
 typedef struct {
     wh_fault_kind_t kind;
     int32_t target; /* gripper, wafer, door or beam; WH_NONE for COMMAND_LOST */
-    int32_t other;  /* DOUBLED: the wafer underneath; else WH_NONE */
+    int32_t other;  /* DOUBLED: the wafer underneath; otherwise WH_NONE */
     /* SLOW_VACUUM: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and DOOR_SLOW: mm/s, 0 to
-     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; else 0 */
+     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; otherwise 0 */
     wh_real_t value;
-    wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; else the identity */
+    wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; otherwise the identity */
     int64_t from, until; /* slices, seq: 1 <= from, 0 <= until; WH_FAULT_FOREVER: until it is cleared */
 } wh_fault_t;
 
@@ -118,7 +119,7 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_WAITING,
     WH_FAULT_ACTING,
     WH_FAULT_OVER,
-    WH_FAULT_TAKEN /* of WAFER_*: acts, but its wafer was taken or moved since and does not go back */
+    WH_FAULT_TAKEN /* of WAFER_*: it acts, but its wafer was taken or moved since and will not go back */
 } wh_fault_phase_t;
 
 typedef struct {
@@ -160,26 +161,26 @@ bool wh_fault_is_of_beam(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_beam);
 wh_real_t wh_fault_most(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_most);
 
 /* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
- * is a gripper, a wafer, a door or a beam, of COMMAND_LOST nothing (WH_NONE is put in its place). `value`
- * counts for kinds with a wh_fault_most; for others 0 is put in its place. `other` is WH_NONE,
- * the offset the identity; that of WAFER_MISSING leads 100 m down, out of every cell. The caller sets what
- * else the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED.
- * Nothing is checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
+ * is a gripper, a wafer, a door or a beam; COMMAND_LOST has none (WH_NONE replaces it). `value` counts for
+ * kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the identity; that
+ * of WAFER_MISSING points 100 m down, out of every cell. The caller sets the other values that the kind
+ * needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED. Nothing is
+ * checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
  *
  *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
  *     physics.fault_count = 1; */
 wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
     WH_SYMBOL(wh_fault_make);
 
-/* WH_OK, or why a cell with these counts, and with WH_DOORS doors and WH_BEAMS beams, cannot have the fault:
- * WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for an offset that
- * wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind, target, other, from or until, for a `value` out
- * of its range or NaN, and for an offset beyond WH_FAULT_REACH, or other than the identity if the kind is not
- * about a wafer. A fault that never acts (until <= from) is valid. Cost: wh_pose_validate. */
+/* Returns WH_OK, or the reason why a cell with these counts, WH_DOORS doors and WH_BEAMS beams cannot have
+ * the fault. WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for an offset that
+ * wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind, target, other, from or until, for a `value`
+ * out of its range or NaN, and for an offset beyond WH_FAULT_REACH, or other than the identity if the kind
+ * is not about a wafer. A fault that never acts (until <= from) is valid. Cost: wh_pose_validate. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_fault_validate);
 
-/* The same for whole slots, such as those of a received state: WH_OK, WH_STATUS_NULL_ARGUMENT or
+/* Validates whole slots, such as those of a received state: WH_OK, WH_STATUS_NULL_ARGUMENT or
  * WH_STATUS_OUT_OF_RANGE. Cost: three times wh_pose_validate for each slot up to `count` in use. */
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_faults_validate);
@@ -187,12 +188,12 @@ wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, 
 /* Frees all slots. Cost: the struct's size in bytes written. */
 void wh_faults_clear(wh_faults_t *faults) WH_SYMBOL(wh_faults_clear);
 
-/* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over,
- * or for the slot that has this very fault (which then gets another `until`). No two may name one slot.
- * WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. Slices that are
- * past are no error, for an `until` that is past ends a fault at once. A new fault with such an `until` is
- * over in the slice that takes it: it never acts, and no event tells of it. If a test wants to hear of
- * that, it compares `until` with the command's seq. Cost: wh_fault_validate for each request. */
+/* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over, or
+ * for the slot that has this very fault, which then gets a new `until`. No two may name one slot. Returns
+ * WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE, or the status of wh_fault_validate. Past slices
+ * are no error, because an `until` in the past ends a fault at once. A new fault with such an `until` is
+ * over in the slice that takes it: it never acts, and no event reports it. A test that wants to detect this
+ * compares `until` with the command's seq. Cost: wh_fault_validate for each request. */
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
                             size_t gripper_count, size_t wafer_count) WH_SYMBOL(wh_faults_check);
 
@@ -200,14 +201,14 @@ wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t 
 void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count)
     WH_SYMBOL(wh_faults_take);
 
-/* Begins and ends what is due in slice `seq`; moves wafers of the table. Nothing is checked: the faults are
- * such as wh_faults_validate accepts for this table. Cost: a look at each slot up to `count`; each that acts
- * on a wafer adds another, and each wafer that is moved 36 products and wh_grasp_place. */
+/* Begins and ends the faults that are due in slice `seq`; moves wafers of the table. Nothing is checked:
+ * wh_faults_validate must accept the faults for this table. Cost: one test for each slot up to `count`; one
+ * more for each that acts on a wafer; 36 products and wh_grasp_place for each wafer that is moved. */
 wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq)
     WH_SYMBOL(wh_faults_advance);
 
-/* What the acting faults do to a gripper's vacuum. Nothing is checked. Cost: a look at each slot up to
- * `count`; so it is for the two below. */
+/* The effect of the acting faults on a gripper's vacuum. Nothing is checked. Cost: one test for each slot
+ * up to `count`, also for the two functions below. */
 wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
     WH_SYMBOL(wh_faults_of_vacuum);
 
@@ -216,16 +217,16 @@ wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
                         wh_gripper_input_t inputs[]) WH_SYMBOL(wh_faults_overrule);
 
-/* The acting fault of this kind and target, of several the one with the largest value; null: there is none.
- * Nothing is checked. Cost: a look at each slot up to `count`. */
+/* The acting fault of this kind and target, with the largest value if there are several; null: there is
+ * none. Nothing is checked. Cost: one test for each slot up to `count`. */
 const wh_fault_t *wh_faults_find(const wh_faults_t *faults, wh_fault_kind_t kind, int32_t target)
     WH_SYMBOL(wh_faults_find);
 
-/* How fast the acting faults let an edge grip's plunger go, mm/s; 1e4 without one. Nothing is checked. */
+/* The speed to which the acting faults limit an edge grip's plunger, mm/s; 1e4 without one. Nothing is
+ * checked. */
 double wh_faults_plunger(const wh_faults_t *faults, size_t gripper) WH_SYMBOL(wh_faults_plunger);
 
-/* What the sensors say, given what sensors without faults would say: bit g for gripper g, up to
- * WH_GRIPPERS. */
+/* The sensors' signals, given those of sensors without faults: bit g for gripper g, up to WH_GRIPPERS. */
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) WH_SYMBOL(wh_faults_sensors);
 
 WH_HEADER_END

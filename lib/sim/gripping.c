@@ -7,7 +7,7 @@
 #include "setting_internal.h"
 #include "simulator.h"
 
-/* True if even the full vacuum does not carry a wafer's weight below pads that look down. */
+/* True if even the full vacuum cannot carry a wafer's weight below pads that look down. */
 static bool drops(const wh_pads_t *pads, const wh_mat3_t *base_from_gripper) {
     return pads->mass > 0 && pads->force < -pads->mass * pads->gravity * base_from_gripper->m[2][2];
 }
@@ -16,7 +16,7 @@ static wh_grip_kind_t kind_of(const wh_simulator_t *simulator, size_t g) {
     return simulator->given.grips.parts.grips[g].kind;
 }
 
-/* A copy of a simulator has its own table, and states of its own. Pads that cannot carry are as good as
+/* A copy of a simulator has its own table, and states of its own. Pads that cannot carry count as
  * closed. */
 static wh_status_t step(void *of, const wh_gripper_input_t inputs[], wh_event_list_t *list) {
     wh_simulator_t *simulator = of;
@@ -41,7 +41,7 @@ static wh_status_t step(void *of, const wh_gripper_input_t inputs[], wh_event_li
     return status;
 }
 
-/* Of a plunger on its way through its window the sensor is not on. */
+/* The sensor is off while a plunger moves through its window. */
 static bool senses(const wh_simulator_t *simulator, size_t g) {
     const wh_edge_t *edge = &simulator->given.grips.parts.grips[g].edge;
     const wh_grip_state_t *state = &simulator->physics.grips[g];
@@ -68,7 +68,8 @@ static wh_status_t complete(const void *of, const wh_gripper_t grippers[], wh_gr
                              storage->wafer_count, states);
 }
 
-/* True if the wafer of this gripper, whose pads look down, lies in its slot yet: nothing hangs on them. */
+/* True if the wafer of this gripper, whose pads look down, still lies in its slot: nothing hangs on
+ * them. */
 static bool lies_below(const wh_simulator_t *simulator, const wh_gripper_t *gripper) {
     const wh_pose_t *wafer = &simulator->table.storage.wafers[gripper->wafer].base_from_wafer;
     return gripper->base_from_gripper.R.m[2][2] < 0 && wh_cell_stops(&simulator->cell, wafer, wafer);
@@ -142,7 +143,7 @@ wh_status_t wh_simulator_set_grips(wh_simulator_t *simulator, const wh_grips_par
         return status;
     }
     const wh_real_t apart = parts->thickness - simulator->cell.thickness;
-    if (apart > 0 || apart < 0) {
+    if (apart > 0 || apart < 0 || !wh_is_slice(simulator->slice_s, parts->dt)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     wh_grips_parts_t own = *parts;

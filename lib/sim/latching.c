@@ -6,7 +6,7 @@
 #include "setting_internal.h"
 #include "simulator.h"
 
-/* What is drawn for a latch and for a touch, by name. */
+/* Names of the random numbers for a latch and for a touch. */
 #define DRAW_JITTER UINT32_C(0x4C410001)
 #define DRAW_TOUCH UINT32_C(0x4C410002)
 
@@ -41,7 +41,7 @@ static wh_status_t check_beam(const wh_door_beam_t *door, size_t gripper_count) 
     return door->kind == WH_DOOR_LIGHT ? check_light(door) : check_touch(door, gripper_count);
 }
 
-/* What the arrays hold; they are there, and as long as these counts say. */
+/* Checks the arrays' entries; the arrays exist and have these lengths. */
 static wh_status_t check_entries(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count) {
     wh_status_t status = WH_OK;
     for (size_t b = 0; status == WH_OK && b < latching->beam_count; ++b) {
@@ -112,7 +112,7 @@ static bool is_earlier(const wh_latch_t *a, const wh_latch_t *b) {
     return a->slice < b->slice || (a->slice == b->slice && a->part < b->part);
 }
 
-/* Behind those that come no later. */
+/* Puts the latch behind those that come no later. */
 static void queue(wh_latches_t *latches, const wh_latch_t *latch) {
     if (latches->waiting_count == WH_LATCHES) {
         ++latches->lost;
@@ -127,7 +127,7 @@ static void queue(wh_latches_t *latches, const wh_latch_t *latch) {
     ++latches->waiting_count;
 }
 
-/* All that may change a beam or a switch in a slice. */
+/* The causes that may change a beam or a switch in a slice. */
 typedef struct {
     const wh_pose_t *before; /* by gripper */
     const wh_grasp_t *table;
@@ -156,7 +156,7 @@ static double delay_of(const wh_latching_t *latching, const wh_latches_t *latche
 static void cross(const wh_latching_t *latching, wh_latches_t *latches, const passing_t *sight, size_t b,
                   double part, bool broken) {
     const double due = part + delay_of(latching, latches, sight, b, broken) / sight->slice_s;
-    /* The end of a slice belongs to it. */
+    /* The instant at the end of a slice belongs to that slice. */
     int64_t later = (int64_t)due;
     later -= later > 0 && due <= (double)later ? 1 : 0;
     const wh_latch_t latch = {(int32_t)b, broken ? WH_CROSSING_IN : WH_CROSSING_OUT, latches->slice + later,
@@ -165,7 +165,7 @@ static void cross(const wh_latching_t *latching, wh_latches_t *latches, const pa
     queue(latches, &latch);
 }
 
-/* What it always says if it is broken down, by itself or by a fault. */
+/* The fixed signal of a beam that is broken down, by itself or by a fault. */
 static wh_beam_stuck_t stuck_of(const wh_latching_t *latching, const wh_faults_t *faults, size_t b) {
     const wh_door_beam_t *door = &latching->beams[b];
     const bool touch = door->kind == WH_DOOR_TOUCH;
@@ -182,13 +182,13 @@ static wh_beam_stuck_t stuck_of(const wh_latching_t *latching, const wh_faults_t
     return WH_BEAM_WORKS;
 }
 
-/* By how much before its ball meets a face a switch closes: the same for all of an arming. */
+/* The distance before its ball meets a face at which a switch closes; it is constant during an arming. */
 static double early_by(const wh_door_beam_t *door, const wh_latches_t *latches, size_t b) {
     const wh_trial_t trial = {door->seed, latches->number};
     return door->noise > 0 ? door->noise * wh_deviate_normal(&trial, DRAW_TOUCH, (uint32_t)b) : 0;
 }
 
-/* As wh_beam_next, of either kind. */
+/* wh_beam_next, for either kind. */
 static bool next_change(const wh_latching_t *latching, const wh_latches_t *latches, const passing_t *sight,
                         size_t b, double *part, bool *broken) {
     const wh_door_beam_t *door = &latching->beams[b];
@@ -200,7 +200,7 @@ static bool next_change(const wh_latching_t *latching, const wh_latches_t *latch
                          early_by(door, latches, b), part, broken);
 }
 
-/* The most changes of a beam that are looked for in a slice. */
+/* The most changes of a beam that are searched in a slice. */
 #define MOST_CHANGES (2 * WH_LATCHES)
 
 static void set_broken(wh_latches_t *latches, size_t b, bool broken) {
@@ -230,7 +230,7 @@ static void keep_stuck(const wh_latching_t *latching, wh_latches_t *latches, siz
     set_broken(latches, b, broken);
 }
 
-/* All that are armed. */
+/* Evaluates all armed beams. */
 static void look_at_beams(const wh_latching_t *latching, wh_latches_t *latches, const passing_t *sight) {
     for (int32_t i = 0; i < latches->count; ++i) {
         const size_t b = (size_t)latches->first + (size_t)i;
@@ -243,7 +243,7 @@ static void look_at_beams(const wh_latching_t *latching, wh_latches_t *latches, 
     }
 }
 
-/* Moves what is due from the waiting ones to those of the slice. */
+/* Moves the latches that are due from the waiting ones to those of the slice. */
 static void give_out(wh_latches_t *latches) {
     int32_t due = 0;
     while (due < latches->waiting_count && latches->waiting[due].slice <= latches->slice) {
@@ -257,7 +257,7 @@ static void give_out(wh_latches_t *latches) {
     }
 }
 
-/* How the beams are while they are armed. */
+/* The beams' states while they are armed. */
 static void note_broken(const wh_latching_t *latching, const passing_t *sight, wh_latches_t *latches) {
     for (int32_t i = 0; i < latches->count; ++i) {
         const size_t b = (size_t)latches->first + (size_t)i;

@@ -55,7 +55,7 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-/* Out of line: in this file a small copy counts for more than a fast one. */
+/* It is out of line, because a small copy matters more than a fast one in this file. */
 static WH_OUT_OF_LINE uint64_t hash_word(uint64_t hash, uint64_t word) {
     return wh_hash_word(hash, word);
 }

@@ -1,4 +1,5 @@
-/* What a step of the simulator depends on beside the grasp table: vacuum, motion of held wafers, faults.
+/* The values that a step of the simulator depends on in addition to the grasp table: vacuum, motion of held
+ * wafers, faults.
  *
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
@@ -25,10 +26,10 @@
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(physics);
 
-/* The length of a slice unless told otherwise, s. */
+/* The default length of a slice, s. */
 #define WH_SLICE_S WH_REAL(0.001)
 
-/* What does not change during a run. */
+/* The fixed values of a run. */
 typedef struct {
     wh_real_t slice_s; /* length of a slice, s, above 0, up to 1 */
     wh_vacuum_config_t vacuum;
@@ -37,25 +38,25 @@ typedef struct {
     size_t fault_count;
 } wh_physics_t;
 
-/* The state of the physics after the last slice. Entries beyond the gripper count are ignored. */
+/* The state of the physics after the last slice. Entries after the gripper count are ignored. */
 typedef struct {
     wh_vacuum_t vacuum[WH_GRIPPERS];
     wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
     int32_t told[WH_GRIPPERS];     /* valves of the last command, before faults; no step depends on them */
     wh_faults_t faults;
-    wh_scan_t scan;                     /* of an edge sensor */
-    wh_latches_t latches;               /* of the beams at doors */
-    wh_grip_state_t grips[WH_GRIPPERS]; /* plungers; OPEN of grippers that have none */
+    wh_scan_t scan;                     /* scan of an edge sensor */
+    wh_latches_t latches;               /* latches of the beams at doors */
+    wh_grip_state_t grips[WH_GRIPPERS]; /* plungers; OPEN for grippers that have none */
     wh_doors_t doors;                   /* the doors themselves */
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
 wh_physics_t wh_physics_default(void) WH_SYMBOL(wh_physics_default);
 
-/* WH_OK, or what is wrong with it for a cell with these counts: WH_STATUS_NULL_ARGUMENT;
- * WH_STATUS_BAD_CAPACITY for more than WH_GRIPPERS grippers; WH_STATUS_OUT_OF_RANGE for `slice_s` or
- * `fault_count`; or what wh_vacuum_validate, wh_pads_validate or wh_fault_validate says. Cost: that
- * of wh_fault_validate for each fault. */
+/* Returns WH_OK, or the error for a cell with these counts: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY
+ * for more than WH_GRIPPERS grippers; WH_STATUS_OUT_OF_RANGE for `slice_s` or `fault_count`; or the status
+ * of wh_vacuum_validate, wh_pads_validate or wh_fault_validate. Cost: that of wh_fault_validate for each
+ * fault. */
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_physics_validate);
 
@@ -71,13 +72,13 @@ void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physi
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) WH_SYMBOL(wh_physics_state_validate);
 
-/* What the vacuum sensors say: bit g for gripper g; 0 for grippers from WH_GRIPPERS on. Cost: linear
- * in grippers and slots. */
+/* The vacuum sensors' signals: bit g for gripper g; 0 for grippers from WH_GRIPPERS on. Cost: linear in
+ * grippers and slots. */
 uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count)
     WH_SYMBOL(wh_physics_state_sensors);
 
-/* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word
- * (math/hash.h) with these words:
+/* 64 bits over everything that the next step depends on. It is wh_grasp_hash(table), continued by
+ * wh_hash_word (math/hash.h) with these words:
  *   - for each gripper whose vacuum is not plain: 1, its index, level, command and on. Vacuum is plain if its
  *     command is the table's valve, and it is at level 1 with the sensor on while the gripper holds a wafer,
  *     or at level 0 with the sensor off while it holds none;
@@ -91,20 +92,20 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - for each gripper whose plunger is not OPEN: 6, its index, phase, wafer, and the bits of s and excess;
  *     and while it closes on a wafer x, y and the eight numbers of `lying`, in the order of their structs;
  *   - for each door that is not shut: 7, its index, where its axis is.
- * Of a gripper with another grip than vacuum, level, command and on are 0, the valve and the sensor. So a run
- * with ideal vacuum, without pads, faults, scans, beams, edge grips and doors, has the table's hash. Nothing
- * is checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with
- * vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, 11 for beams with
- * three for each latch, up to 16 for each plunger, and 3 for each door.
+ * For a gripper with another grip than vacuum, level, command and on are 0, the valve and the sensor. So a
+ * run with ideal vacuum, without pads, faults, scans, beams, edge grips and doors, has the table's hash.
+ * Nothing is checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each
+ * gripper with vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, 11 for
+ * beams with three for each latch, up to 16 for each plunger, and 3 for each door.
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);
 
-/* The table's hash and the words 1 to 3: all that a simulator has to which nothing else was given. */
+/* The table's hash and the words 1 to 3: all state of a simulator without further parts. */
 uint64_t wh_physics_state_hash_plain(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash_plain);
 
-/* Continues wh_physics_state_hash_plain with the words from 4 on: then it is wh_physics_state_hash. */
+/* Continues wh_physics_state_hash_plain with the words from 4 on; the result is wh_physics_state_hash. */
 uint64_t wh_physics_state_hash_given(const wh_physics_state_t *state, size_t gripper_count, uint64_t hash)
     WH_SYMBOL(wh_physics_state_hash_given);
 

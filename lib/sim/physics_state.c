@@ -1,4 +1,4 @@
-/* All of a state: what each simulator has (physics.c), and what only some were given. */
+/* All of a state: the parts of every simulator (physics.c), and the parts that only some have. */
 #include "../math/hash.h"
 #include "physics.h"
 
@@ -38,17 +38,17 @@ static bool is_sampled(const wh_scan_t *scan) {
     return good;
 }
 
-/* The magnitude of a scan's turn and of a latch's part, as bits, which have the order of numbers: a processor
- * without doubles needs no function for them here. */
+/* The limits of a scan's turn and of a latch's part, as bits. Bits have the order of numbers, so a
+ * processor without doubles needs no function for them here. */
 #define TURN_MOST UINT64_C(0x40c3880000000000)     /* 1e4 */
 #define PART_MOST UINT64_C(0x3ff0000000000000)     /* 1 */
-#define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* beyond are those that are no number */
+#define TURN_INFINITE UINT64_C(0x7ff0000000000000) /* larger values are NaN */
 
 static bool is_between(int64_t value, int64_t least, int64_t most) {
     return value >= least && value <= most;
 }
 
-/* What was ordered; before the first order nothing. */
+/* True if the values fit an order; before the first order there are none. */
 static bool is_ordered(const wh_scan_t *scan, size_t gripper_count) {
     const int32_t most = WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
     const int64_t reach = (int64_t)WH_SCAN_REACH * WH_SENSOR_SAMPLES;
@@ -85,7 +85,7 @@ static bool are_latches(const wh_latch_t latches[], int32_t count, const wh_latc
     return good;
 }
 
-/* Before the first order all is zero. */
+/* True if all is zero, as before the first order. */
 static bool are_untouched(const wh_latches_t *latches) {
     return !latches->armed && (latches->first | latches->count) == 0 && latches->slice == 0 &&
            (latches->crossings | latches->lost | latches->broken) == 0 &&

@@ -7,7 +7,7 @@ static bool lacks_arrays(const wh_played_t *run, const wh_grasp_storage_t *stora
            (run->segment_count > 0 && !run->segments) || (run->fault_count > 0 && !run->faults);
 }
 
-/* Faults are brought one after the other, as many in a slice as a command has room for. */
+/* Faults come one after the other, in one slice no more than a command has room for. */
 static bool is_in_order(const wh_played_fault_t faults[], size_t count) {
     bool good = count == 0 || faults[0].seq >= 1;
     for (size_t i = 1; i < count; ++i) {
@@ -69,7 +69,7 @@ wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh
     return player->status;
 }
 
-/* The faults of the slice that the track has come to. */
+/* Brings the faults of the slice that the track has reached. */
 static void bring_faults(wh_player_t *player) {
     const wh_played_t *run = player->run;
     wh_command_t *command = &player->command;
@@ -96,7 +96,7 @@ static void begin_segment(wh_player_t *player) {
     ++player->segment;
 }
 
-/* One slice of the running segment; false if it needs none any more. */
+/* Plays one slice of the running segment; false if it needs no more. */
 static bool go_on(wh_player_t *player) {
     if (wh_track_next(&player->track, player->state.sensors) != WH_TRACK_MOVING) {
         player->is_moving = false;

@@ -9,7 +9,7 @@
 
 #define TURN (2 * 3.14159265358979323846)
 
-/* rad: more than WH_SCAN_REACH and WH_SCAN_TURNS turns, less than what align/sensing.h takes. */
+/* rad: more than WH_SCAN_REACH and WH_SCAN_TURNS turns, less than the limit of align/sensing.h. */
 #define FARTHEST 9000
 
 /* ----------------------------------------------------------------------------------------------- validity */
@@ -73,7 +73,7 @@ wh_status_t wh_scanning_check(const wh_scanning_t *scanning, const wh_scan_order
 
 /* ----------------------------------------------------------------------------------------- what is there */
 
-/* The chuck's turn, the whole turns such that it is next to `near`. */
+/* The chuck's turn, with the whole turns that bring it nearest to `near`. */
 static double turn_next_to(const wh_scanner_t *scanner, const wh_grasp_t *table, double near) {
     const wh_mat3_t *chuck = &table->storage.grippers[scanner->gripper].base_from_gripper.R;
     const wh_vec3_t x = wh_mat3_column(&scanner->base_from_station.R, 0);
@@ -84,7 +84,7 @@ static double turn_next_to(const wh_scanner_t *scanner, const wh_grasp_t *table,
     return turn + TURN * (double)(int64_t)(turns < 0 ? turns - 0.5 : turns + 0.5);
 }
 
-/* A wafer's frame in the chuck's. What the chuck holds does not move in it, to the last bit. */
+/* A wafer's frame in the chuck's. A wafer that the chuck holds does not move in it, to the last bit. */
 static wh_pose_t chuck_from_wafer(const wh_grasp_t *table, int32_t gripper, size_t wafer) {
     const wh_gripper_t *chuck = &table->storage.grippers[gripper];
     return chuck->wafer == (int32_t)wafer
@@ -99,7 +99,7 @@ static bool is_in_gap(const wh_pose_t *lies, double radius) {
     return x * x + y * y < most * most && lies->r.z <= WH_SCAN_GAP && lies->r.z >= -WH_SCAN_GAP;
 }
 
-/* What the sensor sees: null if there is no wafer. */
+/* The rim that the sensor sees; null if there is no wafer. */
 static const wh_rim_t *find_rim(const wh_scanning_t *scanning, const wh_grasp_t *table, int32_t gripper,
                                 wh_pose_t *lies) {
     const int32_t held = table->storage.grippers[gripper].wafer;
@@ -119,7 +119,7 @@ static const wh_rim_t *find_rim(const wh_scanning_t *scanning, const wh_grasp_t 
     return found;
 }
 
-/* Seen from the back. */
+/* Mirrors the rim, as seen from the back. */
 static void mirror(wh_rim_t *rim) {
     rim->notch.direction = -rim->notch.direction;
     for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
@@ -135,11 +135,11 @@ static void mirror(wh_rim_t *rim) {
 
 /* -------------------------------------------------------------------------------------------------- scans */
 
-/* What the sensor looks at in a slice. */
+/* The objects of a sensor in a slice. */
 typedef struct {
     const wh_rim_t *rim; /* null: nothing */
     wh_placement_t placement;
-    double turn; /* of the chuck, where the wafer lies like that */
+    double turn; /* turn of the chuck at which the wafer lies like that */
     bool is_held;
     const wh_fault_t *stuck, *late; /* null: the sensor has no such fault */
 } scanned_t;
@@ -158,7 +158,7 @@ static wh_placement_t placement_at(const scanned_t *sight, double turn) {
     return placement;
 }
 
-/* The next sample, which is due. */
+/* Reads the next sample, which is due. */
 static int32_t read_sample(const wh_scanner_t *scanner, const scanned_t *sight, double speed,
                            const wh_scan_t *scan) {
     const wh_sensor_t *sensor = &scanner->sensor;
@@ -174,7 +174,7 @@ static int32_t read_sample(const wh_scanner_t *scanner, const scanned_t *sight, 
     return sight->rim ? wh_sensor_read(sensor, sight->rim, &placement, &glance) : 0;
 }
 
-/* Takes this many samples, which are due. */
+/* Reads this number of samples, which are due. */
 static void read_samples(const wh_scanner_t *scanner, const scanned_t *sight, double speed, size_t count,
                          wh_scan_t *scan) {
     for (size_t i = 0; i < count; ++i) {
@@ -209,14 +209,14 @@ static void end_scan(wh_scan_t *scan) {
     scan->turn = 0;
 }
 
-/* How many samples the scan takes on the chuck's way. */
+/* The number of samples that the scan takes on the chuck's way. */
 static size_t count_due(const wh_sensor_t *sensor, const wh_scan_t *scan, double to) {
     const bool up = scan->count > 0;
     int64_t first = 0;
     size_t due =
         to == scan->turn || (to > scan->turn) != up ? 0 : wh_sensor_due(sensor, scan->turn, to, &first);
     const int64_t next = scan->first + (up ? scan->taken : -scan->taken);
-    const int64_t passed = up ? next - first : first - next; /* that the scan does not wait for */
+    const int64_t passed = up ? next - first : first - next; /* samples that the scan does not wait for */
     if (due == 0 || passed < 0 || passed >= (int64_t)due) {
         return 0;
     }
@@ -225,7 +225,7 @@ static size_t count_due(const wh_sensor_t *sensor, const wh_scan_t *scan, double
     return due < (size_t)left ? due : (size_t)left;
 }
 
-/* The samples of this slice, of a scan that is armed. */
+/* Takes the samples of this slice, for an armed scan. */
 static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table, const wh_faults_t *faults,
                          wh_real_t slice_s, wh_scan_t *scan) {
     const wh_scanner_t *scanner = find_scanner(scanning, scan->gripper);

@@ -1,4 +1,4 @@
-/* What may be set on a simulator before its first slice: within the room. */
+/* The parts that may be set on a simulator before its first slice; internal to the room. */
 #ifndef WH_SIM_SETTING_INTERNAL_H
 #define WH_SIM_SETTING_INTERNAL_H
 
@@ -12,6 +12,12 @@ static inline wh_status_t wh_simulator_check_setting(const wh_simulator_t *simul
         return WH_STATUS_NOT_INITIALISED;
     }
     return simulator->table.slice > 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
+}
+
+/* True if grips of this dt are of slices of this length. */
+static inline bool wh_is_slice(wh_real_t slice_s, double dt) {
+    const wh_real_t apart = slice_s - (wh_real_t)dt;
+    return !(apart > 0 || apart < 0);
 }
 
 #endif

@@ -40,6 +40,10 @@ static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
     simulator->event_count = 0;
     simulator->observer = (wh_observer_t){NULL, NULL, NULL};
     memset(&simulator->given, 0, sizeof simulator->given);
+    simulator->is_strict = false;
+    simulator->has_last = false;
+    simulator->last_seq = 0;
+    simulator->last_utime = 0;
     simulator->mark = WH_SIMULATOR_MARK;
 }
 
@@ -68,15 +72,30 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     status = wh_physics_validate(physics, storage->gripper_count, storage->wafer_count);
+    if (status == WH_OK && simulator->given.gripping &&
+        !wh_is_slice(physics->slice_s, simulator->given.grips.parts.dt)) {
+        status = WH_STATUS_OUT_OF_RANGE;
+    }
     if (status == WH_OK) {
         take_physics(simulator, physics);
     }
     return status;
 }
 
+wh_status_t wh_simulator_set_strict(wh_simulator_t *simulator, bool is_strict) {
+    if (!simulator) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
+    simulator->is_strict = is_strict;
+    return WH_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------- events */
 
-/* Null if there is no room. */
+/* Returns null if there is no room. */
 static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, int32_t wafer,
                              int32_t gripper) {
     static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
@@ -136,7 +155,7 @@ static bool are_valid(const wh_command_t *command) {
 }
 
 /* True if no fault is in a slot or in the command, and the vacuum is ideal: every level is 0 or 1 at once.
- * Then the short path has the same result. */
+ * The short path then has an equal result. */
 static bool is_direct(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_vacuum_config_t *vacuum = &simulator->vacuum;
     return simulator->physics.faults.count + command->fault_count == 0 &&
@@ -162,7 +181,7 @@ static bool has_vacuum(const wh_simulator_t *simulator, size_t g) {
     return (simulator->given.no_vacuum >> g & 1U) == 0;
 }
 
-/* True if a support has the held wafer before this slice is over: the blade leaves the wafer there. */
+/* True if a support gets the held wafer before this slice is over: the blade leaves the wafer there. */
 static WH_OUT_OF_LINE bool is_set_down(const wh_simulator_t *simulator, size_t g) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     const wh_gripper_t *gripper = &storage->grippers[g];
@@ -175,8 +194,8 @@ static WH_OUT_OF_LINE bool is_set_down(const wh_simulator_t *simulator, size_t g
     return wh_cell_stops(&simulator->cell, &storage->wafers[wafer].base_from_wafer, &carried);
 }
 
-/* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. A
- * valve that closes while its vacuum still holds acts once a support has the wafer. */
+/* Applies the valves to the vacuum. The result goes into `vacuum`, because the table may still refuse the
+ * step. A valve that closes while its vacuum still holds acts once a support has the wafer. */
 static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->physics.faults, g);
@@ -243,7 +262,7 @@ static WH_OUT_OF_LINE void watch_grippers(wh_simulator_t *simulator) {
     }
 }
 
-/* After a step: what sensors of other grips say, and who slips. */
+/* After a step: the sensors of other grips, and the wafers that slip. */
 static void watch_holding(wh_simulator_t *simulator) {
     if (simulator->given.gripping || simulator->pads.mass > 0) {
         watch_grippers(simulator);
@@ -269,12 +288,17 @@ static void show(wh_simulator_t *simulator, const wh_command_t *command, const w
 static wh_status_t step_cell(wh_simulator_t *simulator, const wh_command_t *command,
                              const wh_gripper_input_t inputs[], uint32_t changed) {
     wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS + 1, 0};
+    wh_passing_t passing[WH_GRIPPERS];
+    const bool passes = wh_cell_begin_passing(&simulator->cell, &simulator->table, inputs, passing);
     const wh_status_t status = simulator->given.gripping
                                    ? simulator->given.gripping->step(simulator, inputs, &list)
                                    : wh_grasp_step(&simulator->table, inputs, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
         wh_cell_settle(&simulator->cell, &simulator->table, &list);
+    }
+    if (status == WH_OK && passes) {
+        wh_cell_end_passing(&simulator->cell, &simulator->table, passing, &list);
     }
     if (status == WH_OK) {
         show(simulator, command, inputs, changed, &list);
@@ -308,9 +332,17 @@ static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_
     return status;
 }
 
+/* Checks the counts and, if strict, the times. */
+static bool goes_on(const wh_simulator_t *simulator, const wh_command_t *command) {
+    return command->gripper_count == simulator->table.storage.gripper_count &&
+           command->axis_count <= WH_AXES &&
+           (!simulator->is_strict || !simulator->has_last ||
+            (command->seq > simulator->last_seq && command->utime > simulator->last_utime));
+}
+
 static wh_status_t check_command(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    if (command->gripper_count != storage->gripper_count) {
+    if (!goes_on(simulator, command)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     if (command->scan.kind != WH_SCAN_KEEP &&
@@ -332,7 +364,7 @@ static wh_status_t check_command(const wh_simulator_t *simulator, const wh_comma
                                  storage->gripper_count, storage->wafer_count);
 }
 
-/* All but the beams. */
+/* Steps everything but the beams. */
 static wh_status_t step_rest(void *of, const void *by) {
     wh_simulator_t *simulator = of;
     const wh_command_t *command = by;
@@ -354,8 +386,15 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
         simulator->event_count = 0;
         return status;
     }
-    return simulator->given.beams ? simulator->given.beams->around(simulator, command, step_rest)
-                                  : step_rest(simulator, command);
+    const wh_status_t stepped = simulator->given.beams
+                                    ? simulator->given.beams->around(simulator, command, step_rest)
+                                    : step_rest(simulator, command);
+    if (stepped == WH_OK) {
+        simulator->has_last = true;
+        simulator->last_seq = command->seq;
+        simulator->last_utime = command->utime;
+    }
+    return stepped;
 }
 
 static void view_nothing(wh_state_t *state) {

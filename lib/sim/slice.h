@@ -17,16 +17,16 @@
 WH_HEADER_BEGIN
 WH_REFUSE_PACKING(slice);
 
-/* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
- * the collision check: 128, and 64 with the counts of a bare target. Events beyond that are not reported, and
- * the state says so. */
+/* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults
+ * and the collision check. It is 128, and 64 with the counts of a bare target. More events are not
+ * reported, and the state says so. */
 #define WH_SLICE_EVENTS ((size_t)8 * WH_GRIPPERS)
 
 /* The most faults in one command. */
 #define WH_COMMAND_FAULTS 4
 
-/* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are
- * ignored. */
+/* The motion of the machine in slice `seq`. Entries beyond gripper_count, axis_count and fault_count
+ * are ignored; a simulator refuses counts beyond the arrays. */
 typedef struct {
     int64_t utime; /* simulated time, us: seq times the slice's length */
     int64_t seq;   /* 1 for the first slice */
@@ -34,18 +34,18 @@ typedef struct {
     wh_gripper_input_t grippers[WH_GRIPPERS];
     wh_real_t axes[WH_AXES]; /* rad or mm, as in motion/machine.h */
     size_t fault_count;
-    wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin, or that get a new end */
-    wh_scan_order_t scan;                         /* of the edge sensors */
-    wh_latch_order_t latch;                       /* of the beams at doors */
+    wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin or get a new end */
+    wh_scan_order_t scan;                         /* order to the edge sensors */
+    wh_latch_order_t latch;                       /* order to the beams at doors */
 } wh_command_t;
 
 /* Fills in poses, valves and axes of the track's current slice; leaves faults, edge sensors and beams alone.
- * Pass the same command and cache each time, zeroed before the first: it computes only what changed. Cost:
- * wh_machine_update. */
+ * Pass the same command and cache each time, zeroed before the first: it computes only what changed. If the
+ * track was never initialised, nothing is read, and the command is unchanged. Cost: wh_machine_update. */
 void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
     WH_SYMBOL(wh_command_from_track);
 
-/* What became of a command: a view of the simulator's own memory, valid until the next exchange. */
+/* The result of a command: a view of the simulator's own memory, valid until the next exchange. */
 typedef struct {
     int64_t utime, seq; /* the command's, refused or not */
     wh_status_t status; /* not WH_OK: the command was refused; wafers and grippers are as before */
@@ -55,12 +55,12 @@ typedef struct {
     size_t gripper_count;
     const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
-    bool has_lost_events; /* the slice had more of them than fit */
+    bool has_lost_events; /* the slice had more events than fit */
     uint32_t sensors;     /* bit g: gripper g's vacuum sensor is on */
     const wh_physics_state_t *physics;
 } wh_state_t;
 
-/* How one side reaches the other: by a call within the process, or by messages. */
+/* The link from one side to the other: by a call within the process, or by messages. */
 typedef struct wh_link wh_link_t;
 struct wh_link {
     /* Steps one slice. Returns state->status, or the reason why no answer came. */

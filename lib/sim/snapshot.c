@@ -63,11 +63,12 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
 
 /* ------------------------------------------------------------------------------------- one way in and out */
 
-/* Bytes that values go to, or else come from: one function for both ways keeps them alike. */
+/* A stream of bytes; values are written to it or read from it. One function for both directions keeps them
+ * consistent. */
 typedef struct {
     uint8_t *to; /* null: values are read */
     const uint8_t *from;
-    bool is_bad; /* a byte that no snapshot has was read */
+    bool is_bad; /* a byte was read that no snapshot has */
 } stream_t;
 
 /* The lowest byte first. */
@@ -100,7 +101,7 @@ static void pass_time(stream_t *stream, int64_t *value) {
 
 static void pass_bool(stream_t *stream, bool *value) {
     uint64_t word = 0;
-    if (stream->to && *value) { /* what is read into may be no bool yet */
+    if (stream->to && *value) { /* the target of a read may not yet be a valid bool */
         word = 1;
     }
     pass_bytes(stream, &word, 1);
@@ -159,7 +160,9 @@ static void pass_measured(stream_t *stream, wh_proximity_t *p) {
 static void pass_encounter(stream_t *stream, wh_encounter_t *encounter) {
     pass_int(stream, &encounter->wafer);
     pass_int(stream, &encounter->holder);
-    pass_bytes(stream, &encounter->slice, 8);
+    uint64_t stamp = wh_encounter_stamp(encounter);
+    pass_bytes(stream, &stamp, 8);
+    wh_encounter_take_stamp(encounter, stamp);
     pass_measured(stream, &encounter->measured);
 }
 
@@ -248,7 +251,7 @@ static void pass_latch(stream_t *stream, wh_latch_t *latch) {
     latch->edge = edge == 1 ? WH_CROSSING_OUT : WH_CROSSING_IN;
 }
 
-/* 72 bytes, in float 64: what wh_grips_complete cannot fill in. */
+/* 72 bytes, in float 64: the part that wh_grips_complete cannot compute. */
 static void pass_grip(stream_t *stream, wh_grip_state_t *state) {
     int32_t phase = (int32_t)state->phase;
     pass_int(stream, &phase);
@@ -289,10 +292,15 @@ static void pass_latches(stream_t *stream, wh_latches_t *latches) {
     }
 }
 
-/* 4 bytes, and WH_DOORS numbers. */
-static void pass_doors(stream_t *stream, wh_doors_t *doors) {
+/* How many numbers there are of so many doors. */
+static size_t numbers_of(int32_t doors) {
+    return doors > WH_SNAPSHOT_FEW_DOORS ? (size_t)doors : WH_SNAPSHOT_FEW_DOORS;
+}
+
+/* 4 bytes, and the numbers of a simulator with so many doors: a count that is read is not trusted. */
+static void pass_doors(stream_t *stream, wh_doors_t *doors, int32_t count) {
     pass_int(stream, &doors->count);
-    for (size_t d = 0; d < WH_DOORS; ++d) {
+    for (size_t d = 0; d < numbers_of(count); ++d) {
         pass_real(stream, &doors->at[d]);
     }
 }
@@ -313,15 +321,20 @@ static uint64_t sum_of(const uint8_t bytes[], size_t size) {
 #define MARK UINT64_C(0x50414E534857) /* "WHSNAP", first letter first */
 #define MARK_SIZE 6
 
-/* How many bytes a snapshot has with so many slots of faults. */
-static size_t size_with(const wh_grasp_storage_t *storage, size_t slots) {
+/* The number of bytes of a snapshot with this number of fault slots. */
+static size_t size_with(const wh_simulator_t *simulator, size_t slots) {
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
     return WH_SNAPSHOT_SIZE(storage->wafer_count, storage->gripper_count) -
+           (WH_DOORS - numbers_of(simulator->physics.doors.count)) * sizeof(wh_real_t) -
            (37 * sizeof(wh_real_t) + 32) * (WH_FAULTS - slots);
 }
 
 size_t wh_simulator_saved_size(const wh_simulator_t *simulator) {
-    return is_initialised(simulator) ? size_with(&simulator->table.storage, simulator->physics.faults.count)
-                                     : 0;
+    return is_initialised(simulator) ? size_with(simulator, simulator->physics.faults.count) : 0;
+}
+
+static bool has_many_doors(const wh_simulator_t *simulator) {
+    return simulator->physics.doors.count > WH_SNAPSHOT_FEW_DOORS;
 }
 
 static void pass_counters(stream_t *stream, wh_grasp_counters_t *counters) {
@@ -336,7 +349,7 @@ static void pass_counters(stream_t *stream, wh_grasp_counters_t *counters) {
 
 static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
     uint64_t mark = MARK;
-    uint64_t version = WH_SNAPSHOT_VERSION;
+    uint64_t version = has_many_doors(simulator) ? WH_SNAPSHOT_MANY : WH_SNAPSHOT_VERSION;
     uint64_t number = sizeof(wh_real_t);
     uint64_t description = wh_simulator_describe(simulator);
     pass_bytes(stream, &mark, MARK_SIZE);
@@ -351,7 +364,7 @@ static void clear_encounter(wh_encounter_t *encounter) {
     encounter->holder = WH_NONE;
 }
 
-/* What the last wafer left behind says nothing: equal states have equal bytes. */
+/* Clears leftovers of the last wafer, which have no meaning, so that equal states have equal bytes. */
 static void drop_leftovers(wh_gripper_t *gripper) {
     if (gripper->wafer == WH_NONE) {
         gripper->gripper_from_wafer = wh_pose_identity();
@@ -383,7 +396,7 @@ static void save_table(stream_t *stream, const wh_grasp_t *table) {
     }
 }
 
-/* Latches that have gone say nothing: equal states have equal bytes. */
+/* Leaves out latches that have passed, which have no meaning, so that equal states have equal bytes. */
 static void save_latches(stream_t *stream, const wh_latches_t *from) {
     wh_latches_t latches;
     latches = *from;
@@ -396,7 +409,7 @@ static void save_latches(stream_t *stream, const wh_latches_t *from) {
     pass_latches(stream, &latches);
 }
 
-/* A place that does not count any more says nothing. */
+/* Leaves out a place that no longer counts. */
 static void save_grip(stream_t *stream, const wh_grip_state_t *from) {
     wh_grip_state_t state;
     state = *from;
@@ -423,7 +436,7 @@ static void save_physics(stream_t *stream, const wh_physics_state_t *physics, si
     save_latches(stream, &physics->latches);
     wh_doors_t doors;
     doors = physics->doors;
-    pass_doors(stream, &doors);
+    pass_doors(stream, &doors, doors.count);
     uint64_t count = physics->faults.count;
     pass_bytes(stream, &count, 4);
     for (size_t i = 0; i < physics->faults.count; ++i) {
@@ -464,12 +477,15 @@ static uint64_t read_bytes(const uint8_t bytes[], unsigned count) {
     return value;
 }
 
-/* All but the state itself. */
+/* Checks everything but the state itself. */
 static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t bytes[], size_t size) {
     if (size < HEAD_SIZE + SUM_SIZE || read_bytes(bytes, MARK_SIZE) != MARK) {
         return WH_STATUS_DAMAGED;
     }
-    if (bytes[6] != WH_SNAPSHOT_VERSION || bytes[7] != sizeof(wh_real_t)) {
+    const bool is_known = has_many_doors(simulator)
+                              ? bytes[6] == WH_SNAPSHOT_MANY
+                              : bytes[6] == WH_SNAPSHOT_VERSION || bytes[6] == WH_SNAPSHOT_BACKS;
+    if (!is_known || bytes[7] != sizeof(wh_real_t)) {
         return WH_STATUS_OTHER_SNAPSHOT;
     }
     if (read_bytes(&bytes[size - SUM_SIZE], SUM_SIZE) != sum_of(bytes, size - SUM_SIZE)) {
@@ -478,10 +494,10 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
     if (read_bytes(&bytes[8], 8) != wh_simulator_describe(simulator)) {
         return WH_STATUS_OTHER_SNAPSHOT;
     }
-    return size >= size_with(&simulator->table.storage, 0) ? WH_OK : WH_STATUS_DAMAGED;
+    return size >= size_with(simulator, 0) ? WH_OK : WH_STATUS_DAMAGED;
 }
 
-static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count) {
+static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count, int32_t doors) {
     wh_physics_state_start(physics, NULL);
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
@@ -494,15 +510,14 @@ static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t g
     }
     pass_scan(stream, &physics->scan);
     pass_latches(stream, &physics->latches);
-    pass_doors(stream, &physics->doors);
+    pass_doors(stream, &physics->doors, doors);
 }
 
-/* False if there are not as many bytes as these slots take. */
-static bool load_faults(stream_t *stream, wh_faults_t *faults, const wh_grasp_storage_t *storage,
-                        size_t size) {
+/* False if the number of bytes does not fit these slots. */
+static bool load_faults(stream_t *stream, wh_faults_t *faults, const wh_simulator_t *simulator, size_t size) {
     uint64_t count = 0;
     pass_bytes(stream, &count, 4);
-    if (count > WH_FAULTS || size != size_with(storage, (size_t)count)) {
+    if (count > WH_FAULTS || size != size_with(simulator, (size_t)count)) {
         return false;
     }
     faults->count = (size_t)count;
@@ -522,13 +537,13 @@ bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_sta
     return good;
 }
 
-/* False for grips that the simulator cannot have. */
+/* False for grips that are impossible for the simulator. */
 static bool complete_grips(const wh_simulator_t *simulator, wh_snapshot_room_t *room) {
     const wh_gripping_calls_t *gripping = simulator->given.gripping;
     return !gripping || gripping->complete(simulator, room->grippers, room->physics.grips) == WH_OK;
 }
 
-/* Reads everything into the room; false if it cannot be. */
+/* Reads everything into the room; false if it is not possible. */
 static bool load_state(stream_t *stream, const wh_simulator_t *simulator, size_t size,
                        wh_snapshot_room_t *room) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
@@ -538,14 +553,14 @@ static bool load_state(stream_t *stream, const wh_simulator_t *simulator, size_t
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         pass_gripper(stream, &room->grippers[g]);
     }
-    load_physics(stream, &room->physics, storage->gripper_count);
-    return load_faults(stream, &room->physics.faults, storage, size) && !stream->is_bad &&
+    load_physics(stream, &room->physics, storage->gripper_count, simulator->physics.doors.count);
+    return load_faults(stream, &room->physics.faults, simulator, size) && !stream->is_bad &&
            complete_grips(simulator, room) &&
            wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK &&
            wh_simulator_may_have(simulator, &room->physics);
 }
 
-/* All of it, from bytes whose ends are good. */
+/* Loads everything, from bytes whose ends are checked. */
 static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
                         wh_snapshot_room_t *room) {
     wh_grasp_t *table = &simulator->table;
@@ -562,6 +577,7 @@ static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t
     table->counters = counters;
     simulator->physics = room->physics;
     simulator->event_count = 0;
+    simulator->has_last = false;
     return WH_OK;
 }
 
@@ -569,9 +585,17 @@ static wh_status_t check_room(const wh_grasp_storage_t *storage, const wh_snapsh
     if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    const bool is_own = (room->wafers == storage->wafers && storage->wafer_count > 0) ||
-                        (room->grippers == storage->grippers && storage->gripper_count > 0);
-    return is_own ? WH_STATUS_BAD_CAPACITY : WH_OK;
+    const size_t wafers = storage->wafer_count * sizeof *room->wafers;
+    const size_t grippers = storage->gripper_count * sizeof *room->grippers;
+    const wh_extent_t all[] = {{room->wafers, wafers},
+                               {room->grippers, grippers},
+                               {storage->wafers, wafers},
+                               {storage->grippers, grippers}};
+    bool overlap = wh_extents_overlap(all[0], all[1]);
+    for (size_t k = 2; k < 4; ++k) {
+        overlap = overlap || wh_extents_overlap(all[0], all[k]) || wh_extents_overlap(all[1], all[k]);
+    }
+    return overlap ? WH_STATUS_OVERLAP : WH_OK;
 }
 
 wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,

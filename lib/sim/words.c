@@ -43,8 +43,8 @@ static int count_digits(uint64_t value) {
     return count;
 }
 
-/* So many of a number's last digits. By subtraction: small processors divide 64 bits by a function of the
- * compiler's. */
+/* Writes this number of a number's last digits. It subtracts, because small processors divide 64 bits by a
+ * function of the compiler's. */
 static void put_digits(wh_words_t *words, uint64_t value, int count) {
     for (int i = count - 1; i >= 0; --i) {
         const uint64_t unit = power_of_ten(i);
@@ -70,8 +70,8 @@ void wh_words_integer(wh_words_t *words, int64_t value) {
 /* -------------------------------------------------------------------------------------------------- reals */
 
 /* A number below 1e15 in magnitude: a whole part, and a fraction in units of 2^-128, the highest 32 bits
- * first. A number has at most 53 bits, so that only one below 2^-75 loses some, and 15 decimals show none of
- * those. */
+ * first. A number has at most 53 bits, so only a number below 2^-75 loses some, and 15 decimals show none
+ * of those. */
 #define PARTS 4U
 typedef struct {
     uint64_t whole;
@@ -81,7 +81,7 @@ typedef struct {
 #define TOO_LARGE WH_REAL(1e15)
 #define MOST_DECIMALS 15
 
-/* Of a number's bits: those of the mantissa, and what is added to the exponent. */
+/* Bits of a number: those of the mantissa, and the bias of the exponent. */
 #if defined(WH_FLOAT)
 #define BITS 23
 #define BIAS 127
@@ -100,7 +100,7 @@ static uint64_t take_apart(wh_real_t magnitude, int *exponent) {
     return field > 0 ? low | UINT64_C(1) << BITS : low;
 }
 
-/* Bit `at` counts from the lowest of the fraction; the whole part begins at bit 128. */
+/* Bit `at` counts from the lowest bit of the fraction; the whole part begins at bit 128. */
 static void set_bit(fixed_t *fixed, unsigned at) {
     if (at >= 32U * PARTS) {
         fixed->whole |= UINT64_C(1) << (at - 32U * PARTS);
@@ -133,7 +133,7 @@ static uint32_t next_digit(fixed_t *fixed) {
     return (uint32_t)carry;
 }
 
-/* True if what is left rounds the last digit up. */
+/* True if the rest rounds the last digit up. */
 static bool rounds_up(const fixed_t *rest, bool is_odd) {
     const uint32_t half = UINT32_C(1) << 31;
     const bool beyond = (rest->fraction[0] & ~half) != 0 || (rest->fraction[1] | rest->fraction[2]) != 0 ||
@@ -156,7 +156,7 @@ static uint64_t round_decimals(fixed_t *fixed, int decimals) {
     return digits;
 }
 
-/* True if the number has no digits that can be shown: says so. */
+/* Writes a number that has no digits to show; true if it did. */
 static bool put_special(wh_words_t *words, wh_real_t value) {
     if (value != value) {
         wh_words_put(words, "nan");
@@ -186,7 +186,7 @@ void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) {
     }
 }
 
-/* How many decimals it takes to show so many digits that count. */
+/* The number of decimals that show this number of significant digits. */
 static int decimals_for(fixed_t fixed, int digits) {
     int decimals = fixed.whole > 0 ? digits - count_digits(fixed.whole) : digits;
     while (fixed.whole == 0 && decimals < MOST_DECIMALS && next_digit(&fixed) == 0) {
@@ -195,7 +195,7 @@ static int decimals_for(fixed_t fixed, int digits) {
     return decimals < 0 ? 0 : decimals > MOST_DECIMALS ? MOST_DECIMALS : decimals;
 }
 
-/* True if so many decimals say the same as one less. */
+/* True if this number of decimals shows no more than one decimal fewer. */
 static bool ends_in_zero(fixed_t fixed, int decimals) {
     fixed_t shorter = fixed;
     const uint64_t digits = round_decimals(&fixed, decimals);
@@ -216,7 +216,7 @@ void wh_words_short(wh_words_t *words, wh_real_t value, int digits, int least) {
     put_number(words, value, fixed, decimals);
 }
 
-/* Rounding keeps the order, so that what does not read the same reads the right way round. */
+/* Rounding keeps the order, so if two texts differ, their order is right. */
 static bool reads_same(wh_real_t a, wh_real_t b, int decimals) {
     fixed_t one = to_fixed(wh_real_abs(a));
     fixed_t other = to_fixed(wh_real_abs(b));

@@ -26,7 +26,7 @@ typedef struct {
     wh_budget_player_t *player;
 } hand_t;
 
-/* The next piece of work, or `count`. `done` says that one was finished. */
+/* The next piece of work, or `count`. `done`: a piece was finished. */
 static size_t take(queue_t *queue, bool done) {
     const wh_budget_options_t *options = &queue->crew->budget->options;
     pthread_mutex_lock(&queue->lock);
@@ -36,7 +36,7 @@ static size_t take(queue_t *queue, bool done) {
     }
     const size_t index = queue->next < queue->count ? queue->next++ : queue->count;
     queue->done += done ? 1 : 0;
-    if (done && queue->what && options->tell) {
+    if (queue->what && options->tell) {
         options->tell(options->user, queue->what, queue->done, queue->count);
     }
     pthread_mutex_unlock(&queue->lock);
@@ -79,7 +79,7 @@ bool wh_budget_share_out(wh_budget_crew_t *crew, size_t count, wh_budget_work_t 
 
 /* ---------------------------------------------------------------------------------------- one error alone */
 
-/* How a search goes outwards: from `first` on each step is `step` of what came before it, but no longer than
+/* How a search goes outwards: from `first` on each step is `step` times the way before it, but no longer than
  * `longest`. */
 typedef struct {
     int32_t first, longest;
@@ -124,7 +124,7 @@ static bool is_between(const wh_budget_side_t *side, int32_t value) {
     return side->inside < value && value < side->outside;
 }
 
-/* Begins where another search has found it: it is often the same, or near. */
+/* Begins at the result of another search: it is often equal or near. */
 static void take_hint(search_t *search, int32_t hint) {
     wh_budget_side_t *side = search->side;
     if (is_between(side, hint)) {
@@ -136,7 +136,7 @@ static void take_hint(search_t *search, int32_t hint) {
     }
 }
 
-/* Narrows down where it fails first. */
+/* Narrows down the place where it fails first. */
 static void bisect(search_t *search, const int32_t hints[], size_t hint_count) {
     wh_budget_side_t *side = search->side;
     for (size_t i = 0; i < hint_count; ++i) {
@@ -164,10 +164,10 @@ static bool go_outwards(search_t *search, const pace_t *pace, int32_t most) {
     return passes;
 }
 
-/* With collisions a trial takes long: about so many seconds for a slice. */
+/* With collisions a trial takes long: about this time in seconds for a slice. */
 #define SLICE_S 2e-6
 
-/* So many seconds all searches may spend outwards, and so many trials each does at least and at most. */
+/* The seconds that all searches together may spend outwards; the least and the most trials of each. */
 #define OUTWARDS_S 60
 #define OUTWARDS_LEAST 8
 #define OUTWARDS_MOST 100
@@ -178,7 +178,7 @@ static pace_t dense_pace(uint64_t steps, int32_t most) {
     return (pace_t){WH_BUDGET_UNIT / 100, longest > 1 ? longest : 1, 0.2};
 }
 
-/* Fewer and longer steps: the number of slices says how many, so that it is the same on every machine. */
+/* Fewer and longer steps: their number follows from the number of slices, so it is equal on every machine. */
 static pace_t sparse_pace(const wh_budget_t *budget, int32_t most) {
     const double slices = (double)budget->study->nominal.record.slices;
     const double searches = 2.0 * WH_SPREADS * (double)budget->study->layout->station_count;
@@ -190,7 +190,7 @@ static pace_t sparse_pace(const wh_budget_t *budget, int32_t most) {
     return pace;
 }
 
-/* One direction of an error: first without collisions, where that decides, for it costs little. */
+/* One direction of an error: first without collisions if that decides, because it costs little. */
 static void search_side(const wh_budget_t *budget, search_t *search, int32_t most, const int32_t hints[],
                         size_t hint_count) {
     wh_budget_side_t *side = search->side;
@@ -219,10 +219,10 @@ typedef struct {
     wh_budget_t *budget;
     const size_t *stations;           /* which */
     const wh_budget_station_t *model; /* a station that may be like these; null: none yet */
-    bool *sound;                      /* of each error: its witnesses do what was found */
+    bool *sound;                      /* of each error: its witnesses behave as found */
 } errors_t;
 
-/* Plays what was found once more, by the script itself. */
+/* Plays the result once more, by the script itself. */
 static bool confirm(const wh_budget_t *budget, search_t *search) {
     wh_budget_side_t *side = search->side;
     wh_budget_player_t *player = search->player;
@@ -240,8 +240,8 @@ static bool confirm(const wh_budget_t *budget, search_t *search) {
     return sound;
 }
 
-/* What is replayed with collisions may end otherwise than the script where a contact is as deep as is still
- * allowed, to rounding. Then the script alone decides. */
+/* A replay with collisions may end otherwise than the script if a contact is just as deep as allowed, to
+ * rounding. Then the script alone decides. */
 static bool search_soundly(const wh_budget_t *budget, search_t *search, int32_t most, const int32_t hints[],
                            size_t hint_count) {
     search_side(budget, search, most, hints, hint_count);
@@ -382,7 +382,7 @@ static int32_t find_tightest(const wh_budget_t *budget, int32_t but) {
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
-/* The indices of the stations that are looked at, to be freed. */
+/* The indices of the stations that are searched, to be freed. */
 static size_t *choose_stations(wh_budget_t *budget, size_t *count) {
     const size_t station_count = budget->study->layout->station_count;
     size_t *stations = wh_array_new(station_count + 1, sizeof *stations);

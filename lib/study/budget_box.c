@@ -7,18 +7,18 @@
 #include "../text/array.h"
 #include "budget_internal.h"
 
-/* So many points are tried at a time, by all threads: the result does not depend on how many there are. With
- * collisions it is fewer, for those behind one that fails are tried again. */
+/* The number of points that all threads try at a time: the result does not depend on the number of threads.
+ * With collisions it is smaller, because points behind one that fails are tried again. */
 #define BATCH 64
 #define BATCH_WITH 8
 
 /* How many corners one station has. */
 #define CORNERS (1U << WH_SPREADS)
 
-/* A ray is tried at so many places before it is bisected. */
+/* The number of places at which a ray is tried before it is bisected. */
 #define PLACES 8
 
-/* With collisions there is one for so many samples. */
+/* With collisions there is one ray for this number of samples. */
 #define SAMPLES_WITH 16
 
 typedef struct {
@@ -27,12 +27,12 @@ typedef struct {
     wh_budget_box_t *box;
     wh_budget_player_t *player; /* of the thread that leads */
     size_t size;                /* of points */
-    size_t *order;              /* of each station among those that are looked at */
+    size_t *order;              /* of each station among those that are searched */
     size_t wanted;              /* so many are */
-    const int32_t **width;      /* of each error; null: not looked at */
+    const int32_t **width;      /* of each error; null: not searched */
     int8_t *signs;              /* of the corner that failed last */
     wh_budget_level_t level;    /* of the list that is tried */
-    bool stuck;                 /* there were no threads, or it was enough */
+    bool stuck;                 /* there were no threads, or it was ended */
     /* A batch. */
     size_t first;
     int32_t *points;
@@ -107,7 +107,7 @@ static size_t count_of(const boxing_t *boxing, wh_box_kind_t kind) {
     }
 }
 
-/* Which kind a point of the list is of; `index` becomes its number among these. False behind the list. */
+/* The kind of a point of the list; `index` becomes its number within the kind. False behind the list. */
 static bool find_kind(const boxing_t *boxing, size_t *index, wh_box_kind_t *kind) {
     for (*kind = WH_BOX_ALIKE; *kind < WH_BOX_KINDS; ++*kind) {
         const size_t count = count_of(boxing, *kind);
@@ -131,7 +131,7 @@ static int32_t corner_of(size_t pattern, size_t axis, int32_t half) {
     return (pattern >> axis & 1U) != 0 ? half : -half;
 }
 
-/* Of all pairs one, which may be twice the same: number `index` is `one` and `other`, at most `one`. */
+/* The pair with number `index`: `one` and `other`, which is at most `one`. Both may be equal. */
 static void find_pair(size_t index, size_t *one, size_t *other) {
     *one = 0;
     while (index > *one) {
@@ -140,7 +140,7 @@ static void find_pair(size_t index, size_t *one, size_t *other) {
     *other = index;
 }
 
-/* The corner that failed last, with one error turned over for each of the first numbers, then with two. */
+/* The corner that failed last: for the first numbers with one error turned over, then with two. */
 static int32_t beside(const boxing_t *boxing, size_t index, size_t i, int32_t half) {
     const size_t errors = WH_SPREADS * boxing->wanted;
     if (boxing->order[i / WH_SPREADS] == SIZE_MAX) {
@@ -215,7 +215,7 @@ static void try_place(wh_budget_player_t *player, void *user, size_t index) {
     free(point);
 }
 
-/* The first point found on the way from 0 to `end` that fails, as `end` does; it takes the place of `end`.
+/* Finds the first failing point on the way from 0 to `end`, which fails itself; the point replaces `end`.
  * False if there are no threads. */
 static bool go_back(boxing_t *boxing, int32_t end[]) {
     ray_t ray = {.boxing = boxing, .end = end};
@@ -260,7 +260,8 @@ static bool is_origin(const boxing_t *boxing, const int32_t point[]) {
 }
 
 /* Shrinks the box until a point that fails is outside, and the point of the box next to it passes: these are
- * its witnesses. Where even no error at all fails, as when a file is changed meanwhile, no box is left. */
+ * its witnesses. If even a run without errors fails, for example because a file was changed meanwhile, no box
+ * is left. */
 static void shrink(boxing_t *boxing, const int32_t failing[]) {
     wh_budget_box_t *box = boxing->box;
     const size_t bytes = boxing->size * sizeof *failing;
@@ -303,6 +304,17 @@ static size_t first_failed(const boxing_t *boxing, size_t batch) {
     return failed;
 }
 
+static void tell_points(const boxing_t *boxing) {
+    const wh_budget_options_t *options = &boxing->budget->options;
+    if (options->tell) {
+        size_t count = 0;
+        for (wh_box_kind_t kind = WH_BOX_ALIKE; kind < WH_BOX_KINDS; ++kind) {
+            count += count_of(boxing, kind);
+        }
+        options->tell(options->user, "points of the box of all errors", boxing->first, count);
+    }
+}
+
 /* Tries all points of the level's list, each in the box as it then is. False if there are no threads;
  * `*clean` becomes false if one failed. */
 static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
@@ -312,6 +324,7 @@ static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
     boxing->level = level;
     boxing->first = 0;
     while (boxing->box->share > 0 && make_point(boxing, boxing->first, ignored)) {
+        tell_points(boxing);
         if (!wh_budget_share_out(boxing->crew, batch, try_point, boxing, NULL)) {
             free(ignored);
             return false;
@@ -330,19 +343,11 @@ static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
     return !boxing->stuck;
 }
 
-static void tell_round(const boxing_t *boxing, size_t round) {
-    const wh_budget_options_t *options = &boxing->budget->options;
-    if (options->tell) {
-        options->tell(options->user, "rounds of the box of all errors", round, 0);
-    }
-}
-
-/* Until none of the points fails in a box that stays the same. */
+/* Repeats until none of the points fails in a box that stays unchanged. */
 static bool try_lists(boxing_t *boxing) {
     bool clean = false;
-    for (size_t round = 1; !clean; ++round) {
+    while (!clean) {
         clean = true;
-        tell_round(boxing, round);
         if ((boxing->budget->two_ways && !try_list(boxing, WH_BUDGET_WITHOUT, &clean)) ||
             (clean && !try_list(boxing, WH_BUDGET_WITH, &clean))) {
             return false;
@@ -378,8 +383,8 @@ static void take_out(boxing_t *boxing, int32_t point[], size_t count) {
     free(less);
 }
 
-/* Leaves of the witnesses only the errors that it takes. False if a point of the box was found to fail on the
- * way: then the box has shrunk. */
+/* Leaves only the needed errors in the witnesses. False if a point of the box was found to fail on the way:
+ * then the box has shrunk. */
 static bool settle(boxing_t *boxing) {
     wh_budget_box_t *box = boxing->box;
     const int64_t share = box->share;
@@ -468,7 +473,8 @@ static bool find(boxing_t *boxing) {
     return found;
 }
 
-/* If a replay has ended otherwise than the script, as for an error alone, the script alone decides. */
+/* If a replay ended otherwise than the script, the script alone decides, as in the search of a single
+ * error. */
 static bool find_soundly(boxing_t *boxing) {
     wh_budget_crew_t *crew = boxing->crew;
     bool found = find(boxing);

@@ -14,11 +14,11 @@ typedef struct {
 typedef void wh_budget_work_t(wh_budget_player_t *player, void *user, size_t index);
 
 /* Does pieces 0 to count - 1, each once, on all threads, in any order. False if there are none, or if some
- * were left out because it was enough. `what` is told; null: nothing is. */
+ * pieces were left out because the search was ended. `what` is told; null: nothing is. */
 bool wh_budget_share_out(wh_budget_crew_t *crew, size_t count, wh_budget_work_t *work, void *user,
                          const char *what);
 
-/* Finds the box, once each error's width is known. False as wh_budget_find. */
+/* Finds the box, once each error's width is known. False in the cases of wh_budget_find. */
 bool wh_budget_find_box(wh_budget_crew_t *crew);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "../text/array.h"
 
-/* A wafer ends where it did if it is not farther from there, in mm and in rad. */
+/* A wafer ends at its old place if it is not farther from it than this, in mm and in rad. */
 #define SAME 1e-6
 
 /* ------------------------------------------------------------------------------------------------ opening */
@@ -33,7 +33,7 @@ static size_t count_caught(const wh_record_t *record) {
     return count;
 }
 
-/* The first complaint decides: what comes after it need not be played. */
+/* The first complaint decides: the rest need not be played. */
 static void end_at_complaint(void *user, const wh_command_t *command, const wh_state_t *state) {
     const wh_script_run_t *run = user;
     (void)command;
@@ -95,7 +95,7 @@ void wh_budget_text(char text[WH_BUDGET_TEXT], const wh_layout_t *layout, size_t
                    wh_errors_teaching_name(axis), (double)value / WH_BUDGET_UNIT);
 }
 
-/* For replays as numbers, for the script as texts: both are the same doubles. */
+/* Replays take numbers, the script takes texts: both give equal doubles. */
 static void give(wh_budget_player_t *player, const int32_t point[]) {
     size_t count = 0;
     for (size_t i = 0; i < player->point_size; ++i) {

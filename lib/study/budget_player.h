@@ -11,11 +11,12 @@ typedef enum {
     WH_BUDGET_WITH     /* all of it */
 } wh_budget_level_t;
 
-/* True if a run that fails without collisions also fails with them, as no decision depends on them, and if
- * looking for them takes long. */
+/* True if a run that fails without collisions also fails with them, because no decision depends on them, and
+ * if checking them takes long. */
 bool wh_budget_has_two_ways(const wh_study_t *study);
 
-/* What a thread needs. Each has its own. A point has WH_SPREADS numbers for each station, in thousandths. */
+/* The data of a thread. Each thread has its own. A point has WH_SPREADS numbers for each station, in
+ * thousandths. */
 typedef struct {
     const wh_study_t *shared;
     wh_study_t own; /* with the layout below */
@@ -45,10 +46,10 @@ void wh_budget_player_close(wh_budget_player_t *player);
 /* True if the script, played with these errors, ends as `run` with 0. It ends at the first complaint. */
 bool wh_budget_passes(wh_budget_player_t *player, const int32_t point[], wh_budget_level_t level);
 
-/* The same, always by the script itself, and why it fails. */
+/* Plays likewise, but always by the script itself, and tells why it fails. */
 bool wh_budget_run(wh_budget_player_t *player, const int32_t point[], wh_budget_why_t *why);
 
-/* Why a run failed: its first complaint, or the error that ended it, or what it expected. */
+/* Why a run failed: its first complaint, the error that ended it, or its unmet expectation. */
 void wh_budget_explain(const wh_record_t *record, const char *message, wh_budget_why_t *why);
 
 #endif

@@ -30,7 +30,7 @@ static void explain_complaint(const wh_record_t *record, const wh_event_record_t
     (void)wh_event_text(&complaint->event, &names, text, sizeof text);
     (void)snprintf(why->name, sizeof why->name, "%s", wh_event_name(complaint->event.kind));
     why->line = command ? command->line : 0;
-    (void)snprintf(why->command, sizeof why->command, "%.99s", command ? command->text : "");
+    (void)snprintf(why->command, sizeof why->command, "%s", command ? command->text : "");
     (void)snprintf(why->text, sizeof why->text, "%.399s", text);
 }
 
@@ -61,7 +61,7 @@ static bool explain_error(const wh_record_t *record, wh_budget_why_t *why) {
     why->error = command->error;
     why->line = command->line;
     (void)snprintf(why->name, sizeof why->name, "%s", wh_status_name(command->error));
-    (void)snprintf(why->command, sizeof why->command, "%.99s", command->text);
+    (void)snprintf(why->command, sizeof why->command, "%s", command->text);
     (void)snprintf(why->text, sizeof why->text, "%.399s",
                    miss[0] ? miss : wh_record_error_text(command->error));
     return true;

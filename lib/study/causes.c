@@ -28,7 +28,8 @@ static void add_spreads(list_t *list, wh_cause_kind_t kind, size_t index, const 
     }
 }
 
-/* With several robots: where each that serves the station was taught it, then how it stands. */
+/* With several robots: the taught place of each robot that serves the station, then the station's own
+ * errors. */
 static void add_taught(list_t *list, const wh_layout_t *layout, size_t station, const wh_spreads_t *spreads) {
     for (size_t r = 0; r < layout->robot_count; ++r) {
         for (size_t i = 0; i < 3 && layout->stations[station].by[r].serves; ++i) {
@@ -44,7 +45,7 @@ static void add_taught(list_t *list, const wh_layout_t *layout, size_t station, 
     }
 }
 
-/* Only what the wafer's rim has. */
+/* Only features that the wafer's rim has. */
 static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
     for (size_t i = 0; i < WH_RIM_WIDTHS; ++i) {
         const bool has = wh_rim_draw_concerns((wh_rim_draw_t)i, layout->rims[wafer]);
@@ -52,7 +53,7 @@ static void add_rim(list_t *list, const wh_layout_t *layout, size_t wafer) {
     }
 }
 
-/* Faces are not off in their block. */
+/* Faces have no errors within their block. */
 static void add_beam(list_t *list, const wh_layout_t *layout, size_t beam) {
     for (size_t i = 0; layout->doors[beam].kind == WH_DOOR_LIGHT && i < WH_BEAM_DRAWS; ++i) {
         add(list, WH_CAUSE_BEAM, beam, i, layout->errors->beams[beam].of[i].width);

@@ -10,82 +10,14 @@
 #include "../text/array.h"
 #include "../text/json.h"
 #include "../text/output.h"
+#include "identity.h"
 
-#define FORMAT 3
-
-/* -------------------------------------------------------------------------------------------- which study */
-
-static json_t *parameter(const void *subject, size_t i) {
-    return wh_json_text(((const wh_script_run_options_t *)subject)->parameters[i]);
-}
-
-/* The hash of each file that was read, by its path. */
-static json_t *files_of(const wh_study_t *study) {
-    json_t *files = json_object();
-    for (size_t i = 0; i < study->input_count; ++i) {
-        wh_json_put(files, study->inputs[i].path, wh_json_hash(study->inputs[i].hash));
-    }
-    return files;
-}
-
-/* In the order in which a difference is told. */
-static json_t *identity_of(const wh_study_t *study) {
-    const wh_script_run_options_t *run = &study->run;
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION, "script",
-                     wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
-                     wh_json_hash(study->seed), "parameters",
-                     wh_json_list(parameter, run, run->parameter_count), "files", files_of(study), "budget",
-                     (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
-                     "run_without_errors", wh_json_hash(study->nominal.record.hash));
-}
-
-/* The first file that one of the two has otherwise; null: none. */
-static const char *find_changed(json_t *found, json_t *expected) {
-    json_t *const both[2] = {expected, found};
-    for (int i = 0; i < 2; ++i) {
-        const char *path;
-        json_t *hash;
-        json_object_foreach(both[i], path, hash) {
-            if (!json_equal(hash, json_object_get(both[1 - i], path))) {
-                return path;
-            }
-        }
-    }
-    return NULL;
-}
-
-static void tell_difference(const char *key, json_t *found, json_t *expected, char *message, size_t size) {
-    const char *changed =
-        json_is_object(expected) && json_is_object(found) ? find_changed(found, expected) : NULL;
-    char *one = found ? json_dumps(found, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
-    char *two = json_dumps(expected, JSON_ENCODE_ANY | JSON_COMPACT);
-    if (changed) {
-        snprintf(message, size, "of another study: %.900s has changed since (expected the same files)",
-                 changed);
-    } else {
-        snprintf(message, size, "of another study: its %s is %.200s (expected %.200s)", key,
-                 one ? one : "nothing", two);
-    }
-    free(one);
-    free(two);
-}
-
-/* True if it is this study's; else the message tells the first difference. */
-static bool is_same(const json_t *found, const wh_study_t *study, char *message, size_t size) {
-    json_t *expected = identity_of(study);
-    const char *key;
-    json_t *value;
-    bool same = true;
-    json_object_foreach(expected, key, value) {
-        json_t *other = json_object_get(found, key);
-        if (same && !json_equal(other, value)) {
-            tell_difference(key, other, value, message, size);
-            same = false;
-        }
-    }
-    json_decref(expected);
-    return same;
-}
+#define FORMAT 6
+/* The first byte of a state. */
+#define BEGIN '{'
+/* The check stands behind all bytes that it covers: `,"check":"0123456789abcdef"}`. */
+#define CHECK_BYTES 28
+#define READ_BYTES 65536
 
 /* --------------------------------------------------------------------------------------------------- sums */
 
@@ -164,22 +96,24 @@ static bool take_wafers(const json_t *list, wh_tally_t *tally) {
 
 static json_t *put_row(const void *subject, size_t i) {
     const wh_tally_row_t *row = &((const wh_tally_rows_t *)subject)->rows[i];
-    return json_pack("[i, i, o, I, I, I, I]", row->line, row->place, wh_json_text(row->text),
-                     (json_int_t)row->named, (json_int_t)row->seen, (json_int_t)row->bad,
-                     (json_int_t)row->first);
+    return json_pack("[i, b, i, o, I, I, I, I]", row->line, row->is_implied, row->place,
+                     wh_json_text(row->text), (json_int_t)row->named, (json_int_t)row->seen,
+                     (json_int_t)row->bad, (json_int_t)row->first);
 }
 
 static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
     bool sound = json_is_array(list);
     for (size_t i = 0; sound && i < json_array_size(list); ++i) {
-        int line, place;
+        wh_tally_row_t key = {0};
+        int is_implied;
         const char *text;
         json_int_t named, seen, bad, first;
-        sound = json_unpack(json_array_get(list, i), "[i, i, s, I, I, I, I]", &line, &place, &text, &named,
-                            &seen, &bad, &first) == 0 &&
+        sound = json_unpack(json_array_get(list, i), "[i, b, i, s, I, I, I, I]", &key.line, &is_implied,
+                            &key.place, &text, &named, &seen, &bad, &first) == 0 &&
                 named >= 0 && seen >= 0 && bad >= 0;
         if (sound) {
-            wh_tally_row_t *row = wh_tally_row(rows, line, place, text, (uint64_t)named);
+            key.is_implied = is_implied != 0;
+            wh_tally_row_t *row = wh_tally_row(rows, &key, text, (uint64_t)named);
             row->seen = (uint64_t)seen;
             row->bad = (uint64_t)bad;
             row->first = (uint64_t)first;
@@ -191,21 +125,22 @@ static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
 /* Infinite is null. */
 static json_t *put_worst(const void *subject, size_t i) {
     const wh_tally_trial_t *trial = &((const wh_tally_t *)subject)->worst[i];
-    return json_pack("[I, b, o, b, I, I, I, I, I]", (json_int_t)trial->trial, trial->met,
+    return json_pack("[I, b, o, b, I, I, I, I, I, I, I]", (json_int_t)trial->trial, trial->met,
                      wh_json_real(trial->off), trial->ended, (json_int_t)trial->missed,
                      (json_int_t)trial->errors, (json_int_t)trial->elsewhere, (json_int_t)trial->kinds,
-                     (json_int_t)trial->missed_line);
+                     (json_int_t)trial->missed_line, (json_int_t)trial->error, (json_int_t)trial->error_line);
 }
 
 static bool take_worst(const json_t *list, wh_tally_t *tally) {
     bool sound = json_is_array(list) && json_array_size(list) <= WH_STUDY_WORST;
     for (size_t i = 0; sound && i < json_array_size(list); ++i) {
         json_int_t number;
-        json_int_t counts[5];
+        json_int_t counts[7];
         int met, ended;
         const json_t *off;
-        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I]", &number, &met, &off,
-                            &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4]) == 0 &&
+        sound = json_unpack(json_array_get(list, i), "[I, b, o, b, I, I, I, I, I, I, I]", &number, &met, &off,
+                            &ended, &counts[0], &counts[1], &counts[2], &counts[3], &counts[4], &counts[5],
+                            &counts[6]) == 0 &&
                 number >= 0;
         if (sound) {
             const wh_tally_trial_t trial = {.trial = (uint64_t)number,
@@ -216,6 +151,8 @@ static bool take_worst(const json_t *list, wh_tally_t *tally) {
                                             .elsewhere = (uint32_t)counts[2],
                                             .kinds = (uint32_t)counts[3],
                                             .missed_line = (uint32_t)counts[4],
+                                            .error = (uint32_t)counts[5],
+                                            .error_line = (uint32_t)counts[6],
                                             .off = json_is_null(off) ? (double)INFINITY
                                                                      : json_number_value(off)};
             wh_tally_note_worst(tally, &trial);
@@ -300,13 +237,42 @@ static bool take_lines(const json_t *lines, wh_tally_t *tally) {
            wh_trial_lines_read(&tally->lines, json_string_value(lines), tally->wafer_count);
 }
 
+static bool are_rows_possible(const wh_tally_rows_t *rows, uint64_t trials) {
+    bool possible = true;
+    for (size_t i = 0; i < rows->count; ++i) {
+        const wh_tally_row_t *row = &rows->rows[i];
+        possible = possible && row->bad <= row->seen && row->seen <= trials;
+    }
+    return possible;
+}
+
+/* True if so many trials can have these counts. Else the check was made of what is no result. */
+static bool is_possible(const wh_study_t *study, const wh_tally_t *tally) {
+    bool possible = tally->met <= tally->trials && tally->ended <= tally->trials &&
+                    tally->whole <= tally->trials && are_rows_possible(&tally->expectations, tally->trials) &&
+                    are_rows_possible(&tally->errors, tally->trials);
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        const wh_tally_event_t *event = &tally->events[kind];
+        possible = possible && event->trials <= tally->trials && event->trials <= event->total;
+    }
+    for (size_t w = 0; w < tally->wafer_count; ++w) {
+        const wh_tally_wafer_t *wafer = &tally->wafers[w];
+        possible = possible && wafer->elsewhere <= tally->trials &&
+                   wafer->of[0].count <= tally->trials - wafer->elsewhere;
+    }
+    for (size_t i = 0; i < tally->worst_count; ++i) {
+        possible = possible && tally->worst[i].trial < study->trials;
+    }
+    return possible;
+}
+
 static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *tally) {
     return take_counts(root, tally) && take_lines(json_object_get(root, "lines"), tally) &&
            take_events(json_object_get(root, "events"), tally) &&
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
-           take_worst(json_object_get(root, "worst"), tally) &&
+           take_worst(json_object_get(root, "worst"), tally) && is_possible(study, tally) &&
            take_relations(study, json_object_get(root, "relations"), tally);
 }
 
@@ -334,7 +300,7 @@ static bool take_stretch(const wh_study_t *study, const json_t *pair, wh_stretch
     return wh_stretches_add(done, stretch);
 }
 
-/* False, and the message says so, if trials are done whose lines are wanted and were not. */
+/* False, with a message, if trials are done without lines, although their lines are wanted now. */
 static bool has_lines(const wh_study_t *study, const wh_progress_t *progress, char *message, size_t size) {
     const uint64_t wanted = wh_stretches_below(&progress->done, study->lines);
     const uint64_t found = wh_trial_lines_below(&progress->tally.lines, study->lines);
@@ -359,22 +325,74 @@ static bool take_progress(const wh_study_t *study, const json_t *root, wh_progre
            progress->tally.trials == progress->done.trials && has_lines(study, progress, message, size);
 }
 
+/* ------------------------------------------------------------------------------------------------- check */
+
+static void write_check(const char *text, size_t size, char check[CHECK_BYTES + 1]) {
+    uint64_t hash = WH_HASH_START;
+    for (size_t i = 0; i < size; ++i) {
+        hash = wh_hash_word(hash, (unsigned char)text[i]);
+    }
+    (void)snprintf(check, CHECK_BYTES + 1, ",\"check\":\"%016llx\"}", (unsigned long long)hash);
+}
+
+/* Puts the check in place of the text's last bracket. */
+static char *with_check(char *text) {
+    const size_t size = strlen(text) - 1;
+    char *made = wh_array_new(size + CHECK_BYTES + 1, 1);
+    (void)snprintf(made, size + 1, "%s", text);
+    write_check(text, size, made + size);
+    free(text);
+    return made;
+}
+
+/* True if the text ends with the check of the bytes before it; else the message says that it is damaged. */
+static bool is_whole(const char *text, size_t size, char *message, size_t message_size) {
+    char check[CHECK_BYTES + 1];
+    if (size == 0 || text[0] != BEGIN) {
+        snprintf(message, message_size, "damaged (expected a study's state)");
+        return false;
+    }
+    while (size > 0 && (text[size - 1] == '\n' || text[size - 1] == '\r')) {
+        --size;
+    }
+    const char *end = size > CHECK_BYTES ? text + size - CHECK_BYTES : NULL;
+    if (!end || memcmp(end, ",\"check\":\"", 10) != 0) {
+        snprintf(message, message_size,
+                 "damaged, or of an older version (expected a study's state, with its check at the end)");
+        return false;
+    }
+    write_check(text, size - CHECK_BYTES, check);
+    if (memcmp(end, check, CHECK_BYTES) != 0) {
+        snprintf(message, message_size,
+                 "damaged: something in it was changed (its check is %.16s, expected %.16s)", end + 10,
+                 check + 10);
+        return false;
+    }
+    return true;
+}
+
 /* ----------------------------------------------------------------------------------------- there and back */
 
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
-    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", FORMAT, "study", identity_of(study), "done",
-                             wh_json_list(put_stretch, &progress->done, progress->done.count), "tally",
-                             put_tally(&progress->tally));
+    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", FORMAT, "study", wh_study_identity(study),
+                             "done", wh_json_list(put_stretch, &progress->done, progress->done.count),
+                             "tally", put_tally(&progress->tally));
     char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(root);
-    return text;
+    return text ? with_check(text) : NULL;
 }
 
-/* Releases the root. */
-static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress, char *message, size_t size) {
+static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
+                 size_t size) {
+    const json_t *format = json_object_get(root, "format");
     snprintf(message, size, "damaged (expected a study's state)");
-    bool sound = json_integer_value(json_object_get(root, "format")) == FORMAT &&
-                 is_same(json_object_get(root, "study"), study, message, size);
+    if (json_is_integer(format) && json_integer_value(format) != FORMAT) {
+        snprintf(message, size, "of another version: its format is %lld (expected %d)",
+                 (long long)json_integer_value(format), FORMAT);
+        return false;
+    }
+    bool sound =
+        json_is_integer(format) && wh_study_is_same(json_object_get(root, "study"), study, message, size);
     if (sound) {
         wh_progress_t taken;
         wh_progress_init(&taken, study);
@@ -384,13 +402,18 @@ static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress,
         }
         wh_progress_free(&taken);
     }
-    json_decref(root);
     return sound;
 }
 
 bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
                         char *message, size_t message_size) {
-    return take(study, json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL), progress, message, message_size);
+    if (!is_whole(text, size, message, message_size)) {
+        return false;
+    }
+    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
+    const bool sound = take(study, root, progress, message, message_size);
+    json_decref(root);
+    return sound;
 }
 
 bool wh_checkpoint_save(const char *path, const char *text) {
@@ -402,31 +425,53 @@ bool wh_checkpoint_save(const char *path, const char *text) {
     return wh_output_commit(&output);
 }
 
+/* The file's bytes, to be freed; null, with errno, if it cannot be read. A file that does not begin as a
+ * state is not read further: a device may have no end. */
+static char *read_all(FILE *file, size_t *size) {
+    char *text = NULL;
+    size_t capacity = 0;
+    *size = 0;
+    for (size_t got = 1; got > 0; *size += got) {
+        text = wh_array_reserve(text, *size + READ_BYTES, &capacity, 1);
+        got = fread(text + *size, 1, READ_BYTES, file);
+        if (got > 0 && text[0] != BEGIN) {
+            *size += got;
+            break;
+        }
+    }
+    if (ferror(file)) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
 wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *study, wh_progress_t *progress) {
-    char message[1024] = "";
+    char message[1200] = "";
+    size_t size = 0;
     FILE *file = fopen(path, "r");
     if (!file && errno == ENOENT) {
         return WH_CHECKPOINT_NONE;
     }
-    json_t *root = file ? json_loadf(file, JSON_REJECT_DUPLICATES, NULL) : NULL;
-    bool read = file && !ferror(file);
-    if (!read) {
+    char *text = file ? read_all(file, &size) : NULL;
+    if (!text) {
         snprintf(message, sizeof message, "%s (expected a file that can be read)", strerror(errno));
     }
-    read = read && take(study, root, progress, message, sizeof message);
+    const bool read = text && wh_checkpoint_read(study, text, size, progress, message, sizeof message);
     if (!read) {
         fprintf(stderr, "--state %s: %s\n", path, message);
     }
     if (file) {
         fclose(file);
     }
+    free(text);
     return read ? WH_CHECKPOINT_READ : WH_CHECKPOINT_REFUSED;
 }
 
 char *wh_checkpoint_default_path(const wh_study_t *study) {
     char name[40];
     char path[PATH_MAX];
-    json_t *identity = identity_of(study);
+    json_t *identity = wh_study_identity(study);
     char *text = json_dumps(identity, JSON_COMPACT);
     uint64_t hash = WH_HASH_START;
     for (const char *c = text; *c; ++c) {

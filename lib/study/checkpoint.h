@@ -1,9 +1,8 @@
 /* A study's progress as text: in a file, to go on from, and on its way to another rank.
  *
- * JSON. `study` says which study it is of: version, script, layout, parameters, seed, and hashes of the
- * run without errors and of each file that it read: modules and meshes, too. How many trials there are to be
- * is no part of it: a study can be extended. `done` has the first and the last trial of each
- * stretch that is done; the rest is the tally.
+ * JSON. `study` says to which study it belongs (identity.h). It does not hold the number of trials, because a
+ * study can be extended. `done` has the first and the last trial of each stretch that is done, `tally` the
+ * rest. `check`, the last member, is a hash of all bytes before it: a state that was changed is refused.
  */
 #ifndef WH_STUDY_CHECKPOINT_H
 #define WH_STUDY_CHECKPOINT_H
@@ -13,13 +12,14 @@
 /* The progress as text, to be freed. */
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress);
 
-/* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of
- * another study: its seed is 2 (expected 1)", "of a longer study" or "damaged". */
+/* Adds the text's contents to `progress`, which is unchanged on failure: then `message` says what is wrong,
+ * "of another study: its seed is 2 (expected 1)", "of a longer study", "of another version" or
+ * "damaged". */
 bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
                         char *message, size_t message_size);
 
-/* Replaces the file at once: whoever opens it sees the old text or the new one, also after a crash. False,
- * with errno, when that is not possible. */
+/* Replaces the file at once: a reader sees the old text or the new one, also after a crash. False, with
+ * errno, when that is not possible. */
 bool wh_checkpoint_save(const char *path, const char *text);
 
 typedef enum { WH_CHECKPOINT_NONE, WH_CHECKPOINT_READ, WH_CHECKPOINT_REFUSED } wh_checkpoint_found_t;

@@ -6,9 +6,13 @@
 #include <string.h>
 
 #include "../grasp/event.h"
+#include "../math/status.h"
 #include "../text/array.h"
 
 enum { MET = 1, WHOLE = 2, ENDED = 4 };
+
+/* The count of a line's numbers before the one for how far off it is. */
+enum { NUMBERS = 10 };
 
 void wh_trial_lines_free(wh_trial_lines_t *lines) {
     free(lines->lines);
@@ -100,6 +104,8 @@ char *wh_trial_lines_text(const wh_trial_lines_t *lines) {
         put(out, line->elsewhere, ' ');
         put(out, line->kinds, ' ');
         put(out, line->missed_line, ' ');
+        put(out, line->error, ' ');
+        put(out, line->error_line, ' ');
         put_real(out, line->off);
         for (size_t e = 0; e < width; ++e) {
             put_real(out, lines->ends[i * width + e]);
@@ -130,9 +136,9 @@ static bool take_real(const char **text, double *value) {
 bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count) {
     bool sound = true;
     while (sound && *text != '\0') {
-        uint64_t numbers[8] = {0};
+        uint64_t numbers[NUMBERS] = {0};
         double off = 0;
-        for (size_t i = 0; sound && i < 8; ++i) {
+        for (size_t i = 0; sound && i < NUMBERS; ++i) {
             sound = take(&text, &numbers[i]);
         }
         sound = sound && take_real(&text, &off);
@@ -146,6 +152,8 @@ bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer
                                       (uint32_t)numbers[5],
                                       (uint32_t)numbers[6],
                                       (uint32_t)numbers[7],
+                                      (uint32_t)numbers[8],
+                                      (uint32_t)numbers[9],
                                       off};
         double *ends = wh_trial_lines_add(lines, &line, wafer_count);
         for (size_t e = 0; sound && e < wafer_count * WH_TRIAL_LINE_ENDS; ++e) {
@@ -157,7 +165,7 @@ bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer
 
 /* ---------------------------------------------------------------------------------------------------- why */
 
-/* What a reason is made of. */
+/* A reason that is being put together. */
 typedef struct {
     char *text;
     size_t size, length;
@@ -179,17 +187,35 @@ static const char *plural(uint32_t count) {
     return count == 1 ? "" : "s";
 }
 
+/* A script may also end by an error of its own. */
+static void name_error(const wh_trial_line_t *trial, char *text, size_t size) {
+    if (trial->error == 0) {
+        (void)snprintf(text, size, "an error");
+    } else {
+        (void)snprintf(text, size, "%u %s in line %u", trial->error,
+                       wh_status_name((wh_status_t)trial->error), trial->error_line);
+    }
+}
+
+/* Adds the errors that stopped the commands of a trial. */
+static void add_errors(reason_t *reason, const wh_trial_line_t *trial) {
+    char error[80];
+    name_error(trial, error, sizeof error);
+    if (trial->ended) {
+        add_reason(reason, "ended by %s", error);
+    } else if (trial->errors > 0) {
+        add_reason(reason, "%u command%s failed%s%s", trial->errors, plural(trial->errors),
+                   trial->error > 0 ? ": " : "", trial->error > 0 ? error : "");
+    }
+}
+
 void wh_trial_line_why(const wh_trial_line_t *trial, char *why, size_t size) {
     reason_t reason = {why, size, 0};
     why[0] = '\0';
     if (trial->met) {
         return;
     }
-    if (trial->ended) {
-        add_reason(&reason, "ended by an error");
-    } else if (trial->errors > 0) {
-        add_reason(&reason, "%u command%s failed", trial->errors, plural(trial->errors));
-    }
+    add_errors(&reason, trial);
     if (trial->missed > 0) {
         add_reason(&reason, "line %u missed", trial->missed_line);
     }

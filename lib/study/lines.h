@@ -1,4 +1,4 @@
-/* What came of single trials, a line each: for a table of them, and for points in a plot. */
+/* The results of single trials, a line each: for a table of them, and for points in a plot. */
 #ifndef WH_STUDY_LINES_H
 #define WH_STUDY_LINES_H
 
@@ -17,7 +17,8 @@ typedef struct {
     uint32_t elsewhere;                  /* wafers */
     uint32_t kinds;                      /* of the complaints: bit wh_event_kind_t of each */
     uint32_t missed_line;                /* of the first expectation that was missed; 0: none */
-    double off; /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
+    uint32_t error, error_line; /* of the command that ended it, else of the first that failed; 0: none */
+    double off;                 /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
 } wh_trial_line_t;
 
 /* To be zeroed; `wafer_count` is that of the first line. */
@@ -37,17 +38,17 @@ void wh_trial_lines_merge(wh_trial_lines_t *lines, const wh_trial_lines_t *other
 /* By trial. */
 void wh_trial_lines_sort(wh_trial_lines_t *lines);
 
-/* How many are of trials below this. */
+/* The number of lines of trials below this one. */
 uint64_t wh_trial_lines_below(const wh_trial_lines_t *lines, uint64_t trial);
 
-/* As a text, to be freed: the bits of each number in hexadecimal digits. */
+/* The lines as a text, to be freed: the bits of each number in hexadecimal digits. */
 char *wh_trial_lines_text(const wh_trial_lines_t *lines);
 
-/* Adds those of such a text. False if it is none, then some may have been added. */
+/* Adds the lines of such a text. False if the text is not valid; some lines may then have been added. */
 bool wh_trial_lines_read(wh_trial_lines_t *lines, const char *text, size_t wafer_count);
 
-/* Why a trial is not ok, in a few words: "line 9 missed, hit, 1 wafer elsewhere". Empty if it is ok.
- * Writes at most `size` bytes. */
+/* Why a trial is not ok, in a few words, such as "ended by 42 WAFER_MISSING in line 5, 1 wafer elsewhere".
+ * Empty if it is ok. Writes at most `size` bytes. */
 #define WH_TRIAL_LINE_WHY 400
 void wh_trial_line_why(const wh_trial_line_t *trial, char *why, size_t size);
 

@@ -8,10 +8,10 @@
 #include "../text/array.h"
 #include "../text/clock.h"
 
-/* A worker shows what it has done when it is idle, and every so many seconds. */
+/* A worker shows its results when it is idle, and at this interval in seconds. */
 #define SHOW_S 0.3
 
-/* At most so many trials are a turn. */
+/* The most trials of a turn. */
 #define MOST_TURN 4096
 
 struct wh_pool_worker {
@@ -57,7 +57,7 @@ static void fail(wh_pool_worker_t *worker, uint64_t trial, const char *message) 
     wh_pool_stop(pool);
 }
 
-/* Plays trials up to the first that is not usable, or until all is to stop. Returns how many. */
+/* Plays trials up to the first that is not usable, or until the pool must stop. Returns how many. */
 static uint64_t play(wh_pool_worker_t *worker, wh_stretch_t turn) {
     char message[WH_SANDBOX_MESSAGE_BYTES] = "";
     for (uint64_t i = 0; i < turn.count; ++i) {
@@ -81,7 +81,7 @@ static void play_turn(wh_pool_worker_t *worker, wh_stretch_t turn) {
     }
 }
 
-/* With the pool's lock held: how many trials to take. Before the first turn nobody knows what a trial costs.
+/* With the pool's lock held: how many trials to take. Before the first turn the cost of a trial is unknown.
  * At the end turns become shorter, so that no worker is left with many while the others wait. */
 static uint64_t turn_length(wh_pool_worker_t *worker) {
     wh_pool_t *pool = worker->pool;

@@ -9,16 +9,17 @@
 
 typedef struct wh_pool_worker wh_pool_worker_t;
 
-/* A worker takes so many trials off the queue as it plays in about this time: one, when each takes longer. */
+/* A worker takes as many trials off the queue as it can play in about this time: one, if each takes
+ * longer. */
 #define WH_POOL_TURN_S 0.02
 
-/* Fields are read and written under `lock`, but for `stop`, which is read and written as an atomic. */
+/* Fields are read and written under `lock`, except `stop`, which is read and written as an atomic. */
 typedef struct {
     const wh_study_t *study;
     pthread_mutex_t lock;
     pthread_cond_t changed;
     wh_stretches_t queue; /* trials to be played */
-    uint64_t pace;        /* so many trials a worker plays in WH_POOL_TURN_S, as far as known */
+    uint64_t pace;        /* the number of trials that a worker plays in WH_POOL_TURN_S, as far as known */
     bool closed;          /* nothing more will be queued */
     bool failed;          /* a trial was not usable */
     size_t working;       /* workers that are not waiting */
@@ -45,15 +46,16 @@ typedef struct {
     uint64_t queued; /* trials */
     uint64_t pace;   /* as of the pool */
     bool failed;     /* a trial was not usable; `message` then says why */
-    bool idle; /* it has failed; or the workers wait, all they did is in `progress`, and nothing is queued */
+    bool idle; /* it has failed; or the workers wait, all their results are in `progress`, and nothing is
+                * queued */
 } wh_pool_news_t;
 
 wh_pool_news_t wh_pool_look(wh_pool_t *pool);
 
-/* Makes the workers leave what they are at. */
+/* Makes the workers stop their present work. */
 void wh_pool_stop(wh_pool_t *pool);
 
-/* Waits up to so many milliseconds for anything to change. */
+/* Waits up to this number of milliseconds for any change. */
 void wh_pool_wait(wh_pool_t *pool, int milliseconds);
 
 /* Ends the threads. Trials that they have not finished are given up. */

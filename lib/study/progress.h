@@ -1,4 +1,4 @@
-/* What is done of a study: which trials, and what came of them. */
+/* The progress of a study: the trials that are done, and their results. */
 #ifndef WH_STUDY_PROGRESS_H
 #define WH_STUDY_PROGRESS_H
 
@@ -29,7 +29,7 @@ wh_stretch_t wh_stretches_take(wh_stretches_t *stretches, uint64_t most);
 /* How many of them are below this. */
 uint64_t wh_stretches_below(const wh_stretches_t *stretches, uint64_t trial);
 
-/* Fills in, from empty, the trials from 0 up to `trials` that `done` has not. */
+/* Fills in, from empty, the trials from 0 up to `trials` that are not in `done`. */
 void wh_stretches_rest(wh_stretches_t *rest, const wh_stretches_t *done, uint64_t trials);
 
 typedef struct {
@@ -40,7 +40,7 @@ typedef struct {
 void wh_progress_init(wh_progress_t *progress, const wh_study_t *study);
 void wh_progress_free(wh_progress_t *progress);
 
-/* Adds what another has done, none of it done twice. The result does not depend on order, to the last bit. */
+/* Adds another progress; no trial may be done twice. The result does not depend on order, to the last bit. */
 void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other);
 
 #endif

@@ -12,10 +12,10 @@
 
 #define LIBRARY "waferhand_mpi.so"
 
-/* A rank tells what it has done every so many seconds. */
+/* The interval, in seconds, at which a rank tells its progress. */
 #define TELL_S 1.0
 
-/* What a message to rank 0 begins with; then the progress, or why it failed. */
+/* The first byte of a message to rank 0; then comes the progress, or why it failed. */
 enum { WANTS_MORE = 'M', HAS_DONE = 'D', HAS_ENDED = 'E', HAS_FAILED = 'F' };
 
 /* A number of processes as mpirun tells it; 1 without mpirun. */
@@ -156,7 +156,7 @@ static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     return sent;
 }
 
-/* Tells what was done since the last message. */
+/* Tells the progress since the last message. */
 static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     pthread_mutex_lock(&pool->lock);
     char *text = wh_checkpoint_text(pool->study, &pool->progress);
@@ -168,7 +168,7 @@ static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     return told;
 }
 
-/* What another rank knows. */
+/* The state of another rank. */
 typedef struct {
     bool wanting, more;
     uint64_t given; /* trials that came last */

@@ -8,7 +8,7 @@
 
 #include <stddef.h>
 
-/* Changes with what follows. */
+/* The version: it changes with the declarations below. */
 #define WH_RANKS_VERSION 1
 
 typedef struct {

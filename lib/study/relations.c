@@ -110,8 +110,8 @@ void wh_relations_merge(wh_relations_t *relations, const wh_relations_t *other) 
 
 /* ------------------------------------------------------------------------------------------- correlations */
 
-/* Of n pairs: the sum of (x - mean) (y - mean), from plain sums. Exact until the last step: products wrap,
- * and what they wrap to is what fits. */
+/* The sum of (x - mean) (y - mean) over n pairs, from plain sums. It is exact until the last step: products
+ * wrap, and the wrapped result is right. */
 static double centred(uint64_t n, wh_int128_t x, wh_int128_t y, wh_int128_t xy) {
     const wh_int128_t count = (wh_int128_t)n;
     const wh_int128_t near_x = x / count;
@@ -123,7 +123,7 @@ static double centred(uint64_t n, wh_int128_t x, wh_int128_t y, wh_int128_t xy) 
     return (double)(wh_int128_t)apart - rest;
 }
 
-/* The standard normal's value that is not exceeded with all but this probability on either side together. */
+/* The value of the standard normal that is exceeded, on both sides together, with this probability. */
 static double normal_bound(double beyond) {
     double low = 0;
     double high = 40;

@@ -16,14 +16,16 @@
 #include "../text/output.h"
 #include "../text/style.h"
 #include "checkpoint.h"
+#include "concerns.h"
 
-/* What is done is kept every so many seconds, or so seldom that keeping takes a 20th of the time. */
+/* The progress is kept at this interval in seconds, or less often, so that keeping takes at most a 20th of
+ * the time. */
 #define KEEP_S 1.0
 #define KEEP_SHARE 20
 
 #define MOST_THREADS 1024
 
-/* The bar is so wide. */
+/* The width of the bar. */
 #define CELLS 30
 
 /* ---------------------------------------------------------------------------------- what all trials share */
@@ -66,7 +68,7 @@ static bool is_known(const wh_study_t *study, int32_t wafer) {
     return known;
 }
 
-/* Those that the run without errors takes, in that order. */
+/* The wafers that the run without errors takes, in that order. */
 static void choose_wafers(wh_study_t *study) {
     const wh_record_t *record = &study->nominal.record;
     for (size_t i = 0; i < record->event_count && study->wafer_count < WH_STUDY_WAFERS; ++i) {
@@ -105,7 +107,7 @@ static bool asks_the_cell(const wh_decisions_t *decisions) {
     return asks;
 }
 
-/* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is looked at. */
+/* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is checked. */
 static bool checks_nothing(const wh_study_t *study) {
     const wh_record_t *record = &study->nominal.record;
     return record->ok && record->event_count == 0 &&
@@ -132,12 +134,12 @@ bool wh_study_has_noise(const wh_study_t *study) {
 }
 
 bool wh_study_is_of_noise(const wh_study_t *study) {
-    return !study->draws_nothing && study->cause_count == 0 && wh_study_has_noise(study);
+    return !study->draws_nothing && study->drawn_count == 0 && wh_study_has_noise(study);
 }
 
-/* Without widths all trials are alike, unless sensors have noise of their own, and are asked. */
+/* Without widths all trials are alike, unless sensors with noise of their own are read. */
 static bool draws_something(const wh_study_t *study) {
-    return study->draws_nothing || study->cause_count > 0 || wh_study_is_of_noise(study) ||
+    return study->draws_nothing || study->drawn_count > 0 || wh_study_is_of_noise(study) ||
            refuse(study->layout->path,
                   "study: nothing is drawn, so that all trials are alike (expected a width "
                   "above 0, as study = { placement = { dx = 0.3 } }, here or in the script)");
@@ -175,7 +177,7 @@ bool wh_study_open(wh_study_t *study) {
         fprintf(stderr, "%s\n", study->nominal.message);
         return false;
     }
-    study->layout = study->nominal.mcs.layout;
+    study->layout = wh_mcs_layout(&study->nominal.mcs);
     if (!is_fit(study)) {
         return false;
     }
@@ -183,7 +185,10 @@ bool wh_study_open(wh_study_t *study) {
                    : goes_elsewhere(study)  ? "where each robot was taught its stations"
                                             : study->decisions.unfit;
     choose_wafers(study);
-    study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
+    if (!study->draws_nothing) {
+        study->drawn = wh_causes_of(study->layout, &study->drawn_count);
+        study->causes = wh_concerns_choose(study, &study->cause_count);
+    }
     return draws_something(study) && choose_lines(study);
 }
 
@@ -193,6 +198,7 @@ void wh_study_close(wh_study_t *study) {
     }
     free(study->inputs);
     wh_decisions_free(&study->decisions);
+    free(study->drawn);
     free(study->causes);
     wh_script_run_close(&study->nominal);
 }
@@ -202,7 +208,7 @@ void wh_study_close(wh_study_t *study) {
 /* Where progress is kept, and when it was kept last. */
 typedef struct {
     char *path; /* null: nowhere */
-    bool named; /* by the user: then it stays, and not being able to write is a failure */
+    bool named; /* by the user: then the file stays, and a failed write is a failure */
     double kept;
     double pause; /* s until the next time */
 } keeper_t;
@@ -258,7 +264,7 @@ typedef struct {
     double start, shown;   /* s */
 } bar_t;
 
-/* Ten times a second at most. */
+/* Drawn at most ten times a second. */
 static void bar_show(bar_t *bar, uint64_t done) {
     const double now = wh_clock_seconds();
     if (!bar->out || now - bar->shown < 0.1) {
@@ -313,7 +319,7 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
     return wh_pool_look(pool).idle && ranks->ended == ranks->size - 1;
 }
 
-/* Each 50 ms: what other ranks sent is taken, and what is done is kept. False if that failed. */
+/* Every 50 ms: takes the messages of other ranks, and keeps the progress. False if that failed. */
 static bool attend(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
     wh_pool_wait(pool, 50);
     return wh_ranks_serve(ranks, pool) &&
@@ -354,7 +360,7 @@ static wh_study_end_t play_first(wh_pool_t *pool, const wh_study_options_t *opti
     if (open_keeper(&keeper, options, pool)) {
         end = lead(pool, ranks, &keeper);
         wh_pool_stop(pool);
-        while (!wh_pool_look(pool).idle) { /* until all that they have done is in the progress */
+        while (!wh_pool_look(pool).idle) { /* until all their results are in the progress */
             wh_pool_wait(pool, 5);
         }
         const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;

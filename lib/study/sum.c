@@ -82,8 +82,8 @@ double wh_sum_mean(const wh_sum_t *sum) {
     return sum->count == 0 ? 0 : (double)sum->sum / (double)sum->count * UNIT;
 }
 
-/* Of squares about a whole number near the mean: exact until the two last steps. Unsigned products wrap, and
- * what they wrap to is what fits. */
+/* Takes squares about a whole number near the mean: exact until the two last steps. Unsigned products wrap,
+ * and the wrapped result is right. */
 double wh_sum_deviation(const wh_sum_t *sum) {
     if (sum->count < 2) {
         return 0;

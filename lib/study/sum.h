@@ -1,10 +1,10 @@
-/* What a measured quantity does over many trials: mean, standard deviation, extremes, quantiles; and how sure
- * a rate is.
+/* Statistics of a measured quantity over many trials: mean, standard deviation, extremes, quantiles; and how
+ * sure a rate is.
  *
  * Values are kept as whole multiples of 2^-30 (about 1e-9 mm or degrees) in exact integer sums, and counted
- * in bins that are the same for every study. So adding is commutative and associative to the last bit:
- * whatever threads and machines shared the trials, in whatever order their sums came together, the result is
- * the same.
+ * in bins that are the same for every study. So adding is commutative and associative to the last bit. The
+ * result does not depend on which threads and machines shared the trials, or on the order in which their sums
+ * came together.
  */
 #ifndef WH_STUDY_SUM_H
 #define WH_STUDY_SUM_H
@@ -15,7 +15,7 @@
 __extension__ typedef __int128 wh_int128_t;
 __extension__ typedef unsigned __int128 wh_uint128_t;
 
-/* Values beyond are counted as these, in units of 2^-30. */
+/* Values beyond this limit count as the limit, in units of 2^-30. */
 #define WH_SUM_MOST (INT64_C(1) << 43)
 
 /* Per sign one bin for each whole number below 128, then 64 for each doubling up to 2^44. */
@@ -31,13 +31,13 @@ typedef struct {
     uint64_t bins[WH_SUM_BINS];
 } wh_sum_t;
 
-/* A value as a whole multiple of 2^-30, rounded; beyond WH_SUM_MOST it is that. */
+/* A value as a whole multiple of 2^-30, rounded, and limited to WH_SUM_MOST. */
 int64_t wh_sum_whole(double value);
 
-/* One more value; it must be finite. At most 2^40 of them. Cost: about 5 ns. */
+/* Adds a value; it must be finite. At most 2^40 values. Cost: about 5 ns. */
 void wh_sum_add(wh_sum_t *sum, double value);
 
-/* All that another has counted. */
+/* Adds all values of another sum. */
 void wh_sum_merge(wh_sum_t *sum, const wh_sum_t *other);
 
 /* 0 when nothing was counted; the deviation (n - 1 under the root) 0 below two. */

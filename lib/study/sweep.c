@@ -18,7 +18,7 @@ static bool refuse(const char *parameter, const char *why) {
     return false;
 }
 
-/* True if this is to be a range: two colons behind the '=', the first after a number. */
+/* True if the text is meant as a range: two colons behind the '=', the first after a number. */
 static bool is_range(const char *parameter) {
     const char *value = strchr(parameter, '=');
     char *end = NULL;
@@ -118,7 +118,7 @@ void wh_sweep_text(double value, char text[WH_SWEEP_VALUE]) {
 
 typedef struct {
     wh_script_sweep_t *sweep;
-    size_t next; /* the first that nobody has taken; an atomic */
+    size_t next; /* the first run that no thread has taken; an atomic */
 } crew_t;
 
 /* The parameters of a run: to be freed, each of them too. */

@@ -4,10 +4,10 @@
 
 #include "../mcs/script_run.h"
 
-/* So many runs at most. */
+/* The most runs. */
 #define WH_SWEEP_MOST 10000
 
-/* So many parameters vary at most. */
+/* The most parameters that vary. */
 #define WH_SWEEP_AXES 4
 
 /* A parameter that takes the values start, start + step, ... up to end. */
@@ -19,12 +19,12 @@ typedef struct {
 
 typedef enum {
     WH_SWEEP_OK,
-    WH_SWEEP_FAILED, /* as of a run; or it moves nothing and expects nothing */
+    WH_SWEEP_FAILED, /* like a run; or it moves nothing and expects nothing */
     WH_SWEEP_UNDONE, /* interrupted before it */
     WH_SWEEP_BAD     /* script, layout or parameter cannot be used with these values */
 } wh_sweep_verdict_t;
 
-/* What came of a run. A figure that it has not is infinite. */
+/* The result of a run. A figure that the run does not have is infinite. */
 typedef struct {
     wh_sweep_verdict_t verdict;
     char *reason; /* why it is not ok; else null */
@@ -46,20 +46,20 @@ typedef struct {
     size_t point_count;
 } wh_script_sweep_t;
 
-/* Reads the parameters. Zero `sweep` but for run, parameters and parameter_count, and close it either way.
- * False, and the reason on stderr, if a range is none, none is given, or they are too many runs. Memory that
- * runs out ends the program. */
+/* Reads the parameters. Zero `sweep` except run, parameters and parameter_count, and close it in any case.
+ * False, and the reason on stderr, if a range is invalid, if none is given, or if there are too many runs.
+ * Memory that runs out ends the program. */
 bool wh_sweep_open(wh_script_sweep_t *sweep);
 void wh_sweep_close(wh_script_sweep_t *sweep);
 
-/* Runs them all on so many threads, until wh_interrupt_came: those that are not begun then stay undone.
+/* Runs them all on this number of threads, until wh_interrupt_came: runs that are not begun then stay undone.
  * False, and the reason on stderr, if there is no thread. */
 bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
 
 /* The value that a run has on an axis. */
 double wh_sweep_value(const wh_script_sweep_t *sweep, size_t point, size_t axis);
 
-/* How an axis' value is handed over. */
+/* The text with which an axis' value is handed over. */
 #define WH_SWEEP_VALUE 32
 void wh_sweep_text(double value, char text[WH_SWEEP_VALUE]);
 

@@ -33,11 +33,12 @@ void wh_tally_free(wh_tally_t *tally) {
 /* --------------------------------------------------------------------------------------------------- rows */
 
 /* The search begins behind the last row found: most trials come to their rows in the same order. */
-static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place, const char *text) {
+static wh_tally_row_t *find_row(wh_tally_rows_t *rows, const wh_tally_row_t *key, const char *text) {
     for (size_t i = 0; i < rows->count; ++i) {
         const size_t index = (rows->next + i) % rows->count;
         const wh_tally_row_t *row = &rows->rows[index];
-        if (row->line == line && row->place == place && (!rows->by_text || strcmp(row->text, text) == 0)) {
+        if (row->line == key->line && row->place == key->place && row->is_implied == key->is_implied &&
+            (!rows->by_text || strcmp(row->text, text) == 0)) {
             rows->next = index + 1;
             return &rows->rows[index];
         }
@@ -45,13 +46,22 @@ static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place, cons
     return NULL;
 }
 
-wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named) {
-    wh_tally_row_t *row = find_row(rows, line, place, text);
+bool wh_tally_is_told(const wh_tally_row_t *row) {
+    return !row->is_implied || row->bad > 0;
+}
+
+wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, const wh_tally_row_t *key, const char *text,
+                             uint64_t named) {
+    wh_tally_row_t *row = find_row(rows, key, text);
     if (!row) {
         rows->rows = wh_array_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
         row = &rows->rows[rows->count++];
-        *row = (wh_tally_row_t){
-            line, place, NULL, WH_TALLY_NO_TRIAL, 0, 0, WH_TALLY_NO_TRIAL, WH_TALLY_NO_TRIAL};
+        *row = (wh_tally_row_t){.line = key->line,
+                                .is_implied = key->is_implied,
+                                .place = key->place,
+                                .named = WH_TALLY_NO_TRIAL,
+                                .first = WH_TALLY_NO_TRIAL,
+                                .last = WH_TALLY_NO_TRIAL};
     }
     if (!row->text || named < row->named) {
         free(row->text);
@@ -71,28 +81,31 @@ static void count_row(wh_tally_row_t *row, uint64_t trial, bool bad) {
     }
 }
 
-/* How many expectations precede this one in its line. `before` is the place of the expectation before it. */
-static int place_of(const wh_record_t *record, size_t index, int before) {
-    const wh_expectation_record_t *expected = record->expectations;
-    if (index > 0 && expected[index - 1].line == expected[index].line) {
+/* How many expectations of its kind precede this one in its line. `before` is the place of the one before
+ * it. */
+static int place_of(const wh_expectation_record_t expected[], size_t index, int before) {
+    const wh_expectation_record_t *it = &expected[index];
+    if (index > 0 && it[-1].line == it->line && it[-1].is_implied == it->is_implied) {
         return before + 1;
     }
     int place = 0;
     for (size_t i = 0; i < index; ++i) {
-        place += expected[i].line == expected[index].line ? 1 : 0;
+        place += expected[i].line == it->line && expected[i].is_implied == it->is_implied ? 1 : 0;
     }
     return place;
 }
 
-static void add_expectations(wh_tally_t *tally, const wh_outcome_t *outcome) {
-    const wh_record_t *record = outcome->record;
+/* Implied ones are counted from the record's `implied`, which also has those that were met. */
+static void add_expectations(wh_tally_t *tally, uint64_t trial, const wh_expectation_record_t expected[],
+                             size_t count, bool is_implied) {
     int place = 0;
-    for (size_t i = 0; i < record->expectation_count; ++i) {
-        const wh_expectation_record_t *expected = &record->expectations[i];
-        place = place_of(record, i, place);
-        wh_tally_row_t *row =
-            wh_tally_row(&tally->expectations, expected->line, place, expected->text, outcome->trial);
-        count_row(row, outcome->trial, !expected->ok);
+    for (size_t i = 0; i < count; ++i) {
+        place = place_of(expected, i, place);
+        if (expected[i].is_implied == is_implied) {
+            const wh_tally_row_t key = {.line = expected[i].line, .is_implied = is_implied, .place = place};
+            wh_tally_row_t *row = wh_tally_row(&tally->expectations, &key, expected[i].text, trial);
+            count_row(row, trial, !expected[i].ok);
+        }
     }
 }
 
@@ -101,8 +114,8 @@ static void add_errors(wh_tally_t *tally, const wh_outcome_t *outcome) {
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         if (command->error != WH_OK) {
-            wh_tally_row_t *row = wh_tally_row(&tally->errors, command->line, (int)command->error,
-                                               command->text, outcome->trial);
+            const wh_tally_row_t key = {.line = command->line, .place = (int)command->error};
+            wh_tally_row_t *row = wh_tally_row(&tally->errors, &key, command->text, outcome->trial);
             count_row(row, outcome->trial, row->last != outcome->trial);
         }
     }
@@ -111,7 +124,7 @@ static void add_errors(wh_tally_t *tally, const wh_outcome_t *outcome) {
 static void merge_rows(wh_tally_rows_t *rows, const wh_tally_rows_t *others) {
     for (size_t i = 0; i < others->count; ++i) {
         const wh_tally_row_t *other = &others->rows[i];
-        wh_tally_row_t *row = wh_tally_row(rows, other->line, other->place, other->text, other->named);
+        wh_tally_row_t *row = wh_tally_row(rows, other, other->text, other->named);
         row->seen += other->seen;
         row->bad += other->bad;
         row->first = other->first < row->first ? other->first : row->first;
@@ -122,8 +135,9 @@ static int compare_rows(const void *a, const void *b) {
     const wh_tally_row_t *one = a;
     const wh_tally_row_t *other = b;
     const int lines = (one->line > other->line) - (one->line < other->line);
+    const int kinds = (int)other->is_implied - (int)one->is_implied;
     const int places = (one->place > other->place) - (one->place < other->place);
-    return lines != 0 ? lines : places != 0 ? places : strcmp(one->text, other->text);
+    return lines != 0 ? lines : kinds != 0 ? kinds : places != 0 ? places : strcmp(one->text, other->text);
 }
 
 static void sort_rows(wh_tally_rows_t *rows) {
@@ -145,8 +159,8 @@ static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nomi
            wafer->holder == nominal->holder;
 }
 
-/* How far off the wafer ends; infinite if it is elsewhere. `ends` becomes what the sums have; false, and it
- * is unchanged, if they have nothing. */
+/* How far off the wafer ends; infinite if it is elsewhere. `ends` gets the values for the sums; false, and it
+ * is unchanged, if there are none. */
 static bool add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal,
                       double ends[WH_TALLY_QUANTITIES], double *off) {
     *off = 0;
@@ -229,6 +243,14 @@ static void add_wafers(wh_tally_t *tally, const wh_study_t *study, const wh_outc
     }
 }
 
+/* The error that ends a trial is its last one. */
+static void note_error(const wh_command_record_t *command, wh_trial_line_t *line) {
+    if (line->ended || line->error == 0) {
+        line->error = (uint32_t)command->error;
+        line->error_line = (uint32_t)command->line;
+    }
+}
+
 static void count_troubles(const wh_outcome_t *outcome, wh_trial_line_t *line) {
     const wh_record_t *record = outcome->record;
     for (size_t i = 0; i < record->expectation_count; ++i) {
@@ -239,7 +261,11 @@ static void count_troubles(const wh_outcome_t *outcome, wh_trial_line_t *line) {
         }
     }
     for (size_t i = 0; i < record->command_count; ++i) {
-        line->errors += record->commands[i].error != WH_OK ? 1 : 0;
+        const wh_command_record_t *command = &record->commands[i];
+        if (command->error != WH_OK) {
+            ++line->errors;
+            note_error(command, line);
+        }
     }
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         if (wh_record_is_complaint((wh_event_kind_t)kind) && outcome->events[kind] > 0) {
@@ -264,17 +290,19 @@ static void add_line(wh_tally_t *tally, const wh_study_t *study, const wh_outcom
 }
 
 void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome) {
+    const wh_record_t *record = outcome->record;
     wh_trial_line_t line = {.trial = outcome->trial,
                             .met = outcome->met,
                             .whole = outcome->whole,
-                            .ended = outcome->record->failure != NULL};
+                            .ended = record->failure != NULL};
     const wh_trial_t name = {study->seed, outcome->trial};
     ++tally->trials;
     tally->met += line.met ? 1 : 0;
     tally->whole += line.whole ? 1 : 0;
     tally->ended += line.ended ? 1 : 0;
     add_events(tally, outcome);
-    add_expectations(tally, outcome);
+    add_expectations(tally, outcome->trial, record->expectations, record->expectation_count, false);
+    add_expectations(tally, outcome->trial, record->implied, record->implied_count, true);
     add_errors(tally, outcome);
     wh_relations_need(&tally->relations, study->cause_count,
                       wh_relations_wafers(study->cause_count, study->wafer_count));

@@ -1,4 +1,4 @@
-/* Results of trials, as counts: the sums are the same whichever process counted which trial. */
+/* Results of trials, as counts: the sums do not depend on which process counted which trial. */
 #ifndef WH_STUDY_TALLY_H
 #define WH_STUDY_TALLY_H
 
@@ -25,23 +25,24 @@ typedef struct {
 
 #define WH_TALLY_NO_TRIAL UINT64_MAX
 
-/* An expectation or a command's error, by where it stands in the script. */
+/* An expectation or a command's error, by its place in the script. */
 typedef struct {
     int line;
-    int place;      /* an expectation's among those of its line, from 0; an error's number */
-    char *text;     /* as trial `named` has it */
-    uint64_t named; /* the lowest trial that has it */
-    uint64_t seen;  /* trials that came to it */
-    uint64_t bad;   /* trials in which it was not met, or happened */
-    uint64_t first; /* the lowest of those, or WH_TALLY_NO_TRIAL */
-    uint64_t last;  /* while counting: the trial that was counted last */
+    bool is_implied; /* an expectation that nobody wrote down: those of a line have places of their own */
+    int place;       /* the place of an expectation among those of its line, from 0; or an error's number */
+    char *text;      /* the text of trial `named` */
+    uint64_t named;  /* the lowest trial that has it */
+    uint64_t seen;   /* trials that came to it */
+    uint64_t bad;    /* trials in which it was not met, or happened */
+    uint64_t first;  /* the lowest of those, or WH_TALLY_NO_TRIAL */
+    uint64_t last;   /* while counting: the trial that was counted last */
 } wh_tally_row_t;
 
 typedef struct {
     wh_tally_row_t *rows;
     size_t count, capacity;
     size_t next;  /* where the next search begins */
-    bool by_text; /* rows of other texts are others, too */
+    bool by_text; /* a different text makes a different row */
 } wh_tally_rows_t;
 
 /* One of the worst trials. */
@@ -58,16 +59,16 @@ typedef struct {
     wh_tally_wafer_t *wafers;
     wh_tally_trial_t worst[WH_STUDY_WORST]; /* the worst first */
     size_t worst_count;
-    wh_relations_t relations; /* of what was drawn with what came of it */
+    wh_relations_t relations; /* between the draws and the results */
     wh_trial_lines_t lines;   /* of the trials below study->lines */
 } wh_tally_t;
 
-/* What came of one trial. */
+/* The result of one trial. */
 typedef struct {
     uint64_t trial;
     bool met, whole;
-    bool complained; /* while decisions are replayed: of an event that is a complaint */
-    /* Of it commands, expectations and failure count; events and wafers are not read. */
+    bool complained; /* while decisions are replayed: an event was a complaint */
+    /* Only its commands, expectations and failure are read, not its events and wafers. */
     const wh_record_t *record;
     uint32_t events[WH_EVENT_KINDS];
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
@@ -79,16 +80,20 @@ void wh_tally_free(wh_tally_t *tally);
 
 void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome);
 
-/* All that another has counted. The result does not depend on order, to the last bit. */
+/* Adds all counts of another tally. The result does not depend on order, to the last bit. */
 void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other);
 
 /* Puts expectations and errors in the order of line, place and text, and lines in that of trials, to be
  * printed. */
 void wh_tally_sort(wh_tally_t *tally);
 
-/* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. Errors of
+/* True if the row is to be printed: an implied expectation is told once a trial did not meet it. */
+bool wh_tally_is_told(const wh_tally_row_t *row);
+
+/* The row of the key's line, place and kind, made if there is none; `text` is kept if this trial is the lowest that has it. Errors of
  * other commands in the same line, as a loop makes them, have rows of their own. */
-wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named);
+wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, const wh_tally_row_t *key, const char *text,
+                             uint64_t named);
 
 /* Puts a trial among the worst, if it is one of them: failed ones before others, then by `off`, then the
  * lower number. */

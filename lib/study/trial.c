@@ -74,7 +74,7 @@ static bool part_is_known(const wh_worker_t *worker, const wh_part_t *part) {
     return station == WH_NONE || stands_as_taught(worker, station);
 }
 
-/* Where a wafer is let go it stays, unless it is moved there: then what is off goes on with it. */
+/* A wafer stays where it is let go, unless it is moved there: then its error moves with it. */
 static bool wafers_stay(const wh_layout_t *layout) {
     const wh_physics_t *physics = &layout->physics;
     return !layout->grasp.seat && !layout->cell.settle && physics->vacuum.vent <= 0 &&
@@ -146,7 +146,7 @@ static void look_at_wafers(wh_worker_t *worker) {
     }
 }
 
-/* False if the trial reads back what the decisions have not: nothing is then counted. */
+/* False if the trial reads back values that the decisions do not have: nothing is then counted. */
 static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_study_t *study = worker->study;
     const wh_record_t *record = &study->nominal.record;

@@ -5,8 +5,8 @@
 
 #include "tally.h"
 
-/* Where the collisions of a trial that is replayed are looked for: a world with the trial's stations. Of it
- * only events are known. */
+/* The place for checking collisions of a replayed trial: a world with the trial's stations. Only its events
+ * are known. */
 typedef struct {
     wh_part_t *parts;
     char (*names)[WH_PART_NAME_SIZE];
@@ -16,7 +16,7 @@ typedef struct {
     wh_collision_t collision;
 } wh_trial_world_t;
 
-/* What a thread needs for its trials. Each has its own. */
+/* The data of a thread for its trials. Each thread has its own. */
 typedef struct {
     const wh_study_t *study;
     wh_trial_cell_t trial_cell;
@@ -29,11 +29,12 @@ typedef struct {
     wh_script_run_t run; /* while a script runs whole */
     wh_script_run_options_t options;
     uint64_t hash; /* of the last state that a whole run ended in */
-    /* Replays have collisions looked for, of what stands or lies elsewhere than in the run without errors;
-     * that must be ok, and nothing but stations may be off. */
+    /* Replays check collisions of things that stand or lie elsewhere than in the run without errors. The run
+     * without errors must be ok, and only stations may be off. */
     bool looks_for_collisions;
-    bool grips_alike; /* and without that it had the events of that run: wafers go where they went there */
-    bool ends_at_complaint; /* what comes after an event that is a complaint need not be replayed */
+    bool grips_alike; /* also, without that check, it had the events of that run: wafers go where they went
+                       * there */
+    bool ends_at_complaint; /* the rest after an event that is a complaint need not be replayed */
     wh_trial_world_t world;
 } wh_worker_t;
 
@@ -41,8 +42,8 @@ typedef struct {
 void wh_worker_open(wh_worker_t *worker, const wh_study_t *study);
 void wh_worker_close(wh_worker_t *worker);
 
-/* Plays a trial and adds what came of it. False when the script turned out not to be usable in it: `message`,
- * of WH_SANDBOX_MESSAGE_BYTES, then says why. */
+/* Plays a trial and adds its result. False when the script turned out not to be usable in it: `message`, of
+ * WH_SANDBOX_MESSAGE_BYTES, then says why. */
 bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message);
 
 #endif

@@ -41,7 +41,7 @@ void *wh_array_grow(void *items, size_t count, size_t *capacity, size_t size) {
 }
 
 void *wh_array_new(size_t count, size_t size) {
-    /* Of no item some systems allocate nothing. No item more than asked for, or sanitizers would not see one
-     * used. */
+    /* For no items some systems allocate nothing. It allocates no more items than asked for; otherwise
+     * sanitizers would not detect the use of one too many. */
     return wh_memory_need(calloc(count > 0 ? count : 1, size));
 }

@@ -1,4 +1,4 @@
-/* The clock, for waits and progress alone: no result depends on it. */
+/* The clock, only for waits and progress: no result depends on it. */
 #ifndef WH_TEXT_CLOCK_H
 #define WH_TEXT_CLOCK_H
 
@@ -12,7 +12,7 @@ static inline int64_t wh_clock_us(clockid_t clock) {
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-/* Seconds since some moment in the past; never goes back. */
+/* Seconds since some moment in the past; it never goes back. */
 static inline double wh_clock_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

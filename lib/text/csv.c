@@ -13,7 +13,7 @@
 #include "output.h"
 #include "utf8.h"
 
-/* Of a field, in a message. */
+/* The most characters of a field in a message. */
 #define SHOWN 80
 
 __attribute__((format(printf, 2, 3))) static bool refuse(wh_csv_t *csv, const char *format, ...) {
@@ -88,7 +88,8 @@ static bool ends_line(const char *at) {
     return *at == '\n' || *at == '\0' || (at[0] == '\r' && at[1] == '\n');
 }
 
-/* A field in quotes, the first of which was passed: its text is moved together. Null if it is not closed. */
+/* Reads a field in quotes; the first quote was passed. It moves the text together. Returns null if it is
+ * not closed. */
 static char *pass_quoted(wh_csv_t *csv, char *at) {
     char *to = at;
     for (; *at != '"' || at[1] == '"'; ++at) {
@@ -109,7 +110,8 @@ static char *pass_quoted(wh_csv_t *csv, char *at) {
     return at;
 }
 
-/* The field at csv->at. Passes the comma behind it; `is_last` if there is none. Null if it is refused. */
+/* Reads the field at csv->at. It passes the comma after it; `is_last` is set if there is none. Returns null
+ * if it is refused. */
 static char *take_field(wh_csv_t *csv, bool *is_last) {
     char *field = csv->at;
     for (; is_blank(*field); ++field) {
@@ -135,7 +137,7 @@ static char *take_field(wh_csv_t *csv, bool *is_last) {
     return field;
 }
 
-/* Splits the next line that is not blank. False at the end and if it is refused. */
+/* Splits the next line that is not blank. Returns false at the end, or if it is refused. */
 static bool split_line(wh_csv_t *csv, char *fields[WH_CSV_COLUMNS], size_t *count) {
     for (csv->line = csv->next_line; is_blank(*csv->at) || (*csv->at != '\0' && ends_line(csv->at));
          ++csv->at) {

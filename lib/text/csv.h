@@ -1,10 +1,10 @@
-/* A table of comma-separated values (RFC 4180), read strictly: nothing is guessed, and what is not
- * understood is refused by its file, line, column and value.
+/* A table of comma-separated values (RFC 4180), read strictly. Nothing is guessed; input that is not
+ * understood is refused with its file, line, column and value.
  *
- * The first line names the columns, in any order. Every other line has as many fields. Fields may stand
- * in quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around a field
- * that has no quotes do not count. Lines end in LF or CRLF. Blank lines do not count, and a byte order
- * mark of UTF-8 does not either. Numbers are decimal, with a point: no NaN, no infinity, no hex. */
+ * The first line names the columns, in any order. Every other line has as many fields as the first. Fields
+ * may stand in quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around
+ * a field without quotes are ignored. Lines end in LF or CRLF. Blank lines are ignored, and so is a byte
+ * order mark of UTF-8. Numbers are decimal, with a point: no NaN, no infinity, no hex. */
 #ifndef WH_TEXT_CSV_H
 #define WH_TEXT_CSV_H
 
@@ -21,10 +21,10 @@ typedef struct {
     const char *name;
     double least, most; /* of a number */
     bool is_text;       /* 1 to WH_CSV_TEXT - 1 bytes of UTF-8, without control characters */
-    bool may_lack;      /* the column, or the number in a line: then it is NaN */
+    bool may_lack;      /* the column, or the number in a line, may be missing; it is then NaN */
 } wh_csv_column_t;
 
-/* An open table; what is read last. Zero it to begin with. */
+/* An open table, with the last line read. Zero it at the beginning. */
 typedef struct {
     const char *path;
     const wh_csv_column_t *columns;
@@ -33,26 +33,27 @@ typedef struct {
     size_t line;              /* of the fields below, from 1 */
     double numbers[WH_CSV_COLUMNS];
     const char *texts[WH_CSV_COLUMNS]; /* until wh_csv_close */
-    char message[512];                 /* what is wrong: "a.csv:3: x: 1,5 (expected ...)"; empty: nothing */
-    /* how far it is read */
+    char message[512];                 /* the error: "a.csv:3: x: 1,5 (expected ...)"; empty: none */
+    /* the place of reading */
     char *bytes, *at;
     size_t size, next_line, field_count;
     size_t order[WH_CSV_COLUMNS]; /* the column of each field */
 } wh_csv_t;
 
 /* Opens the file, a regular one, and reads its first line. `path` and `columns` must outlive the table.
- * False if it is refused: `message` says why. To be closed either way. Cost: linear in the file. */
+ * Returns false if it is refused; `message` gives the reason. Close it in either case. Cost: linear in the
+ * file. */
 bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
 
-/* Reads the next line that is not blank. False at the end, and if the line is refused: then `message` is not
- * empty. */
+/* Reads the next line that is not blank. Returns false at the end, and if the line is refused; `message` is
+ * then not empty. */
 bool wh_csv_read(wh_csv_t *csv);
 
-/* Refuses what stands in a column of the line that was read last, for a reason that the caller knows: sets
- * `message`. Returns false. */
+/* Refuses the value in a column of the last line read, for a reason that the caller knows: sets `message`.
+ * Returns false. */
 bool wh_csv_refuse(wh_csv_t *csv, size_t column, const char *expected);
 
-/* Likewise the file as a whole: "a.csv: why". */
+/* Refuses the file as a whole: "a.csv: why". */
 bool wh_csv_refuse_file(wh_csv_t *csv, const char *why);
 
 void wh_csv_close(wh_csv_t *csv);

@@ -9,10 +9,10 @@
 
 #include "array.h"
 
-/* Between two columns. */
+/* The text between two columns. */
 #define SEPARATOR "  "
 
-/* With so many decimals every double differs from a limit beside it. */
+/* With this number of decimals every double differs from a limit next to it. */
 #define MOST_DECIMALS 20
 
 /* A cell is empty, a text (not null) or a number. */
@@ -26,9 +26,9 @@ typedef struct {
 typedef struct {
     char *heading;
     bool to_right;
-    bool glued; /* stays beside the column before it where there is room */
+    bool glued; /* stays next to the column before it if there is room */
     wh_grid_digits_t digits;
-    int decimals; /* what the numbers so far need */
+    int decimals; /* the decimals that the numbers so far need */
     size_t width; /* columns of the terminal that its widest cell takes */
 } wh_grid_column_t;
 
@@ -56,12 +56,12 @@ void wh_grid_format(char *text, size_t size, double value, int decimals) {
     }
 }
 
-/* -1, 0 or 1: below, at, above. */
+/* Returns -1, 0 or 1: below, at, above. */
 static int side_of(double value, double limit) {
     return (value > limit) - (value < limit);
 }
 
-/* The fewest decimals, from `least` to `most`, that lose nothing of what `most` would show. */
+/* The fewest decimals, from `least` to `most`, that show as much as `most` decimals. */
 static int decimals_in_use(double value, int least, int most) {
     char text[WH_GRID_NUMBER_SIZE];
     int decimals = most;
@@ -233,8 +233,8 @@ static size_t add_keys(const wh_grid_t *grid, size_t first, part_t *part) {
     return width;
 }
 
-/* The key columns, then as many from `first` on as the terminal has room for, but at least one, glued ones
- * together if a part can hold them. Returns the first column that is left for the next part. */
+/* Takes the key columns, then as many from `first` on as the terminal has room for, but at least one; glued
+ * columns stay together if a part can hold them. Returns the first column of the next part. */
 static size_t plan_part(const wh_grid_t *grid, size_t first, part_t *part) {
     const size_t room = grid->style.width > 0 ? grid->style.width : SIZE_MAX;
     size_t width = add_keys(grid, first, part);
@@ -257,7 +257,7 @@ static size_t plan_part(const wh_grid_t *grid, size_t first, part_t *part) {
     return next;
 }
 
-/* True if a row says anything in a part beyond its keys. */
+/* True if a row has a value in a part outside its keys. */
 static bool row_speaks(const wh_grid_t *grid, const part_t *part, size_t row) {
     for (size_t i = 0; i < part->count; ++i) {
         const char *text = grid->cells[row * grid->column_count + part->columns[i]].text;
@@ -295,7 +295,7 @@ static void add_line(const wh_grid_t *grid, const part_t *part, size_t row, stru
     }
 }
 
-/* Prints lines without the blanks at their ends. */
+/* Prints lines without their trailing blanks. */
 static void print_trimmed(const char *text, FILE *out) {
     while (*text != '\0') {
         const size_t length = strcspn(text, "\n");

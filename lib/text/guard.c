@@ -8,7 +8,7 @@
 
 static FILE *terminal;
 
-/* All of it to standard error. False if that does not take it. */
+/* Writes all of it to standard error. Returns false if that fails. */
 static bool write_all(const char *text, size_t size) {
     while (size > 0) {
         const ssize_t written = write(STDERR_FILENO, text, size);

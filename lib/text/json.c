@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "array.h"
+#include "digits.h"
 #include "utf8.h"
 
 /* ------------------------------------------------------------------------------------------------- values */
@@ -53,7 +54,7 @@ json_t *wh_json_matrix(const wh_mat3_t *m) {
                      wh_json_vector(wh_mat3_row(m, 2)));
 }
 
-/* The next value, as its conversion says. */
+/* Takes the next value, by its conversion. */
 static json_t *take_value(const char *conversion, va_list *values) {
     switch (conversion[strlen(conversion) - 1]) {
     case 'g':
@@ -108,18 +109,9 @@ json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t cou
     return list;
 }
 
-void wh_json_digits(double value, char digits[WH_JSON_DIGITS]) {
-    for (int precision = 15; precision <= 17; ++precision) {
-        (void)snprintf(digits, WH_JSON_DIGITS, "%.*g", precision, value);
-        if (strtod(digits, NULL) == value) {
-            break;
-        }
-    }
-}
-
 /* ----------------------------------------------------------------------------------------------- printing */
 
-/* jansson escapes what is below a blank; DEL and U+0080 to U+009F steer terminals, too. */
+/* jansson escapes characters below a blank; DEL and U+0080 to U+009F control terminals, too. */
 static int write_visible(const char *buffer, size_t size, void *out) {
     size_t done = 0;
     for (size_t i = 0; i < size; ++i) {
@@ -169,7 +161,7 @@ int wh_json_print(json_t *root, FILE *out) {
 
 /* -------------------------------------------------------------------------------------------- as it comes */
 
-/* What stands before an element: a comma, and the key of a member. */
+/* Writes the text before an element: a comma, and the key of a member. */
 static void lead(wh_json_text_t *text, const char *key) {
     if (text->follows) {
         fputc(',', text->out);
@@ -192,13 +184,13 @@ void wh_json_text_end(wh_json_text_t *text, char bracket) {
 }
 
 static void write_exact(FILE *out, double value) {
-    char digits[WH_JSON_DIGITS];
-    wh_json_digits(value, digits);
+    char digits[WH_DIGITS];
+    wh_digits(value, digits);
     fputs(digits, out);
 }
 
-/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf of a double and
- * gives the same digits. */
+/* Writes a number without zeros at the end. Counting in units of the last decimal is faster than printf of
+ * a double and gives equal digits. */
 static void write_rounded(FILE *out, double value, int decimals) {
     static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
     const double exact = floor(fabs(value) * powers[decimals] + 0.5);

@@ -21,7 +21,7 @@ static double earlier(double a, double b) {
     return isnan(a) || b < a ? b : a;
 }
 
-/* The time that an object tells of itself; else the one around it. */
+/* The time in an object itself; otherwise the one around it. */
 static double own_time(const json_t *object, double around) {
     static const struct {
         const char *name;
@@ -36,7 +36,7 @@ static double own_time(const json_t *object, double around) {
     return around;
 }
 
-/* The times of a list's elements, if its object tells them: a list of as many beside it. */
+/* The times of a list's elements, if its object has them: a list of equal length beside it. */
 static const json_t *times_beside(const json_t *object, const json_t *list) {
     const json_t *t = json_object_get(object, "t");
     const json_t *times = json_is_array(t) ? t : json_object_get(object, "times_s");
@@ -50,7 +50,7 @@ static void tell(comparison_t *all, const json_t *a, const json_t *b, double tim
     all->listener(all->user, &difference);
 }
 
-/* Zeros of both signs are two numbers; NaN is none of JSON's. */
+/* Zeros of both signs are different numbers; JSON has no NaN. */
 static bool is_same_number(const json_t *a, const json_t *b) {
     const double first = json_number_value(a);
     const double second = json_number_value(b);
@@ -68,7 +68,7 @@ static bool is_aside(const comparison_t *all, const char *name) {
     return found;
 }
 
-/* Goes one step down the path; returns how long it was. */
+/* Goes one step down the path; returns its length before. */
 static size_t go(comparison_t *all, const char *name, size_t index) {
     const size_t length = strlen(all->path);
     if (name) {
@@ -79,7 +79,7 @@ static size_t go(comparison_t *all, const char *name, size_t index) {
     return length;
 }
 
-/* A list beside its times; null times: it has none. */
+/* Compares a list with its times; null times: it has none. */
 static void compare_lists(comparison_t *all, const json_t *a, const json_t *b, const json_t *times[2],
                           double around) {
     const size_t counts[2] = {json_array_size(a), json_array_size(b)};
@@ -108,7 +108,7 @@ static void compare_members(comparison_t *all, const json_t *from[2], const char
     all->path[length] = '\0';
 }
 
-/* jansson's iterators want what they do not change without const. */
+/* jansson's iterators require a pointer without const to data that they do not change. */
 static json_t *plain(const json_t *value) {
     union {
         const json_t *constant;
@@ -117,7 +117,7 @@ static json_t *plain(const json_t *value) {
     return cast.plain;
 }
 
-/* A document's own begin is none of its members' time: a time is told by what is one of a list. */
+/* A document's own begin is not the time of its members: only an element of a list has a time. */
 static bool is_element(const comparison_t *all) {
     const size_t length = strlen(all->path);
     return length > 0 && all->path[length - 1] == ']';

@@ -15,7 +15,7 @@ static bool is_same(char a, char b) {
     return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
 
-/* Row i has at j how many slips turn the first i bytes of `from` into the first j of `to`. */
+/* Row i has at j the number of slips that turn the first i bytes of `from` into the first j of `to`. */
 typedef struct {
     const char *from, *to;
     size_t rows[3][SIZE]; /* row i is rows[i % 3] */

@@ -18,7 +18,7 @@
 typedef struct {
     const wh_command_line_t *line;
     char *arguments;
-    struct argp_option known[MOST_OPTIONS]; /* as argp has them, headings among them */
+    struct argp_option known[MOST_OPTIONS]; /* in argp's form, including headings */
     const wh_option_t *options[MOST_OPTIONS];
     void *variables[MOST_OPTIONS];
     bool given[MOST_OPTIONS];
@@ -37,7 +37,7 @@ static bool read_real(const wh_option_t *option, const char *text, double *value
     return end != text && *end == '\0' && *value >= option->least && *value <= option->most;
 }
 
-/* All 64 bits, which a double has not: only digits. */
+/* It reads all 64 bits, more than a double has, so it accepts only digits. */
 static bool read_count(const wh_option_t *option, const char *text, uint64_t *value) {
     char *end = NULL;
     errno = 0;
@@ -155,7 +155,7 @@ static void check(const parser_t *parser, struct argp_state *state) {
 
 /* ------------------------------------------------------------------------------------------------- names */
 
-/* Those that argp adds. */
+/* The options that argp adds. */
 static const char *const own_names[] = {"help", "usage", "version"};
 
 #define OWN_NAMES (sizeof own_names / sizeof own_names[0])
@@ -178,7 +178,7 @@ static void refuse_name(const parser_t *parser, const char *text, struct argp_st
                near ? ")" : "");
 }
 
-/* The option of which this is the name, or else the beginning of it; null if there is none. */
+/* The option with this name, or otherwise with a name that begins so; null if there is none. */
 static const struct argp_option *find_name(const parser_t *parser, const char *name, size_t length) {
     const struct argp_option *found = NULL;
     for (size_t i = 0; i < parser->count; ++i) {
@@ -208,7 +208,8 @@ static bool takes_next(const parser_t *parser, const char *text) {
     return false;
 }
 
-/* True if the value of the option "--name" is the next argument. Does not return if there is no such name. */
+/* True if the value of the option "--name" is the next argument. It does not return if there is no such
+ * name. */
 static bool check_name(const parser_t *parser, const char *text, struct argp_state *state) {
     const size_t length = strcspn(text + 2, "=");
     const struct argp_option *option = find_name(parser, text + 2, length);
@@ -218,7 +219,7 @@ static bool check_name(const parser_t *parser, const char *text, struct argp_sta
     return option && option->arg && text[2 + length] == '\0';
 }
 
-/* Refuses a name that no option has before argp does, which names no other. */
+/* Refuses an unknown name before argp does, because argp suggests no other. */
 static void check_names(const parser_t *parser, struct argp_state *state) {
     for (int i = 1; i < state->argc && strcmp(state->argv[i], "--") != 0; ++i) {
         const char *text = state->argv[i];
@@ -232,7 +233,8 @@ static void check_names(const parser_t *parser, struct argp_state *state) {
 
 /* ----------------------------------------------------------------------------------------------- parsing */
 
-/* Refuses the second value of an option that has one: the first would be lost without a word. */
+/* Refuses the second value of an option that has one: otherwise the first would be lost without a
+ * message. */
 static void note_given(parser_t *parser, size_t i, const struct argp_state *state) {
     const wh_option_kind_t kind = parser->options[i]->kind;
     if (parser->given[i] && kind != WH_OPTION_FLAG && kind != WH_OPTION_LIST) {
@@ -279,7 +281,7 @@ static void add(parser_t *parser, const wh_option_t *option, char *base) {
                              option->help,     0};
 }
 
-/* While argp parses: it ends the program after --help, which may not have left. */
+/* True while argp parses: argp ends the program after --help, and output may not have been written. */
 static bool is_parsing;
 
 static void check_help(void) {

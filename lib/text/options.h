@@ -6,10 +6,10 @@
  *          .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
  *         {0}};
  *
- * Variables are found by their offsets within a structure, so that tables are constant and commands can share
- * them. What is not given stays as it was; what is given twice is refused, but for flags and lists. Wrong
- * usage ends the program, as argp does: "--rate: x (expected a number from 0.001 to 1000)", "--rat: no such
- * option (did you mean --rate?)".
+ * Variables are given by their offsets within a structure, so that tables are constant and commands can
+ * share them. An option that is not given leaves its variable unchanged; one that is given twice is
+ * refused, except flags and lists. Wrong usage ends the program, like in argp: "--rate: x (expected a
+ * number from 0.001 to 1000)", "--rat: no such option (did you mean --rate?)".
  */
 #ifndef WH_TEXT_OPTIONS_H
 #define WH_TEXT_OPTIONS_H
@@ -31,15 +31,15 @@ typedef enum {
 typedef struct {
     const char *name;     /* without its dashes; null ends a table */
     char letter;          /* its short name, or 0 */
-    const char *argument; /* as --help names it; null for a flag */
+    const char *argument; /* its name in --help; null for a flag */
     const char *help;
     wh_option_kind_t kind;
     size_t variable;      /* offset */
     double least, most;   /* of a number */
-    const char *expected; /* said of another number; null: what least and most say */
+    const char *expected; /* the expected values in a message about another number; null: least and most */
 } wh_option_t;
 
-/* Texts given by a list's option; they live as long as argv. To be freed by wh_option_list_free. */
+/* Texts given by a list's option; they live as long as argv. Free it by wh_option_list_free. */
 typedef struct {
     const char **items;
     size_t count, capacity;
@@ -52,20 +52,20 @@ typedef struct {
     const wh_option_t *options; /* null ends a list of tables */
     size_t base;                /* offset of the structure that it fills in, within the command's */
     const char *heading;        /* above these options in --help, or null */
-    /* Looks at what these options filled in and refuses by argp_error what does not go together, or null. */
+    /* Checks the values of these options and refuses wrong combinations by argp_error, or null. */
     void (*check)(const void *filled, struct argp_state *state);
 } wh_option_table_t;
 
 typedef struct {
     const char *name;     /* the subcommand's, as in "waferhand run" */
-    const char *synopsis; /* its operands, as --help names them */
-    const char *about;    /* what it does; behind \v, what follows the options */
+    const char *synopsis; /* its operands, as in --help */
+    const char *about;    /* its description; after \v, the text after the options */
     const wh_option_table_t *tables;
-    const char *operand; /* what the only argument is, such as "script"; or each of them */
+    const char *operand; /* the kind of the only argument, such as "script"; or of each of them */
     size_t operand_variable;
-    bool operand_may_lack; /* `check` says when; else it must be given */
-    size_t operands;       /* 0: there is one, a text; else up to so many, a wh_option_list_t */
-    /* Looks at what was given together before the tables do, and refuses by argp_error; or null. */
+    bool operand_may_lack; /* `check` decides; otherwise it is required */
+    size_t operands;       /* 0: there is one, a text; otherwise up to this number, a wh_option_list_t */
+    /* Checks the combination of all values before the tables do, and refuses by argp_error; or null. */
     void (*check)(const void *arguments, struct argp_state *state);
 } wh_command_line_t;
 

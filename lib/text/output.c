@@ -11,10 +11,23 @@
 
 #include "array.h"
 
-/* Names that are tried: others may be writing beside it, or have been killed. */
+/* The number of names that are tried, because other processes may write in the same folder, or may have
+ * been killed. */
 #define ATTEMPTS 100
 
-/* The file to replace: the path, or what it points to. Its permissions go to `mode`, 0 if there is none.
+bool wh_output_resolve(const char *path, char resolved[PATH_MAX]) {
+    char folder[PATH_MAX];
+    char whole[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    const int length = slash ? (int)(slash - path) + 1 : 0;
+    (void)snprintf(folder, sizeof folder, "%.*s.", length, path);
+    if (!realpath(folder, whole)) {
+        return false;
+    }
+    return snprintf(resolved, PATH_MAX, "%s/%s", whole, slash ? slash + 1 : path) < PATH_MAX;
+}
+
+/* The file to replace: the path, or the target of a link. Its permissions go to `mode`, 0 if there is none.
  * Returns 0 or an errno. */
 static int find_target(const char *path, char target[PATH_MAX], mode_t *mode) {
     struct stat status;
@@ -65,7 +78,8 @@ bool wh_output_open(wh_output_t *output, const char *path) {
     return output->file != NULL;
 }
 
-/* True if all bytes are on the disk: a power cut after the renaming must not leave an empty file. */
+/* True if all bytes are on the disk, because a power cut after the renaming must not leave an empty
+ * file. */
 static bool is_stored(const wh_output_t *output) {
     return fflush(output->file) == 0 && !ferror(output->file) &&
            (output->beside[0] == '\0' || fsync(fileno(output->file)) == 0);
@@ -101,7 +115,7 @@ void wh_output_tell(const char *option, const char *path, int error) {
     fprintf(stderr, "%s %s: %s (expected a file that can be written)\n", option, path, strerror(error));
 }
 
-/* True, or errno says why not: of a disk that is full it may be close that fails. */
+/* Returns true, or errno gives the reason: with a full disk close itself may fail. */
 static bool fill(int fd, mode_t mode, const void *bytes, size_t size) {
     errno = ENOSPC;
     const bool filled = write(fd, bytes, size) == (ssize_t)size && (mode == 0 || fchmod(fd, mode) == 0);
@@ -129,14 +143,15 @@ int wh_output_replace(const char *path, const void *bytes, size_t size) {
 
 /* --------------------------------------------------------------------------------------------------- kept */
 
-/* A number is given to another file when its file is gone: the time of birth tells the two apart. */
+/* The system reuses a file's number once the file is gone; the time of birth tells the two files apart. */
 typedef struct {
     uint64_t number;
     uint32_t device[2], born_ns;
     int64_t born_s;
 } file_id_t;
 
-/* Static: a process reads its inputs in many places, and all of them are inputs of all that it writes. */
+/* It is static, because a process reads its inputs in many places, and all of them are inputs of everything
+ * that it writes. */
 static struct {
     pthread_mutex_t mutex;
     file_id_t *files;
@@ -167,7 +182,7 @@ static bool is_listed(const file_id_t *id) {
     return false;
 }
 
-/* True if it is in the list; if it is not and `adds`, it then is. */
+/* True if it is in the list; otherwise, with `adds`, it is added. */
 static bool look_up(const char *path, bool adds) {
     file_id_t id;
     if (!find_plain(path, &id)) {
@@ -191,7 +206,7 @@ bool wh_output_is_kept(const char *path) {
     return look_up(path, false);
 }
 
-/* Static, as the list is. */
+/* It is static, like the list. */
 static struct {
     void (*hear)(void *user, const char *path);
     void *user;
@@ -214,7 +229,7 @@ void wh_output_state_path(const char *name, char *path, size_t size) {
     const char *state = getenv("XDG_STATE_HOME");
     const char *home = getenv("HOME");
     int length = -1;
-    /* The XDG specification has relative paths ignored. */
+    /* The XDG specification requires relative paths to be ignored. */
     if (state && state[0] == '/') {
         length = snprintf(path, size, "%s/waferhand/%s", state, name);
     } else if (home && home[0] == '/') {

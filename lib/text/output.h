@@ -1,4 +1,4 @@
-/* Files that are there whole or not at all. */
+/* Files that are either complete or absent. */
 #ifndef WH_TEXT_OUTPUT_H
 #define WH_TEXT_OUTPUT_H
 
@@ -6,62 +6,68 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* A new file in the same folder as the one that it will replace. Zero it to begin with. What a symbolic link
- * points to is replaced; a link that points nowhere is itself replaced. An existing file keeps its
- * permissions, a new one gets 0666 less the umask. Only a kill leaves the new file, ".waferhand-PID-N". */
+/* A new file in the folder of the file that it will replace. Zero it at the beginning. If the path is a
+ * symbolic link, its target is replaced; a link without a target is itself replaced. An existing file keeps
+ * its permissions; a new one gets 0666 minus the umask. The new file, ".waferhand-PID-N", remains only if
+ * the process is killed. */
 typedef struct {
     FILE *file;
     char target[PATH_MAX];
-    char
-        beside[PATH_MAX + 48]; /* empty: it is no plain file (a pipe, a terminal) and is written to at once */
+    char beside[PATH_MAX + 48]; /* empty: it is a pipe or a terminal and is written at once */
 } wh_output_t;
 
-/* Opens it. False and errno if it cannot be written. */
+/* The path of a file that may not exist: its folder's path, without links, and its name. Returns false if
+ * the folder does not exist, or the path is too long. */
+bool wh_output_resolve(const char *path, char resolved[PATH_MAX]);
+
+/* Opens the file. Returns false and errno if it cannot be written. */
 bool wh_output_open(wh_output_t *output, const char *path);
 
-/* Closes it and puts it in its place. False and errno if not all of it could be written: the old file is then
- * still there. */
+/* Closes it and puts it in place. Returns false and errno if not all of it could be written; the old file
+ * then still exists. */
 bool wh_output_commit(wh_output_t *output);
 
-/* Gives it up: the old file is still there. Does nothing after wh_output_commit. */
+/* Gives it up; the old file still exists. It does nothing after wh_output_commit. */
 void wh_output_drop(wh_output_t *output);
 
-/* Says on standard error that an option's output could not be written, and why, an errno. */
+/* Says on standard error that an option's output could not be written, with the reason, an errno. */
 void wh_output_tell(const char *option, const char *path, int error);
 
-/* Writes a small file so, whole: whoever reads it meanwhile sees the old one or the new one. Returns 0 or an
- * errno: EISDIR for a directory, EINVAL for what else is no plain file. Then nothing has changed. Nothing is
- * synced to the disk. */
+/* Writes a small file in this way: a reader sees either the complete old one or the complete new one.
+ * Returns 0 or an errno: EISDIR for a directory, EINVAL for anything else that is not a plain file. In case
+ * of an error nothing has changed. It does not sync to the disk. */
 int wh_output_replace(const char *path, const void *bytes, size_t size);
 
-/* True if both paths lead to one file, which is there: by links, or in other spellings. */
+/* True if both paths lead to one existing file, by links or in other spellings. */
 bool wh_output_is_one_file(const char *a, const char *b);
 
-/* From now on nothing is to be written over this file: it is an input, or an output that is ready. Whoever
- * writes files of its own asks wh_output_is_kept first. Does nothing if there is no such plain file. The list
- * is the process's own; any thread may call both. Cost: linear in the files that are kept. */
+/* After this call the file must not be overwritten, because it is an input, or an output that is ready.
+ * Code that writes files by itself must first call wh_output_is_kept. It does nothing if there is no such
+ * plain file. The list belongs to the process; any thread may call both. Cost: linear in the number of kept
+ * files. */
 void wh_output_keep(const char *path);
 bool wh_output_is_kept(const char *path);
 
-/* Says that a file is about to be read as an input, be it there or not: who listens hears of it. */
+/* Says that a file is about to be read as an input, whether it exists or not; it calls the listener. */
 void wh_output_note_input(const char *path);
 
-/* From now on this is called with each path that is noted so, from any thread. Null: nobody listens. */
+/* Sets a listener, which is called with each path noted in this way, from any thread. Null: there is no
+ * listener. */
 void wh_output_hear_inputs(void (*listener)(void *user, const char *path), void *user);
 
-/* What is said of an output that would be written over a kept file. */
+/* The message for an output that would overwrite a kept file. */
 #define WH_OUTPUT_KEPT "this is an input or another output (expected a file of its own)"
 
-/* Where the program keeps a file for the next time: $XDG_STATE_HOME/waferhand/NAME, or
- * ~/.local/state/waferhand/NAME. Empty if the environment names no such place, or if `size` bytes do not hold
- * it. */
+/* The path of a file that the program keeps for the next time: $XDG_STATE_HOME/waferhand/NAME, or
+ * ~/.local/state/waferhand/NAME. It is empty if the environment gives no such place, or if `size` bytes are
+ * too few. */
 void wh_output_state_path(const char *name, char *path, size_t size);
 
-/* Makes the folders that a file is to be in, for their owner alone. False and errno if that was not
+/* Makes the folders of a file, accessible to their owner only. Returns false and errno if that was not
  * possible. */
 bool wh_output_make_folders(const char *path);
 
-/* Writes a word so that a shell reads it back unchanged. */
+/* Writes a word in a form that a shell reads back unchanged. */
 void wh_output_word(FILE *out, const char *word);
 
 #endif

@@ -1,6 +1,6 @@
-/* Bytes as text that can stand in a page: base 64, and long texts deflated before.
+/* Bytes as text for use in a page: base 64, and long texts deflated first.
  *
- * Texts that are returned are the caller's to free. Ends the program if out of memory.
+ * The caller frees the returned texts. They end the program if out of memory.
  */
 #ifndef WH_TEXT_PACKED_H
 #define WH_TEXT_PACKED_H
@@ -8,10 +8,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* `head`, then the bytes as RFC 4648 has them, with padding. */
+/* `head`, then the bytes in base 64 (RFC 4648), with padding. */
 char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size);
 
-/* A text by zlib (RFC 1950), then in base 64: what a browser's DecompressionStream("deflate") undoes. */
+/* A text compressed by zlib (RFC 1950), then in base 64; a browser's DecompressionStream("deflate")
+ * reverses it. */
 char *wh_packed_text(const char *text, size_t size);
 
 #endif

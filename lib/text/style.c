@@ -1,6 +1,7 @@
 #include "style.h"
 
 #include <langinfo.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,7 @@ bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term
     return terminal && able && !refused;
 }
 
-/* Open MPI's mpirun gives the first rank a pseudo-terminal, also when its own output goes into a file. */
+/* Open MPI's mpirun gives the first rank a pseudo-terminal, even if its own output goes into a file. */
 static bool is_asked_for_under_mpirun(void) {
     const char *forced = getenv("CLICOLOR_FORCE");
     return !getenv("OMPI_COMM_WORLD_SIZE") || (forced && forced[0] != '\0' && strcmp(forced, "0") != 0);
@@ -60,12 +61,12 @@ const char *wh_style_glyph(const wh_style_t *style, wh_glyph_t glyph) {
     return glyphs[glyph][style->utf8 ? 1 : 0];
 }
 
-/* How many bytes the printable character at `text` has; 0 if there is none. */
+/* The number of bytes of the printable character at `text`; 0 if there is none. */
 static size_t printable_bytes(const char *text) {
     wchar_t character;
     mbstate_t state;
     memset(&state, 0, sizeof state);
-    const size_t bytes = mbrtowc(&character, text, strlen(text), &state);
+    const size_t bytes = mbrtowc(&character, text, strnlen(text, MB_LEN_MAX), &state);
     const bool decoded = bytes != (size_t)-1 && bytes != (size_t)-2 && bytes != 0;
     return decoded && iswprint((wint_t)character) ? bytes : 0;
 }
@@ -99,7 +100,7 @@ size_t wh_style_columns(const char *printable) {
     memset(&state, 0, sizeof state);
     while (*printable != '\0') {
         wchar_t character;
-        const size_t bytes = mbrtowc(&character, printable, strlen(printable), &state);
+        const size_t bytes = mbrtowc(&character, printable, strnlen(printable, MB_LEN_MAX), &state);
         if (bytes == 0 || bytes == (size_t)-1 || bytes == (size_t)-2) {
             return columns + strlen(printable);
         }

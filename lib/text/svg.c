@@ -4,7 +4,7 @@
 
 #include "utf8.h"
 
-/* U+FFFE and U+FFFF are UTF-8, but no characters of XML. */
+/* U+FFFE and U+FFFF are UTF-8, but not characters of XML. */
 static bool is_noncharacter(const char *text, size_t bytes) {
     return bytes == 3 && (memcmp(text, "\xef\xbf\xbe", 3) == 0 || memcmp(text, "\xef\xbf\xbf", 3) == 0);
 }

@@ -1,4 +1,4 @@
-/* Writing SVG: text made fit for it, and labels that keep out of each other's way. */
+/* Writes SVG: escapes text for it, and places labels so that they do not overlap. */
 #ifndef WH_TEXT_SVG_H
 #define WH_TEXT_SVG_H
 
@@ -6,18 +6,18 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Writes text so that it is content or an attribute's value of well-formed XML; what is no UTF-8 becomes
- * U+FFFD. */
+/* Writes text in a form that is content or an attribute's value of well-formed XML; bytes that are not
+ * UTF-8 become U+FFFD. */
 void wh_svg_text(FILE *out, const char *text);
 
-/* So many labels are placed at most; more would cover the picture. */
+/* At most this number of labels is placed; more would cover the picture. */
 #define WH_SVG_LABELS 300
 
 typedef struct {
     double x, y, width, height;
 } wh_svg_box_t;
 
-/* Labels of one view. Units are those of the picture, y down. */
+/* Labels of one view. Units are those of the picture, with y down. */
 typedef struct {
     FILE *out;
     double size;        /* of the letters */
@@ -26,7 +26,7 @@ typedef struct {
     size_t count;
 } wh_svg_labels_t;
 
-/* Writes a label whose middle is at x and whose base line is at y, or lower where others are in the way. */
+/* Writes a label with its middle at x and its base line at y, or lower if other labels are in the way. */
 void wh_svg_label(wh_svg_labels_t *labels, double x, double y, const char *text);
 
 #endif

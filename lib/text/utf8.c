@@ -6,7 +6,7 @@
 
 #include "array.h"
 
-/* The bytes of the character that a byte begins: 0 for those that begin none. */
+/* The length of the character that a byte begins: 0 for bytes that begin none. */
 static size_t length_by(unsigned char lead) {
     if (lead < 0x80) {
         return lead != '\0';
@@ -15,7 +15,7 @@ static size_t length_by(unsigned char lead) {
 }
 
 size_t wh_utf8_bytes(const char *text) {
-    /* What a character of so many bytes is at least; below, it would be longer than needed. */
+    /* The least character of each length; a smaller one would need fewer bytes. */
     static const unsigned long least[] = {0, 0, 0x80, 0x800, 0x10000};
     const size_t length = length_by((unsigned char)text[0]);
     unsigned long character = length < 2 ? 0 : (unsigned char)text[0] & (0x7FU >> length);
@@ -73,7 +73,7 @@ void wh_utf8_visible(char *to, size_t size, const char *from) {
 void wh_utf8_visible_bytes(char *to, size_t size, const char *from, size_t from_length) {
     const char *const end = from + from_length;
     size_t length = 0;
-    size_t cut = 0; /* the last place at which an ellipsis would fit */
+    size_t cut = 0; /* the last place where an ellipsis would fit */
     while (from < end) {
         const size_t control = wh_utf8_control_bytes(from);
         const size_t valid = wh_utf8_bytes(from);

@@ -10,30 +10,30 @@
 #include "../text/array.h"
 #include "cell.h"
 
-/* Aside from the robot's front, and above. */
+/* The direction: to the side of the robot's front, and above. */
 const wh_vec3_t wh_view_from = {1.1, -1.3, 1.1};
 
 /* In dots. */
 enum { WIDE = 5, HIGH = 7, ADVANCE = 6, LINE = 10, MARGIN = 3, DIGIT = 7 };
 
-/* Mm: a wafer's radius around what the layout gives as a point, and how far writing stands off the back. */
+/* Mm: a wafer's radius around points of the layout, and the distance of the writing from the back. */
 #define AROUND 150
 #define THICK 4.0
 
 /* Characters from the left edge to the command. */
 #define COMMAND_COLUMN 10
 
-/* The board's part of the cell's width, and how high it hangs above the cell, as a part of height and depth:
- * what is nearer to the camera looks taller. */
+/* The board's share of the cell's width. Its height above the cell is a share of height and depth, because
+ * near things look taller to the camera. */
 #define PART_OF_CELL 0.9
 #define ABOVE 0.07
 
-/* Numbers of a rectangle in a mesh: four points, two triangles. */
+/* Counts of numbers of a rectangle in a mesh: four points, two triangles. */
 enum { POINTS = 4, POINT_NUMBERS = 12, NUMBERS = 18 };
 
 /* ------------------------------------------------------------------------------------------- characters */
 
-/* Seven rows from above, a byte each, in which the leftmost dot is 0x10. */
+/* Seven rows from the top, a byte each; the leftmost dot is 0x10. */
 static const uint64_t dots[128] = {
     ['!'] = 0x04040404040004,  ['"'] = 0x0a0a0a00000000, ['#'] = 0x0a0a1f0a1f0a0a, ['%'] = 0x19190204081313,
     ['\''] = 0x04040400000000, ['('] = 0x02040808080402, [')'] = 0x08040202020408, ['*'] = 0x00150e1f0e1500,
@@ -66,13 +66,13 @@ static unsigned bits_between(unsigned from, unsigned to) {
     return (0x1fU >> from) & ~(0x1fU >> to) & 0x1fU;
 }
 
-/* Of a character with its left upper dot at x, y: in dots. */
+/* A rectangle of a character with its left upper dot at x, y; in dots. */
 typedef struct {
     double left, right, top, bottom;
 } rectangle_t;
 
-/* The next rectangle of what is left of a character, which it is taken from: a row's run of dots, as far down
- * as there are the same ones. False if nothing is left. */
+/* Takes the next rectangle out of the rest of a character: a row's run of dots, down to the last row with
+ * the same dots. Returns false if no dot is left. */
 static bool take_rectangle(uint64_t *left, rectangle_t *rectangle) {
     unsigned row = 0, from = 0, below;
     while (row < HIGH && row_of(*left, row) == 0) {
@@ -98,7 +98,7 @@ static bool take_rectangle(uint64_t *left, rectangle_t *rectangle) {
 
 /* ------------------------------------------------------------------------------------------------ lines */
 
-/* Adds a rectangle to a mesh with room for WH_VIEW_RECTANGLES of them, whose points come first. */
+/* Adds a rectangle to a mesh with room for WH_VIEW_RECTANGLES of them; all points come first. */
 static void put_rectangle(float *numbers, size_t index, const rectangle_t *r, double dot) {
     const double x[POINTS] = {r->left, r->right, r->right, r->left};
     const double y[POINTS] = {-r->bottom, -r->bottom, -r->top, -r->top};
@@ -140,11 +140,11 @@ static void put_text(waferhand_viewer_link *body, const char *text, double dot) 
     body->num_geom = count > 0;
 }
 
-/* One byte stands for a character, whatever its bytes are. */
+/* One byte is used for each character, whatever its bytes are. */
 static void copy_line(const char *text, size_t most, char line[WH_VIEW_COLUMNS + 1]) {
     size_t count = 0;
     for (; *text != '\0' && count < most; ++text) {
-        if (((unsigned char)*text & 0xc0U) != 0x80U) { /* else it continues a character */
+        if (((unsigned char)*text & 0xc0U) != 0x80U) { /* otherwise it continues a character */
             line[count++] = *text;
         }
     }
@@ -170,7 +170,7 @@ static void make_box(waferhand_viewer_geometry *shape, const wh_vec3_t *half, co
     wh_view_geometry_make(&box, &place, &colour, false, shape);
 }
 
-/* Room for a text, which begins at a place on the board. */
+/* Makes room for a text, which begins at a place on the board. */
 static void make_text(waferhand_viewer_geometry *shape, double left, double top) {
     const wh_vec3_t here = {0, 0, 0};
     const wh_vec3_t place = {left, top, THICK / 2};
@@ -198,7 +198,7 @@ static double top_of(int line) {
     return board_height - MARGIN - line * LINE;
 }
 
-/* Adds the bodies, each with a shape that is to be made. */
+/* Adds the bodies, each with an unfinished shape. */
 static void add_bodies(wh_view_board_t *board) {
     static const char *const names[FIRST_SEGMENT] = {"back", "s", "command", "hit", "with"};
     for (size_t i = 0; i < BODIES; ++i) {
@@ -223,7 +223,7 @@ static void make_shapes(wh_view_board_t *board) {
     const wh_vec3_t middle = wh_vec3(half.x, half.y, -THICK / 2);
     make_box(shape_of(board, BACK), &half, &middle);
     set_colour(shape_of(board, BACK), wh_ink_stage.dark, 0.85F);
-    /* The point stands between the last two digits, its dots in the middle of its place. */
+    /* The point is between the last two digits, its dots in the middle of its place. */
     make_text(shape_of(board, UNIT), (MARGIN + (WH_VIEW_DIGITS - 1) * DIGIT - 2.5) * dot, top_of(0) * dot);
     put_text(&board->bodies.load.link[UNIT], ". s", dot);
     for (int line = 0; line < WH_VIEW_LINES; ++line) {
@@ -263,7 +263,7 @@ static void include_around(bounds_t *bounds, const wh_vec3_t *middle) {
     include(bounds, &low, &high);
 }
 
-/* What of the layout stands still, with its wafers and the robot's foot. */
+/* The box of the layout's fixed parts, with its wafers and the robot's foot. */
 static bounds_t bounds_of(const wh_layout_t *layout) {
     const wh_pose_t base = wh_pose_identity();
     bounds_t bounds = {{-AROUND, -AROUND, 0}, {AROUND, AROUND, AROUND}};
@@ -337,12 +337,12 @@ bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char
 
 /* ------------------------------------------------------------------------------------------------- time */
 
-/* Bit s: segment s is on. The last one is of no digit. */
+/* Bit s: segment s is on. The last entry is for no digit. */
 static const uint8_t segments[11] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0};
 
 static void show_digit(wh_view_board_t *board, size_t place, size_t digit) {
     wh_pose_t shown = board->base_from_board;
-    /* The tenths stand one dot further to the right. */
+    /* The tenths are one dot further to the right. */
     const double left = MARGIN + (double)(place * DIGIT) + (place + 1 == WH_VIEW_DIGITS);
     const wh_vec3_t at = wh_vec3(left * board->dot, (top_of(0) - HIGH) * board->dot, 0);
     wh_pose_t away = shown;
@@ -371,7 +371,7 @@ bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime) {
 
 void wh_view_board_free(wh_view_board_t *board) {
     for (int32_t i = 0; i < board->bodies.load.num_links; ++i) {
-        board->bodies.load.link[i].num_geom = 1; /* a line without text has not shown its own */
+        board->bodies.load.link[i].num_geom = 1; /* a line without text has not shown its own yet */
     }
     wh_view_bodies_free(&board->bodies);
     memset(board, 0, sizeof *board);

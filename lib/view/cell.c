@@ -8,15 +8,15 @@
 #include "../math/trig.h"
 #include "../text/array.h"
 
-/* How far a cover and a notch's mark stand out of the wafer, mm. */
+/* The distance of a cover and a notch's mark from the wafer's surface, mm. */
 #define COVER 0.25
 #define MARK 0.5
 
-/* A notch of 1 mm would not be seen. The mark is this share of the wafer's radius wide, and three times as
- * long. */
+/* A notch of 1 mm would be too small to see. The mark's width is this share of the wafer's radius, and its
+ * length three times that. */
 #define MARK_WIDTH 0.02
 
-/* How far a held wafer's colour goes from its gripper's to the page's behind it. */
+/* The share by which a held wafer's colour is mixed from its gripper's to the page's background. */
 #define PALER 0.42F
 
 /* ---------- colours * Those of the report's page, in light, but less transparent: there are no edges here */
@@ -25,7 +25,7 @@ static wh_view_colour_t colour_of_gripper(size_t gripper) {
     return wh_view_colour(wh_ink_series[gripper % WH_INK_SERIES].light, 1);
 }
 
-/* Blades and chucks have their gripper's colour. Obstacles and shells are transparent. */
+/* Blades and chucks have the colour of their gripper. Obstacles and shells are transparent. */
 static wh_view_colour_t colour_of_part(const wh_part_t *part) {
     static const float opacities[WH_INKS] = {0.35F, 0.22F, 1, 1, 1, 1, 1};
     const wh_part_ink_t ink = wh_ink_of(part);
@@ -193,7 +193,7 @@ static void place_doors(wh_view_cell_t *cell, const wh_doors_t *doors, const wh_
     }
 }
 
-/* Wafers and, where some may be held, their covers. */
+/* Wafers and, if some may be held, their covers. */
 static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[], bool may_be_held) {
     wh_pose_t away = wh_pose_identity();
     away.r.z = -WH_VIEW_AWAY;
@@ -268,7 +268,7 @@ bool wh_view_cell_set_hit(wh_view_cell_t *cell, const int32_t parts[2]) {
     if (memcmp(cell->hit, parts, sizeof cell->hit) == 0) {
         return false;
     }
-    for (size_t i = 2; i-- > 0;) { /* backwards: both may be the same shape */
+    for (size_t i = 2; i-- > 0;) { /* backwards, because both may be one shape */
         float *colour = colour_at(cell, cell->hit[i]);
         if (colour) {
             memcpy(colour, cell->plain[i], sizeof cell->plain[i]);

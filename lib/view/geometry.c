@@ -13,7 +13,7 @@
 
 #define M_PER_MM 1e-3
 
-/* Room for a written name: each byte becomes three at most. */
+/* Room for a written name: each byte becomes at most three. */
 #define WRITTEN_SIZE (3 * WH_NAME_SIZE)
 
 wh_view_colour_t wh_view_colour(uint32_t hex, float opacity) {
@@ -56,7 +56,7 @@ static void put_round(waferhand_viewer_geometry *geometry, int8_t type, const wh
 
 /* -------------------------------------------------------------------------------------------------- hulls */
 
-/* The index of a point, which is added if it is new. A hull's faces share their corners. */
+/* The index of a point; a new point is added. A hull's faces share their corners. */
 static size_t index_of(float (*points)[3], size_t *count, const float at[3]) {
     for (size_t i = 0; i < *count; ++i) {
         if (points[i][0] == at[0] && points[i][1] == at[1] && points[i][2] == at[2]) {
@@ -89,7 +89,7 @@ static void put_triangles(waferhand_viewer_geometry *geometry, const wh_mesh_t *
     free(corners);
 }
 
-/* Draws the box around a mesh. The mesh need not lie around its shape's origin, so the pose moves. */
+/* Draws the box around a mesh. The mesh's middle may differ from its shape's origin, so the pose moves. */
 static void put_bounds(waferhand_viewer_geometry *geometry, const wh_convex_t *convex, wh_pose_t *pose) {
     const wh_pose_t here = wh_pose_identity();
     wh_vec3_t low, high;
@@ -150,8 +150,8 @@ void wh_view_geometry_free(waferhand_viewer_geometry *geometry) {
 
 /* ----------------------------------------------------------------------------------------------- bodies */
 
-/* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
- * path, or could not read it. */
+/* The length of the character at `text` if it may stay unchanged; 0 if the viewer would read it as part of
+ * a path, or could not read it. */
 static size_t plain_bytes(const char *text) {
     const unsigned char first = (unsigned char)*text;
     if (first < ' ' || first == 0x7f || first == '/' || first == ':' || first == '%') {
@@ -160,7 +160,7 @@ static size_t plain_bytes(const char *text) {
     return wh_utf8_bytes(text);
 }
 
-/* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
+/* Writes other characters as %2F and so on. '%' is one of them, so two names never become equal. */
 static void write_name(const char *name, char *written) {
     static const char digits[] = "0123456789ABCDEF";
     while (*name != '\0') {
@@ -195,7 +195,7 @@ size_t wh_view_bodies_add(wh_view_bodies_t *bodies, const char *folder, const ch
 
 waferhand_viewer_geometry *wh_view_bodies_add_shape(wh_view_bodies_t *bodies) {
     waferhand_viewer_link *body = &bodies->load.link[bodies->load.num_links - 1];
-    /* The message's type has no place for a capacity: the array counts as full. */
+    /* The message's type has no member for a capacity, so the array counts as full. */
     size_t capacity = (size_t)body->num_geom;
     body->geom = wh_array_grow(body->geom, capacity, &capacity, sizeof *body->geom);
     return memset(&body->geom[body->num_geom++], 0, sizeof *body->geom);

@@ -66,7 +66,7 @@ static size_t add_accessor(wh_gltf_t *gltf, size_t view, int type, const char *s
                                              "componentType", type, "count", index_of(count), "type", shape));
 }
 
-/* glTF asks for the least and the greatest of each component. */
+/* glTF requires the least and the greatest of each component. */
 static void set_bounds(wh_gltf_t *gltf, size_t accessor, const float *data, size_t width, size_t count) {
     double low[4];
     double high[4];
@@ -83,7 +83,7 @@ static void set_bounds(wh_gltf_t *gltf, size_t accessor, const float *data, size
     (void)json_object_set_new(made, "max", list_of(high, width));
 }
 
-/* `width` numbers of each of `count` items that are `stride` numbers long. */
+/* `width` numbers of each of `count` items; an item is `stride` numbers long. */
 typedef struct {
     const float *first;
     size_t stride, width, count;

@@ -7,7 +7,7 @@
 #include "../text/array.h"
 
 #define CORNERS 48
-#define RINGS 6 /* of half a ball */
+#define RINGS 6 /* rings of half a ball */
 
 static uint32_t add_vertex(wh_mesh_t *mesh, const wh_vec3_t *r, const wh_vec3_t *normal) {
     mesh->vertices =
@@ -27,8 +27,8 @@ static void add_indices(wh_mesh_t *mesh, uint32_t a, uint32_t b, uint32_t c) {
     }
 }
 
-/* A triangle with a normal of its own, its corners counter-clockwise seen from outside. Nothing if it has no
- * area. */
+/* A triangle with a normal of its own, its corners counter-clockwise seen from outside. It adds nothing if
+ * the triangle has no area. */
 static void add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c) {
     const wh_vec3_t ab = wh_vec3_subtract(b, a);
     const wh_vec3_t ac = wh_vec3_subtract(c, a);
@@ -38,8 +38,12 @@ static void add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *b
         return;
     }
     normal = wh_vec3_scale(1 / length, &normal);
-    add_indices(mesh, add_vertex(mesh, a, &normal), add_vertex(mesh, b, &normal),
-                add_vertex(mesh, c, &normal));
+    /* The calls come one after the other, because the compiler chooses the order in which a call's
+     * arguments are evaluated. */
+    const uint32_t first = add_vertex(mesh, a, &normal);
+    const uint32_t second = add_vertex(mesh, b, &normal);
+    const uint32_t third = add_vertex(mesh, c, &normal);
+    add_indices(mesh, first, second, third);
 }
 
 static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3_t *r,
@@ -140,11 +144,11 @@ static void add_capsule(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pos
 
 /* -------------------------------------------------------------------------------------------------- hulls */
 
-/* The convex hull of points, grown point by point, for showing a mesh. Our own code, so that the triangles
- * are the same on every machine: a library's choice among faces in one plane depends on how it was
- * compiled. */
+/* The convex hull of points, grown point by point, for showing a mesh. It is our own code, so that the
+ * triangles are equal on every machine: a library's choice among faces in one plane depends on its
+ * compilation. */
 #define MOST_POINTS 512
-/* Directions about z, and from pole to pole, in which points are sought when there are more. */
+/* Directions about z, and from pole to pole, in which points are searched when there are more. */
 #define AROUND 32
 #define UP 16
 
@@ -155,7 +159,7 @@ typedef struct {
     size_t corners[3];
     wh_vec3_t normal; /* of length 1, outward */
     double offset;    /* normal . corner */
-    bool is_seen;     /* from the point that is being added */
+    bool is_seen;     /* from the point being added */
 } face_t;
 
 typedef struct {
@@ -228,7 +232,7 @@ static bool has_edge(const face_t *face, size_t from, size_t to) {
     return false;
 }
 
-/* True if the face on the other side of the edge is not seen. */
+/* True if the face on the other side of the edge is not visible from the point. */
 static bool is_horizon(const hull_t *hull, size_t faces, size_t from, size_t to) {
     for (size_t i = 0; i < faces; ++i) {
         if (hull->faces[i].is_seen && has_edge(&hull->faces[i], to, from)) {
@@ -280,7 +284,7 @@ static double distance(const hull_t *hull, const size_t start[4], size_t known, 
     return wh_real_abs(wh_vec3_dot(&normal, &to)) / wh_vec3_norm(&normal);
 }
 
-/* Begins with four points that are far from each other. False if all points lie in a plane. */
+/* Begins with four points that are far from each other. Returns false if all points lie in a plane. */
 static bool start(hull_t *hull) {
     size_t corners[4] = {0};
     hull->inside = hull->count > 0 ? hull->points[0] : wh_vec3(0, 0, 0);
@@ -348,11 +352,11 @@ typedef struct {
     double x, y;
 } rim_t;
 
-/* The rim's corners, counter-clockwise: from one side of the notch around the wafer to the other, then the
- * notch's tip. */
+/* The corners of the rim, counter-clockwise: from one side of the notch around the wafer to the other, then
+ * the notch's tip. */
 static size_t draw_rim(double radius, double notch, double depth, rim_t rim[RIM_CORNERS + 1]) {
     const int notches = depth > 0 ? 1 : 0;
-    /* Of a notch of 90 degrees: as wide as deep on each side. */
+    /* A notch of 90 degrees is as wide as deep on each side. */
     const double half = notches * depth / radius;
     const double whole = 2 * WH_PI - 2 * half;
     for (int i = 0; i < RIM_CORNERS + notches; ++i) {

@@ -11,17 +11,17 @@
 #include "../text/array.h"
 #include "gltf.h"
 
-/* Keyframes being gathered. */
+/* Keyframes under construction. */
 typedef struct {
     wh_gltf_key_t *keys;
     size_t count, capacity;
     double last[4]; /* the last quaternion */
 } keyframes_t;
 
-/* Of the grippers, then of the links, then of the doors. */
+/* Indices: grippers, then links, then doors. */
 enum { FIRST_LINK = WH_GRIPPERS, FIRST_DOOR = FIRST_LINK + WH_SIGNALS_LINKS, PATHS = FIRST_DOOR + WH_DOORS };
 
-/* A node's meshes, one for each ink, while its parts are gathered. */
+/* A node's meshes, one for each ink, while its parts are collected. */
 typedef struct {
     wh_mesh_t inks[WH_INKS];
 } body_t;
@@ -31,13 +31,13 @@ typedef struct {
     const wh_layout_t *layout;
     wh_gltf_t gltf;
     bool animated;
-    /* Poses of grippers and links where they are animated, on straight lines from one to the next. */
+    /* Poses of grippers and links at animated times, with straight lines between them. */
     wh_thin_t paths[PATHS];
-    int32_t bodies[WH_SIGNALS_LINKS]; /* of the links */
+    int32_t bodies[WH_SIGNALS_LINKS]; /* bodies of the links */
     size_t link_count;
 } scene_t;
 
-/* Tolerances to begin with, and the number of points beyond which they grow, for grippers and for links. */
+/* The initial tolerances, and the number of points beyond which they grow, for grippers and for links. */
 #define GRIPPER_MM 0.05
 #define GRIPPER_RAD 5e-4
 #define GRIPPER_POINTS 60000
@@ -48,7 +48,7 @@ typedef struct {
 static void add_key(keyframes_t *motion, double seconds, const wh_vec3_t *r, const double q[4]) {
     const size_t i = motion->count;
     motion->keys = wh_array_grow(motion->keys, i, &motion->capacity, sizeof *motion->keys);
-    /* Times must rise, and two slices may be the same time as a float. */
+    /* Times must rise, and two slices may have equal times as floats. */
     if (i > 0 && !((float)seconds > motion->keys[i - 1].time)) {
         return;
     }
@@ -120,7 +120,7 @@ static void add_pose(keyframes_t *motion, const wh_signals_t *signals, double sl
     add_key(motion, seconds_of(signals, slice), &pose->r, q);
 }
 
-/* Between point `i` of its gripper and the next, `share` of the way. */
+/* Adds keys between point `i` of its gripper and the next, at `share` of the way. */
 static void add_held(keyframes_t *motion, const wh_signals_t *signals, const wh_stay_t *stay,
                      const wh_thin_t *thin, size_t i, double share) {
     const double *a = wh_points_numbers(&thin->list, i);
@@ -137,8 +137,8 @@ static void add_held(keyframes_t *motion, const wh_signals_t *signals, const wh_
     add_pose(motion, signals, (double)from + share * (double)(to - from), &pose);
 }
 
-/* How many straight lines a wafer takes that goes round its gripper's origin: the chord of an angle a is off
- * by r a^2 / 8. */
+/* The number of straight lines for a wafer that circles its gripper's origin: the chord of an angle a has
+ * an error of r a^2 / 8. */
 static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     double turn[3];
     wh_quaternion_turn(wh_points_numbers(&thin->list, i) + 3, wh_points_numbers(&thin->list, i + 1) + 3,
@@ -152,7 +152,7 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     return parts;
 }
 
-/* Where a slice is between point `i` of the list and the next: from 0 to 1. */
+/* The place of a slice between point `i` of the list and the next, from 0 to 1. */
 static double share_of(const wh_points_t *list, size_t i, int64_t slice) {
     const int64_t from = list->points[i].slice;
     const int64_t to = list->points[i + 1].slice;
@@ -160,7 +160,8 @@ static double share_of(const wh_points_t *list, size_t i, int64_t slice) {
     return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
-/* From the slice of the stay to `end`, also where the gripper stands long before or after. */
+/* Adds keys from the slice of the stay to `end`, also while the gripper stands still long before or
+ * after. */
 static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_thin_t *thin,
                      const wh_stay_t *stay, int64_t end) {
     const wh_points_t *list = &thin->list;
@@ -185,7 +186,7 @@ static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_
     }
 }
 
-/* While a wafer is held it moves with its gripper, with more keyframes where that turns. */
+/* A held wafer moves with its gripper, with more keyframes where that turns. */
 static keyframes_t keyframes_of_wafer(const scene_t *scene, int32_t wafer) {
     const wh_signals_t *signals = scene->signals;
     keyframes_t motion = {0};
@@ -226,7 +227,7 @@ static bool rests(const keyframes_t *motion) {
     return same;
 }
 
-/* Moves the node by the keyframes unless it rests, and frees them. */
+/* Moves the node by the keyframes unless it rests; frees them. */
 static void move_node(const keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
     if (!rests(motion)) {
         wh_gltf_add_motion(gltf, node, motion->keys, motion->count);
@@ -250,7 +251,7 @@ static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_
     }
 }
 
-/* Adds the gathered mesh, frees it, and returns its index; SIZE_MAX if there is nothing. */
+/* Adds the collected mesh, frees it, and returns its index; SIZE_MAX if it is empty. */
 static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
     wh_gltf_primitive_t primitives[WH_INKS];
     size_t count = 0;
@@ -272,13 +273,13 @@ static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
 static void add_base(scene_t *scene) {
     const wh_pose_t here = wh_pose_identity();
     body_t base = {0};
-    if (!scene->layout->machine.carrier) { /* else the column is a link */
+    if (!scene->layout->machine.carrier) { /* otherwise the column is a link */
         add_parts(scene, &base, 1U << WH_PART_ARM, WH_ARM_BASE, NULL);
     }
     (void)wh_gltf_add_node(&scene->gltf, "base", finish_body(scene, &base, "base"), &here, "base", 0);
 }
 
-/* A node for each, as an obstacle has one part. */
+/* Adds a node for each obstacle, because an obstacle has one part. */
 static void add_obstacles(scene_t *scene) {
     const wh_world_config_t *world = &scene->layout->world;
     const wh_pose_t here = wh_pose_identity();

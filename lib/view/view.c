@@ -62,7 +62,7 @@ static void publish(wh_viewer_t *view, const char *channel, const uint8_t *data,
 
 /* ---------------------------------------------------------------------------------------------- looking */
 
-/* Before the first slice grippers have no poses yet: all is shown at rest. */
+/* Before the first slice grippers have no poses yet, so everything is shown at rest. */
 static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     wh_pose_t base_from_grippers[WH_GRIPPERS];
     if (server->seq == 0) {
@@ -97,7 +97,7 @@ static void show_hit(wh_viewer_t *view, const char *what, const int32_t parts[2]
     }
 }
 
-/* What collided stays red until another run begins. */
+/* Parts that collided stay red until another run begins. */
 static void look_for_hits(wh_viewer_t *view, const wh_protocol_server_t *server) {
     static const int32_t none[2] = {WH_NONE, WH_NONE};
     if (server->identity.run != view->hit_run) {
@@ -124,7 +124,7 @@ static void send_places(wh_viewer_t *view, const wh_viewer_bytes_t *bytes, const
     publish(view, channel, bytes->draw, waferhand_viewer_draw_encode(bytes->draw, 0, bytes->draw_room, draw));
 }
 
-/* The board's places only when a digit has changed. */
+/* The board's places are sent only when a digit has changed. */
 static void send(wh_viewer_t *view, bool all, int64_t utime) {
     if (all || view->cell_bytes.is_new) {
         ++view->loads;
@@ -146,7 +146,7 @@ void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {
     const bool is_load_due = now - view->last_load_us >= WH_VIEW_LOAD_US;
     look_for_hits(view, server);
     write_line(view, WH_VIEW_COMMAND, view->command ? view->command : "");
-    /* A slice is shown once; while nothing moves, only the second's beat goes on. */
+    /* A slice is shown once; while nothing moves, only the message of each second continues. */
     const bool is_new = server->identity.run != view->run || server->seq != view->seq ||
                         view->cell_bytes.is_new || view->board_bytes.is_new;
     if (!is_load_due && (!is_new || now - view->last_draw_us < WH_VIEW_DRAW_US)) {

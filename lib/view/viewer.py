@@ -7,11 +7,11 @@ from drake import lcmt_viewer_draw, lcmt_viewer_geometry_data, lcmt_viewer_load_
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.visualization import meldis
 
-# Where one who looks at the cell stands, from its middle: as in board.c, whose writing faces there.
+# The viewer's position, from the cell's middle: as in board.c, whose writing faces it.
 FROM = numpy.array([1.1, -1.3, 1.1])
 # The camera's angle up and down, deg, and the narrowest window for which all is seen, width by height.
 ANGLE, NARROWEST = 30, 1.3
-# What is so far away, m, is put aside: it is not to be seen.
+# Bodies this far away, m, are hidden on purpose.
 AWAY = 100
 CHANNELS = ("", "_ILLUSTRATION")
 
@@ -62,7 +62,7 @@ def camera_for(points):
     tangent = numpy.tan(numpy.radians(ANGLE) / 2)
     target = (points.min(axis=0) + points.max(axis=0)) / 2
     distance = 0.1
-    for _ in range(8):  # what is nearer looks larger: the middle of the picture is not that of the box
+    for _ in range(8):  # near parts look larger, so the middle of the picture is not that of the box
         x, y, z = (points - target) @ right, (points - target) @ up, (points - target) @ back
         distance = 1.05 * max((abs(y) / tangent + z).max(), (abs(x) / tangent / NARROWEST + z).max(), 0.1)
         across, above = x / (distance - z), y / (distance - z)

@@ -1,15 +1,21 @@
 -- Frames as `$`-comma telegrams: `$,unit,sequence,COMMAND,arguments,sum` and a carriage return. The controller
 -- acknowledges at once, `$,unit,sequence,status,code,sum`; an action ends with a second telegram,
--- `!,unit,sequence,status,code,COMMAND,ms,theta,r,z,yaw,sum`, which the host answers with ACKN; what befalls a wafer is
--- told as `>,unit,EVNT,...,sum`. The sum is that of all bytes from the first comma to the one before it, as two hex
+-- `!,unit,sequence,status,code,COMMAND,ms,theta,r,z,yaw,sum`, which the host answers with ACKN. An event of a wafer is
+-- told as `>,unit,EVNT,...,sum`. The sum counts all bytes from the first comma to the one before the sum, as two hex
 -- digits. Lengths are whole um, angles whole 0.001 degrees, times whole ms of the simulated clock.
 
 local UNIT = "1"
 
 local status = "0"         -- 0 idle, 1 running, 2 held
-local last_sequence = "00" -- of the last telegram: what was refused is answered under it
+local last_sequence = "00" -- of the last telegram: a refusal is answered under it
 local maps = {}            -- the last map of each station
-local found = {}           -- what the last command of each name has found
+local found = {}           -- the results of the last command of each name
+
+-- The axes in their order. An axis that the robot does not have is an empty field. From the forearm on, which arms that fold
+-- have, empty fields at the end are left out.
+local AXES = { "theta", "r", "z", "yaw", "forearm", "rail", "r2", "yaw2", "tilt_x", "tilt_y", "flip" }
+local TURNS = { theta = true, yaw = true, forearm = true, yaw2 = true, tilt_x = true, tilt_y = true, flip = true }
+local SIGNED = { theta = "theta", r = "r", z = "z", yaw = "yaw" }
 
 local function whole(number)
   return ("%d"):format(math.floor(number + 0.5))
@@ -25,19 +31,19 @@ end
 
 ---------------------------------------------------------------------------------------------------------- requests
 
--- Which of two commands CSTP and MTRS are, their first argument says.
+-- CSTP and MTRS are two commands each: their first argument says which.
 local BY_ARGUMENT = { CSTP = true, MTRS = true }
 
--- How many arguments a command has; of the others all go to motion control, which looks at each.
+-- The most arguments of a command. Commands that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
-  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 4, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
+  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
-  RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 7, RAXS = 0, RLOC = 1, RVER = 0,
+  RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 13, RAXS = 0, RLOC = 1, RVER = 0,
 }
 
 local function decode(frame)
-  local fields = split(frame:sub(2)) -- behind the comma that follows the start
+  local fields = split(frame:sub(2)) -- the fields behind the comma that follows the start
   last_sequence = (fields[2] or ""):match("^%d%d$") or "00"
   if fields[1] ~= UNIT then
     host.refuse("BAD_ARGUMENT", "unit " .. tostring(fields[1]), "0014")
@@ -55,10 +61,10 @@ local function decode(frame)
   return { command = name, sequence = last_sequence, arguments = { table.unpack(fields, first) } }
 end
 
--- The phase in which a transfer stops: G4 and P4, or none, are the whole of it.
+-- The phase in which a transfer stops: G4 and P4, or none, mean the whole transfer.
 local PHASES = { [""] = "", G4 = "", P4 = "", G2 = "extended", P2 = "extended", G3 = "up", P3 = "up" }
 
--- Offsets, and where it stops: "" where a field is empty.
+-- Offsets, and the phase in which it stops: "" for an empty field.
 local function options(fields, prefix)
   local list = {}
   local phase = PHASES[fields[4] or ""] or host.refuse("BAD_ARGUMENT", "phase " .. fields[4])
@@ -96,7 +102,7 @@ local function at_door(word)
   end
 end
 
--- station, angle: which is 0 if there is one by itself.
+-- station, angle: without an angle the command takes `by_itself`, if it has one.
 local function turn(word, by_itself)
   return function(request)
     local theirs = request.arguments[2] or by_itself or host.refuse("BAD_ARGUMENT", word)
@@ -104,21 +110,21 @@ local function turn(word, by_itself)
   end
 end
 
--- Fields from `first` on that may be empty, as `NAME=VALUE ...`; `turns` by name, what is an angle. The axes have signs of their own.
+-- Fields from `first` on, which may be empty, as `NAME=VALUE ...`; `turns` names the angles. The axes have signs of their own.
 local function values(word, names, turns, axes, first)
   return function(request)
     local list = { word }
     for place, name in ipairs(names) do
       local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
-        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name ~= "forearm" and name))
+        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and SIGNED[name] or nil))
       end
     end
     return table.concat(list, " ")
   end
 end
 
--- A name, which may have blanks; `may_lack`: or none.
+-- A name, which may have blanks; `may_lack`: it may be missing.
 local function with_name(word, may_lack)
   return function(request)
     local name = request.arguments[1] or ""
@@ -132,7 +138,7 @@ local function as_said(word)
   end
 end
 
--- A station, and an arm, which may lack.
+-- A station, and an arm, which may be missing.
 local function at_station_with(word)
   return function(request)
     local arm = request.arguments[2] or ""
@@ -157,12 +163,7 @@ local function keep_map(request, result)
   maps[request.arguments[1] or ""] = table.concat(list, ",")
 end
 
-local function position(result)
-  local at = result.position
-  return table.concat({ whole(at.theta), whole(at.r), whole(at.z), whole(at.yaw) }, ",")
-end
-
--- A text of ours as one field: marks of the frames would take it apart.
+-- A text of ours as one field: marks of the frames would break it up.
 local function field(text)
   return (tostring(text):gsub("[,$!>%c]", ";"))
 end
@@ -172,7 +173,7 @@ local function telegram(mark, sequence, code, rest)
   return rest and head .. "," .. rest or head, mark
 end
 
--- What the sensor of each arm says: EE:1,PA:0.
+-- The state of each arm's sensor: EE:1,PA:0.
 local function arms(result)
   local list = {}
   for name, is_on in pairs(result.sensors) do
@@ -186,16 +187,30 @@ local function told(_, result)
   return field(result.answer:gsub("^OK ?", ""))
 end
 
--- Where the axes stand in a station: theta, r, z, yaw, of which one that the robot has not is empty; and the forearm of
--- an arm that folds.
-local function standing(axes)
-  local list = { axes.theta and whole(host.angle(axes.theta, "theta")) or "", axes.r and whole(host.length(axes.r, "r")) or "",
-                 axes.z and whole(host.length(axes.z, "z")) or "", axes.yaw and whole(host.angle(axes.yaw, "yaw")) or "",
-                 axes.forearm and whole(host.angle(axes.forearm)) }
-  return table.concat(list, ",")
+-- The values of axes, by name and in their units, as fields.
+local function axes_as_fields(at)
+  local list, last = {}, 4
+  for place, name in ipairs(AXES) do
+    list[place] = at[name] and whole(at[name]) or ""
+    last = at[name] and place > last and place or last
+  end
+  return table.concat(list, ",", 1, last)
 end
 
--- For RFND.
+local function position(result)
+  return axes_as_fields(result.position)
+end
+
+-- The positions of the axes in a station.
+local function standing(axes)
+  local theirs = {}
+  for _, name in ipairs(AXES) do
+    theirs[name] = axes[name] and (TURNS[name] and host.angle or host.length)(axes[name], SIGNED[name])
+  end
+  return axes_as_fields(theirs)
+end
+
+-- Keeps the result for RFND.
 local function keep(request, result)
   found[request.command] = told(request, result)
 end
@@ -234,7 +249,7 @@ return {
     MDOP = { does = "OPEN", run = at_door("OPEN") },
     MDCL = { does = "CLOSE", run = at_door("CLOSE") },
     MABS = { does = "MOVE",
-      run = values("MOVE", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true) },
+      run = values("MOVE", AXES, TURNS, true) },
     MLIN = { does = "LINE", run = values("LINE", { "dx", "dy", "dz", "speed" }, {}) },
     CVAC = { does = "VALVE", run = function(request)
       local level = choose(request.arguments[2], { ["1"] = 0, ["0"] = 1 })
@@ -279,8 +294,7 @@ return {
       return request.arguments[1] and standing(result.values) or told(request, result)
     end },
     CSTN = { does = "SET_STATION", run = function(request)
-      local axes = values("", { "theta", "r", "z", "yaw", "forearm" },
-        { theta = true, yaw = true, forearm = true }, true, 3)
+      local axes = values("", AXES, TURNS, true, 3)
       return at_station_with("SET_STATION")(request) .. axes(request)
     end },
     RAXS = { does = "AXES", answer = told },
@@ -330,7 +344,7 @@ return {
     NO_WAFER_ON_GRIPPER = "0730", WAFER_LOST = "0731", WAFER_ON_GRIPPER = "0740", WAFER_MISSING = "0741",
     WAFER_ALREADY_THERE = "0742", VACUUM_BEFORE_PICK = "0743", VACUUM_TIMEOUT = "0744", WAFER_LOST_ON_WAY = "0745",
     WAFER_JAMMED = "0746", PLUNGER_STUCK = "0747", GRIP_TIMEOUT = "0748", UNGRIP_TIMEOUT = "0749",
-    SENSORS_DISAGREE = "0750", WRONG_FACE = "0751",
+    SENSORS_DISAGREE = "0750", WRONG_FACE = "0751", WRONG_SLOT = "0752",
     TOO_FEW_SAMPLES = "0801", NO_NOTCH = "0802", TWO_NOTCHES = "0803", OFF_SENSOR = "0804", TOO_ECCENTRIC = "0805",
     CENTRE_NOT_SURE = "0806", NOTCH_NOT_SURE = "0807", BAD_SCAN = "0808", NOT_TOUCHED = "0809",
     PINS_UP = "0901", DOOR_SHUT = "0902", DOOR_BLOCKED = "0903", DOOR_TIMEOUT = "0904", FLIP_TIMEOUT = "0905",

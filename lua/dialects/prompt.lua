@@ -9,14 +9,16 @@ for word in WORDS:gmatch("%S+") do
   commands[word] = { does = word, run = function(request) return request.line end }
 end
 
--- What HELP tells of this port: it has HOLD and RESUME, and no QUIT.
+-- HELP of this port: it has HOLD and RESUME, and none of the words that it refuses, such as QUIT and TASK.
 local OWN = { HOLD = "what runs stands still after the present slice, and the clock with it", RESUME = "what a HOLD holds goes on" }
 
 local function help(_, result)
   if not result.answer:find("; HELP COMMAND", 1, true) then
     return nil
   end
-  return (result.answer:gsub(" HOLDER ", " HOLD HOLDER "):gsub(" RESTORE ", " RESTORE RESUME "):gsub(" QUIT ", " "))
+  local list = result.answer:gsub(" HOLDER ", " HOLD HOLDER "):gsub(" RESTORE ", " RESTORE RESUME ")
+  local words, rest = list:match("^(.-)(;.*)$")
+  return words:gsub(" (%S+)", function(word) return not commands[word] and "" or nil end) .. rest
 end
 
 if commands.HELP then
@@ -26,7 +28,7 @@ if commands.HELP then
   end
 end
 
--- Our own numbers.
+-- The errors have our own numbers.
 local errors = {}
 for name, entry in pairs(wh.errors) do
   errors[name] = name ~= "OK" and entry.number or nil
@@ -41,11 +43,12 @@ return {
   framing = { ends = { "\n", "\r\n" }, longest = 1002 },
   commands = commands,
 
-  -- Blank lines and comments are passed over.
+  -- It ignores blank lines and comments.
   decode = function(frame)
     local word, rest = frame:match("^%s*([^%s#]%S*)%s*(.-)%s*$")
     local own = word and (word .. " " .. rest):upper()
-    if own == "HELP QUIT" then
+    local asked = own and own:match("^HELP (%S+)$")
+    if asked and not commands[asked] then
       host.refuse("NO_SUCH_COMMAND", rest)
     end
     return word and { command = commands[own] and own or word:upper(), line = frame }

@@ -1,27 +1,33 @@
 -- Frames as object.verb(arguments), each ended by a carriage return: `oROB1.GETW(A,1)`. The controller answers at once,
 -- `aROB1.GETW:` and values, or `nROB1.GETW:` and a code; the end of an action is an event, `eROB1.GETW(0000,1.965)`,
--- and what befalls a wafer, too: `eROB1.WAFR(picked,1.123,Wafer 1,EE)`. Lengths in mm, angles in degrees, times in s.
+-- and so is an event of a wafer: `eROB1.WAFR(picked,1.123,Wafer 1,EE)`. Lengths in mm, angles in degrees, times in s.
 
 local OBJECT = "ROB1"
 
 local last_verb = "----" -- of the last frame: a refusal is answered under it
 local maps = {}
-local found = {} -- what the last command of each verb has found
+local found = {} -- the results of the last command of each verb
+
+-- The axes in their order. An axis that the robot does not have is an empty field. From the forearm on, which arms that fold
+-- have, empty fields at the end are left out.
+local AXES = { "theta", "r", "z", "yaw", "forearm", "rail", "r2", "yaw2", "tilt_x", "tilt_y", "flip" }
+local TURNS = { theta = true, yaw = true, forearm = true, yaw2 = true, tilt_x = true, tilt_y = true, flip = true }
+local SIGNED = { theta = "theta", r = "r", z = "z", yaw = "yaw" }
 
 local function number(value)
   return ("%.3f"):format(value)
 end
 
--- A name as one argument: marks of the frames would take it apart.
+-- A name as one argument: marks of the frames would break it up.
 local function field(name)
   return (name:gsub("[(),%c]", ";"))
 end
 
--- How many arguments a verb has; of the others each goes to motion control, which looks at all.
+-- The most arguments of a verb. Verbs that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
-  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 4, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
-  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 7, GAXS = 0, GLOC = 1,
+  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
+  ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
   GVER = 0,
 }
 
@@ -44,7 +50,7 @@ local function decode(frame)
   return { command = verb, arguments = arguments }
 end
 
--- (station, slot, arm, phase, dx, dy, dz): all behind the slot may be left out, or empty.
+-- (station, slot, arm, phase, dx, dy, dz): the arguments behind the slot may be left out, or empty.
 local function transfer(word, prefix)
   return function(request)
     local fields, list = request.arguments, {}
@@ -79,7 +85,7 @@ local function at_door(word)
   end
 end
 
--- (station, angle): which is 0 if there is one by itself.
+-- (station, angle): without an angle the verb takes `by_itself`, if it has one.
 local function turn(word, by_itself)
   return function(request)
     local theirs = request.arguments[2] or by_itself or host.refuse("BAD_ARGUMENT", word)
@@ -87,21 +93,21 @@ local function turn(word, by_itself)
   end
 end
 
--- (theta, r, z, yaw), (dx, dy, dz, speed), from the first on: each may be empty; `turns` by name, what is an angle.
+-- (theta, r, z, yaw), (dx, dy, dz, speed), from the first on: each may be empty; `turns` names the angles.
 local function values(word, names, turns, axes, first)
   return function(request)
     local list = { word }
     for place, name in ipairs(names) do
       local field, unit = request.arguments[(first or 1) + place - 1] or "", turns[name] and host.degrees or host.mm
       if field ~= "" then
-        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and name ~= "forearm" and name))
+        list[#list + 1] = ("%s=%.17g"):format(name, unit(field, axes and SIGNED[name] or nil))
       end
     end
     return table.concat(list, " ")
   end
 end
 
--- A name, which may have blanks; `may_lack`: or none.
+-- A name, which may have blanks; `may_lack`: it may be missing.
 local function with_name(word, may_lack)
   return function(request)
     local name = request.arguments[1] or ""
@@ -109,7 +115,7 @@ local function with_name(word, may_lack)
   end
 end
 
--- (station, arm), of which the arm may lack.
+-- (station, arm): the arm may be missing.
 local function at_station_with(word)
   return function(request)
     local arm = request.arguments[2] or ""
@@ -117,13 +123,23 @@ local function at_station_with(word)
   end
 end
 
--- Where the axes stand in a station: theta, r, z, yaw, of which one that the robot has not is empty; and the forearm of
--- an arm that folds.
+-- The values of axes, by name and in their units, as fields.
+local function axes_as_fields(at)
+  local list, last = {}, 4
+  for place, name in ipairs(AXES) do
+    list[place] = at[name] and number(at[name]) or ""
+    last = at[name] and place > last and place or last
+  end
+  return table.concat(list, ",", 1, last)
+end
+
+-- The positions of the axes in a station.
 local function standing(axes)
-  local list = { axes.theta and number(host.angle(axes.theta, "theta")) or "", axes.r and number(host.length(axes.r, "r")) or "",
-                 axes.z and number(host.length(axes.z, "z")) or "", axes.yaw and number(host.angle(axes.yaw, "yaw")) or "",
-                 axes.forearm and number(host.angle(axes.forearm)) }
-  return table.concat(list, ",")
+  local theirs = {}
+  for _, name in ipairs(AXES) do
+    theirs[name] = axes[name] and (TURNS[name] and host.angle or host.length)(axes[name], SIGNED[name])
+  end
+  return axes_as_fields(theirs)
 end
 
 local function as_typed(word)
@@ -136,12 +152,12 @@ local function told(_, result)
   return field((result.answer:gsub("^OK ?", "")))
 end
 
--- For GFND.
+-- Keeps the result for GFND.
 local function keep(request, result)
   found[request.command] = told(request, result)
 end
 
--- What the sensor of each arm says: EE:1,PA:0.
+-- The state of each arm's sensor: EE:1,PA:0.
 local function arms(result)
   local list = {}
   for name, is_on in pairs(result.sensors) do
@@ -152,8 +168,7 @@ local function arms(result)
 end
 
 local function position(_, result)
-  local at = result.position
-  return table.concat({ number(at.theta), number(at.r), number(at.z), number(at.yaw) }, ",")
+  return axes_as_fields(result.position)
 end
 
 return {
@@ -187,7 +202,7 @@ return {
     FLIP = { does = "FLIP", run = function(request) return "FLIP " .. host.arm(request.arguments[1] or "") end },
     OPEN = { does = "OPEN", run = at_door("OPEN") },
     CLOS = { does = "CLOSE", run = at_door("CLOSE") },
-    MOVE = { does = "MOVE", run = values("MOVE", { "theta", "r", "z", "yaw" }, { theta = true, yaw = true }, true) },
+    MOVE = { does = "MOVE", run = values("MOVE", AXES, TURNS, true) },
     LINE = { does = "LINE", run = values("LINE", { "dx", "dy", "dz", "speed" }, {}) },
     VALV = { does = "VALVE", run = function(request)
       local levels, switch = { on = 0, off = 1 }, request.arguments[2] or ""
@@ -228,8 +243,7 @@ return {
       return request.arguments[1] and standing(result.values) or told(request, result)
     end },
     SSTN = { does = "SET_STATION", run = function(request)
-      local axes = values("", { "theta", "r", "z", "yaw", "forearm" },
-        { theta = true, yaw = true, forearm = true }, true, 3)
+      local axes = values("", AXES, TURNS, true, 3)
       return at_station_with("SET_STATION")(request) .. axes(request)
     end },
     GAXS = { does = "AXES", answer = told },
@@ -247,7 +261,7 @@ return {
       local code = result.ok and "0000" or result.code
       return ("e%s.%s(%s,%s)"):format(OBJECT, request.command, code, number(result.seconds))
     end,
-    -- Of a verb that is none, so much as a line has room for beside the code.
+    -- An unknown verb is cut to the room that a line has beside the code.
     refuse = function(request, failure)
       return ("n%s.%s:%s"):format(OBJECT, (request.command or last_verb):sub(1, 60), failure.code)
     end,
@@ -270,7 +284,7 @@ return {
     WAFER_MISSING = "0081", NO_WAFER_ON_GRIPPER = "0082", WAFER_ON_GRIPPER = "0083", WAFER_LOST = "0084",
     WAFER_ALREADY_THERE = "0085", VACUUM_TIMEOUT = "0086", VACUUM_BEFORE_PICK = "0087", WAFER_LOST_ON_WAY = "0088",
     WAFER_JAMMED = "0089", PLUNGER_STUCK = "0090", GRIP_TIMEOUT = "0091", UNGRIP_TIMEOUT = "0092",
-    SENSORS_DISAGREE = "0093", WRONG_FACE = "0094",
+    SENSORS_DISAGREE = "0093", WRONG_FACE = "0094", WRONG_SLOT = "0095",
     TOO_FEW_SAMPLES = "0101", NO_NOTCH = "0102", TWO_NOTCHES = "0103", OFF_SENSOR = "0104", TOO_ECCENTRIC = "0105",
     CENTRE_NOT_SURE = "0106", NOTCH_NOT_SURE = "0107", BAD_SCAN = "0108", NOT_TOUCHED = "0109",
     PINS_UP = "0121", DOOR_SHUT = "0122", DOOR_BLOCKED = "0123", DOOR_TIMEOUT = "0124", FLIP_TIMEOUT = "0125",

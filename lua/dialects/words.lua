@@ -1,12 +1,12 @@
 -- Frames as words with blanks between them, each line ended by a carriage return. An action is answered when it has
 -- ended, `_RDY` or `_ERR n`; in background mode `_RDY` when it begins, and `_BKGRDY` or `_BKGERR n` when it has ended.
--- What the cell complains of is told at once, `_EVT SLOT_OCCUPIED Wafer 1`.
+-- A complaint of the cell is told at once, `_EVT SLOT_OCCUPIED Wafer 1`.
 -- Lengths are whole um, angles whole 0.001 degrees.
 
 local background = false
-local found = {} -- what the last command of each name has found
+local found = {} -- the results of the last command of each name
 
--- A value of theirs as that field of our line: in mm, or in degrees. The axes of RQ POS have a sign of their own.
+-- Their value as a field of our line: in mm, or in degrees. The axes of RQ POS have a sign of their own.
 local function mm(field, axis)
   return function(word) return ("%s=%.17g"):format(field, host.mm(word, axis)) end
 end
@@ -15,7 +15,7 @@ local function degrees(field, axis)
   return function(word) return ("%s=%.17g"):format(field, host.degrees(word, axis)) end
 end
 
--- What may follow a command's first words: theirs, and what becomes of it in our line.
+-- The options behind a command's first words: their word, and its form in our line.
 local OPTIONS = {
   SLOT = function() end,
   ARM = function(word) return "gripper=" .. host.arm(word) end,
@@ -26,13 +26,26 @@ local OPTIONS = {
   end,
 }
 
-local AXES = { T = degrees("theta", "theta"), R = mm("r", "r"), Z = mm("z", "z"), W = degrees("yaw", "yaw") }
+-- The axes that may have a sign of their own.
+local SIGNED = { theta = "theta", r = "r", z = "z", yaw = "yaw" }
+
+-- Their letters of the axes, in the order of the answer; a robot has some of them. F is the forearm of an arm that
+-- folds, X the rail, R2 and W2 belong to a second arm, TX and TY tilt the column, FL turns the blade over.
+local LETTERS = { "T", "R", "Z", "W", "F", "X", "R2", "W2", "TX", "TY", "FL" }
+local NAMES = { T = "theta", R = "r", Z = "z", W = "yaw", F = "forearm", X = "rail", R2 = "r2", W2 = "yaw2", TX = "tilt_x",
+                TY = "tilt_y", FL = "flip" }
+local LENGTHS = { R = true, Z = true, X = true, R2 = true }
+local AXES = { T = degrees("theta", "theta"), R = mm("r", "r"), Z = mm("z", "z"), W = degrees("yaw", "yaw"), F = degrees("forearm"),
+               X = mm("rail"), R2 = mm("r2"), W2 = degrees("yaw2"), TX = degrees("tilt_x"), TY = degrees("tilt_y"), FL = degrees("flip") }
 local WAYS = { X = mm("dx"), Y = mm("dy"), Z = mm("dz"), SPEED = mm("speed") }
 
--- With which axes the arm stands in a station, and which arm: F is the forearm of one that folds.
-local STANDING = { ARM = OPTIONS.ARM, T = AXES.T, R = AXES.R, Z = AXES.Z, W = AXES.W, F = degrees("forearm") }
+-- The options for the positions of the arm's axes in a station, and for the arm.
+local STANDING = { ARM = OPTIONS.ARM }
+for letter, axis in pairs(AXES) do
+  STANDING[letter] = axis
+end
 
--- The pairs of words from `first` on, each a name of `known` and its value: as they stand in our line, and their values
+-- The pairs of words from `first` on, each a name of `known` and its value: the words of our line, and the values
 -- by name.
 local function options(words, first, known)
   local list, values = {}, {}
@@ -63,7 +76,7 @@ local function with_station(word)
   end
 end
 
--- TEACH A, or TEACH A KEEP: from then on the arm goes there.
+-- TEACH A; after TEACH A KEEP the arm goes to the taught place.
 local function teach(request)
   local keep = request.words[3]
   if keep and keep:upper() ~= "KEEP" then
@@ -72,7 +85,7 @@ local function teach(request)
   return with_station("TEACH")(request) .. (keep and " keep=true" or "")
 end
 
--- A command with a station and an angle, which may be left out if there is one `by_itself`.
+-- A command with a station and an angle. Without an angle it takes `by_itself`, if it has one.
 local function with_angle(word, by_itself)
   return function(request)
     local theirs = request.words[3] or by_itself or host.refuse("BAD_ARGUMENT", word)
@@ -94,7 +107,7 @@ local function as_said(word)
   end
 end
 
--- A command with a name, which may have blanks: the words from `first` on. `may_lack`: or without one.
+-- A command with a name, which may have blanks: the words from `first` on. `may_lack`: the name may be missing.
 local function with_name(word, first, may_lack)
   return function(request)
     local name = table.concat(request.words, " ", first)
@@ -102,7 +115,7 @@ local function with_name(word, first, may_lack)
   end
 end
 
--- VAC EE ON: an open valve.
+-- VAC EE ON opens the valve.
 local function valve(request)
   local levels = { ON = 0, OFF = 1 }
   local switch = (request.words[3] or ""):upper()
@@ -113,9 +126,14 @@ local function whole(number)
   return ("%d"):format(math.floor(number + 0.5))
 end
 
+-- An axis that the robot does not have is not told.
 local function position(_, result)
-  local at = result.position
-  return ("POS ABS T %s R %s Z %s W %s"):format(whole(at.theta), whole(at.r), whole(at.z), whole(at.yaw))
+  local list = { "POS ABS" }
+  for _, letter in ipairs(LETTERS) do
+    local at = result.position[NAMES[letter]]
+    list[#list + 1] = at and letter .. " " .. whole(at)
+  end
+  return table.concat(list, " ")
 end
 
 local function held(request, result)
@@ -124,7 +142,7 @@ local function held(request, result)
   return "LOAD " .. (sensor == nil and host.refuse("NO_SUCH_GRIPPER", arm) or sensor and "ON" or "OFF")
 end
 
--- What the sensor of each arm says: EE ON PA OFF.
+-- The state of each arm's sensor: EE ON PA OFF.
 local function arms(result)
   local list = {}
   for name, is_on in pairs(result.sensors) do
@@ -138,14 +156,14 @@ local function map(_, result)
   return "MAP " .. tostring(result.values.codes):gsub(".", "%0 "):sub(1, -2)
 end
 
--- What a query tells, behind this word.
+-- The answer of a query, behind this word.
 local function told(word)
   return function(_, result)
     return word .. " " .. result.answer:gsub("^OK ?", "")
   end
 end
 
--- RQ STN: all of them; RQ STN A ARM EE: where its axes stand in that one.
+-- RQ STN tells all stations; RQ STN A ARM EE tells where the arm's axes stand in A.
 local function station(request)
   local words = request.words
   return words[3] and ("STATION %s %s"):format(host.station(words[3]), options(words, 4, { ARM = OPTIONS.ARM })) or "STATIONS"
@@ -156,22 +174,21 @@ local function place(request, result)
     return told("STN")(request, result)
   end
   local list = { "STN", request.words[3] }
-  local axes = result.values
-  local theirs = { T = axes.theta and host.angle(axes.theta, "theta"), R = axes.r and host.length(axes.r, "r"),
-                   Z = axes.z and host.length(axes.z, "z"), W = axes.yaw and host.angle(axes.yaw, "yaw"),
-                   F = axes.forearm and host.angle(axes.forearm) }
-  for _, name in ipairs({ "T", "R", "Z", "W", "F" }) do
-    list[#list + 1] = theirs[name] and name .. " " .. whole(theirs[name])
+  for _, letter in ipairs(LETTERS) do
+    local name = NAMES[letter]
+    local at = result.values[name]
+    local theirs = at and (LENGTHS[letter] and host.length or host.angle)(at, SIGNED[name])
+    list[#list + 1] = theirs and letter .. " " .. whole(theirs)
   end
   return table.concat(list, " ")
 end
 
--- For RQ FOUND.
+-- Keeps the result for RQ FOUND.
 local function keep(request, result)
   found[request.command] = result.answer:gsub("^OK ", "")
 end
 
--- How many words may follow a command's; of others their options tell.
+-- The most words behind a command's own words; for other commands their options tell.
 local MOST = {
   HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
   OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
@@ -305,7 +322,7 @@ return {
     WAFER_MISSING = "0401", NO_WAFER_ON_GRIPPER = "0402", WAFER_ON_GRIPPER = "0403", WAFER_LOST = "0404",
     WAFER_ALREADY_THERE = "0405", VACUUM_TIMEOUT = "0406", VACUUM_BEFORE_PICK = "0407", WAFER_LOST_ON_WAY = "0408",
     WAFER_JAMMED = "0409", PLUNGER_STUCK = "0410", GRIP_TIMEOUT = "0411", UNGRIP_TIMEOUT = "0412",
-    SENSORS_DISAGREE = "0413", WRONG_FACE = "0414",
+    SENSORS_DISAGREE = "0413", WRONG_FACE = "0414", WRONG_SLOT = "0415",
     TOO_FEW_SAMPLES = "0501", NO_NOTCH = "0502", TWO_NOTCHES = "0503", OFF_SENSOR = "0504", TOO_ECCENTRIC = "0505",
     CENTRE_NOT_SURE = "0506", NOTCH_NOT_SURE = "0507", BAD_SCAN = "0508", NOT_TOUCHED = "0509",
     PINS_UP = "0601", DOOR_SHUT = "0602", DOOR_BLOCKED = "0603", DOOR_TIMEOUT = "0604", FLIP_TIMEOUT = "0605",

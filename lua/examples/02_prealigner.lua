@@ -14,7 +14,7 @@ expect_offset("Wafer 2", "P", 1, -7.2385, 13.794)
 expect(math.abs(distance("PA", "Wafer 2") - apart) < 1e-9, "Wafer 2 stays as far from the middle of the chuck")
 expect(math.abs(measure("P", "PA").turn - 90) < 1e-9, "the chuck stands at 90 degrees")
 
--- Back onto the blade and over again, both valves switching in one slice.
+-- The wafer goes back to the blade, and to the chuck again; both valves switch in one slice.
 get("P", 1, { handover = "same_slice" })
 expect(holder("Wafer 2") == "EE", "the end-effector holds Wafer 2")
 put("P", 1, { handover = "same_slice" })

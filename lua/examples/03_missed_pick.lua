@@ -1,4 +1,4 @@
--- A GET that takes nothing, and says why.
+-- A GET that takes nothing, and reports the reason.
 cell "../layouts/shifted.lua"
 
 local ok, problem = pcall(get, "A", 1)

@@ -1,13 +1,13 @@
--- A GET that enters 2 mm too high scrapes the wafer. The run fails, as it should, and says what hit what.
+-- A GET that enters 2 mm too high scrapes the wafer. The run fails, as it should, and names both parts.
 cell "../layouts/scrape.lua"
 
--- As taught, 2.1 mm below the slot: the blade passes beneath a wafer whose front lies 0.5 mm low.
+-- At the taught height, 2.1 mm below the slot, the blade passes beneath a wafer whose front lies 0.5 mm low.
 get("C", 2)   put("C", 10)
 expect(#hits() == 0, "nothing is hit on the way in that was taught")
 local gap, limit = clearance("blade_wafer_above")
 expect(gap > 1.5 and gap > limit, "the blade keeps 1.5 mm from the wafer above")
 
--- 0.1 mm below the slot there is no room for it; where the blade comes to rest the vacuum takes the wafer too early.
+-- 0.1 mm below the slot the blade has no room; where it comes to rest, the vacuum takes the wafer too early.
 local ok, problem = pcall(get, "C", 4, { stroke = 2 })
 expect(not ok and problem.name == "VACUUM_BEFORE_PICK", "the sensor is on before the stroke")
 local hit = hits()[1]

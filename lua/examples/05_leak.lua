@@ -9,7 +9,7 @@ print(problem)
 expect(not ok and problem.name == "WAFER_LOST_ON_WAY", "PUT B 2 ends when the vacuum is lost")
 expect(holder("Wafer 1") == "EE", "the wafer still rests on the blade")
 
--- With the leak closed the open valve builds the vacuum up again.
+-- When the leak is closed, the open valve builds the vacuum up again.
 clear_fault(leak)
 wait(0.5)
 put("B", 2)

@@ -11,7 +11,7 @@ for _, slot in ipairs { 4, 5, 8 } do
   expect(not ok and problem.name == "BAD_SLOT", "GET A " .. slot .. " is refused")
 end
 
--- Nothing went in, so nothing was touched; a slot beside a crossed one is as bad.
+-- No blade went in, so no wafer was touched; a slot beside a crossed one is refused, too.
 local ok, problem = pcall(get, "A", 3)
 expect(not ok and problem.name == "BAD_SLOT", "the blade would meet the crossed wafer from slot 3, too")
 local _, _, dz = offset("Crossed", "A", 4)

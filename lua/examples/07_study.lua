@@ -1,4 +1,4 @@
--- One GET and PUT in a cell that is never quite as taught: how often does it work, and where does the wafer end up?
+-- One GET and PUT in a cell that is never exactly as taught: how often does it work, and where does the wafer lie then?
 -- waferhand study lua/examples/07_study.lua --trials 10000, or over the slots: waferhand sweep with --set slot=1:8:25
 cell "../layouts/study.lua"
 

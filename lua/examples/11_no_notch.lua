@@ -1,4 +1,4 @@
--- A wafer whose notch cannot be found: the error says what was seen, and the wafer, only centred, goes back to where it came from.
+-- A wafer whose notch cannot be found: the error lists what was seen. The wafer, only centred, goes back to its slot.
 cell "../layouts/lot.lua"
 
 get("A", 5)   put("P", 1)
@@ -6,7 +6,7 @@ local ok, problem = pcall(align, "P")
 expect(not ok and problem.name == "NO_NOTCH", "the rim has no notch")
 print(problem.text)
 
--- Where its middle is was seen all the same.
+-- The scan has measured its middle nevertheless.
 local found = align("P", { mark = "none" })
 expect(found.mark == "none" and found.notch == nil, "nothing is said of its turn")
 get("P", 1)   put("A", 5)

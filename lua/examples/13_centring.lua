@@ -1,4 +1,4 @@
--- Centring on the way: the beams at a load lock's door say how a wafer lies on the blade, and the PUT goes aside by that.
+-- Centring on the way: the beams at a load lock's door measure the wafer's offset on the blade, and the PUT corrects it.
 cell "../layouts/centring.lua"
 
 local function place(wafer, station, slot)
@@ -13,7 +13,7 @@ expect(math.abs(seen.dx - 1.5) < 0.02 and math.abs(seen.dy + 0.8) < 0.02 and see
 print(place("W1", "LL", 1))
 expect_offset("W1", "LL", 1, 0, 0, 0.02)
 
--- This one's notch is where a beam meets the rim: the crossing that would spoil the centre is left out.
+-- A beam meets the rim of this wafer at its notch: the crossing would spoil the centre, so it is left out.
 get("A", 2)
 seen = put("LL", 2)
 for _, crossing in ipairs(seen.crossings) do
@@ -22,8 +22,8 @@ end
 expect(seen.used == 3, "the notch is found")
 expect_offset("W2", "LL", 2, 0, 0, 0.02)
 
--- Where two places of the wafer explain what was seen, nothing is corrected and nothing is put down: the blade brings the wafer out
--- again. What to do is the script's matter.
+-- If two places of the wafer explain the crossings, nothing is corrected and nothing is put down: the blade brings the wafer
+-- out again. The script decides what to do then.
 get("A", 3)
 local ok, problem = pcall(put, "OLD", 1)
 expect(not ok and problem.name == "CENTRE_NOT_SURE" and holder("W3") == "EE", "it is still held")

@@ -1,4 +1,4 @@
--- A lot goes by way of the prealigner from one FOUP to another: how each wafer lay before, and how it lies after.
+-- A lot goes by way of the prealigner from one FOUP to another; the script prints each wafer's place before and after.
 local wafers = { "W01", "W02", "W03", "W04" }
 
 study {
@@ -14,7 +14,7 @@ for slot, wafer in ipairs(wafers) do
   local found = align("P")
   get("P", 1)   put("B", slot)
 
-  -- Where it really is: the robot's own part of the error is in it, and with `waferhand study` that of teaching.
+  -- Its true place includes the robot's own error, and with `waferhand study` the error of teaching.
   local slot_frame = ("B/%d"):format(slot)
   local dx, dy = offset(wafer, "B", slot)
   local notch = measure(slot_frame, wafer).heading

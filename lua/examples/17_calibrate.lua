@@ -1,8 +1,8 @@
--- An edge sensor finds out what it is off by itself, with a wafer of known diameter and the robot that carries it: how well ALIGN
--- tells the middle of a wafer that lies 7 mm aside, before and after.
+-- An edge sensor is calibrated with a wafer of known diameter and the robot that carries it. The script compares ALIGN's
+-- result for the middle of a wafer that lies 7 mm aside, before and after.
 cell "../layouts/calibrate.lua"
 
--- How far the middle that ALIGN tells is from where it truly is, in um.
+-- The error of the middle that ALIGN finds, in um.
 local function how_far_off()
   local told, dx, dy = align("P"), offset("W", "P", 1)
   return 1000 * math.sqrt((told.after_dx - dx) ^ 2 + (told.after_dy - dy) ^ 2)

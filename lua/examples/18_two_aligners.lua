@@ -3,7 +3,7 @@ cell "../layouts/two_aligners.lua"
 
 local aligners, turning = { "P", "Q" }, {}
 
--- Turns the wafer on its chuck, beside the rest.
+-- Turns the wafer on its chuck, in a task.
 local function begin_align(aligner)
   turning[aligner] = task(function() return align(aligner, { angle = 90 }).notch end)
   if params.alone then join(turning[aligner]) end
@@ -11,7 +11,7 @@ end
 
 for slot = 1, 6 do
   local aligner = aligners[2 - slot % 2]
-  if slot > 2 then   -- what was brought two rounds ago has been turned, or will be soon
+  if slot > 2 then   -- the wafer of two rounds ago has been turned, or will be soon
     join(turning[aligner])
     get(aligner, 1)   put("B", slot - 2)
   end

@@ -15,7 +15,7 @@ for slot = 1, 2 do
   expect(math.abs(measure("B/" .. slot, wafer).heading - 90) < 0.01, wafer .. "'s notch points to 90 degrees")
 end
 
--- Nothing moves for a wafer that would lie the wrong way.
+-- Nothing moves if the wafer would lie with the wrong face up.
 get("U", 3)
 local good, problem = pcall(put, "B", 3)
 expect(not good and problem.name == "WRONG_FACE", tostring(problem))

@@ -1,5 +1,5 @@
 -- Process modules in series: each works beside the robot, which waits in front of one until its wafer is done.
--- --set n=4 --set p=20 --set p2=35: so many modules, the seconds of each, and of one by itself. --set dual=true: two blades that swap.
+-- --set n=4 --set p=20 --set p2=35: number of modules, seconds of each, seconds of module 2. --set dual=true: two blades swap.
 cell "../layouts/series.lua"
 
 local n, lot = params.n or 3, params.lot or 12
@@ -9,7 +9,7 @@ local function begin_process(i)
   processes[i] = task(function() wait(params["p" .. i] or params.p or 10) end)
 end
 
--- In front of a module until its wafer is done; of a load lock there is nothing to wait for.
+-- Waits in front of a module until its wafer is done; at a load lock there is no wait.
 local function wait_in_front(i, slot, gripper)
   ready("S" .. i, slot, { gripper = gripper })
   if processes[i] then
@@ -18,7 +18,7 @@ local function wait_in_front(i, slot, gripper)
   end
 end
 
--- One blade: the last module is emptied first, so that there is room for what comes.
+-- One blade: the last module is emptied first, so that there is room for the next wafers.
 local function pull(round)
   for i = n, 0, -1 do
     if processes[i] or i == 0 and round <= lot then
@@ -32,7 +32,7 @@ local function pull(round)
   end
 end
 
--- Two blades: from module to module, and what one has done goes on into the next.
+-- Two blades: the robot goes from module to module, and each finished wafer goes on into the next.
 local loaded
 local function exchange(i, slot, is_full)
   local free = loaded == "EE" and "E2" or "EE"

@@ -1,7 +1,7 @@
--- A wafer is turned over on its way, and comes back: twice over it lies as it lay.
+-- A wafer is turned over on its way, and comes back: after two turns it lies as before.
 cell "../layouts/flip.lua"
 
--- Within a station's reach there is no room: what would be hit is said before anything moves.
+-- Near a station there is no room: the error names the part that would be hit, before anything moves.
 get("A", 1)
 line { dx = 200 }
 local good, problem = pcall(flip, "EE")
@@ -9,7 +9,7 @@ expect(not good and problem.name == "COLLISION_AHEAD", tostring(problem))
 line { dx = -200 }
 
 flip("EE")                  -- the wafer hangs below the blade
-put("D", 1)                 -- which comes from above
+put("D", 1)                 -- the blade comes from above
 expect(face("W01") == "down", "W01 lies face down")
 expect_offset("W01", "D", 1, 1.5, 0.8)
 

@@ -1,4 +1,4 @@
--- Three ways to make good how a wafer lies on a prealigner: the robot goes to where it lies, a stage shifts the chuck, or pins hold
+-- Three ways to correct a wafer's offset on a prealigner: the robot goes to its place, a stage shifts the chuck, or pins hold
 -- the wafer while the stage brings the chuck below its middle, for a second grip.
 cell "../layouts/stage.lua"
 

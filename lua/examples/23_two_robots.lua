@@ -1,4 +1,4 @@
--- Two robots hand wafers over at two load locks: each side is a task of its own, and a station is one robot's at a time.
+-- Two robots hand wafers over at two load locks: each side is a task of its own, and only one robot at a time has a station.
 -- With --set alone=true one thing is done after the other.
 cell "../layouts/two_robots.lua"
 

@@ -1,14 +1,14 @@
--- An edge grip pushes each wafer onto its rests, so that all lie on the blade alike, but for their diameters and for a notch over a
--- rest. The aligner turns notches to where no rest is; the GET behind it needs no correction.
+-- An edge grip pushes each wafer onto its rests, so that all lie alike on the blade, except for their diameters and for a notch
+-- over a rest. The aligner turns notches away from the rests; the GET after it needs no correction.
 cell "../layouts/edge.lua"
 
--- How far a wafer of this radius lies beside the blade's middle when it is gripped: rests of 1.5 mm at 30 degrees, nominal radius 150.
+-- The offset of a gripped wafer of this radius from the blade's middle: rests of 1.5 mm at 30 degrees, nominal radius 150.
 local function seated(radius)
   local out, across = 151.5 * math.cos(math.rad(30)), 151.5 * math.sin(math.rad(30))
   return out - math.sqrt((radius + 1.5) ^ 2 - across ^ 2)
 end
 
--- Its notch points to a rest: the wafer sinks in there, which is not along the blade alone.
+-- Its notch points to a rest: the wafer sinks in there, and so moves not only along the blade.
 get("A", 2)   put("B", 3)
 local dx, dy = offset("W02", "B", 3)
 expect(math.abs(dx - seated(149.95)) > 0.1 and math.abs(dy) > 0.1, "a notch over a rest")

@@ -1,5 +1,5 @@
--- A wafer that lies 3.25 mm beside the middle of its slot is in the plunger's way: the command says by how much, the wafer stays where
--- it is, and a GET that goes there takes it. Then what else can go wrong with a plunger.
+-- A wafer that lies 3.25 mm beside the middle of its slot is in the plunger's way: the command reports the distance, the wafer
+-- stays there, and a GET that goes there takes it. Then other failures of a plunger follow.
 cell "../layouts/edge.lua"
 
 local good, problem = pcall(get, "A", 3)

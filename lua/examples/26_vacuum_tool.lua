@@ -1,14 +1,14 @@
 -- A tool in vacuum: passive blades lift wafers off shelves and pins, and let them down there. No valve is switched
--- but that of the aligner's chuck.
+-- except that of the aligner's chuck.
 cell "../layouts/vacuum_tool.lua"
 
--- By way of the aligner, where pins lift the wafer off the chuck and lay it back.
+-- The wafer goes by way of the aligner, where pins lift it off the chuck and lay it back.
 get("LL", 1)       put("AL", 1)
 rotate("AL", 90)
 lift("AL", "up")   lift("AL", "down")
 get("AL", 1)
 
--- The empty blade takes what lies on the pins of the chamber, the other one lays its wafer there.
+-- The empty blade takes the wafer on the chamber's pins, the other one lays its wafer there.
 swap("PM1", 1)
 put("LL", 1, { gripper = "B" })
 get("LL", 2)       put("PM2", 1)
@@ -17,7 +17,7 @@ expect_offset("W1", "PM1", 1, 0, 0.4, 1e-6)
 expect_offset("W2", "PM2", 1, 0, -0.3, 1e-6)
 expect_offset("W3", "LL", 1, 0, 0, 1e-6)
 
--- A wafer lies on the pads as it lay on its support, and a blade with one cannot take another.
+-- A wafer lies on the pads like on its support, and a blade with one cannot take another.
 get("PM2", 1)
 expect(math.abs(measure("A", "W2").dz) < 1e-9, "W2 lies on the pads of A")
 local good, problem = pcall(get, "PM1", 1, { gripper = "A" })

@@ -1,12 +1,12 @@
 -- 25 wafers go through a tool with two robots and four process stations, each robot and each process in a task of its own;
--- collisions are looked for between all of it.
+-- collisions are looked for between all parts.
 cell "../layouts/tool.lua"
 
 local ATM, VAC = robot "ATM", robot "VAC"
 local WAFERS <const>, STATIONS <const> = 25, 4
 local PROCESS = params.process or 40   -- seconds
 
--- A process runs when its station was filled.
+-- A process runs after its station was filled.
 for i = 1, STATIONS do
   task(function()
     for _ = i, WAFERS, STATIONS do
@@ -17,7 +17,7 @@ for i = 1, STATIONS do
   end)
 end
 
--- In vacuum one arm brings what is new, and the other one takes what is done.
+-- In vacuum one arm brings new wafers, and the other one takes finished ones.
 local function take_out()
   await "OUT is empty"
   VAC:put("OUT", 1, { gripper = "VAC 2" })

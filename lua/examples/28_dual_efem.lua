@@ -3,7 +3,7 @@
 -- other, with one arm.
 cell "../layouts/dual_efem.lua"
 
-local WAFERS <const>, TURN <const> = 10, 1080   -- degrees: what an aligner takes its time for
+local WAFERS <const>, TURN <const> = 10, 1080   -- degrees: the aligner's turn takes time
 
 local function source(wafer)
   return wafer <= 5 and "FOUP1" or "FOUP2", (wafer - 1) % 5 + 1

@@ -16,7 +16,7 @@ end
 local closing = bring(1, 1)
 join(closing, bring(2, 2))
 
--- A shut door is told ahead, and so is one that would close on the arm.
+-- A shut door is an error before anything moves, and so is one that would close on the arm.
 local ok, problem = pcall(get, "LL", 1)
 expect(not ok and problem.name == "DOOR_SHUT", "the shut door is told ahead")
 open "DOOR"

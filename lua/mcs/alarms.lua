@@ -1,12 +1,12 @@
--- Errors on purpose: fault { error = N } arms one, and the next command of a kind that can answer it does, once.
+-- Injected errors: fault { error = N } arms one. The next command that can give this error gives it, once.
 --
 -- How each one is raised:
---   cause   something breaks, so that the command finds what it would find in such a cell
+--   cause   something breaks, so that the command meets the real effect in the cell
 --   check   the command is refused before anything moves, though nothing is wrong
---   line    likewise, and nothing in motion control or the cell ever leads to it, or it comes before a command is
---           read: a host is shown it all the same
+--   line    likewise, for an error that motion control and the cell never cause, or that comes before a command is
+--           read: a host gets it all the same
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
 
 return function(native, lookup)
@@ -18,7 +18,7 @@ return function(native, lookup)
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
-  -- By the error's name: how, and which commands answer it.
+  -- By the error's name: how it is raised, and the commands that can give it.
   local HOW = {
     BAD_VALVE = { "check", "VALVE" },
     BAD_LIMITS = { "line", MOVING },
@@ -43,6 +43,7 @@ return function(native, lookup)
     FLIP_TIMEOUT = { "cause", "FLIP" },
     FLIP_NOT_CLAMPED = { "check", "FLIP" },
     WRONG_FACE = { "check", "PUT SWAP" },
+    WRONG_SLOT = { "check", "GET SWAP" },
     STOPPED = { "cause", STATION .. " HOME ROTATE EDGE_SCAN ALIGN MOVE FLIP LINE" },
     OUT_OF_BUDGET = { "check", MOVING },
     BUSY = { "line", MOVING },
@@ -84,7 +85,7 @@ return function(native, lookup)
     NO_ANSWER = { "line", MOVING },
   }
 
-  -- What raises it, by the error's number: its name, how, and the set of commands.
+  -- By the error's number: its name, how it is raised, and the set of commands.
   local by_number, numbers = {}, {}
   for name, how in pairs(HOW) do
     local number, words = lookup.errors[name].number, {}
@@ -96,12 +97,12 @@ return function(native, lookup)
   end
   table.sort(numbers)
 
-  -- By robot: what is broken for its running command, or for the one that it holds: { alarm = , fault = , opened = }.
-  -- By task, if a door or a flipper alone is at work.
+  -- By robot: the broken part for its running or held command: { alarm = , fault = , opened = }. By task, if only a
+  -- door or a flipper works.
   local broken = {}
 
-  -- alarms.play(segment) plays one by itself; alarms.robot() is that of the running command, or nil; alarms.bearer()
-  -- is that robot, or the task. All are set by lua/mcs/commands.lua.
+  -- alarms.play(segment) plays a single segment; alarms.robot() is the robot of the running command, or nil;
+  -- alarms.bearer() is that robot, or the task. lua/mcs/commands.lua sets all of them.
 
   function alarms.arm(error)
     if not by_number[error] then
@@ -111,7 +112,7 @@ return function(native, lookup)
     return native.arm_alarm(error)
   end
 
-  -- The first one armed that this command answers, and that is raised so, or nil.
+  -- The first armed error that this command can give and that is raised in this way, or nil.
   local function find(word, how)
     for _, alarm in ipairs(native.alarms() or {}) do
       local raised = by_number[alarm.error]
@@ -137,7 +138,7 @@ return function(native, lookup)
     native.fail(raised.name, ("on purpose, by fault %d"):format(alarm.number))
   end
 
-  -- Before a command has begun: for it does not, and has no record.
+  -- Call it before a command has begun: the command then does not begin.
   function alarms.refuse(word)
     local alarm, raised = find(word, "line")
     if alarm and raised.name ~= "NO_SUCH_COMMAND" then
@@ -145,7 +146,7 @@ return function(native, lookup)
     end
   end
 
-  -- Before a typed line is read.
+  -- Call it before a typed line is read.
   function alarms.refuse_line(word)
     local alarm, raised = find(word, "line")
     if alarm and raised.name == "NO_SUCH_COMMAND" then
@@ -153,7 +154,7 @@ return function(native, lookup)
     end
   end
 
-  -- Within a command, or before a question is answered.
+  -- Call it within a command, or before a question is answered.
   function alarms.check(word)
     local alarm, raised = find(word, "check")
     if alarm then
@@ -161,19 +162,19 @@ return function(native, lookup)
     end
   end
 
-  -- How long the command that a STOP comes to has moved by then, s.
+  -- The time that a command has moved when its STOP comes, s.
   local BEFORE_STOP = 0.1
 
-  -- The command of this word, with what is armed for it.
+  -- Runs the command of this word, with the error armed for it.
   function alarms.meet(word, action, ...)
     alarms.check(word)
     return action(...)
   end
 
-  -- By what bears the running command: the alarm whose STOP is to come to it.
+  -- By the bearer of the running command: the alarm whose STOP will end it.
   local stopping = {}
 
-  -- The running command is about to move.
+  -- Call it when the running command is about to move.
   function alarms.begin_motion(text)
     local bearer, stopped = alarms.bearer(), by_number[lookup.errors.STOPPED.number]
     for _, alarm in ipairs(not stopping[bearer] and native.alarms() or {}) do
@@ -185,7 +186,8 @@ return function(native, lookup)
     end
   end
 
-  -- It has ended, with the error of this number or none. Where the STOP did not come to it, it waits for another one.
+  -- The command has ended, with the error of this number or none. If the STOP did not end it, the alarm waits for
+  -- another command.
   local function end_stop(number)
     local bearer = alarms.bearer()
     if stopping[bearer] and number == lookup.errors.STOPPED.number then
@@ -198,22 +200,22 @@ return function(native, lookup)
 
   -------------------------------------------------------------------------------------------------- causes
 
-  -- What breaks at a target of `word`, "get" or "put": a fault's kind and its gripper; nil: that leads to no such
-  -- error there. `at_once` false: not before the arm moves.
+  -- The fault to inject at a target of `word`, "get" or "put": its kind and its gripper; nil: no fault leads to
+  -- this error there. `at_once` false: not before the arm moves.
   local causes = {}
 
   local function by_vacuum(target)
     return not target.edge and not target.is_passive
   end
 
-  -- So slowly a plunger goes for a timeout, mm/s: it moves, and is never there.
+  -- A plunger's speed for a timeout, mm/s: it moves, but does not arrive in time.
   local CREEP = 1e-3
 
   function causes.PLUNGER_STUCK(_, target)
     return target.edge and { "plunger_stuck", target.gripper }
   end
 
-  -- One that has first to go back would be slow at that, and answer another error.
+  -- A plunger that must first go back would be slow then, and give another error.
   function causes.GRIP_TIMEOUT(word, target)
     return word == "get" and target.edge and native.grip(target.gripper) == "open" and { "plunger_slow", target.gripper, value = CREEP }
   end
@@ -262,7 +264,7 @@ return function(native, lookup)
     return target.watched and by_vacuum(target) and { "no_vacuum", target.gripper, later = true }
   end
 
-  -- Refused to a PUT, too, if that goes by what beams say.
+  -- PUT gives these errors, too, if it centres by beams.
   local OF_CENTRING = { TOO_FEW_SAMPLES = true, CENTRE_NOT_SURE = true }
 
   local function check_centring(target)
@@ -278,7 +280,7 @@ return function(native, lookup)
     alarms.play { dwell = native.layout.slice }
   end
 
-  -- Before a GET, PUT or SWAP looks at its sensors. `half` is "get" or "put".
+  -- Call it before a GET, PUT or SWAP reads its sensors. `half` is "get" or "put".
   function alarms.break_at(word, half, target)
     local robot = alarms.robot()
     check_centring(target)
@@ -300,7 +302,7 @@ return function(native, lookup)
     end
   end
 
-  -- What is to move by this word is broken for an armed error of that name.
+  -- Breaks the mechanism that this word moves, for an armed error of that name.
   local function break_mechanism(error_name, word, fault)
     local bearer = alarms.bearer()
     for _, alarm in ipairs(not broken[bearer] and native.alarms() or {}) do
@@ -321,8 +323,8 @@ return function(native, lookup)
     break_mechanism("FLIP_TIMEOUT", "FLIP", { kind = "axis_stopped", gripper = gripper })
   end
 
-  -- A command has ended, with the error of this number or none: what was broken for it is whole again, and if it was
-  -- that error, it no longer waits. A slice passes, so that this has come to the cell.
+  -- A command has ended, with the error of this number or none: the part broken for it works again. If it was the
+  -- armed error, that no longer waits. A slice passes, so that the cell has this change.
   function alarms.mend(number)
     end_stop(number)
     local bearer, robot = alarms.bearer(), alarms.robot()
@@ -341,7 +343,7 @@ return function(native, lookup)
     end
   end
 
-  -- A function that makes broken again what is broken now.
+  -- Returns a function that restores the parts broken now.
   function alarms.keep()
     local was = {}
     for bearer, what in pairs(broken) do

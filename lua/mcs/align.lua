@@ -1,10 +1,10 @@
--- EDGE_SCAN and ALIGN: a chuck turns once round while its edge sensor looks at the wafer; what that says of the
--- wafer; its notch turned to where it shall be; and what the next GET from there makes good.
+-- EDGE_SCAN and ALIGN: a chuck turns once round while its edge sensor scans the wafer. The scan gives the
+-- wafer's place. ALIGN turns its notch to the wanted angle, and the next GET from there corrects the rest.
 --
--- Angles are rad here, and degrees where the operator reads them. A chuck's frame turns with the chuck; at turn
--- 0 it is the station's. So a direction in the station's frame is the one in the chuck's and the chuck's turn.
+-- Angles are rad here, and degrees for the operator. A chuck's frame turns with the chuck; at turn 0 it is the
+-- station's. So a direction in the station's frame is the direction in the chuck's frame plus the chuck's turn.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
 return function(native, patterns, lookup, arm, mechanisms)
@@ -15,18 +15,19 @@ return function(native, patterns, lookup, arm, mechanisms)
   -- A sensor waits for a first sample that is less than half a turn ahead.
   local MOST_AHEAD = math.rad(170)
 
-  -- Two scans of one wafer say the same to six standard deviations of what passes for sure: mm and rad.
+  -- Two scans of one wafer agree within these, six standard deviations of a sure result: mm and rad.
   local SAME_CENTRE, SAME_DIRECTION = 0.02, math.rad(0.07)
 
-  -- How well a blade is in line with a chuck's frame, as they were taught: rad.
+  -- The deviation between a blade's and a chuck's direction, as taught: rad.
   local AS_TAUGHT = math.rad(0.03)
 
-  -- By station: where the wafer's centre and its mark are in its chuck's frame, as the last ALIGN there found
-  -- them, and if a GET makes that good; nothing once something else may have moved the wafer on the chuck, or off
+  -- By station: the wafer's centre and its mark in the chuck's frame, as the last ALIGN there found them, and
+  -- whether a GET corrects them. It is empty when something else may have moved the wafer on the chuck, or off
   -- it.
   local found = {}
 
-  -- By station: the errors of its edge sensor that a CALIBRATE has found; without one, those of the layout.
+  -- By station: the errors of its edge sensor that a CALIBRATE has found; without a CALIBRATE, those of the
+  -- layout.
   local believed = {}
 
   local function wrapped(angle)
@@ -43,7 +44,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return native.layout.grippers[station.chuck].axis
   end
 
-  -- Where the station's chuck is commanded to.
+  -- The commanded turn of the station's chuck.
   local function turn_of(station)
     return native.axes()[axis_of(station)]
   end
@@ -70,7 +71,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return names
   end
 
-  -- A prealigner: "expected P".
+  -- Checks that it is a prealigner: "expected P".
   function align.prealigner(name)
     local station = lookup.station(name)
     if not station.chuck or station.flipper then
@@ -91,7 +92,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return station
   end
 
-  -- A segment by itself; `lost_as`: the error if the wafer is lost in it.
+  -- Plays a single segment; `lost_as`: the error if the wafer is lost in it.
   local function play(segment, lost_as)
     arm.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
   end
@@ -102,14 +103,15 @@ return function(native, patterns, lookup, arm, mechanisms)
     play({ axes = axes }, lost_as)
   end
 
-  -- How far the chuck turns in a scan: a turn and two samples more, so that the first of them is at least one
-  -- ahead of where it stands.
+  -- The angle of a scan: one turn plus two samples, so that the first sample is at least one sample ahead of
+  -- the chuck.
   local function way_of(station)
     local step = TURN / station.sensor.samples
     return (station.sensor.samples + 2) * step
   end
 
-  -- The slice that arms the sensor moves nothing, so no segment watches the chuck's vacuum in it.
+  -- Plays the slice that arms the sensor. It moves nothing, so no segment watches the chuck's
+  -- vacuum in it.
   local function arm_slice(station, lost_as)
     local was_on = asks(station) and native.sensor(station.chuck)
     play({ dwell = native.layout.slice }, lost_as)
@@ -120,7 +122,7 @@ return function(native, patterns, lookup, arm, mechanisms)
   end
 
   -- `way` is +1, counter-clockwise, or -1.
-  -- `run_up`: the first sample comes as much later, rad, and the chuck turns on by as much behind the last one.
+  -- `run_up`: the first sample comes later by this angle, rad, and the chuck turns on by it after the last one.
   local function scan(station, way, lost_as, run_up)
     mechanisms.check_pins(station)
     mechanisms.send_home(station, lost_as)
@@ -144,14 +146,14 @@ return function(native, patterns, lookup, arm, mechanisms)
     return native.edge()
   end
 
-  -- One scan goes on at a time: the simulator has one.
+  -- Only one scan runs at a time: the simulator has only one.
   local function needs(station)
     local list = arm.needs(false, station)
     list.scan = true
     return list
   end
 
-  -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
+  -- Turns the chuck once round and returns its edge sensor's scan: { samples, first, count, missed, is_armed }.
   function align.edge_scan(station)
     return arm.move(needs(station), lookup.command("EDGE_SCAN", station), edge_scan, station)
   end
@@ -205,18 +207,35 @@ return function(native, patterns, lookup, arm, mechanisms)
     return text:format(seen.sd_centre, limits.sd_centre, number_of_samples(seen))
   end
 
+  -- The dent most like a notch, and the limits of a notch.
+  local function dent_text(seen)
+    if not seen.notch_depth then
+      return ""
+    elseif seen.notch_depth == 0 then
+      return "; there is no dent"
+    end
+    local depth = ("; the likeliest dent is %.3f mm deep (expected %.3f to %.3f)"):format(
+      seen.notch_depth, seen.notch_least, seen.notch_most)
+    if seen.narrow_at > 0 then
+      local text = " and, %.3f mm below the circle, %.2f mm wide (expected %.2f at least)"
+      return depth .. text:format(seen.narrow_at, seen.width, seen.width_least)
+    end
+    local text = ", has %d and %d samples on its flanks (expected %d at least) and %d beside them (expected 0)"
+    return depth .. text:format(seen.flank_right, seen.flank_left, seen.flank_least, seen.notch_off)
+  end
+
   function reasons.NO_NOTCH(seen)
     local text = 'the rim is round all round (expected %s; mark = "none" aligns the centre alone)'
-    return text:format(mark_text(seen))
+    return text:format(mark_text(seen)) .. dent_text(seen)
   end
 
   function reasons.TWO_NOTCHES(seen)
     return ("expected one alone that is %s"):format(mark_text(seen))
   end
 
-  -- So far apart on the rim samples may be that still tell a notch for sure, mm; and so large a part of them is off
-  -- the circle only where light comes through.
-  local FINE, THROUGH = 0.4, 0.03
+  -- FINE: the largest distance of samples on the rim, mm, that always resolves a notch. THROUGH: a larger share of
+  -- samples off the circle means that light comes through.
+  local FINE, THROUGH = 0.31, 0.03
 
   function reasons.NOTCH_NOT_SURE(seen, station, own)
     local text = "expected %s, known to %.6g degrees and unlike any other dent; %s, %d are off the circle"
@@ -227,10 +246,10 @@ return function(native, patterns, lookup, arm, mechanisms)
     elseif seen.masked > THROUGH * seen.seen then
       hint = "; if light comes through the wafer, `glass` says how much" .. (own.glass and ": is it truly %.10g?" or "")
     end
-    return text:format(mark_text(seen), sd, number_of_samples(seen), seen.masked) .. hint:format(own.glass)
+    return text:format(mark_text(seen), sd, number_of_samples(seen), seen.masked) .. dent_text(seen) .. hint:format(own.glass)
   end
 
-  -- What the last scan says, or an error that says why it says nothing.
+  -- The result of the last scan, or an error with the reason why there is none.
   local function estimate(station, own)
     local errors = believed[station.name] or station.sensor.believed
     local seen = native.estimate_edge(own.mark ~= "none", own.glass or 0, errors)
@@ -267,7 +286,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return own
   end
 
-  -- An edge grip centres by itself: then the GET has nothing to correct but the turn, which the chuck has made.
+  -- An edge grip centres by itself. The GET then corrects nothing but the turn, and the chuck has made that.
   local function centres_itself(station)
     local gripper = native.layout.grippers[station.effector]
     return gripper.edge and gripper.name
@@ -294,7 +313,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     end
   end
 
-  -- Of a GET that goes to where the wafer will lie.
+  -- Checks the correction of a GET that goes to the wafer's later place.
   local function check_correction(dx, dy)
     local most = native.layout.corrections
     if math.abs(dx) > most.dx or math.abs(dy) > most.dy then
@@ -306,7 +325,8 @@ return function(native, patterns, lookup, arm, mechanisms)
 
   ------------------------------------------------------------------------------------------------------- aligning
 
-  -- The wafer in as many turns as are asked for, together: +1 counter-clockwise, -1 clockwise.
+  -- Scans the wafer in as many turns as are asked for, evaluated together. `way`: +1
+  -- counter-clockwise, -1 clockwise.
   local function look(station, own, way)
     native.forget_turns()
     for turn = 1, own.turns or 1 do
@@ -318,7 +338,8 @@ return function(native, patterns, lookup, arm, mechanisms)
     return estimate(station, own)
   end
 
-  -- Refuses what the mode cannot make good: the wafer's middle is there in the chuck's frame, whose turn that is.
+  -- Refuses an offset that the mode cannot correct. `at` is the wafer's middle in the chuck's frame, `turn` the
+  -- chuck's turn.
   local function check_amount(station, own, at, turn)
     local x, y = rotated(at, turn)
     if own.mode == "stage" or own.mode == "pins" then
@@ -328,7 +349,8 @@ return function(native, patterns, lookup, arm, mechanisms)
     end
   end
 
-  -- With pins the wafer is brought onto the chuck's axis before it is turned. Returns how a second scan is to find it.
+  -- With pins, brings the wafer onto the chuck's axis before it is turned. Returns the expected result of a second
+  -- scan.
   local function grip_again(station, own, first)
     if own.mode ~= "pins" then
       return first
@@ -339,7 +361,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return { x = 0, y = 0, mark = first.mark, direction = first.direction }
   end
 
-  -- With a stage the chuck goes aside, so that the wafer's middle is where that of the station is.
+  -- With a stage, moves the chuck aside, so that the wafer's middle is at the station's middle.
   local function shift_aside(station, own, second)
     if own.mode == "stage" then
       local x, y = rotated(second, turn_of(station))
@@ -347,7 +369,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     end
   end
 
-  -- Both scans are of one wafer that has only turned with its chuck.
+  -- Checks that both scans are of one wafer that has only turned with its chuck.
   local function compare(first, second, station)
     local x, y = second.x - first.x, second.y - first.y
     local apart = math.sqrt(x * x + y * y)
@@ -364,14 +386,14 @@ return function(native, patterns, lookup, arm, mechanisms)
     end
   end
 
-  -- Where the wafer's middle is in the station's frame, which is there in its chuck's.
+  -- The wafer's middle in the station's frame; `at` is its place in the chuck's frame.
   local function place_of(station, at)
     local x, y = rotated(at, turn_of(station))
     local aside_x, aside_y = mechanisms.aside(station)
     return x + aside_x, y + aside_y
   end
 
-  -- The answer but for the time: the wafer before, with the chuck at `before`, and as it lies now.
+  -- The answer without the time: the wafer before, with the chuck at `before`, and the wafer now.
   local function describe(station, first, second, before)
     local dx, dy = rotated(first, before)
     local now, after_dx, after_dy = turn_of(station), place_of(station, second)
@@ -390,8 +412,8 @@ return function(native, patterns, lookup, arm, mechanisms)
     return answer
   end
 
-  -- The chuck turns to where the second scan, clockwise, ends with the mark at its angle; without a mark, with
-  -- the wafer as it was. So the chuck ends within half a turn of where it began.
+  -- Turns the chuck so that the second scan, clockwise, ends with the mark at its angle; without a mark, with
+  -- the wafer as before. So the chuck ends within half a turn of its start.
   local function align_wafer(name, options)
     local own = read_options(options)
     local station = with_sensor(align.prealigner(name))
@@ -426,13 +448,13 @@ return function(native, patterns, lookup, arm, mechanisms)
 
   ---------------------------------------------------------------------------------------- what a GET makes good
 
-  -- Whole tenths of a micrometre: a command's text has them all.
+  -- Rounds to tenths of a micrometre: a command's text has all these digits.
   local function rounded(length)
     return math.floor(length * 1e4 + 0.5) / 1e4
   end
 
-  -- How far a GET at the station goes beside what was taught: { dx, dy } in the slot's frame as the chuck stands
-  -- now; nil if nothing was found there, or if the command's options say that it goes its own way.
+  -- The offset of a GET at the station from the taught place: { dx, dy } in the slot's frame with the chuck's
+  -- present turn. Nil if nothing was found there, or if the command's options give an own correction.
   function align.correction(name, options, prefix)
     local own, at = type(options) == "table" and options or {}, found[name]
     local is_own = own[prefix .. "correct"] == false or own[prefix .. "dx"] ~= nil or own[prefix .. "dy"] ~= nil
@@ -449,8 +471,8 @@ return function(native, patterns, lookup, arm, mechanisms)
     return not is_made_good and { dx = dx, dy = dy } or nil
   end
 
-  -- In which direction of its frame a gripper that takes the wafer of this target has its notch, and how sure that
-  -- is; nothing if no notch was found there.
+  -- The notch's direction in the frame of a gripper that takes the wafer of this target, and its deviation;
+  -- nothing if no notch was found there.
   function align.notch(target)
     local at = found[target.station]
     if at and at.direction then
@@ -459,7 +481,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     end
   end
 
-  -- The wafer is taken from the station, another one comes, or its chuck lets it go.
+  -- Call it when the wafer is taken from the station, another one comes, or its chuck lets it go.
   function align.forget(name)
     found[name] = nil
   end
@@ -480,7 +502,7 @@ return function(native, patterns, lookup, arm, mechanisms)
     return copy
   end
 
-  -- A function that makes known again what is known now.
+  -- Returns a function that restores the present knowledge.
   function align.keep()
     local kept_found, kept_believed = copied(found), copied(believed)
     return function()
@@ -493,14 +515,15 @@ return function(native, patterns, lookup, arm, mechanisms)
   align.scan, align.turn_of, align.turn_to = scan, turn_of, turn_to
   align.with_sensor, align.check_wafer = with_sensor, check_wafer
 
-  -- Where the wafer's middle is in the slot's frame, as one turn tells: mm.
+  -- The wafer's middle in the slot's frame, from one turn: mm.
   function align.find(station)
     local dx, dy = rotated(look(station, { mark = "none" }, 1), turn_of(station))
     check_correction(dx, dy)
     return rounded(dx), rounded(dy)
   end
 
-  -- From now on the station's sensor is taken to have these errors. The wafer's middle is there in the chuck's frame.
+  -- From now on these errors are assumed for the station's sensor. The wafer's middle is at x, y in the chuck's
+  -- frame.
   function align.believe(station, errors, x, y)
     believed[station.name] = errors
     found[station.name] = { x = x, y = y, corrects = true }

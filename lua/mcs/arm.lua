@@ -1,8 +1,8 @@
--- What the controller knows of its arm, and how a command goes: recorded, planned to its end before anything
--- moves, played, held in a phase if it asks for that, and refused while the arm may stand where it must not
--- begin.
+-- The controller's knowledge of its arm, and the steps of a command. A command is recorded, planned to its
+-- end before anything moves, and played. It is held in a phase if it asks for that, and refused while the
+-- arm may stand in a place where it must not begin.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
 local tostring, type = tostring, type
 
@@ -12,11 +12,11 @@ return function(native, lookup, centring, tasks, alarms)
   -- By robot:
   -- inside   the target whose straight line the arm has entered and not left
   -- since    the command that entered it
-  -- front    { station, gripper }: the name of the station that it stands in, or in front of, and with which gripper;
+  -- front    { station, gripper }: the name of the station that it stands in, or in front of, and the gripper there;
   --          nil: elsewhere
-  -- stopped  a command that was cut short, and neither RECOVER nor HOME came since; else nil
-  -- homed    nil: as the layout says
-  -- held     the plan of a command that stands still in a phase, and its text; else nil. The host knows of it, too,
+  -- stopped  a command that was cut short, without RECOVER or HOME since; else nil
+  -- homed    nil: as in the layout
+  -- held     the plan of a command that stands still in a phase, and its text; else nil. The host also knows it,
   --          and may give it up
   local states = {}
 
@@ -25,15 +25,15 @@ return function(native, lookup, centring, tasks, alarms)
     return states[robot]
   end
 
-  -- That of the robot that the running command has.
+  -- The state of the running command's robot.
   function arm.state()
     return state_of(tasks.current().robot or 1)
   end
 
-  -- By task: what it runs, and the door that this goes through, if any.
+  -- By task: its running command, and the door that this goes through, if any.
   local running, running_door = {}, {}
 
-  -- As after a STOP: the arm has to be brought out.
+  -- Gives up like a STOP: the arm must then be brought out.
   local function give_up(robot)
     local state = state_of(robot)
     if state.held then
@@ -43,7 +43,7 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- The plan that the robot holds, if it does.
+  -- The robot's held plan, if there is one.
   local function find_held(robot)
     local state = state_of(robot)
     if state.held and not native.is_held(robot) then
@@ -52,7 +52,7 @@ return function(native, lookup, centring, tasks, alarms)
     return state.held
   end
 
-  -- The robots that hold one.
+  -- The robots with a held plan.
   local function find_holding()
     local holding = {}
     for robot in ipairs(native.layout.robots) do
@@ -63,7 +63,7 @@ return function(native, lookup, centring, tasks, alarms)
 
   local STATION, DOOR = "station %s", "door %s"
 
-  -- By which gripper a line goes that names none: of several robots it says which.
+  -- With several robots, the gripper of a line that names none; else nil.
   function arm.leader()
     local robot = tasks.current().robot
     return robot and lookup.has_several() and lookup.on_robot(robot)[1] or nil
@@ -79,21 +79,21 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- OPEN and CLOSE: the door alone. No robot has a part in them.
+  -- OPEN and CLOSE need only the door. No robot takes part in them.
   function arm.needs_door(door)
     local name = native.layout.doors[door].name
     return { DOOR:format(name), chucks = { #native.layout.grippers + door }, is_lone = true }
   end
 
-  -- The grippers of a station, which are not on the robot.
+  -- Adds a station's own grippers, which are not on the robot.
   local function add_chucks(chucks, station)
     chucks[#chucks + 1] = station.chuck
     chucks[#chucks + 1] = station.pins
   end
 
-  -- What a command needs: the robot, and a station with its chuck and pins, if there is one of that name. Of several
-  -- robots `station_name` and `options` say which; `unclear` then raises why they do not. It needs the station's door,
-  -- too, unless it stays `before` it.
+  -- The needs of a command: the robot, and a station with its chuck and pins, if there is one of that name. With
+  -- several robots `station_name` and `options` select one; if they do not, `unclear` raises the reason. It needs the
+  -- station's door, too, unless it stays `before` it.
   function arm.needs(robot, station_name, options, before)
     local station = type(station_name) == "string" and native.layout.stations[station_name]
     local needs = { chucks = {} }
@@ -114,7 +114,7 @@ return function(native, lookup, centring, tasks, alarms)
     return needs
   end
 
-  -- The robot that stands there, or nil; not this one.
+  -- The robot that stands there, or nil; robot `but` does not count.
   function tasks.stands_in(resource, but)
     for robot, state in pairs(states) do
       if robot ~= but and state.inside and STATION:format(state.inside.station) == resource then
@@ -128,7 +128,7 @@ return function(native, lookup, centring, tasks, alarms)
     return state and state.inside ~= nil and STATION:format(state.inside.station) == resource
   end
 
-  -- What stands in the station.
+  -- The state of the robot that stands in the station.
   function arm.find_inside(station_name)
     for _, state in pairs(states) do
       if state.inside and state.inside.station == station_name then
@@ -137,7 +137,7 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- The robot, and where it stands.
+  -- Needs the robot, and the station in which it stands.
   function arm.needs_stand(options)
     local needs = arm.needs(true, nil, options)
     local inside = state_of(needs.robot).inside
@@ -159,7 +159,7 @@ return function(native, lookup, centring, tasks, alarms)
     return alarms.meet(word, action, ...)
   end
 
-  -- With several robots a command's text says which.
+  -- With several robots, adds the robot's name to a command's text.
   function arm.with_robot(text, needs)
     if not needs or not needs.robot or needs.unclear or not lookup.has_several() then
       return text
@@ -179,19 +179,31 @@ return function(native, lookup, centring, tasks, alarms)
     return tasks.current().last_robot
   end
 
-  -- Of several robots none is marked by what has none. A robot alone is: somebody pressed STOP beside it.
+  -- With several robots a command without a robot marks none. A single robot is marked: somebody pressed
+  -- STOP beside it.
   local function marks(task)
     return not task.is_lone and (task.robot or not lookup.has_several())
   end
 
-  -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
-  -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
-  -- `needs`: what of the cell it must have for itself, see arm.needs; nil: nothing.
+  -- Raises an error armed to come before the command. The command is recorded nevertheless, because STATUS tells the
+  -- error that a completion told.
+  local function refuse_armed(word, text)
+    local ok, problem = pcall(alarms.refuse, word)
+    if not ok then
+      native.begin(text, tasks.current().line)
+      native.finish(problem.number, problem.text)
+      error(problem, 0)
+    end
+  end
+
+  -- Runs a command: it is recorded with the script's line, its times and its error number. If an exhausted
+  -- limit or a STOP from outside ended a command outside of Lua, it is still `running` when the next begins.
+  -- `needs`: the parts of the cell that it must have for itself, see arm.needs; nil: none.
   function arm.run(needs, text, action, ...)
     local word, task = text:match("^[%u_]+"), tasks.current()
     text = arm.with_robot(text, needs)
-    alarms.refuse(word)
-    native.begin(text)
+    refuse_armed(word, text)
+    native.begin(text, task.line)
     local state = arm.state()
     state.stopped = state.stopped or marks(task) and running[task] or nil
     running[task], task.robot, task.last_robot = text, needs and needs.robot, needs and needs.robot
@@ -209,7 +221,7 @@ return function(native, lookup, centring, tasks, alarms)
       native.finish()
       return result
     end
-    -- The arm stands as it was if the command has waited for it in vain; and of several ports' commands, if it had
+    -- The arm did not move if the command has waited for it in vain; nor, with several ports' commands, if it had
     -- no part in this one.
     local had_part = not tasks.has_waited() and (needs == nil or needs.robot or not native.has_jobs())
     if number == lookup.errors.STOPPED.number and had_part then
@@ -223,7 +235,8 @@ return function(native, lookup, centring, tasks, alarms)
     error(result, 0)
   end
 
-  -- What has no robot waits for all of them; at one of several ports for none.
+  -- The held plan that is in the way. A command without a robot waits for all robots; at one of
+  -- several ports for none.
   local function find_in_way()
     local robot = tasks.current().robot or not native.has_jobs() and find_holding()[1]
     return robot and find_held(robot)
@@ -238,12 +251,12 @@ return function(native, lookup, centring, tasks, alarms)
     return action(...)
   end
 
-  -- Runs one that moves something: refused while another one is held.
+  -- Runs a command that moves something: it is refused while another one is held.
   function arm.move(needs, text, action, ...)
     return arm.run(needs, text, run_free, action, ...)
   end
 
-  -- Before a command that counts on where the arm stands.
+  -- Call it before a command that relies on the arm's place.
   function arm.check_homed()
     local state = arm.state()
     if state.homed == nil then
@@ -257,7 +270,7 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- Before one that needs the arm outside of stations.
+  -- Call it before a command that needs the arm outside of stations.
   function arm.check_outside()
     arm.check_homed()
     local state = arm.state()
@@ -269,7 +282,7 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- Before one that goes through the station's door: who asked to open it has done so by now.
+  -- Checks the station's door before a command that goes through it: an earlier OPEN has ended by now.
   local function check_door()
     local door = running_door[tasks.current()]
     local word = door and native.door(door)
@@ -280,7 +293,7 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- Before one that goes into a station.
+  -- Call it before a command that goes into a station.
   function arm.check_free()
     arm.check_outside()
     check_door()
@@ -299,12 +312,12 @@ return function(native, lookup, centring, tasks, alarms)
 
   --------------------------------------------------------------------------------------- planning and playing
 
-  -- Of the robot that carries this gripper.
+  -- The index of the first axis of the robot that carries this gripper.
   function arm.first_axis(gripper)
     return native.layout.robots[native.layout.grippers[gripper].robot].first
   end
 
-  -- Of two arms or wrists the one that does not go to the point goes home.
+  -- With two arms or wrists, moves the one that does not go to the point home.
   local function fold_other(request)
     local gripper = native.layout.grippers[request.to.gripper]
     local robot = native.layout.robots[gripper.robot]
@@ -319,8 +332,8 @@ return function(native, lookup, centring, tasks, alarms)
     return angle + 2 * math.pi * math.floor((near - angle) / (2 * math.pi) + 0.5)
   end
 
-  -- A station's point as native.plan takes it, of a robot that goes there with `gripper`: what the point does not say is
-  -- as at these axes. Of two arms or wrists it says where this gripper's is.
+  -- A station's point in the form for native.plan, for a robot that goes there with `gripper`. Axes that the point does
+  -- not give are as in `axes`. With two arms or wrists it gives the axis of this gripper.
   local function via_point(via, robot, gripper, axes)
     local point, arm_number = { blend = via.blend }, native.layout.grippers[gripper].arm
     for index in ipairs(robot.home) do
@@ -341,13 +354,15 @@ return function(native, lookup, centring, tasks, alarms)
     return station and native.layout.stations[station].vias[robot] or {}
   end
 
-  -- True if the robot has points where it stands in front of or goes to: then it comes in by them.
+  -- True if the robot has points at the station that it stands in front of or goes to: it then
+  -- moves by them.
   local function has_points(robot, front, station)
     return (not front or front.station ~= station) and #vias_of(robot, front and front.station) + #vias_of(robot, station) > 0
   end
 
-  -- A robot's points between where it stands in front of and where it goes, or none: back along those of the one, then
-  -- along those of the other. Both are { station, gripper }, or nil for elsewhere; `there` the axes where it ends.
+  -- A robot's points on the way from the station that it stands in front of (`front`) to the next one (`goal`), or
+  -- nil: back along the points of the first, then along those of the second. Both are { station, gripper }, or nil for
+  -- elsewhere; `there` are the axes at the end.
   local function vias_between(robot, front, goal, there)
     local here, points, own = native.axes(), { robot = robot }, native.layout.robots[robot]
     if not has_points(robot, front, goal and goal.station) then
@@ -363,12 +378,13 @@ return function(native, lookup, centring, tasks, alarms)
     return points
   end
 
-  -- The same of the robot's way home.
+  -- True if the running command's robot moves home by points.
   function arm.goes_home_by_points()
     return has_points(tasks.current().robot or 1, arm.state().front, nil)
   end
 
-  -- Both arms come in, if the robot turns on its way to the point and has no points for that.
+  -- The axes with both arms retracted, if the robot turns on its way to the point and has no points
+  -- for that.
   local function retracted(request, front)
     local number = native.layout.grippers[request.before.gripper].robot
     local robot, axes = native.layout.robots[number], native.axes()
@@ -382,14 +398,15 @@ return function(native, lookup, centring, tasks, alarms)
     return axes
   end
 
-  -- What the arm stands in front of when a request to a station has been performed; nil: elsewhere.
+  -- The station in front of which the arm stands after a request; nil: elsewhere.
   local function in_front(request)
     local target = request.target
     return target and { station = target.station, gripper = target.gripper }
   end
 
-  -- The segment of a request, its axes found for where the gripper shall be. Detour 1 turns theta the longer
-  -- way round, detour 2 the shorter way and a whole turn. `front` is what the arm stands in front of.
+  -- The segment of a request, with the axes for the gripper's goal. Detour 1 turns theta the longer way
+  -- round, detour 2 the shorter way plus a whole turn. `front` is the station in front of which the arm
+  -- stands.
   local function segment_of(request, target, front)
     if request.before then
       request.axes = retracted(request, front)
@@ -417,14 +434,14 @@ return function(native, lookup, centring, tasks, alarms)
     return request
   end
 
-  -- What a pattern is answered while it is only planned: a segment runs to its end, a question has its own
+  -- The answer to a pattern while it is only planned: a segment runs to its end, a question has its own
   -- assumption.
   local function assumed(request)
     return request.assume == nil or request.assume
   end
 
-  -- The pattern's requests, one a call, each with what the pattern has `told` of passive pads before it.
-  -- `detours`: which detour each of its ways to a point takes, if any.
+  -- Returns the pattern's requests, one for each call, with all that the pattern has `told` of passive
+  -- pads before it. `detours`: the detour of each way to a point, if any.
   local function requests_of(pattern, detours)
     local step, ways, told = coroutine.wrap(pattern), 0, {}
     return function(answer)
@@ -444,8 +461,8 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
-  -- The pattern of a plan, brought to where these answers lead: what steps it, and its next request, or what
-  -- it returns.
+  -- Repeats a plan's pattern with its answers so far. Returns the function that steps it, and its next
+  -- request or its result.
   local function forward(plan)
     local step = requests_of(plan.pattern, plan.detours)
     local request = step(plan.target)
@@ -482,13 +499,13 @@ return function(native, lookup, centring, tasks, alarms)
   end
 
   -- The shorter way to a station may end so near to the end of an axis's travel that the way in leaves it.
-  -- Then the longer one is tried, and last one with a whole turn.
+  -- Then the longer way is tried, and last the one with a whole turn.
   local function can_go_round(plan, problem)
     return type(problem) == "table" and problem.number == lookup.errors.LIMIT_EXCEEDED.number and plan.way
       and plan.detours[plan.way] ~= 2
   end
 
-  -- Plans all that a begun pattern has ahead of it.
+  -- Plans the rest of a begun pattern.
   local function plan_ahead(begun, judged)
     local detours = {}
     for way, detour in pairs(begun.detours) do
@@ -506,15 +523,14 @@ return function(native, lookup, centring, tasks, alarms)
     return plan
   end
 
-  -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and
-  -- with `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the
-  -- pattern returned. It can be played until the next one is made.
+  -- Plans all of a pattern from where the arm stands, without playing it; raises an error if something is
+  -- out of reach, and with `judged` for a collision ahead. Returns the plan: the requests in order and, as
+  -- `became`, what the pattern returned. It can be played until the next one is made.
   function arm.rehearse(pattern, target, judged)
     return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
   end
 
-  -- What the plunger of an edge grip does. A target keeps the first that is to be told of: not that it is open, as it
-  -- should be.
+  -- The state of an edge grip's plunger. A target keeps the first state that is not the expected "open".
   local function ask_plunger(request)
     local does, s, excess = native.grip(request.grip)
     local target = request.note
@@ -524,7 +540,8 @@ return function(native, lookup, centring, tasks, alarms)
     return does
   end
 
-  -- True if the robot's arm does not stay where it is: chucks and doors are not its own, and a flip turns the blade there.
+  -- True if the robot's arm leaves its place: chucks and doors are not its own, and a flip turns the blade without
+  -- leaving.
   local function goes_away(request, robot)
     local now, goes = native.axes(), request.line ~= nil
     for _, axis in ipairs(request.axes and native.layout.robots[robot or tasks.current().robot or 1].axes or {}) do
@@ -533,9 +550,9 @@ return function(native, lookup, centring, tasks, alarms)
     return goes
   end
 
-  -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
-  -- the segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows if a wafer is on a gripper's pads,
-  -- whatever its sensor says; a controller would look.
+  -- Plays a segment or asks a question. `target.watched`: a wafer lost on the way is an error after the
+  -- segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows whether a wafer is on a gripper's pads,
+  -- whatever its sensor says; in a real tool someone would look.
   local function perform(request, target)
     if request.centre then
       return centring.answer(request.centre)
@@ -554,7 +571,7 @@ return function(native, lookup, centring, tasks, alarms)
     alarms.begin_motion(running[tasks.current()])
     local segment = request.planned or segment_of(request, target, state.front)
     if request.to or request.homeward or not request.target and goes_away(request, target.robot) then
-      state.front = nil   -- one that is stopped ends somewhere between
+      state.front = nil   -- a stopped one ends somewhere between
     end
     local ended, lost = tasks.play(segment)
     if request.leaves then
@@ -581,7 +598,7 @@ return function(native, lookup, centring, tasks, alarms)
     return on
   end
 
-  -- The command ends here, but its plan does not.
+  -- Holds the plan: the command ends here, but its plan does not.
   local function hold(plan, phase)
     plan.answers[#plan.answers + 1] = true
     plan.phase, plan.text, plan.on = phase, plan.text or running[tasks.current()], sensors_on()
@@ -599,15 +616,15 @@ return function(native, lookup, centring, tasks, alarms)
     return answer
   end
 
-  -- What is ahead of a plan that was answered otherwise than it assumed: planned anew, since the blade goes
-  -- elsewhere by what beams say.
+  -- Plans the rest again after an answer that was not assumed: the beams send the blade to another place.
   local function plan_again(plan)
     local again = plan_ahead(plan, true)
     again.text, again.conclude = plan.text, plan.conclude
     return again
   end
 
-  -- Behind beams that have told where the wafer is. What cannot be gone aside by that brings the wafer out again.
+  -- Plans again after the beams have given the wafer's place. If the blade cannot go aside so far, the wafer
+  -- comes out again.
   local function plan_aside(plan)
     local ok, again = pcall(plan_again, plan)
     if not ok and type(again) == "table" and plan.answers[#plan.answers] then
@@ -625,7 +642,7 @@ return function(native, lookup, centring, tasks, alarms)
     return became
   end
 
-  -- The last answer was not the assumed one: plans and plays anew from there.
+  -- Goes on after an answer that was not assumed: plans and plays again from there.
   local function go_on(plan)
     local step, request = forward(plan)
     while type(request) == "table" do
@@ -638,9 +655,8 @@ return function(native, lookup, centring, tasks, alarms)
     return finish(plan, request)
   end
 
-  -- Plays what was planned, as long as the answers are the assumed ones. What became of it goes to `conclude`,
-  -- if there is one, and is returned; nil if the command is held before its end, which comes with a later
-  -- CONTINUE.
+  -- Plays what was planned, as long as the answers are the assumed ones. The result goes to `conclude`, if
+  -- given, and is returned. It is nil if the command is held before its end; a later CONTINUE then ends it.
   function arm.drive(plan, conclude)
     plan.conclude = conclude
     for _, request in ipairs(plan) do
@@ -662,7 +678,7 @@ return function(native, lookup, centring, tasks, alarms)
 
   ------------------------------------------------------------------------------------------------------ phases
 
-  -- A wafer that was lost while its command was held would not be missed: no segment of it has seen the loss.
+  -- Checks that no wafer was lost while its command was held: no segment of the command has seen such a loss.
   local function check_kept(begun)
     for index, gripper in ipairs(begun.target.watched and native.layout.grippers or {}) do
       if begun.on[index] and not native.sensor(index) then
@@ -686,9 +702,9 @@ return function(native, lookup, centring, tasks, alarms)
     return plan.target.centred
   end
 
-  -- What is held goes on, to where it is held next or to its end; of a PUT that centres it returns what beams
-  -- said. Refused before anything moves, it is held as before.
-  -- Of several robots it is the one that the word is bound to, or the only one that holds a command.
+  -- Continues the held command, to its next hold or its end; for a PUT that centres it returns the beams'
+  -- result. If it is refused before anything moves, it is held as before. With several robots it is the one
+  -- that the word is bound to, or the only one with a held command.
   function arm.continue()
     local holding = find_holding()
     local bound = lookup.bound()
@@ -699,7 +715,7 @@ return function(native, lookup, centring, tasks, alarms)
     return arm.run(needs, "CONTINUE", go_on_held)
   end
 
-  -- What is held is given up: by the robot that the word is bound to, or by all.
+  -- Gives up held commands: of the robot that the word is bound to, or of all.
   function arm.stop()
     for _, robot in ipairs(find_holding()) do
       if not lookup.bound() or lookup.bound() == robot then
@@ -712,7 +728,7 @@ return function(native, lookup, centring, tasks, alarms)
 
   ------------------------------------------------------------------------------------------------ kept states
 
-  -- Plain data, with functions as they are.
+  -- Copies plain data; functions stay as they are.
   local function copy(value)
     if type(value) ~= "table" then
       return value
@@ -724,7 +740,7 @@ return function(native, lookup, centring, tasks, alarms)
     return copied
   end
 
-  -- A held plan but for its requests, which are planned anew when it goes on.
+  -- Copies a held plan without its requests, which are planned again when it continues.
   local function copy_plan(plan)
     local copied = {}
     for name, part in pairs(plan or {}) do
@@ -748,7 +764,7 @@ return function(native, lookup, centring, tasks, alarms)
     return copied
   end
 
-  -- A function that makes the arm again what it is now, and one that says if it still is.
+  -- Returns a function that restores the arm's present state, and one that tells whether it is unchanged.
   function arm.keep()
     find_holding()
     local kept, insides = copy_states(states), {}

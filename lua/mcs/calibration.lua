@@ -1,12 +1,12 @@
--- CALIBRATE: what an edge sensor is off by, found with a wafer of known diameter. The chuck turns it both ways in two
--- places, and the robot carries it from one to the other; how far it went, motion control knows. What was found is what
--- it takes the sensor's errors to be from then on. The wafer stays in the second place, and the next GET goes there.
+-- CALIBRATE finds the errors of an edge sensor with a wafer of known diameter. The chuck turns the wafer both ways in
+-- two places, and the robot carries it from the first to the second, a known distance. From then on motion control uses
+-- the found errors. The wafer stays in the second place, and the next GET goes there.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
 return function(native, patterns, lookup, arm, targets, align, carry)
-  -- How far the wafer goes if nobody says, mm, and how well a robot carries it.
+  -- The wafer's way by default, mm, and its deviation when a robot carries it, mm.
   local WAY, SD = 14, 0.001
 
   local fields = lookup.calibrate_fields
@@ -26,7 +26,7 @@ return function(native, patterns, lookup, arm, targets, align, carry)
     return own
   end
 
-  -- By as much as commands may go aside, each half of it.
+  -- The wafer's way: half of it to each side, within the largest correction of commands.
   local function way_of(station, own)
     local most = 2 * native.layout.corrections.dx
     local way = own.way or math.min(WAY, most, station.sensor.length / 2)
@@ -37,7 +37,7 @@ return function(native, patterns, lookup, arm, targets, align, carry)
     return way
   end
 
-  -- GET and PUT to either side are planned before anything moves.
+  -- Plans GET and PUT to either side before anything moves.
   local function check_ways(station, way, robot)
     for _, side in ipairs { -way / 2, way / 2 } do
       local there, back = { dx = side, robot = robot }, { dx = side, centre = false, robot = robot }
@@ -52,14 +52,14 @@ return function(native, patterns, lookup, arm, targets, align, carry)
     end
   end
 
-  -- From where it lies beside the middle to another place beside it, along the slot's x. A GET takes it over from the
-  -- chuck in the slot's plane: let go there it keeps its height, however often it is carried.
+  -- Carries the wafer from one place beside the middle to another, along the slot's x. A GET takes it over from the
+  -- chuck in the slot's plane. If it is let go there, it keeps its height, however often it is carried.
   local function shift(station, dx, dy, to, robot)
     carry("get", station.name, 1, { dx = dx, dy = dy, correct = false, robot = robot })
     carry("put", station.name, 1, { dx = to, release = 0, centre = false, robot = robot })
   end
 
-  -- Both ways round; the chuck ends where it began.
+  -- Scans both ways round; the chuck ends where it began.
   local function look(station, scans, way)
     local turn = align.turn_of(station)
     for _, direction in ipairs { 1, -1 } do
@@ -93,7 +93,7 @@ return function(native, patterns, lookup, arm, targets, align, carry)
     local own = read_options(options)
     local station = align.with_sensor(align.prealigner(name))
     local way = way_of(station, own)
-    -- Of several robots one carries the wafer there and back.
+    -- With several robots, one robot carries the wafer there and back.
     local index = lookup.robot_for(station.name, options)
     local robot = lookup.has_several() and native.layout.robots[index].name or nil
     arm.check_free()

@@ -1,25 +1,25 @@
--- Centring on the way: a PUT with `centre` passes the beams at its station's door, and goes aside by what they
--- say of the wafer on its blade.
+-- Centring on the way: a PUT with `centre` passes the beams at its station's door, and goes aside by the
+-- wafer's offset on the blade that they give.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, table = ipairs, math, table
 
 return function(native, lookup, stations)
   local centring = {}
 
-  -- What the last pass told, for scripts; nil before one.
+  -- The result of the last pass, for scripts; nil before one.
   local last = nil
 
-  -- By gripper: in which direction of its frame the held wafer's notch is, and how sure that is, rad.
+  -- By gripper: the direction of the held wafer's notch in its frame, and its deviation, rad.
   local notches = {}
 
   -- The direction of the notch of the wafer that a gripper holds is known from an alignment: in the gripper's
-  -- frame, rad, with its standard deviation. Without a direction it is not, as after each GET and PUT.
+  -- frame, rad, with its standard deviation. Without a direction it is unknown, as after each GET and PUT.
   function centring.know_notch(gripper, direction, deviation)
     notches[gripper] = direction and { notch = direction, sd_notch = deviation } or nil
   end
 
-  -- The way into a station begins.
+  -- Call it when the way into a station begins.
   function centring.begin(target)
     if target.centre then
       local station = lookup.station(target.station)
@@ -27,24 +27,24 @@ return function(native, lookup, stations)
     end
   end
 
-  -- A point of the blade as seen from the blade's middle: in base.
+  -- A point of the blade relative to the blade's middle, in base.
   local function in_base(gripper, x, y)
     local R = native.gripper_pose(gripper).R
     return R[1][1] * x + R[1][2] * y, R[2][1] * x + R[2][2] * y
   end
 
-  -- The same in the slot's frame, seen from above.
+  -- The vector in the slot's frame, seen from above.
   local function in_slot(target, x, y)
     local along, across = target.place.dir_x, target.place.dir_y
     local bx, by = in_base(target.gripper, x, y)
     return bx * along + by * across, by * along - bx * across
   end
 
-  -- What the layout's corrections leave, as parts of both: corners, and the middles between them.
+  -- The limits of the allowed corrections, as parts of both: corners, and the middles between them.
   local ENDS = { { -1, -1 }, { -1, 0 }, { -1, 1 }, { 0, -1 }, { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } }
 
-  -- In a plan, at the end of the way in: raises unless the blade can go wherever beams may send it, from the
-  -- slot as it was taught.
+  -- In a plan, at the end of the way in: raises unless the blade can go to every place where beams may send
+  -- it, from the taught slot.
   function centring.check_room(target)
     local most, place = native.layout.corrections, target.place
     for _, part in ipairs(ENDS) do
@@ -78,7 +78,8 @@ return function(native, lookup, stations)
     return result
   end
 
-  -- Beyond what the layout allows a command to go beside what was taught, that of the command included.
+  -- The axis on which the offset from the taught place, including the command's own, exceeds the
+  -- layout's limit; or nil.
   local function too_large(target, result)
     for _, name in ipairs({ "dx", "dy" }) do
       local most = native.layout.corrections[name]
@@ -97,7 +98,7 @@ return function(native, lookup, stations)
     return text:format(result[name], axis, native.layout.corrections[name], axis) .. all
   end
 
-  -- The blade stands in the station: how far the wafer's centre is off in base, or false.
+  -- The blade stands in the station: the wafer's offset from the centre in base, or false.
   function centring.answer(target)
     local found = native.centre(notches[target.gripper] or {})
     native.disarm_beams()
@@ -126,7 +127,7 @@ return function(native, lookup, stations)
     return MISFIT[#candidates]:format(table.concat(texts, " or "), radius)
   end
 
-  -- The PUT has brought its wafer out again: why.
+  -- Raises the reason why the PUT has brought its wafer out again.
   function centring.fail(target)
     local result, errors, refused = target.centred, lookup.errors, target.refused
     local still = "; " .. native.layout.grippers[target.gripper].name .. " still holds the wafer"
@@ -142,7 +143,7 @@ return function(native, lookup, stations)
       text:format(#result.crossings, lookup.station(target.station).beams[target.robot], result.missed) .. still)
   end
 
-  -- What the beams of the last PUT that centred said: see waferhand.centring in lua/mcs/words.lua.
+  -- The beams' result of the last PUT that centred: see waferhand.centring in lua/mcs/words.lua.
   function centring.last()
     return last
   end

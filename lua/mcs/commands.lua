@@ -1,6 +1,6 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
 return function(native, patterns, lookup, alarms)
@@ -28,7 +28,7 @@ return function(native, patterns, lookup, alarms)
 
   ----------------------------------------------------------------------------------------------- single moves
 
-  -- A wafer that is lost meanwhile is an error, unless it is the way out of trouble.
+  -- Plays a segment. A wafer lost meanwhile is an error, except on the way out of trouble.
   local function play(segment)
     arm.play(patterns.single, { segment = segment, watched = true, gripper = arm.leader() })
   end
@@ -74,12 +74,13 @@ return function(native, patterns, lookup, alarms)
   commands.carry = nil
   commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets, stations, slot_map)
 
-  -- station("A"): where the axes stand in its slot 1, degrees and mm.
+  -- station("A"): the axes' places in its slot 1, degrees and mm.
   function commands.station(name, options)
     return stations.read(name, options)
   end
 
-  -- set_station("A", { theta = , r = , z = , yaw = }): it lies where the gripper would be then.
+  -- set_station("A", { theta = , r = , z = , yaw = }): the station is where the gripper would be
+  -- with these axes.
   function commands.set_station(name, axes)
     local text = lookup.command("SET_STATION", name, lookup.fields_text(axes, lookup.standing))
     local options = type(axes) == "table" and axes or {}
@@ -99,7 +100,7 @@ return function(native, patterns, lookup, alarms)
     play { valves = { [index] = math.tointeger(level) } }
   end
 
-  -- What carries the gripper, if there is one of that name.
+  -- Needs the gripper's carrier, if there is a gripper of that name.
   local function needs_of_gripper(name)
     for index, gripper in ipairs(native.layout.grippers) do
       if gripper.name == name and gripper.on_robot then
@@ -146,13 +147,13 @@ return function(native, patterns, lookup, alarms)
     play { axes = axes }
   end
 
-  -- move { theta = , r = , z = , yaw = }, or the axes that the robot has: degrees and mm; an axis that is not
-  -- named stays.
+  -- move { theta = , r = , z = , yaw = }, or other axes that the robot has: degrees and mm; axes that are not
+  -- named stay.
   function commands.move(positions)
     arm.move(arm.needs(true), lookup.command("MOVE", lookup.fields_text(positions, lookup.axes)), move, positions)
   end
 
-  -- Turned over, passive pads hold nothing.
+  -- Refuses to turn passive pads with a wafer over: they hold nothing then.
   local function check_drops_nothing()
     for _, index in ipairs(lookup.on_robot()) do
       local gripper = native.layout.grippers[index]
@@ -163,7 +164,7 @@ return function(native, patterns, lookup, alarms)
     end
   end
 
-  -- How long a FLIP waits for a blade once it should be there, s.
+  -- The time that a FLIP waits for a blade that should have arrived, s.
   local BLADE_TIMEOUT = 1
 
   local function flip(name)
@@ -195,8 +196,8 @@ return function(native, patterns, lookup, alarms)
     play { line = { parts.dx or 0, parts.dy or 0, parts.dz or 0 }, speed = parts.speed or 0 }
   end
 
-  -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept;
-  -- without a speed as fast as the axes go.
+  -- line { dx = , dy = , dz = , speed = }: moves the end-effector straight by these mm in base, with constant
+  -- heading; without a speed as fast as the axes allow.
   function commands.line(by)
     arm.move(arm.needs(true), lookup.command("LINE", lookup.fields_text(by, lookup.line_fields)), line, by)
   end
@@ -211,7 +212,7 @@ return function(native, patterns, lookup, alarms)
 
   -------------------------------------------------------------------------------------- STOP and what follows
 
-  -- Straight out of the station that the arm stands in, if it does.
+  -- Moves straight out of the station in which the arm stands, if it does.
   local function recover()
     local target = arm.state().inside
     if target then
@@ -248,7 +249,7 @@ return function(native, patterns, lookup, alarms)
     arm.move(arm.needs_stand(), "HOME", home)
   end
 
-  -- A STOP comes so many simulated seconds from now: what then runs ends there with STOPPED, or of it only the
+  -- A STOP comes after this many simulated seconds: the running commands end there with STOPPED, or only the
   -- command that has the mechanism of that name.
   function commands.stop_in(seconds, mechanism)
     local number = lookup.number("seconds", seconds)
@@ -261,17 +262,18 @@ return function(native, patterns, lookup, alarms)
     end
   end
 
-  -- What a `stop` of GET, PUT or SWAP holds in a phase goes on; returns what the PUT does.
+  -- Continues a GET, PUT or SWAP that its `stop` holds in a phase; returns the PUT's result.
   function commands.continue()
     return arm.continue()
   end
 
-  -- Gives up what is held in a phase, as a STOP from outside does; without that nothing.
+  -- Gives up the command that is held in a phase, like a STOP from outside; without one it does nothing.
   function commands.stop()
     arm.stop()
   end
 
-  -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
+  -- Keeps motion control's knowledge: returns a function that puts it back, and one that tells whether
+  -- the arm is unchanged.
   function commands.keep()
     local put_slots_back, put_found_back, put_broken_back = slot_map.keep(), align.keep(), alarms.keep()
     local put_arm_back, is_arm_as_was = arm.keep()
@@ -287,7 +289,7 @@ return function(native, patterns, lookup, alarms)
     end
   end
 
-  -- Of what moves nothing.
+  -- Runs a command that moves nothing.
   function commands.run(text, action, ...)
     return arm.run(nil, text, action, ...)
   end

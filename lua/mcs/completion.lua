@@ -1,10 +1,10 @@
--- Completes the word before the cursor by what may stand there: a command, a name of its kind, an option.
+-- Completes the word before the cursor: a command, a name of the right kind, or an option.
 
 return function(prompt_commands, tokens)
-  -- More than this is no help to a reader.
+  -- A longer list does not help a reader.
   local MOST = 200
 
-  -- Where the last word of the text begins, if it has not ended; else where the next one would.
+  -- The place where the text's last word begins, if it has not ended; else where the next one would begin.
   local function start_of_word(text)
     local start = 1
     local at = text:find("[^ ]")
@@ -31,7 +31,8 @@ return function(prompt_commands, tokens)
     return text:sub(1, #prefix):lower() == prefix:lower()
   end
 
-  -- Those that begin as the word does, spelt as they can be typed, `before` and `after` around them.
+  -- The known names that begin like the word, spelt as they can be typed, with `before` and `after`
+  -- around them.
   local function choose(known, word, before, after)
     local list = {}
     local typed = word:gsub('^"', ""):gsub('\\(["\\])', "%1")
@@ -81,7 +82,7 @@ return function(prompt_commands, tokens)
     return choose(sorted_keys(command.options), word, "", "=")
   end
 
-  -- complete(text before the cursor): where the word begins, and a list of what it may become.
+  -- complete(text before the cursor): the place where the word begins, and a list of its candidates.
   return function(text)
     local start = start_of_word(text)
     local ok, list = pcall(tokens.split, text:sub(1, start - 1))

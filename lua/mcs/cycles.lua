@@ -1,6 +1,6 @@
--- The word that says where a cycle begins, for wafers per hour: see lib/record/throughput.h.
+-- The word that marks the beginning of a cycle, for wafers per hour: see lib/record/throughput.h.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local type = type
 
 return function(native, lookup)

@@ -1,11 +1,11 @@
--- What editors are told of layouts and scripts, in the annotations of the Lua language server: made of what
--- the readers of layouts go by (native.classes), of the words (lua/mcs/words.lua), and of the options that
+-- Makes annotations of layouts and scripts for the Lua language server, which editors use. The sources are
+-- the tables of the layout readers (native.classes), the words (lua/mcs/words.lua), and the options that
 -- commands look up.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, pairs, select, table, wh = ipairs, pairs, select, table, wh
 
--- What stands for all other fields of a table: so a typo has a type that no value fits.
+-- The type of all other fields of a table: a misspelt field then has a type that no value fits.
 local UNKNOWN = "waferhand.no_such_field"
 
 return function(native, lookup, targets, words)
@@ -15,7 +15,7 @@ return function(native, lookup, targets, words)
     lines[#lines + 1] = select("#", ...) > 0 and text:format(...) or text
   end
 
-  -- One that is in tables of this class. An optional one ends in ?, as does its type in words.lua.
+  -- Adds a field to tables of this class. An optional one ends in ?, like its type in words.lua.
   local function add_field(name, kind, text, optional)
     add("---@field %s%s %s%s", name, optional and "?" or "", kind, text ~= "" and " " .. text or "")
   end
@@ -26,7 +26,7 @@ return function(native, lookup, targets, words)
     add("---@class waferhand.%s", name)
   end
 
-  -- Of a table that is written by hand: no other fields.
+  -- Closes a table that is written by hand: no other fields.
   local function close()
     add("---@field [string] %s", UNKNOWN)
   end
@@ -35,7 +35,7 @@ return function(native, lookup, targets, words)
 
   local ranges = native.ranges()
 
-  -- A station's number tells its range, which commands have, too.
+  -- A number of a station has its range; commands have that range, too.
   local function with_range(class, field)
     local range = class.name == "station" and ranges[field.name]
     return range and ("%s; from %.10g to %.10g"):format(field.text, range[1], range[2]) or field.text
@@ -87,8 +87,8 @@ return function(native, lookup, targets, words)
     end
   end
 
-  -- What a command says for itself in place of its station is told as the station's. SWAP has those of its GET
-  -- and of its PUT.
+  -- An option that replaces a station's field has that field's text. SWAP has the options of its GET and of
+  -- its PUT.
   local function text_of(name, kind)
     local command, bare = name:match("^([gp][eu]t)_(.*)$")
     local text, unit = words.options[bare or name], unit_of(kind)
@@ -120,15 +120,15 @@ return function(native, lookup, targets, words)
     for _, name in ipairs(lookup.standing) do
       axes[name] = lookup.ranges[name]
     end
-    add_options("command_options", "What READY and MAP may say for themselves.", common[1], common[2])
-    add_options("get_options", "What GET may say for itself.", own.get, common[1], common[2])
-    add_options("put_options", "What PUT may say for itself.", own.put, common[1], common[2])
-    add_options("swap_options", "What SWAP may say for its GET and its PUT.", own.swap, lookup.swap_options, common[2])
-    add_options("align_options", "What ALIGN may say for itself.", lookup.align_fields)
-    add_options("calibrate_options", "What CALIBRATE may say for itself.", lookup.calibrate_fields,
+    add_options("command_options", "Options of READY and MAP.", common[1], common[2])
+    add_options("get_options", "Options of GET.", own.get, common[1], common[2])
+    add_options("put_options", "Options of PUT.", own.put, common[1], common[2])
+    add_options("swap_options", "Options of SWAP, for its GET and its PUT.", own.swap, lookup.swap_options, common[2])
+    add_options("align_options", "Options of ALIGN.", lookup.align_fields)
+    add_options("calibrate_options", "Options of CALIBRATE.", lookup.calibrate_fields,
       { robot = lookup.options.robot })
     add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
-    add_options("served_by", "Whose way into a station.", served)
+    add_options("served_by", "The robot whose way into a station this is.", served)
     add_options("standing", "Where axes stand with a gripper in slot 1: degrees and mm.", axes, served)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)
     add("")
@@ -182,7 +182,7 @@ return function(native, lookup, targets, words)
 
   return function()
     add("---@meta")
-    add("-- What layouts and scripts of Waferhand %s may say: printed by `waferhand definitions`.", native.version())
+    add("-- The fields and words of layouts and scripts of Waferhand %s: printed by `waferhand definitions`.", native.version())
     add("")
     add("---What no such table has: a typo?")
     add("---@class %s", UNKNOWN)

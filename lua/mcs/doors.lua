@@ -1,12 +1,12 @@
--- Doors: walls that move. OPEN and CLOSE, and what the commands that go through a door ask of it.
+-- Doors: walls that move. OPEN and CLOSE, and the checks of commands that go through a door.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, pairs, pcall = ipairs, pairs, pcall
 
 return function(native, patterns, lookup, arm, tasks, alarms)
   local doors = {}
 
-  -- The stations that have it, for any robot.
+  -- The stations that have this door, for any robot.
   local function stations_of(door)
     local names = {}
     for name, station in pairs(native.layout.stations) do
@@ -17,7 +17,7 @@ return function(native, patterns, lookup, arm, tasks, alarms)
     return names
   end
 
-  -- A robot that stands in one of its stations would be in its way.
+  -- Refuses while a robot stands in one of the door's stations: it would be in the way.
   local function check_free(door, name)
     for station in pairs(stations_of(door)) do
       local state = arm.find_inside(station)

@@ -1,6 +1,6 @@
--- The words for faults on purpose: fault { kind = , ... }, fault { error = } and clear_fault(number).
+-- The words for injected faults: fault { kind = , ... }, fault { error = } and clear_fault(number).
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, table = error, ipairs, math, pairs, pcall, table
 local tostring, type = tostring, type
 
@@ -38,8 +38,8 @@ return function(native, commands, run, lookup, alarms)
     return alarms.arm(description.error)
   end
 
-  -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared; one
-  -- with an `error` waits for a command. Returns its number.
+  -- The fault begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is
+  -- cleared. A fault with an `error` waits for a command. Returns its number.
   function commands.fault(description)
     return run(describe(description), function()
       if type(description) == "table" and description.error ~= nil then
@@ -53,7 +53,7 @@ return function(native, commands, run, lookup, alarms)
     end)
   end
 
-  -- It ends with the next slice.
+  -- The fault ends with the next slice.
   function commands.clear_fault(number)
     local whole = type(number) == "number" and math.tointeger(number)
     run("CLEAR " .. tostring(whole or number), function()

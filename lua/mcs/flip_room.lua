@@ -1,13 +1,13 @@
--- Room to turn over: FLIP as `waferhand layout` plays it where a script is likely to ask for it, which is at home, in front
--- of a station, and in a flipper's clamp; and what a blade that is turned over does at a station.
+-- Room to turn over. `waferhand layout` plays FLIP in the likely places: at home, in front of a station, and in a flipper's
+-- clamp. It also plays GET and PUT at a station with a blade that is turned over.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, pcall, tostring, type = ipairs, math, pcall, tostring, type
 
 return function(native, patterns, lookup, arm, transfer)
   local room = {}
 
-  -- By robot: a FLIP at home was found to have no room; it takes too long to be played.
+  -- By robot: FLIP at home has no room; FLIP at home takes too long to be played.
   local has_none_at_home, is_slow = {}, {}
 
   local function plan_turn(axis)
@@ -18,8 +18,8 @@ return function(native, patterns, lookup, arm, transfer)
     return type(problem) == "table" and problem.text or tostring(problem)
   end
 
-  -- Turns the axis over as FLIP does; `cell` is here and below what lib/mcs/survey.c stands the robot in. Calls
-  -- failed(slot, what, reason) if that is refused or the cell complains, and returns true then.
+  -- Turns the axis over like FLIP; here and below `cell` is the cell in which lib/mcs/survey.c places the
+  -- robot. If that is refused or the cell complains, calls failed(slot, what, reason) and returns true.
   local function fails(axis, cell, failed, slot, what)
     local good, problem = pcall(function()
       arm.drive(plan_turn(axis))
@@ -31,14 +31,14 @@ return function(native, patterns, lookup, arm, transfer)
     return problem and true
   end
 
-  -- The robot stands there at rest, with what it holds; what has been does not count.
+  -- Places the robot there at rest, with its held wafers; earlier complaints do not count.
   local function stand(axes, cell)
     cell.move(axes)
     arm.drive(arm.rehearse(patterns.single, { segment = { dwell = 4 * native.layout.slice } }))
     cell.begin()
   end
 
-  -- The blade with a wafer as a GET from there has it: turned over where the GET ends, and at home.
+  -- Turns over the blade with a wafer after a GET there: where the GET ends, and at home.
   local function try_loaded(station, slot, gripper, home, cell, failed)
     local blade = native.layout.grippers[gripper]
     local axis = lookup.axis("flip", blade.robot).index
@@ -53,7 +53,7 @@ return function(native, patterns, lookup, arm, transfer)
     has_none_at_home[blade.robot] = fails(axis, cell, failed, 0, what:format(blade.name, station.name, slot))
   end
 
-  -- GET and PUT from above, with the blade that has just been turned over in front of the slot.
+  -- Plays GET and PUT from above, with the blade that was just turned over in front of the slot.
   local function try_turned(place, cell, failed)
     local name, slot, blade = place.station.name, place.slot, native.layout.grippers[place.gripper].name
     for _, command in ipairs { "get", "put" } do
@@ -65,7 +65,8 @@ return function(native, patterns, lookup, arm, transfer)
     end
   end
 
-  -- In front of a slot without a wafer and with one. Turned over, passive pads hold none: FLIP refuses that.
+  -- Turns over in front of a slot, without a wafer and with one. Passive pads that are turned over hold
+  -- none: FLIP refuses that.
   local function try_front(place, home, cell, failed)
     local station, slot, blade = place.station, place.slot, native.layout.grippers[place.gripper]
     local axis = lookup.axis("flip", blade.robot)
@@ -80,7 +81,7 @@ return function(native, patterns, lookup, arm, transfer)
     end
   end
 
-  -- A wafer in the clamp, with the robot where its PUT ends, and with the robot at home.
+  -- Turns over a wafer in the clamp, with the robot where its PUT ends, and with the robot at home.
   local function try_clamp(place, home, cell, failed)
     local name, gripper = place.station.name, place.gripper
     local axis = native.layout.grippers[place.station.chuck].axis
@@ -107,7 +108,7 @@ return function(native, patterns, lookup, arm, transfer)
     return places
   end
 
-  -- At a station: `servers` are the grippers that come to it, one of each robot.
+  -- Tries FLIP at a station: `servers` are the grippers that come to it, one of each robot.
   function room.look(station, servers, cell, failed)
     local home, places = native.axes(), places_of(station, servers)
     for _, place in ipairs(places) do
@@ -119,7 +120,7 @@ return function(native, patterns, lookup, arm, transfer)
     end
   end
 
-  -- At home without wafers: comes before all stations.
+  -- Tries FLIP at home without wafers, before all stations.
   function room.look_at_home(cell, failed)
     local home = native.axes()
     for index in ipairs(native.layout.robots) do

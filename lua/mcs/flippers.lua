@@ -1,12 +1,12 @@
--- Flippers: stations whose clamp turns a wafer over. FLIP there, and what commands that go there ask of it.
+-- Flippers: stations whose clamp turns a wafer over. FLIP there, and the checks of commands that go there.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local pairs = pairs
 
 return function(native, patterns, lookup, arm, mechanisms, alarms)
   local flippers = {}
 
-  -- The name of the flipper that is called so, or whose clamp is; or nil.
+  -- The name of the flipper with this name, or whose clamp has it; or nil.
   function flippers.find(name)
     for station_name, station in pairs(native.layout.stations) do
       if station.flipper and (name == station_name or name == native.layout.grippers[station.chuck].name) then
@@ -15,7 +15,7 @@ return function(native, patterns, lookup, arm, mechanisms, alarms)
     end
   end
 
-  -- Waits until what carries the gripper is where it was sent.
+  -- Waits until the gripper's carrier has arrived.
   function flippers.await(gripper, name, timeout)
     if not arm.play(patterns.arrive, { segment = { arrives = { gripper = gripper }, timeout = timeout } }) then
       native.fail("FLIP_TIMEOUT", ("%s has not turned over within %.10g s"):format(name, timeout))

@@ -1,19 +1,20 @@
--- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
--- makes the same words of typed lines: a session calls it before it sets up the cell, a script's run never
--- does. Returns as well what looks at stations for `waferhand layout`, and what `waferhand definitions` prints.
+-- Makes the operator's words from the host's functions (`native`) and sets them as globals. Returns the
+-- function that makes these words from typed lines: a session calls it before it sets up the cell, a script's
+-- run never does. It also returns the function that checks stations for `waferhand layout`, and the one that
+-- `waferhand definitions` prints.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, rawset, select = error, ipairs, math, pairs, pcall, rawset, select
 local setmetatable, tostring, type = setmetatable, tostring, type
 
 return function(native)
-  -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is
-  -- missing.
+  -- native.layout: the cell's layout, a value that `cell` sets. Before that a read raises the missing
+  -- layout as an error.
   setmetatable(native, { __index = function(_, name)
     return name == "layout" and native.fail("NO_LAYOUT", 'begin the script with cell "LAYOUT.lua"')
   end })
 
-  -- Raises the numbered error of that name. The numbers are kept, for a script may change wh.errors.
+  -- Raises the numbered error of that name. The numbers are copied, because a script may change wh.errors.
   local fail, numbers = native.fail, {}
   for name, entry in pairs(wh.errors) do
     numbers[name] = entry.number
@@ -43,6 +44,7 @@ return function(native)
   queries.station, commands.station = commands.station, nil
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
+  local flows = native.module("mcs/flow.lua")(native)
 
   -- cell "LAYOUT.lua", relative to the script: every slot must be in reach.
   local function cell(path)
@@ -56,11 +58,17 @@ return function(native)
         local by = lookup.has_several() and ".by." .. native.layout.robots[robot].name or ""
         error(message:format(native.layout.path, name, by, slot, reason), 0)
       end)
+      local unreached, why = native.unreached(station.index)
+      if unreached then
+        local message = "%s: stations.%s: slot %d (expected one in reach: %s)"
+        error(message:format(native.layout.path, name, unreached, why), 0)
+      end
     end
     native.connect()
   end
 
-  -- study { placement = { dx = 0.3 }, ... }, before cell: what a study draws, in place of the layout's own.
+  -- study { placement = { dx = 0.3 }, ... }, before cell: the errors that a study draws, in place of the
+  -- layout's own.
   local function study(errors)
     if type(errors) ~= "table" then
       error(("study: %s (expected a table)"):format(tostring(errors)), 0)
@@ -68,7 +76,7 @@ return function(native)
     native.study(errors)
   end
 
-  -- What an action returned. An error tells no place in these files.
+  -- Returns the results of an action. An error tells no place in these files.
   local function finish(ok, ...)
     if ok then
       return ...
@@ -77,7 +85,7 @@ return function(native)
     error(type(problem) == "string" and native.outside(problem) or problem, 0)
   end
 
-  -- The word for scripts: it refuses what the action takes no notice of.
+  -- Makes the word for scripts: it refuses arguments that the action does not use.
   local function word(name, action)
     local known = words.scripts[name]
     local most = known and #known.takes
@@ -86,6 +94,7 @@ return function(native)
     end
     return function(...)
       native.begin_word(name)
+      flows.refuse(name)
       for place = known.any and math.maxinteger or most + 1, select("#", ...) do
         local extra = select(place, ...)
         if extra ~= nil then
@@ -100,7 +109,7 @@ return function(native)
     end
   end
 
-  for _, group in ipairs({ commands, queries, cycles, { cell = cell, study = study } }) do
+  for _, group in ipairs({ commands, queries, cycles, { flow = flows.flow }, { cell = cell, study = study } }) do
     for name, action in pairs(group) do
       rawset(_G, name, word(name, action))
     end
@@ -138,8 +147,8 @@ return function(native)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), serve
   end
 
-  -- Of a layout that was read already: what looks at a station of it by its name, what plays there, and what turns over
-  -- there, without a name at home: see lua/mcs/reach.lua.
+  -- For a layout that was already read: returns three functions with a station's name. They check a station, play
+  -- there, and turn over there (without a name: at home). See lua/mcs/reach.lua.
   local function survey(layout)
     native.layout = layout
     return function(name, found, missed)

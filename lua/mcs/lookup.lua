@@ -1,15 +1,15 @@
--- From what an operator writes to what the host knows: stations, slots, grippers, wafers, numbers. Each
--- refuses what it does not know with a numbered error that names it.
+-- Converts an operator's names to the host's indices: stations, slots, grippers, wafers, numbers. Each
+-- function refuses an unknown name with a numbered error that tells the name.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, rawequal, table = ipairs, math, pairs, rawequal, table
 local tonumber, tostring, type = tonumber, tostring, type
 
 return function(native, errors)
   local lookup = { errors = errors }
 
-  -- Station parameters that a command may set for itself, and what else it may say: { least, most, unit } of
-  -- a number; the `values` of another one, or none if it is a gripper's name.
+  -- The station parameters that a command may set for itself, and other options: { least, most, unit } of a
+  -- number; the `values` of another kind, or none for a gripper's name.
   lookup.parameters = native.ranges()
   lookup.parameters.vacuum_check = { values = { "both", "get", "put", "none" } }
   lookup.parameters.handover = { values = { "new_first", "same_slice" } }
@@ -18,28 +18,28 @@ return function(native, errors)
   -- SWAP takes with the empty gripper and puts with the other one.
   lookup.swap_options = { robot = {}, force = lookup.options.force }
 
-  -- How far a GET, PUT or SWAP may go beside what was taught, and where it may stop: in order.
+  -- The corrections of a GET, PUT or SWAP, and where it may stop: in order.
   lookup.correction_fields = { "dx", "dy", "dz", "turn" }
   lookup.phases = { "extended", "up" }
 
-  -- If a GET makes good what ALIGN has found.
+  -- Whether a GET corrects by ALIGN's result.
   lookup.correct = { values = { true, false } }
 
-  -- What ALIGN may say.
+  -- The options of ALIGN.
   lookup.align_fields = {
     angle = { -360, 360, "degrees" }, mode = { values = { "robot", "stage", "pins" } },
     mark = { values = { "own", "none" } }, glass = { 0, 0.9, "" }, turns = { 1, 12, "" }, correct = lookup.correct,
   }
 
-  -- Where LIFT brings pins.
+  -- The positions for LIFT.
   lookup.up_or_down = { values = { "up", "down" } }
 
-  -- And CALIBRATE: how far the wafer is carried, how well, and how large it is.
+  -- The options of CALIBRATE: the wafer's way, its deviation, and the wafer's size.
   lookup.calibrate_fields = { way = { 2, 20, "mm" }, sd = { 0, 1, "mm" }, diameter = { 20, 600, "mm" } }
 
   -- The fields of MOVE, of any robot, and of LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw", "forearm", "rail", "tilt_x", "tilt_y", "flip", "r2", "yaw2" }
-  -- Those that tell where a station is, r and yaw being those of the gripper's own arm or wrist.
+  -- The axes that tell where a station is; r and yaw are those of the gripper's own arm or wrist.
   lookup.standing = { "theta", "r", "z", "yaw", "forearm" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
   local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
@@ -49,7 +49,7 @@ return function(native, errors)
     dx = way, dy = way, dz = way, speed = lookup.parameters.pickup_speed, seconds = { 0, 1e6, "s" },
   }
 
-  -- So many names are listed in an error.
+  -- The most names that an error lists.
   local MOST_NAMES = 16
 
   function lookup.quote(value)
@@ -83,7 +83,7 @@ return function(native, errors)
     native.fail(error_name, ("%s (%s%s)"):format(lookup.quote(name), expected, lookup.nearest(name, names)))
   end
 
-  -- A field that a command does not have.
+  -- Refuses a field that a command does not have.
   function lookup.refuse_field(name, value, names)
     local expected = table.concat(names, ", ") .. lookup.nearest(name, names)
     local text = "%s: %s (there is no such field: expected %s)"
@@ -107,7 +107,7 @@ return function(native, errors)
     return whole
   end
 
-  -- The axis of that name of a robot, the first unless it is said, or nil.
+  -- The axis of that name of a robot (by default the first), or nil.
   function lookup.axis(name, robot)
     for _, axis in ipairs(native.layout.robots[robot or 1].axes) do
       if axis.name == name then
@@ -125,7 +125,7 @@ return function(native, errors)
     return names
   end
 
-  -- The index of the entry that is called so, or nil.
+  -- The index of the entry with that name, or nil.
   local function find(list, name)
     for index, entry in ipairs(list) do
       if entry.name == name then
@@ -173,21 +173,21 @@ return function(native, errors)
     native.fail("NO_SUCH_ROBOT", ("%s (expected %s)"):format(lookup.quote(name), robot_names()))
   end
 
-  -- "the robot", or which.
+  -- "the robot", or the robot's name.
   function lookup.robot_text(index)
     return lookup.has_several() and "robot " .. native.layout.robots[index].name or "the robot"
   end
 
-  -- The robot that a command's words are bound to, if they are: set by lua/mcs/commands.lua.
+  -- The robot that a command's words are bound to, or nil: set by lua/mcs/commands.lua.
   function lookup.bound()
   end
 
-  -- The only station of the controller whose line it is, if it is one's: set by lua/mcs/commands.lua.
+  -- The only station of the controller that sent the line, or nil: set by lua/mcs/commands.lua.
   function lookup.bound_station()
   end
 
-  -- lookup.phase(): where the command that the current task ran last is held, or nil; lookup.last_robot(): the robot of
-  -- that. Both are set by lua/mcs/commands.lua.
+  -- lookup.phase(): the phase in which the current task's last command is held, or nil; lookup.last_robot(): that
+  -- command's robot. Both are set by lua/mcs/commands.lua.
 
   local function check_serves(station, robot)
     if station and not station.by[robot] then
@@ -196,7 +196,7 @@ return function(native, errors)
     end
   end
 
-  -- What a command says itself of its robot: the gripper's, the one that it names, or the one that its word is bound
+  -- The robot that a command itself gives: the gripper's, the one that it names, or the one that its word is bound
   -- to. They must not contradict each other.
   local function said_robot(options)
     local gripper = options.gripper ~= nil and native.layout.grippers[lookup.gripper(options.gripper)]
@@ -213,8 +213,8 @@ return function(native, errors)
     return robot or gripper and gripper.robot
   end
 
-  -- The robot that carries out a command: what the command says, else the only one, else the one that serves the
-  -- station. Never by what is where.
+  -- The robot that executes a command: the one that the command gives, else the only one, else the one that
+  -- serves the station. Present positions do not count.
   function lookup.robot_for(station_name, options)
     local station = type(station_name) == "string" and native.layout.stations[station_name] or nil
     local robot = said_robot(type(options) == "table" and options or {})
@@ -269,7 +269,7 @@ return function(native, errors)
 
   ----------------------------------------------------------------------------------------------------- frames
 
-  -- "B/10", where B is a station: that, and what stands for the slot.
+  -- Splits "B/10", where B is a station, into the station and the slot's text.
   local function split_slot(stations, name)
     local station, slot = name:match("^(.*)/(%d+)$")
     return stations[station], math.tointeger(tonumber(slot)) or slot
@@ -305,7 +305,7 @@ return function(native, errors)
     native.fail("BAD_ARGUMENT", text:format(what, lookup.quote(name), expected, near))
   end
 
-  -- The pose of a frame by its name. Of equal names a slot's comes first, as in a report's measuring tool.
+  -- The pose of a frame by its name. With equal names a slot comes first, as in a report's measuring tool.
   function lookup.frame(what, name)
     local layout = native.layout
     local text = type(name) == "string" and name or ""
@@ -383,7 +383,7 @@ return function(native, errors)
     return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)
   end
 
-  -- "dx=1 dz=2.5": of these fields the ones that a command's table has.
+  -- "dx=1 dz=2.5": the fields of this list that a command's table has.
   function lookup.fields_text(fields, order)
     local text = {}
     for _, name in ipairs(order) do
@@ -394,7 +394,7 @@ return function(native, errors)
     return table.concat(text, " ")
   end
 
-  -- The command as the record has it: its word and its arguments.
+  -- The command's text for the record: its word and its arguments.
   function lookup.command(word, ...)
     local text = { word }
     for _, value in ipairs({ ... }) do

@@ -1,7 +1,7 @@
--- What else moves at a prealigner: the stage below its chuck, and pins that lift a wafer off it. LIFT, and what
--- ALIGN makes of them.
+-- Other mechanisms of a prealigner: the stage below its chuck, and pins that lift a wafer off it. LIFT, and
+-- their use by ALIGN.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local math, pairs = math, pairs
 
 return function(native, patterns, lookup, arm)
@@ -17,7 +17,7 @@ return function(native, patterns, lookup, arm)
     return chuck and chuck.kind == "stage" and chuck or nil
   end
 
-  -- Where the stage of the station's chuck is commanded to, mm in the station's frame; 0, 0 without one.
+  -- The commanded place of the stage below the station's chuck, mm in the station's frame; 0, 0 without one.
   function mechanisms.aside(station)
     local chuck = mechanisms.stage(station)
     if not chuck then
@@ -32,13 +32,13 @@ return function(native, patterns, lookup, arm)
     return { [axis + 1] = x, [axis + 2] = y }
   end
 
-  -- What brings the stage home, for patterns; nil if it is there, or if there is none.
+  -- The axes that bring the stage home, for patterns; nil if it is there, or if there is none.
   function mechanisms.way_home(station)
     local x, y = mechanisms.aside(station)
     return (x ~= 0 or y ~= 0) and to(station, 0, 0) or nil
   end
 
-  -- The stage goes there with what is on the chuck; `lost_as`: the error if that is lost.
+  -- Moves the stage there with the wafer on the chuck; `lost_as`: the error if that is lost.
   function mechanisms.shift(station, x, y, lost_as)
     local segment = { moves = to(station, x, y) }
     arm.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
@@ -57,7 +57,7 @@ return function(native, patterns, lookup, arm)
     return native.axes()[pins.axis] > pins.low
   end
 
-  -- Before a command that goes to the station, or turns its chuck.
+  -- Call it before a command that goes to the station, or turns its chuck.
   function mechanisms.check_pins(station)
     if station.pins and are_up(station) then
       native.fail("PINS_UP", ('%s of %s are not down: lift("%s", "down") comes first'):format(
@@ -65,10 +65,11 @@ return function(native, patterns, lookup, arm)
     end
   end
 
-  -- How far a flipper may be from an end of its travel, rad.
+  -- The largest distance of a flipper from an end of its travel, rad.
   local AT_END = 1e-9
 
-  -- Before a command that goes to the station: at an end of its travel, and truly there.
+  -- Call it before a command that goes to the station: the flipper must be at an end of its travel,
+  -- also by its switch.
   function mechanisms.check_flipper(station)
     if not station.flipper then
       return
@@ -113,7 +114,7 @@ return function(native, patterns, lookup, arm)
     }
   end
 
-  -- Who did not take the wafer over, by what became of it.
+  -- By result: the gripper that did not take the wafer over, and the one that gave it.
   local REFUSED = { missed = { "pins", "chuck" }, late = { "pins", "chuck" }, lost = { "chuck", "pins" },
                     loose = { "chuck", "pins" } }
 
@@ -149,13 +150,14 @@ return function(native, patterns, lookup, arm)
     end
   end
 
-  -- lift("P", "up"): the pins take what lies on the chuck, and lift it; "down": they set it down there again.
+  -- lift("P", "up"): the pins take the wafer from the chuck and lift it; "down": they set it down there
+  -- again.
   function mechanisms.lift(station, where)
     arm.move(arm.needs(false, station), lookup.command("LIFT", station, where), lift, station, where)
   end
 
-  -- The wafer whose middle is there off the chuck's axis, mm in the station's frame, comes to lie on it: pins lift the
-  -- wafer, the stage brings the chuck below its middle, and back with it.
+  -- Centres a wafer on the chuck's axis; x, y is its middle's offset, mm in the station's frame. Pins lift the wafer,
+  -- the stage brings the chuck below its middle, and then goes back with it.
   function mechanisms.grip_again(station, x, y)
     local target = target_of(station)
     target.aside, target.home = to(station, x, y), to(station, 0, 0)
@@ -164,7 +166,7 @@ return function(native, patterns, lookup, arm)
 
   ------------------------------------------------------------------------------------------------- what is asked
 
-  -- Refuses a mode of ALIGN that the station has not what it takes for.
+  -- Refuses a mode of ALIGN whose mechanisms the station does not have.
   function mechanisms.check_mode(station, mode)
     local chuck, text = gripper_of(station.chuck).name
     if mode == "stage" and not mechanisms.stage(station) then
@@ -183,7 +185,7 @@ return function(native, patterns, lookup, arm)
     return (("%.3f"):format(length):gsub("^%-(0%.000)$", "%1"))
   end
 
-  -- Refuses a way that the stage does not go.
+  -- Refuses a way that the stage cannot go.
   function mechanisms.check_way(station, x, y)
     local chuck = mechanisms.stage(station)
     if math.abs(x) > chuck.high or math.abs(y) > chuck.high then

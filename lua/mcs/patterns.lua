@@ -1,41 +1,40 @@
--- Commands as patterns: in which order the arm moves and the valves switch.
+-- Commands as patterns: the order in which the arm moves and the valves switch.
 --
--- A pattern is a coroutine body and does nothing but yield requests, so that it can be planned before it is
--- played. A request is a segment, a table with one of
---   to     = { x, y, z, heading, gripper }        point to point, to where that gripper is there
+-- A pattern is a coroutine body that only yields requests, so that it can be planned before it is played.
+-- A request is a segment, a table with one of
+--   to     = { x, y, z, heading, gripper }        point to point, until that gripper is there
 --   axes   = { theta, R, Z, yaw, chucks... }      point to point, rad and mm
 --   line   = { dx, dy, dz }                       straight, at constant heading, mm in base; speed = mm/s and
 --                                                 acceleration = mm/s^2 limit it
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
 --   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
--- of which `lets_go = gripper` leaves a wafer of that one's behind, `enters = target` begins the way into a station
--- and `leaves = true` ends the way out, and whose `target` and `where`, such as "on the way into", say in an error
--- where the arm would be; or a question, answered with true or false, of which a plan knows no more than what to
--- `assume`:
+-- In a segment `lets_go = gripper` leaves that gripper's wafer behind, `enters = target` begins the way into a
+-- station, and `leaves = true` ends the way out. `target` and `where`, such as "on the way into", tell the arm's
+-- place in an error. Or a request is a question, answered with true or false; a plan only knows its `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
---   grip      = gripper                           answered with what its plunger does, a word: "open", "closing",
---                                                 "closed", "jammed", "missed", "opening", or "still" if it is to
---                                                 close and has not moved; with `note` its target keeps more
---   centre    = target                            answered with { x, y }, mm in base: how far the wafer's
---                                                 centre on its blade is from where it should be, or with false
---                                                 if the beams that the way in has passed do not tell
--- or word of passive pads, which have no valve that would tell it:
---   carries = gripper, wafer = true or false      motion goes by that from here on
--- or, if the target's `stop` asks for it,
---   hold = "extended" or "up"                     the command ends here, and CONTINUE goes on behind it
--- It returns what became of the wafer, a word, as the sensors tell.
+--   grip      = gripper                           answered with its plunger's state, a word: "open", "closing",
+--                                                 "closed", "jammed", "missed", "opening", or "still" if it
+--                                                 must close and has not moved; with `note` its target keeps more
+--   centre    = target                            answered with { x, y }, mm in base: the offset of the wafer's
+--                                                 centre on its blade from the right place, or with false
+--                                                 if the beams on the way in give no result
+-- Or it tells about passive pads, which have no valve:
+--   carries = gripper, wafer = true or false      motion depends on it from here on
+-- Or, if the target's `stop` asks for it:
+--   hold = "extended" or "up"                     the command ends here, and CONTINUE goes on after it
+-- A pattern returns the result for the wafer, a word, from the sensors.
 --
--- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at
--- plain slots), asks (if the vacuum sensor decides) and the station's parameters. Heights are above the
+-- The command fills in `target` (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at
+-- plain slots), asks (whether the vacuum sensor decides) and the station's parameters. Heights are above the
 -- slot's plane.
 
 local yield = coroutine.yield
 
 local OPEN, CLOSED = 0, 1
 
--- To the outer end of the line into the slot.
+-- Moves to the outer end of the line into the slot.
 local function approach(target, height)
   local p = target.place
   local x, y, z = p.x - target.retract * p.dir_x, p.y - target.retract * p.dir_y, p.z + height
@@ -50,7 +49,7 @@ local function approach(target, height)
   yield { to = there, target = target, where = "in front of" }
 end
 
--- So far along the way in, and so far up through the slots. `up` and `dir_z` are of a robot that tilts.
+-- Vectors along the way in, and up through the slots. `up` and `dir_z` are for a robot that tilts.
 local function along(place, way)
   return { way * place.dir_x, way * place.dir_y, place.up and way * place.dir_z or 0 }
 end
@@ -60,7 +59,7 @@ local function upward(place, by)
   return up and { by * up[1], by * up[2], by * up[3] } or { 0, 0, by }
 end
 
--- Of a point how far it is above the slot's plane, and how far along the way in.
+-- A point's height above the slot's plane, and its distance along the way in.
 local function beside(place, at)
   local x, y, z, up = at[1] - place.x, at[2] - place.y, at[3] - place.z, place.up
   local inward = x * place.dir_x + y * place.dir_y
@@ -70,7 +69,7 @@ local function beside(place, at)
   return z, inward
 end
 
--- In, and a wait there if the station has one.
+-- Moves in, and waits there if the station has a wait.
 local function enter(target)
   local line = along(target.place, target.retract)
   yield { line = line, enters = target, target = target, where = "on the way into" }
@@ -91,7 +90,7 @@ local function stroke(target, by, lets_go)
   }
 end
 
--- Of axes beside the robot's: `to` has where each goes.
+-- Moves axes other than the robot's: `to` has the goal of each.
 local function shift(to)
   yield { moves = to }
 end
@@ -109,7 +108,7 @@ local function hand_over(target, from, to)
   end
 end
 
--- A phase ends: the blade stands in the station, before the stroke or behind it.
+-- A phase ends: the blade stands in the station, before or after the stroke.
 local function pause(target, phase)
   if target.stop == phase then
     yield { hold = phase }
@@ -133,14 +132,14 @@ end
 
 ---------------------------------------------------------------------------------------------------- edge grips
 
--- Of a target whose gripper has an edge grip: `edge` = { travel, the time that a sound plunger needs at most, slice }.
+-- For a target whose gripper has an edge grip: `edge` = { travel, the longest time of a sound plunger, slice }.
 
--- How long a sound plunger is waited for, s: two slices more than it takes, for one gives the order.
+-- The waiting time for a sound plunger, s: its own time plus two slices, since one slice gives the order.
 local function patience(target)
   return target.edge.travel + 2 * target.edge.slice
 end
 
--- Waits until the plunger is where it was sent, `wanted`; at least as long as a sound one takes.
+-- Waits until the plunger has the state `wanted`; at least as long as a sound plunger needs.
 local function settle(target, wanted)
   local is_patient = target.timeout > patience(target)
   yield { dwell = patience(target), vacuum = true }
@@ -152,25 +151,25 @@ local function settle(target, wanted)
   return does
 end
 
--- Sends the plunger back: nil, or why it is not open: "unopened" on its way, "unmoved".
+-- Sends the plunger back. Returns nil, or why it is not open: "unopened" on its way, "unmoved".
 local function open_plunger(target)
   switch(target.gripper, CLOSED)
   local does = settle(target, "open")
   return does ~= "open" and (does == "opening" and "unopened" or "unmoved") or nil
 end
 
--- Before a GET: as open_plunger, where the plunger is not open.
+-- Before a GET: like open_plunger, if the plunger is not open.
 local function check_open(target)
   if (yield { grip = target.gripper, assume = "open" }) ~= "open" then
     return open_plunger(target)
   end
 end
 
--- By what the plunger does that stands elsewhere than in its window, or should.
+-- By the plunger's state: the result when it does not hold the wafer.
 local WHY = { jammed = "jammed", missed = "missing", still = "unmoved", open = "unmoved", opening = "unmoved",
               closing = "unclosed", closed = "disagree" }
 
--- Closes the plunger: "taken", or why it does not hold the wafer.
+-- Closes the plunger. Returns "taken", or why it does not hold the wafer.
 local function close_plunger(target)
   local gripper = target.gripper
   switch(gripper, OPEN)
@@ -178,7 +177,7 @@ local function close_plunger(target)
   if not on and target.timeout > patience(target) and (yield { grip = gripper, assume = "closed" }) == "closing" then
     on = yield { sensor = gripper, timeout = target.timeout - patience(target) }
   end
-  -- A sensor that is on before the plunger is there tells of no wafer.
+  -- A sensor that is on before the plunger has arrived does not show a wafer.
   if on and (yield { grip = gripper, assume = "closed" }) == "closed" and is_loaded(gripper, true) then
     return "taken"
   end
@@ -197,8 +196,8 @@ local function close_over_chuck(target)
   return close_plunger(target)
 end
 
--- On the way in the blade passed beams that tell where the wafer lies on it: the blade goes aside by that.
--- False if they do not.
+-- On the way in the blade has passed beams that give the wafer's place on it: the blade goes aside by the
+-- offset. False if they give no result.
 local STRAIGHT = { 0, 0 }
 
 local function centre(target)
@@ -212,8 +211,8 @@ local function centre(target)
   return off and true
 end
 
--- Down to where a PUT lets go, valve closed, down below the wafer: whatever lies on the blade stays in the
--- slot.
+-- Moves down to where a PUT lets go, closes the valve, moves down below the wafer: a wafer on the blade
+-- stays in the slot.
 local function set_back(target, height)
   if height > target.release and not target.is_passive then
     stroke(target, target.release - height)
@@ -229,13 +228,14 @@ end
 
 ---------------------------------------------------------------------------------------------------- passive pads
 
--- They have no valve: a wafer is on them once they have lifted it off its support, and off them once one has it.
+-- They have no valve: a wafer is on them after they have lifted it off its support, and off them when a support
+-- has it.
 
 local function reckon(gripper, wafer)
   yield { carries = gripper, wafer = wafer }
 end
 
--- The chuck lets go of what lies on it; true if it held something.
+-- The chuck lets go of its wafer; true if it held one.
 local function free_chuck(target)
   local held = is_on(target.chuck, true)
   switch(target.chuck, CLOSED)
@@ -245,7 +245,7 @@ local function free_chuck(target)
   return held
 end
 
--- The chuck takes hold of what was set down on it.
+-- The chuck takes hold of the wafer set down on it.
 local function give_to_chuck(target)
   switch(target.chuck, OPEN)
   return holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
@@ -267,7 +267,7 @@ local function lift_off(target)
   return found
 end
 
--- What no support has taken over comes out again as it went in.
+-- Sets the wafer down. If no support takes it over, it comes out again as it went in.
 local function set_down(target)
   stroke(target, -target.stroke, target.gripper)
   if target.asks and is_on(target.gripper, false) then
@@ -278,7 +278,7 @@ local function set_down(target)
   return target.chuck and give_to_chuck(target) or "kept"
 end
 
--- Up with what lies on the chuck, or down to it.
+-- Moves up with the wafer on the chuck, or down to the chuck.
 local function raise_pads(target)
   shift { [target.axis] = 0 }
   if target.chuck_holds then
@@ -309,8 +309,8 @@ local patterns = {}
 
 -------------------------------------------------------------------------------------------------- turned over
 
--- A blade that is turned over comes from above, in and out with its pads `offset` above `target.touch`, which is
--- how far over the slot's plane they stop to take a wafer and to let go of one.
+-- A blade that is turned over comes from above. It moves in and out with its pads `offset` above `target.touch`,
+-- the height over the slot's plane at which they take a wafer and let go of one.
 local function above(target)
   return target.touch + target.offset
 end
@@ -365,7 +365,7 @@ local function let_go(target)
       switch(target.chuck, OPEN)
     end
     local shut = open_plunger(target)
-    if shut and is_loaded(target.gripper) then -- it has not let go, and is not to do so on the way
+    if shut and is_loaded(target.gripper) then -- it has not let go, and must not do so on the way
       switch(target.gripper, OPEN)
     end
     if shut or not target.chuck then
@@ -381,7 +381,7 @@ local function let_go(target)
   return holds(target, target.chuck) and "kept" or is_loaded(target.chuck) and "loose" or "lost"
 end
 
--- What hangs on the pads is let go before they go up again.
+-- The pads let go of a hanging wafer before they go up again.
 local function let_go_below(target)
   local became = let_go(target)
   if became == "kept" and not target.edge and target.vent > 0 then
@@ -390,7 +390,7 @@ local function let_go_below(target)
   return became
 end
 
--- Out behind a PUT, which has ended as `became` says.
+-- Moves out after a PUT with the result `became`.
 local function leave_empty(target, became)
   if became == "kept" then
     pause(target, "up")
@@ -418,7 +418,8 @@ end
 
 ---------------------------------------------------------------------------------------------------------- GET
 
--- Up to the wafer's plane, where rests and plunger are beside its rim; a wafer that is not gripped stays behind.
+-- Moves up to the wafer's plane, where rests and plunger are beside its rim; a wafer that is not gripped stays
+-- there.
 local function take_by_edge(target)
   local bottom = target.offset - target.stroke
   stroke(target, -bottom)
@@ -462,12 +463,12 @@ local function take_from_chuck(target)
   return found
 end
 
--- In below the wafer, valve open, up through the slot, out. From a chuck: up to its plane, hand over, out
--- above. Without a wafer down again, `retries` times up once more, and out below: "missing", or "late" when
--- the vacuum did not come though a wafer is there; "early" when the sensor was on before the stroke. Without
--- a wafer nothing is held up there. With an edge grip: in with its plunger open, up to the wafer's plane, closed,
--- up to `offset`, out; else "missing", "jammed", "unmoved", "unclosed", "unopened" or "disagree". Passive pads go as those
--- with vacuum do, without valves.
+-- GET moves in below the wafer, opens the valve, moves up through the slot, and out. From a chuck it moves up to the
+-- chuck's plane, hands over, and moves out above. Without a wafer it moves down again, repeats the stroke `retries` times,
+-- and moves out below: "missing", or "late" if the vacuum did not come though a wafer is there; "early" if the sensor was
+-- on before the stroke. Without a wafer the phase "up" is not held. With an edge grip it moves in with its plunger open,
+-- up to the wafer's plane, closes, moves up to `offset`, and out; else "missing", "jammed", "unmoved", "unclosed",
+-- "unopened" or "disagree". Passive pads move like pads with vacuum, without valves.
 function patterns.get(target)
   if target.touch then
     return get_from_above(target)
@@ -496,11 +497,11 @@ end
 
 ---------------------------------------------------------------------------------------------------------- PUT
 
--- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck
--- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it, "stuck" when the
--- gripper's sensor is still on after it has left a plain slot; of an edge grip "unmoved" or "unopened" when its
--- plunger did not go back before the blade went on down; with a wafer in it up and out again. With `centre` aside before that, by what beams
--- say of the wafer; when they do not, out again with the wafer: "uncentred".
+-- PUT moves in above the slot, down to `release`, switches the valve, moves down below the wafer, and out. Results: "kept";
+-- "lost" if the chuck has not taken it over; "loose" if the chuck's vacuum did not come though the wafer lies on it; "stuck" if
+-- the gripper's sensor is still on after it has left a plain slot. With an edge grip "unmoved" or "unopened" if its plunger did
+-- not go back before the blade went on down; with a wafer in it the blade moves up and out again. With `centre` the blade first
+-- goes aside by the beams' result. Without a result it moves out again with the wafer: "uncentred".
 function patterns.put(target)
   if target.touch then
     return put_from_above(target)
@@ -533,13 +534,13 @@ end
 
 ------------------------------------------------------------------------------------------- SWAP, READY and MAP
 
--- A GET with one gripper, and if it took the wafer a PUT with the other.
+-- SWAP is a GET with one gripper and, if that took the wafer, a PUT with the other.
 function patterns.swap(target)
   local found = patterns.get(target.get)
   return found == "taken" and patterns.put(target.put) or found
 end
 
--- To where a GET enters, or a PUT when the gripper is loaded.
+-- Moves to where a GET enters, or a PUT if the gripper is loaded.
 function patterns.ready(target)
   if target.touch then
     return approach(target, above(target))
@@ -550,8 +551,8 @@ end
 ------------------------------------------------------------------------------------------------ stages and pins
 
 -- `pins` come up to the wafer, whose back is in the chuck's plane, take it, and lift it: "taken"; "empty" if there
--- is none. From a chuck that held one: "missed", or "late" when the vacuum did not come though it lies there; it
--- is the chuck's again, and the pins are down.
+-- is none. From a chuck that held one: "missed", or "late" if the vacuum did not come though it lies there. The
+-- chuck then holds it again, and the pins are down.
 function patterns.raise(target)
   if target.is_passive then
     return raise_pads(target)
@@ -577,8 +578,8 @@ function patterns.raise(target)
   return "empty"
 end
 
--- The pins bring down what they hold: "kept"; "empty" if their valve is closed; "lost" when the chuck has not
--- taken it over, "loose" when its vacuum did not come though it lies there.
+-- The pins bring their wafer down: "kept"; "empty" if their valve is closed; "lost" if the chuck has not
+-- taken it over; "loose" if the chuck's vacuum did not come though it lies there.
 function patterns.lower(target)
   if target.is_passive then
     return lower_pads(target)
@@ -593,7 +594,7 @@ function patterns.lower(target)
   return became
 end
 
--- Pins hold the wafer while the stage brings the chuck to `aside`; with the wafer on the chuck it goes `home`.
+-- Pins hold the wafer while the stage brings the chuck to `aside`. With the wafer on the chuck it goes `home`.
 function patterns.grip_again(target)
   local found = patterns.raise(target)
   if found ~= "taken" then
@@ -608,15 +609,15 @@ end
 
 ------------------------------------------------------------------------------------------------------- others
 
--- From below the stack to above it, in front of the station.
+-- Moves from below the stack to above it, in front of the station.
 function patterns.map(target)
   approach(target, -target.margin)
   local line = upward(target.place, target.height + 2 * target.margin)
   yield { line = line, speed = target.map_speed, target = target, where = "in front of" }
 end
 
--- Out of the station that the arm stands in, from where it came to stand: with a wafer up to where a GET
--- leaves, else down to where a PUT does, then straight out. `stands` is the gripper's place.
+-- Moves out of the station from the place where the arm stopped: with a wafer up to where a GET leaves,
+-- else down to where a PUT leaves, then straight out. `stands` is the gripper's place.
 function patterns.recover(target)
   local p = target.place
   local height, inward = beside(p, target.stands)
@@ -632,12 +633,12 @@ function patterns.recover(target)
   yield { line = line, leaves = true, target = target, where = "on the way out of" }
 end
 
--- One segment by itself.
+-- Plays a single segment.
 function patterns.single(target)
   yield(target.segment)
 end
 
--- Waits for what a switch tells: true if it came in time.
+-- Waits for a switch: true if it came in time.
 function patterns.arrive(target)
   return yield(target.segment)
 end

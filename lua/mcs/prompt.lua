@@ -1,12 +1,12 @@
--- Executes one operator's line by the same words that scripts use, and answers it in one line: OK and values,
--- or ERROR, a number of the catalogue, its name and the reason. A line is only ever read, never run as Lua.
+-- Executes an operator's line with the words of scripts, and answers it in one line: OK and values, or ERROR,
+-- a number of the catalogue, its name and the reason. A line is only read, never run as Lua.
 
 return function(native, prompt_commands, tokens, lookup, states, alarms, bind, background)
   local function refuse(text, ...)
     native.fail("BAD_ARGUMENT", text:format(...))
   end
 
-  -- A word as its kind wants it. A name that is not known passes: the command refuses it by its own number.
+  -- Converts a word to its kind. An unknown name passes: the command refuses it with its own number.
   local function convert(what, kind, word)
     local known = prompt_commands.kinds[kind]
     if not known then
@@ -19,7 +19,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     return text
   end
 
-  -- With several robots each command may say which.
+  -- The kind of an option; with several robots each command may name its robot.
   local function kind_of(command, name)
     return command.options and command.options[name] or name == "robot" and lookup.has_several() and "robot"
   end
@@ -46,7 +46,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     arguments[place] = convert(kind, kind, word)
   end
 
-  -- Whose gripper it is that the controller stands for.
+  -- True if the gripper belongs to the controller's robot or station.
   local function is_own(gripper, robot, station)
     local index = lookup.gripper(gripper)
     if robot then
@@ -65,7 +65,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     return false
   end
 
-  -- By kind, if that name is of something that another controller stands for.
+  -- By kind: whether the name belongs to another controller.
   local is_other = {
     station = function(name, _, station) return station and name ~= station end,
     gripper = function(name, robot, station) return not is_own(name, robot, station) end,
@@ -75,7 +75,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     door = function(name, _, station) return station and not is_own_door(name, station) end,
   }
 
-  -- A line of a controller that stands for one robot or station: it knows no other.
+  -- A line of a controller for one robot or station: it knows no others.
   local OTHERS = {
     station = "NO_SUCH_STATION", gripper = "NO_SUCH_GRIPPER", flips = "NO_SUCH_GRIPPER", robot = "NO_SUCH_ROBOT",
     door = "BAD_ARGUMENT",
@@ -85,7 +85,10 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     native.fail(OTHERS[kind], ("%s (expected %s, whose controller this is)"):format(lookup.quote(name), own))
   end
 
-  local function check_own(command, arguments, gripper, other)
+  -- The options of FAULT that name a part.
+  local PARTS = { "gripper", "station", "door" }
+
+  local function check_own(command, arguments, options, other)
     local robot, station = lookup.bound(), lookup.bound_station()
     local own = station or robot and native.layout.robots[robot].name
     if not own or command.asks and not command.of_robot then
@@ -100,8 +103,12 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
         refuse_other(kind, name, own)
       end
     end
-    if gripper and robot and not is_own(gripper, robot) then
-      refuse_other("gripper", gripper, own)
+    -- A load port's MAP names a gripper of the robot that it calls.
+    for _, kind in ipairs((robot or command.breaks) and PARTS or {}) do
+      local name = options[kind]
+      if name and is_other[kind](name, robot, station) then
+        refuse_other(kind, name, own)
+      end
     end
   end
 
@@ -116,7 +123,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     end
     local robot = options.robot and lookup.robot(options.robot)
     options.robot = nil
-    check_own(command, arguments, options.gripper, robot)
+    check_own(command, arguments, options, robot)
     local needed = #command.takes - (command.optional and 1 or 0)
     if #arguments < needed or command.needs_option and next(options) == nil then
       refuse("too few words (expected %s)", prompt_commands.usage(name))
@@ -131,7 +138,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     return command.run(arguments, options)
   end
 
-  -- The name and the command that the words begin with.
+  -- The name and the command at the beginning of the words.
   local function find(list)
     if not list[1] then
       native.fail("NO_SUCH_COMMAND", "an empty line (HELP lists them)")
@@ -145,7 +152,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     return name, command
   end
 
-  -- TASK and the words of a command: it is read now, and carried out beside what follows.
+  -- TASK and the words of a command: the command is read now, and executed beside the next lines.
   local function begin(list)
     local words = table.move(list, 2, #list, 1, {})
     if not words[1] then
@@ -161,16 +168,7 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     end)
   end
 
-  local function perform(line)
-    tokens.check(line)
-    local list = tokens.split(line)
-    local name, command = find(list)
-    if name == "TASK" then
-      return begin(list)
-    end
-    if command.alone then
-      background.check_none(name)
-    end
+  local function carry_out(line, name, command, list)
     if command.asks then
       alarms.refuse(name)
       alarms.check(name)
@@ -181,10 +179,38 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
     return states.follow(line, run, command, read(name, command, list))
   end
 
-  -- What the cell complained of since `mark`, as text, or nil.
-  local function complaints_since(mark)
+  -- RESTORE and UNDO are in no record. One that fails is a command that failed all the same, for STATUS to tell.
+  local function recorded(line, action, ...)
+    local ok, result = pcall(action, ...)
+    if ok then
+      return result
+    end
+    if type(result) == "table" and math.type(result.number) == "integer" and pcall(native.begin, line) then
+      native.finish(result.number, result.text)
+    end
+    error(result, 0)
+  end
+
+  local function perform(line)
+    tokens.check(line)
+    local list = tokens.split(line)
+    local name, command = find(list)
+    if name == "TASK" then
+      return begin(list)
+    end
+    if command.alone then
+      background.check_none(name)
+    end
+    if command.asks and command.alone then
+      return recorded(line, carry_out, line, name, command, list)
+    end
+    return carry_out(line, name, command, list)
+  end
+
+  -- The cell's complaints since `mark`, as text, or nil.
+  local function complaints_since(mark, expectations)
     local texts = {}
-    for _, complaint in ipairs(native.complaints(mark)) do
+    for _, complaint in ipairs(native.complaints(mark, expectations)) do
       local wafer = complaint.wafer and (' "%s"'):format(complaint.wafer) or ""
       local height = complaint.height and (", %.3f mm high"):format(complaint.height) or ""
       texts[#texts + 1] = complaint.kind .. wafer .. height
@@ -201,9 +227,9 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
 
   -- execute(line): the number of the error, 0 for none, and the answer.
   return function(line)
-    local begin = native.mark()
+    local begin, expectations = native.mark()
     local ok, result = pcall(perform, line)
-    local complaints = complaints_since(begin)
+    local complaints = complaints_since(begin, expectations)
     if ok then
       return 0, answer("OK", result, complaints)
     end

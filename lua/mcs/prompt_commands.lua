@@ -1,19 +1,18 @@
--- What can be typed: for each command the arguments that it takes, its options, what it does, and how it is
--- answered.
+-- The commands that can be typed: for each its arguments, its options, its action, and its answer.
 --
 -- takes     kinds of the arguments in order; the last one may be left out if `optional`, repeated if `repeated`
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
--- of_robot  true: one that asks, at a robot's own port of that robot alone
--- asks      true: it has no record, so an error on purpose is looked for here
--- keeps     true: it changes nothing that UNDO could take back, or sees to that itself
+-- of_robot  true: a question; at a robot's own port it asks only that robot
+-- asks      true: it has no record, so injected errors are looked for here
+-- keeps     true: it changes nothing that UNDO could take back, or handles UNDO itself
 -- alone     true: not while a task is alive
 
 return function(native, commands, queries, lookup, tokens, states, keep, background)
   local prompt_commands = {}
 
-  -- WHERE stops after so many bytes: an answer is one line.
+  -- WHERE stops after this many bytes: an answer is one line.
   local LONGEST_ANSWER = 60000
 
   ------------------------------------------------------------------------------------------------------ kinds
@@ -33,7 +32,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     end
   end
 
-  -- What FLIP turns over.
+  -- The names that FLIP accepts.
   local function flips_names()
     local list = lookup.names_of(native.layout.grippers)
     for name, station in pairs(native.layout.stations) do
@@ -50,7 +49,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return list
   end
 
-  -- For each kind of argument the names that there are, or nothing: then it is a number.
+  -- For each kind of argument the existing names, or nil for a number.
   prompt_commands.kinds = {
     station = station_names, gripper = names_of "grippers", wafer = native.wafer_names, command = command_names,
     fault = native.fault_kinds, frame = lookup.frames,
@@ -71,7 +70,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     station_options[name] = kind[2] and "number" or kind.values[1] == true and "switch" or name
   end
 
-  -- Those of a command that carries a wafer: with its corrections, and where it stops.
+  -- The options of a command that carries a wafer: with its corrections, and where it stops.
   local function carrying_options(...)
     local options = {}
     for name, kind in pairs(station_options) do
@@ -125,7 +124,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return lookup.effector(options.gripper, station.by[robot] or nil, robot)
   end
 
-  -- By robot: how the command that it holds is answered, after a CONTINUE as after itself.
+  -- By robot: the answer of its held command, which CONTINUE gives, too.
   local answers_held = {}
 
   function states.keep()
@@ -138,7 +137,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     end, is_as_was
   end
 
-  -- Runs one that may be held in a phase. `answer` makes the pairs that stand before the time.
+  -- Runs a command that may be held in a phase. `answer` makes the pairs before the time.
   local function carried(answer, action, ...)
     local time = timed(action, ...)
     local list = answer()
@@ -149,7 +148,8 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tokens.pairs(list)
   end
 
-  -- The gripper that a command means, asked for when that was first answered: a CONTINUE later need not name a robot.
+  -- Returns a function for the command's gripper, found when the command is first answered: a later CONTINUE need not
+  -- name a robot.
   local function asker(arguments, options)
     local gripper
     return function()
@@ -176,7 +176,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     end, commands.put, arguments[1], arguments[2], options)
   end
 
-  -- What it took, and what it put.
+  -- Runs a SWAP; the answer has the taken wafer and the put one.
   local function swap(arguments, options)
     local before = held_wafers()
     return carried(function()
@@ -206,8 +206,8 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
   end
 
-  -- How many samples there are, and of those that came the least and the most; the samples themselves are
-  -- published.
+  -- The answer has the number of samples, and the least and the most of those that came; the samples
+  -- themselves are published.
   local function edge_scan(arguments)
     local scan, least, most
     local time = timed(function() scan = commands.edge_scan(arguments[1]) end)
@@ -221,7 +221,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
       { "least", least }, { "most", most }, time }
   end
 
-  -- The fields of an answer in order, and as they are called in it.
+  -- The fields of an answer in order, with their names there.
   local ALIGNED = {
     { "mark", "mark" }, { "eccentricity", "eccentricity" }, { "direction", "direction_deg" }, { "dx", "dx" },
     { "dy", "dy" }, { "notch", "notch_deg" }, { "turn", "turn_deg" }, { "correction", "correction" },
@@ -364,7 +364,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return station(arguments, { robot = options.robot, gripper = options.gripper })
   end
 
-  -- A command's options; where they are axes, those that the robots have.
+  -- A command's options; for axes, those that the robots have.
   function prompt_commands.options(command)
     local options = command.options or {}
     if command.of_axes then
@@ -379,7 +379,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return options
   end
 
-  -- How a command is typed: GET STATION SLOT [option=value ...]; with `all`, every option by name.
+  -- The form of a command: GET STATION SLOT [option=value ...]; with `all`, every option by name.
   function prompt_commands.usage(name, all)
     local command = prompt_commands.commands[name]
     local text = { name }
@@ -412,7 +412,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return ("%s: %s"):format(prompt_commands.usage(name, true), prompt_commands.commands[name].does)
   end
 
-  -- What a turn is called in a line, and the fault's options.
+  -- The names of turns in a line, and the fault's options.
   local TURNS = { "rx", "ry", "rz" }
   local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer", door = "door", station = "station" }
   for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting", "error", "beam" }) do
@@ -443,20 +443,20 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
 
   --------------------------------------------------------------------------------------------------- commands
 
-  -- A command of the scripts that takes its arguments in order, answered with its time.
+  -- A script's command that takes its arguments in order; the answer has its time.
   local function moving(action)
     return function(arguments, options)
       return tokens.pairs { timed(action, arguments[1], arguments[2], options) }
     end
   end
 
-  -- STOP comes past the queue where a command runs: here none does, but one may be held.
+  -- While a command runs, STOP bypasses the queue. Here no command runs, but one may be held.
   local function stop()
     background.stop()
     commands.stop()
   end
 
-  -- RESET begins the session anew, which the host does: it comes here only with a word too many.
+  -- The host executes RESET, which begins the session anew. It comes here only with a word too many.
   local function reset()
   end
 
@@ -499,7 +499,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     return tokens.pairs { { "holder", queries.holder(arguments[1]) } }
   end
 
-  -- One that takes a table of named numbers.
+  -- A command that takes a table of named numbers.
   local function moving_by_name(action)
     return function(_, options)
       return tokens.pairs { timed(action, options) }
@@ -518,7 +518,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
-            does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
+            does = "sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin" },
     TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = teach,
               does = "finds out where the station truly is, by its beam and the wafer in slot 1, or by its block" },
     HOME = { takes = {}, run = moving(commands.home),
@@ -572,7 +572,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
              does = "moves the end-effector straight by so much, mm and mm/s; "
                .. "without a speed as fast as the axes go" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
-    FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault,
+    FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault, breaks = true,
               does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },
     ALARM = { takes = { "error" }, run = alarm,
               does = "lets the next command that can answer the error of this number do so; tells the fault's number" },

@@ -1,14 +1,14 @@
--- Tasks of typed lines: TASK begins a command that goes on beside those that follow, JOIN waits for its answer.
--- Simulated time passes while some command waits, and not from line to line.
+-- Tasks of typed lines: TASK begins a command that goes on beside the next ones, JOIN waits for its answer.
+-- Simulated time passes while a command waits, and not between lines.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 local table, tostring, type = table, tostring, type
 
 return function(native, commands, lookup, tokens, states, is_any_alive)
   local background = {}
 
-  -- So many may wait to be joined.
+  -- The most tasks that may wait to be joined.
   local MOST = 64
 
   -- By number: { handle, name, is_over, number: of its error }.
@@ -31,7 +31,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     end
   end
 
-  -- The answer of its command, or its error, is kept for JOIN.
+  -- Begins a task; its command's answer or error is kept for JOIN.
   function background.begin(name, action)
     if native.has_jobs() then
       native.fail("BUSY", "TASK: of several ports each goes on by itself")
@@ -66,7 +66,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     return entry
   end
 
-  -- Answers as the commands do, one after another; the first error is this one's.
+  -- Gives the commands' answers, one after another; the first error is JOIN's error.
   function background.join(arguments)
     local entries, texts, problem = {}, {}, nil
     for place, number in ipairs(arguments) do
@@ -104,7 +104,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     return tokens.pairs { { "taken", commands.await(arguments[1], arguments[2]) and "yes" or "no" } }
   end
 
-  -- All tasks end where they are; true if there was one.
+  -- Ends all tasks where they are; true if there was one.
   function background.stop()
     if not is_any_alive() then
       return false

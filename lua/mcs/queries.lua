@@ -1,6 +1,6 @@
 -- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local math, select, tostring, type, wh = math, select, tostring, type, wh
 
 return function(native, lookup)
@@ -12,7 +12,7 @@ return function(native, lookup)
     return native.measure(lookup.wafer(wafer), station.index, lookup.slot(station, slot))
   end
 
-  -- "up" or "down": how the wafer lies, or is held.
+  -- "up" or "down": the direction of the wafer's front face.
   function queries.face(wafer)
     return native.face(lookup.wafer(wafer))
   end
@@ -23,7 +23,7 @@ return function(native, lookup)
     return gripper and native.layout.grippers[gripper].name
   end
 
-  -- The check of a wafer against a gripper as they stand now: see wh.proximity.
+  -- The check of a wafer against a gripper at their present poses: see wh.proximity.
   function queries.proximity(wafer, gripper)
     local tolerance = native.layout.tolerance
     local index = lookup.gripper(gripper)
@@ -31,10 +31,10 @@ return function(native, lookup)
     return wh.proximity(base_from_face, native.gripper_pose(index, "real"), tolerance)
   end
 
-  -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first
-  -- frame's axes, mm; the angle between the z axes, the whole turn, and the heading of the second's x about the
-  -- first's z, degrees. A frame is the name of a wafer, a gripper, a station (its slot 1) or a slot, such as
-  -- "B/10", or "base".
+  -- The second frame relative to the first: the distance of the origins; dx, dy, dz in the first frame's axes,
+  -- mm; the angle between the z axes, the whole turn, and the heading of the second's x about the first's z,
+  -- degrees. A frame is the name of a wafer, a gripper, a station (its slot 1) or a slot, such as "B/10", or
+  -- "base".
   function queries.measure(first, second)
     local base_from_first = lookup.frame("measure", first)
     local distance, dx, dy, dz, angle, turn, heading =
@@ -52,14 +52,14 @@ return function(native, lookup)
     return (select(5, native.relate(lookup.frame("angle", first), lookup.frame("angle", second))))
   end
 
-  -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time
-  -- = s }.
+  -- The collisions so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z },
+  -- time = s }.
   function queries.hits()
     return native.hits()
   end
 
-  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil for a gap
-  -- that never was within range, and in a cell that is not checked here.
+  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil if the
+  -- gap never was within range, and in a cell that is not checked here.
   function queries.clearance(kind)
     local found = native.clearance(tostring(kind))
     if found == false then
@@ -71,7 +71,7 @@ return function(native, lookup)
     return found.gap, found.limit ~= 0 and found.limit or nil, found.time, found.parts
   end
 
-  -- States what should be so; the run fails if it is not, and goes on. Returns the condition.
+  -- States an expectation. If it is false, the run goes on and fails at its end. Returns the condition.
   function queries.expect(condition, text)
     if condition ~= nil and type(condition) ~= "boolean" then
       local refusal = "condition: %s (expected true, false or nil: any other value counts as true in Lua)"
@@ -85,7 +85,7 @@ return function(native, lookup)
     return station and ("lies in %s slot %d"):format(station, slot) or "lies in no slot"
   end
 
-  -- A value at its limit says so.
+  -- The found value as text; a value at its limit is marked.
   local function found_text(value, expected, tolerance)
     local off, text = math.abs(value - expected), ("%.12g"):format(value)
     if off < tolerance or ("%.12g"):format(off) ~= ("%.12g"):format(tolerance) then
@@ -94,8 +94,8 @@ return function(native, lookup)
     return ("%s (%.17g off, expected less than %.17g)"):format(text, off, tolerance)
   end
 
-  -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows. One that hangs
-  -- above it does not.
+  -- Expects the wafer in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows. A wafer
+  -- that hangs above the slot does not lie in it.
   function queries.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
     tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance, { nil, nil, "mm" })
     if tolerance <= 0 then

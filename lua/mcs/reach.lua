@@ -1,15 +1,15 @@
--- What a run asks of its layout before anything moves, and `waferhand layout` of each: that GET and PUT can
--- be planned at the slots, from where the robot stands at home. `waferhand layout` plays them as well.
+-- Checks that GET and PUT can be planned at the slots, from home. A run checks its layout so before
+-- anything moves, and `waferhand layout` checks each layout. `waferhand layout` plays them as well.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, tostring, type = ipairs, math, tostring, type
 
 return function(native, transfer, flip_room)
   local rehearse, rehearse_map = transfer.rehearse, transfer.rehearse_map
   local reach = {}
 
-  -- In an upright stack only the height differs, so its ends tell of all slots. In a tilted one a slot
-  -- between them may be nearer to the robot than both.
+  -- In an upright stack only the height differs, so its ends stand for all slots. In a tilted one a
+  -- slot between them may be nearer to the robot than both.
   local function slots_of(station)
     if not station.taught then
       return {}
@@ -52,8 +52,8 @@ return function(native, transfer, flip_room)
     native.reach()
   end
 
-  -- Theta may have been wound up by the commands before, to where a slot is a turn or more away from home's
-  -- way. `found` as above, at most once a slot.
+  -- Earlier commands may have wound theta up, so that a slot is a turn or more away from its theta from
+  -- home. `found` as above, at most once for a slot.
   local function check_wound(station, slot, found)
     local _, problem, theta = rehearse(station.name, slot)
     local robot = native.layout.grippers[station.effector].robot
@@ -69,8 +69,8 @@ return function(native, transfer, flip_room)
     end
   end
 
-  -- What else would be refused in the course of a run: a MAP at a station that insists on one, a PUT that has no
-  -- room to go aside by what beams say, and the same ways with theta wound up.
+  -- Other refusals in the course of a run: a MAP at a station with `check_map`, a PUT without room to go aside
+  -- by its beams' result, and the checked ways with theta wound up.
   function reach.check_later(station, found)
     for _, slot in ipairs(slots_of(station)) do
       check_wound(station, slot, found)
@@ -88,10 +88,10 @@ return function(native, transfer, flip_room)
     end
   end
 
-  -- What a GET may make good, as parts of the layout's corrections: corners, and the middles between them.
+  -- The limits of a GET's corrections, as parts of the layout's: corners, and the middles between them.
   local ENDS = { { -1, -1 }, { -1, 0 }, { -1, 1 }, { 0, -1 }, { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } }
 
-  -- The first of them, at this part of their size, that is refused: the error.
+  -- The error of the first limit, scaled by `part`, that is refused; or nil.
   local function refused_aside(station, part, retract)
     local most = native.layout.corrections
     for _, way in ipairs(ENDS) do
@@ -103,7 +103,7 @@ return function(native, transfer, flip_room)
     end
   end
 
-  -- The largest number from 0 to `most` that does, to a thousandth of it.
+  -- The largest number from 0 to `most` for which `does` is true, to a thousandth of `most`.
   local function largest(most, does)
     local good, bad = 0, most
     for _ = 1, 10 do
@@ -117,8 +117,8 @@ return function(native, transfer, flip_room)
     return good
   end
 
-  -- A GET goes to where ALIGN found the wafer, as far aside as `corrections` allow: calls missed(slot, word, reason,
-  -- name) if there is no room for that.
+  -- After ALIGN a GET goes to the wafer's found place, as far aside as `corrections` allow. Calls missed(slot, word,
+  -- reason, name) if there is no room for that.
   function reach.check_corrections(station, missed)
     local gripper, most = native.layout.grippers[station.effector], native.layout.corrections
     if not station.sensor or not station.taught or gripper.grip == "edge" or refused_aside(station, 0) then
@@ -162,8 +162,8 @@ return function(native, transfer, flip_room)
     end
   end
 
-  -- What is played at a station: all that a slot can have above and below it, and what the commands before
-  -- have left there. A wafer goes to a chuck again only after it was elsewhere.
+  -- The slots played at a station, in order: they cover all neighbours above and below a slot, and the
+  -- effects of earlier commands. A wafer goes to a chuck again only after it was elsewhere.
   local function sequences_of(station)
     if station.slots == 1 then
       return { station.chuck and { 1 } or { 1, 1 } }
@@ -195,7 +195,8 @@ return function(native, transfer, flip_room)
     end
   end
 
-  -- The same for a PUT of a wafer that another station's GET has taken; from a chuck it is then taken again.
+  -- Like reach.play, for a PUT of a wafer that another station's GET has taken; from a chuck it is then
+  -- taken again.
   function reach.play_carrying(from, station, cell, failed)
     for slot = 1, math.min(station.slots, 2) do
       local word, problem = transfer.try_carrying(from.name, station.name, slot, cell, station.chuck)
@@ -207,7 +208,7 @@ return function(native, transfer, flip_room)
   end
 
   -- Calls failed(slot, what, reason) for each FLIP that has no room in front of the station or in its clamp; without a
-  -- station for those at home, which come first. Slot 0: of none.
+  -- station for FLIPs at home, which come first. Slot 0 means no slot.
   function reach.play_flips(station, cell, failed)
     if station then
       flip_room.look(station, servers(station), cell, failed)

@@ -1,16 +1,17 @@
--- SAVE, RESTORE and UNDO: what simulator and motion control are, kept whole and put back.
+-- SAVE, RESTORE and UNDO: the whole state of simulator and motion control, kept and put back.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, pairs, pcall, table = error, pairs, pcall, table
 
 return function(native)
   local states = {}
 
-  -- By name; and, the last one at the end, from before each command that changed something, with its line.
+  -- The states by name; and those from before each command that changed something, with its line, the
+  -- latest at the end.
   local saved, before = {}, {}
 
-  -- states.keep(), set by its owner: a function that puts back what Lua knows, and one that says if that is as
-  -- it was.
+  -- states.keep(), set by its owner: returns a function that puts back Lua's data, and one that tells whether
+  -- it is unchanged.
   states.keep = nil
 
   local function take()
@@ -18,7 +19,7 @@ return function(native)
     return { host = native.save(), put_back = put_back, is_as_was = is_as_was }
   end
 
-  -- The simulator first: what it refuses changes nothing.
+  -- Puts the simulator back first: if it refuses, nothing changes.
   local function put_back(state)
     native.restore(state.host)
     state.put_back()
@@ -50,7 +51,7 @@ return function(native)
     put_back(find(name))
   end
 
-  -- Takes back the last command that changed something: returns its line, and how many are left.
+  -- Takes back the last command that changed something: returns its line, and the number of those left.
   function states.undo()
     local last = before[#before]
     if not last then
@@ -61,12 +62,12 @@ return function(native)
     return last.line, #before
   end
 
-  -- What comes now cannot be taken back, and so nothing from before it.
+  -- The next change cannot be taken back, and so neither can earlier ones.
   function states.forget()
     before = {}
   end
 
-  -- Carries out the command of this line so that it can be taken back: also one that ends past all Lua.
+  -- Executes the command of this line so that it can be taken back, also if it ends outside of Lua.
   function states.follow(line, action, ...)
     local can_take, state = pcall(take)
     if not can_take then

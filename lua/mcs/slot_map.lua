@@ -1,16 +1,21 @@
--- The slot map: what the controller knows of each slot, from the last MAP and from its own GETs and PUTs
--- since. It never looks into the cell: what it has not seen is unknown, and unknown slots may be entered.
+-- The slot map: the controller's knowledge of each slot, from the last MAP and from its own GETs and PUTs
+-- since. It never looks into the cell: an unseen slot is unknown, and unknown slots may be entered.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, pairs = ipairs, pairs
 
 return function(native)
   local slot_map = {}
 
-  local EMPTY, SINGLE, DOUBLE, CROSSED = 0, 1, 2, 4
-  local WORDS = { [EMPTY] = "empty", [SINGLE] = "single", [DOUBLE] = "doubled", [CROSSED] = "crossed" }
+  -- lib/mcs/slot_codes.h has the rule.
+  local EMPTY, SINGLE, DOUBLE, PROTRUDED, CROSSED, THICK, THIN = 0, 1, 2, 3, 4, 5, 6
+  local WORDS = { [DOUBLE] = "doubled", [PROTRUDED] = "protruded", [CROSSED] = "crossed",
+    [THICK] = "too thick", [THIN] = "too thin" }
 
-  -- By station: codes by slot, and if the station has been mapped.
+  -- Codes for which no blade may enter the neighbouring slots either: the wafer may be in its way there.
+  local BESIDE = { [DOUBLE] = true, [CROSSED] = true, [THICK] = true }
+
+  -- By station: codes by slot, and whether the station has been mapped.
   local known = {}
 
   local function of_station(station)
@@ -26,7 +31,7 @@ return function(native)
     known[station] = { mapped = true, codes = copy }
   end
 
-  -- What is in the slot is unknown from here on.
+  -- The slot's content is unknown from here on.
   function slot_map.forget(target)
     of_station(target.station).codes[target.slot] = nil
   end
@@ -39,13 +44,13 @@ return function(native)
     of_station(target.station).codes[target.slot] = SINGLE
   end
 
-  -- A doubled or crossed slot, or one beside it: the blade would run into a wafer.
+  -- Refuses a slot with a wafer that must not be taken, or next to a slot whose wafer the blade would hit.
   local function check_way(target, codes)
     for slot = target.slot - 1, target.slot + 1 do
-      if codes[slot] == DOUBLE or codes[slot] == CROSSED then
+      local word = WORDS[codes[slot]]
+      if word and (slot == target.slot or BESIDE[codes[slot]]) then
         local beside = slot ~= target.slot and (", beside slot %d,"):format(target.slot) or ""
-        local text = "%s slot %d%s is %s"
-        native.fail("BAD_SLOT", text:format(target.station, slot, beside, WORDS[codes[slot]]))
+        native.fail("BAD_SLOT", ("%s slot %d%s is %s"):format(target.station, slot, beside, word))
       end
     end
   end
@@ -56,7 +61,7 @@ return function(native)
     end
   end
 
-  -- Refuses if the blade may not go in, or for what is known of the slot; `force` asks nothing of the map.
+  -- Refuses if the blade may not enter, or because of the slot's known content; `force` skips the map.
   local function check_entry(target, judge)
     if not target.force then
       check_mapped(target)
@@ -91,7 +96,7 @@ return function(native)
     check_entry(target, is_room)
   end
 
-  -- A function that makes the map again what it is now.
+  -- Returns a function that restores the present map.
   function slot_map.keep()
     local function copy(map)
       local copied = {}

@@ -1,18 +1,17 @@
--- Where motion control believes stations to be: where the layout says, until a host sets one by the axes with which
--- a gripper stands in its slot 1.
+-- The believed places of stations: those of the layout, until a host sets one by the axes with which a gripper
+-- stands in its slot 1.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, next, pairs, pcall = error, ipairs, math, next, pairs, pcall
 
 return function(native, lookup)
   local stations = {}
 
-  -- By station and robot: how far that was set from where the layout has it, see native.shift. A table that was handed
-  -- out is never changed.
+  -- By station and robot: its set offset from the layout's place, see native.shift. A returned table is never changed.
   local shifts = {}
 
-  -- An axis as SET_STATION has it, the second arm's r2 and wrist's yaw2 as the gripper's r and yaw; nil: one that stands as
-  -- the station asks for.
+  -- An axis' name in SET_STATION: the second arm's r2 and wrist's yaw2 are the gripper's r and yaw. Nil: an axis that the
+  -- station's place decides.
   local function role_of(axis)
     local name = axis.name:gsub("2$", "")
     for _, known in ipairs(lookup.standing) do
@@ -30,12 +29,12 @@ return function(native, lookup)
     return station.taught or shifts[key(station, robot)] ~= nil
   end
 
-  -- How far it was set from where the layout has it: see native.shift; nil: it was not.
+  -- The station's set offset from the layout's place: see native.shift; nil: it was not set.
   function stations.shift(station, robot)
     return shifts[key(station, robot)]
   end
 
-  -- native.slot, of the station as it was set; `undrawn`: not as a trial draws it.
+  -- native.slot for the station as it was set; `undrawn`: without a trial's drawn offset.
   function stations.place(station, slot, robot, by, undrawn)
     return native.slot(station.index, slot, by.dx or 0, by.dy or 0, by.dz or 0, by.turn or 0, robot,
       shifts[key(station, robot)], undrawn)
@@ -47,7 +46,7 @@ return function(native, lookup)
     end
   end
 
-  -- The station, and the robot and the gripper that a command means.
+  -- The station, the robot and the gripper of a command.
   local function find(name, options)
     options = options == nil and {} or lookup.table("options", options)
     local station = lookup.station(name)
@@ -55,7 +54,7 @@ return function(native, lookup)
     return station, robot, lookup.effector(options.gripper, station.by[robot] or nil, robot)
   end
 
-  -- All axes with the gripper in that slot, so far along the way in, from where the robot is at home.
+  -- All axes with the gripper in that slot, at a distance along the way in, planned from home.
   local function axes_at(station, slot, robot, gripper, along, up)
     local place = stations.place(station, slot, robot, {}, true)
     local from, own = native.axes(), native.layout.robots[robot]
@@ -67,7 +66,7 @@ return function(native, lookup)
       heading = place.heading, gripper = gripper, place = place } }
   end
 
-  -- Of the robot's axes those that move this gripper and tell where a slot is.
+  -- The robot's axes that move this gripper and tell where a slot is.
   local function telling(station, robot, gripper)
     local axes, list = native.axes(), {}
     local before = native.shift(station.index, robot, gripper, axes)
@@ -85,7 +84,7 @@ return function(native, lookup)
     return list
   end
 
-  -- Where the axes stand with the gripper in slot 1, as motion control believes: degrees and mm by name.
+  -- The believed places of the axes with the gripper in slot 1: degrees and mm by name.
   local function read(name, options)
     local station, robot, gripper = find(name, options)
     stations.check_taught(station, robot)
@@ -97,7 +96,7 @@ return function(native, lookup)
     return found
   end
 
-  -- In front of each slot and in it, at the heights of the stroke.
+  -- Checks the reach in front of each slot and in it, at the heights of the stroke.
   local function check_reach(station, robot, gripper)
     for slot = 1, station.slots, station.upright and math.max(1, station.slots - 1) or 1 do
       for _, up in ipairs({ station.offset - station.stroke, station.offset }) do
@@ -107,7 +106,7 @@ return function(native, lookup)
     end
   end
 
-  -- The axes as the host has them: those that it names in place of where they would stand.
+  -- The axes as the host sets them: the named ones replace the believed ones.
   local function set_axes(fields, station, robot, gripper)
     local known, values, names = telling(station, robot, gripper), {}, { "gripper", "robot" }
     local axes = is_taught(station, robot) and axes_at(station, 1, robot, gripper, 0, 0) or native.axes()
@@ -132,7 +131,7 @@ return function(native, lookup)
     return axes
   end
 
-  -- The station is moved so far for a robot, unless a slot of it would be out of reach.
+  -- Moves the station by this shift for a robot, unless one of its slots would be out of reach.
   local function move(station, robot, gripper, shift)
     local before = shifts
     shifts = {}
@@ -157,8 +156,8 @@ return function(native, lookup)
 
   stations.read, stations.set = read, set
 
-  -- What TEACH found for a robot: slot 1 is there in base, mm, and its way in leads in that direction, rad; by a beam,
-  -- the first one of those that `beam.gripper` passes, at its x and y.
+  -- Takes TEACH's result for a robot: slot 1's place in base, mm, and the direction of its way in, rad. With a beam,
+  -- also x and y of the first beam that `beam.gripper` passes.
   function stations.learn(station, robot, at, heading, beam)
     local place = native.slot(station.index, 1, 0, 0, 0, 0, robot, nil, true)
     local shift = { at[1] - place.x, at[2] - place.y, at[3] - place.z, heading - place.heading }
@@ -169,7 +168,7 @@ return function(native, lookup)
     move(station, robot, station.by[robot], shift)
   end
 
-  -- A function that makes all as it is now, and one that says if it still is.
+  -- Returns a function that restores the present state, and one that tells whether it is unchanged.
   function stations.keep()
     local kept = shifts
     return function()

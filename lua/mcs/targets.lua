@@ -1,7 +1,7 @@
--- What a command at a station works on: its place, its gripper, and the station's parameters, each of which
+-- The target of a command at a station: its place, its gripper, and the station's parameters, each of which
 -- the command may set for itself. All is checked before anything moves.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
 return function(native, lookup, align, mechanisms, stations)
@@ -11,8 +11,8 @@ return function(native, lookup, align, mechanisms, stations)
 
   targets.shift = stations and stations.shift
 
-  -- What else GET and PUT may say, and SWAP for its GET and its PUT: the fields' kinds by name. The unit of a
-  -- length or an angle is at the same place as in lookup.parameters.
+  -- Other options of GET and PUT, and of SWAP for its GET and its PUT: the fields' kinds by name. The unit of
+  -- a length or an angle has the index that it has in lookup.parameters.
   local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },
                   turn = { nil, nil, "degrees" }, stop = { values = lookup.phases }, centre = { values = { true, false } } }
 
@@ -30,7 +30,7 @@ return function(native, lookup, align, mechanisms, stations)
   targets.fields.get.correct = lookup.correct
   targets.fields.swap.get_correct = lookup.correct
 
-  -- Those of "get" or "put", by itself or within a SWAP; `prefix` nil: of a command that has none.
+  -- The options of "get" or "put", alone or within a SWAP; `prefix` nil: the command has none.
   local function own_fields(word, prefix)
     return prefix and targets.fields[prefix == "" and word or "swap"] or {}
   end
@@ -53,8 +53,8 @@ return function(native, lookup, align, mechanisms, stations)
     return options or {}
   end
 
-  -- The gripper goes so far beside the slot's frame as it was taught: by the command's options, else by what an
-  -- ALIGN has `found`. Refused is what the layout does not allow.
+  -- The gripper's offset from the taught slot's frame: from the command's options, else from an ALIGN's result
+  -- (`found`). Offsets that the layout does not allow are refused.
   local function read_corrections(target, options, prefix, found)
     for _, name in ipairs(lookup.correction_fields) do
       local value = options[prefix .. name] or found[name] or 0
@@ -70,7 +70,7 @@ return function(native, lookup, align, mechanisms, stations)
     target.stop = options[prefix .. "stop"]
   end
 
-  -- If a PUT goes aside by what beams say of its wafer.
+  -- Whether a PUT goes aside by its beams' result.
   local function read_centre(target, word, station, options, prefix)
     local own = prefix and options[prefix .. "centre"]
     if word == "get" and own ~= nil and own ~= false then
@@ -82,7 +82,7 @@ return function(native, lookup, align, mechanisms, stations)
     end
   end
 
-  -- Why a PUT does not centre there.
+  -- The reason why a PUT does not centre there.
   local function no_centre(target, station)
     local beams, robot = station.beams[target.robot], native.layout.robots[target.robot]
     if not lookup.has_several() then
@@ -93,7 +93,7 @@ return function(native, lookup, align, mechanisms, stations)
     return ("false: %s passes %d beams on its way to %s, and two tell a centre"):format(robot.name, beams, station.name)
   end
 
-  -- If a PUT there would go aside by what beams say, as far as that is clear before it is checked.
+  -- Whether a PUT there would go aside by its beams' result, as far as that is clear before the check.
   function targets.centres(station_name, robot, options)
     local station = type(station_name) == "string" and native.layout.stations[station_name]
     local own
@@ -103,8 +103,8 @@ return function(native, lookup, align, mechanisms, stations)
     return station and (own == true or own == nil and station.centres[robot]) or false
   end
 
-  -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
-  -- next one would take its wafer.
+  -- Checks relations between parameters. Strokes end where the neighbouring slots begin: a GET from below
+  -- the next one would take its wafer.
   local function rules(target, station, layout)
     local pitch = station.slots > 1 and station.pitch or math.huge
     local window = layout.tolerance.projz / layout.slice
@@ -161,7 +161,7 @@ return function(native, lookup, align, mechanisms, stations)
     end
     local edge = native.layout.grippers[target.gripper].edge
     if edge and options.release == nil and station.release_default then
-      target.release = 0 -- what it holds lies on no pads, which would be lower
+      target.release = 0 -- its wafer lies on no pads, which would be lower
     end
     read_centre(target, word, station, options, prefix)
     target.is_passive = native.layout.grippers[target.gripper].grip == "passive"

@@ -1,38 +1,39 @@
--- Tasks: what runs beside the rest, in simulated time. Each is a coroutine; the script itself is the first of
--- them, and drives the others where it waits. Order within a slice: the step; segments that are over; then tasks
--- go on in the order of their creation until none can.
+-- Tasks run side by side, in simulated time. Each is a coroutine. The script itself is the first task, and
+-- drives the others while it waits. Order within a slice: the step; segments that are over; then tasks go on in
+-- the order of their creation until none can.
 --
 -- A command gets all mechanisms and stations that it needs at once, first come first served, and never holds one
--- while it waits for another. What the robot stands in stays its own.
+-- while it waits for another. The station in which a robot stands stays the robot's own.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
 local print, select, setmetatable, table, tostring, type = print, select, setmetatable, table, tostring, type
 
--- At most so many besides the script.
+-- The most tasks besides the script.
 local MOST = 64
--- Of all stations one at a time: a state brings one scan. Who needs that always waits for it.
+-- Only one station at a time has the edge sensors: a state brings one scan. A command that needs
+-- them always waits.
 local SENSORS = "the edge sensors"
--- And of all beams and probes those of one pass: a state brings the latches of one arming.
+-- Only one pass at a time has the beams and probes: a state brings the latches of one arming.
 local LATCHES = "the beams and probes"
 
 return function(native, lookup)
   local resume, yield = coroutine.resume, coroutine.yield
-  -- What a task's coroutine yields with, and no script has.
+  -- The value with which a task's coroutine yields; no script has it.
   local WAITS = setmetatable({}, { __metatable = false })
 
   local script = { lane = 1, number = 0, name = "the script" }
   local current = script
   local tasks = {}     -- that are alive, in the order of their creation
-  local failed = {}    -- that ended with an error which nobody has heard
+  local failed = {}    -- that ended with an error which no task has got
   local lanes = {}     -- that are free, the next one last
-  local created = 0    -- so many
-  local is_open = false   -- false: there are no tasks yet, and nothing here is in a command's way
+  local created = 0    -- the number of tasks created
+  local is_open = false   -- false: there are no tasks yet, and commands need not wait
   local held = {}      -- resource: the task whose command has it
-  local keepers = {}      -- robot: the task whose command it carried out last
+  local keepers = {}      -- robot: the task whose command it executed last
   local requests = {}  -- of commands that wait for resources, in order
-  local signals = {}   -- name: how many nobody has taken
-  local waiters = {}   -- name: who awaits it, in order
+  local signals = {}   -- name: the number not yet taken
+  local waiters = {}   -- name: the tasks that await it, in order
 
   local handles = {}
   local handle_metatable = {
@@ -50,7 +51,8 @@ return function(native, lookup)
 
   ------------------------------------------------------------------------------------------------- going on
 
-  -- The first error that any task waits with is that of the script's own task.
+  -- Takes the result of a task's turn; the script's own task is current again. An ended task gives
+  -- its lane back.
   local function conclude(task, good, ...)
     switch(script)
     if good and coroutine.status(task.thread) ~= "dead" then
@@ -79,7 +81,7 @@ return function(native, lookup)
     conclude(task, resume(task.thread))
   end
 
-  -- Who waits for what, and who has it.
+  -- The text of a deadlock: which task waits for what, and which one has it.
   local function complaint()
     local parts = {}
     local function add(task)
@@ -94,7 +96,7 @@ return function(native, lookup)
     return table.concat(parts, "; ")
   end
 
-  -- Nothing moves: jobs that wait end as busy. True if there is one.
+  -- If nothing moves, ends waiting jobs as busy. True if there is one.
   local function refuse_waits()
     local is_any = false
     for _, task in ipairs(tasks) do
@@ -106,7 +108,7 @@ return function(native, lookup)
     return is_any
   end
 
-  -- Where the script waits: others go on, and slices go out, until it can.
+  -- While the script waits, other tasks go on, and slices go out, until it can go on.
   local function drive(can_go_on)
     while not can_go_on() do
       local place = 1
@@ -129,7 +131,7 @@ return function(native, lookup)
     end
   end
 
-  -- The running task waits. `waits_for` says for what.
+  -- The running task waits. `waits_for` names the reason.
   local function wait_until(can_go_on, waits_for)
     if can_go_on() then
       return
@@ -155,7 +157,7 @@ return function(native, lookup)
     end
   end
 
-  -- The same, of what is not played, and told.
+  -- Like wait_until, for a wait without a segment; the wait is reported.
   local function wait_idle(can_go_on, waits_for)
     if not can_go_on() then
       native.waits(waits_for())
@@ -165,7 +167,7 @@ return function(native, lookup)
     end
   end
 
-  -- A coroutine of a task's own: what waits within it, waits through it.
+  -- For a task's own coroutine: a wait within it passes through it.
   local function through(thread, good, first, ...)
     if good and first == WAITS then
       yield(WAITS)
@@ -231,8 +233,8 @@ return function(native, lookup)
     return held[resource] or robot and (keepers[robot] or script) or nil
   end
 
-  -- A resource that the request wants and somebody else has, or an earlier request wants; and who. Where its robot
-  -- stands it comes first: nobody else gets that before.
+  -- A resource of the request that another task has, or that an earlier request wants; and that task. For the
+  -- station in which its robot stands, the request comes first.
   local function obstacle(request)
     for _, resource in ipairs(request.needs) do
       local owner = holder(resource, request.needs)
@@ -265,7 +267,7 @@ return function(native, lookup)
     end
   end
 
-  -- Whom a task waits for: those that it joins, or who has what its command wants.
+  -- The tasks that a task waits for: those that it joins, or the owner of a resource that its command wants.
   local function waited_for(task)
     if task.joins then
       return task.joins
@@ -276,7 +278,7 @@ return function(native, lookup)
     return {}
   end
 
-  -- The chain of those who wait for each other, beginning and ending with this task; or nil.
+  -- The chain of tasks that wait for each other, beginning and ending with this task; or nil.
   local function find_cycle(task, from, seen)
     for _, other in ipairs(waited_for(from)) do
       if other == task then
@@ -297,7 +299,7 @@ return function(native, lookup)
     end
   end
 
-  -- Without tasks nobody would ever leave.
+  -- Refuses an occupied station: without tasks the other robot would never leave.
   local function refuse_occupied(needs)
     for _, station in ipairs(needs) do
       local robot = lookup.has_several() and module.stands_in(station, needs.robot)
@@ -313,7 +315,7 @@ return function(native, lookup)
     return current.has_waited
   end
 
-  -- A command begins that needs this: { robot = index, station = NAME, chucks = list, scan = true, latches = true }, each if it does.
+  -- A command begins that needs some of these: { robot = index, station = NAME, chucks = list, scan = true, latches = true }.
   function module.take(needs)
     current.has_waited = false
     if not is_open or not needs then
@@ -344,7 +346,7 @@ return function(native, lookup)
     local waits_for = function()
       local resource, owner = obstacle(request)
       local robot = owner == task and module.stands_in(resource, needs.robot)
-      if robot then -- nobody else will bring it out
+      if robot then -- no other task will bring it out
         return ("%s, where %s stands, which has to leave first"):format(resource, lookup.robot_text(robot))
       end
       return ("%s, which %s has"):format(tostring(resource), owner and owner.name or "nobody")
@@ -382,8 +384,8 @@ return function(native, lookup)
     native.hold_mechanisms(needs.robot or false, table.unpack(needs.chucks or {}))
   end
 
-  -- module.stands_in(resource, but): which robot stands in it, but for this one, or nil; and
-  -- module.is_inside(resource, robot): if that one does. Both are set by lua/mcs/arm.lua.
+  -- module.stands_in(resource, but): the robot, other than `but`, that stands in it, or nil; and
+  -- module.is_inside(resource, robot): whether that robot does. Both are set by lua/mcs/arm.lua.
 
   -- The command has ended.
   function module.give_back()
@@ -400,7 +402,7 @@ return function(native, lookup)
     native.hold_mechanisms(false)
   end
 
-  -- What a command of one task keeps, by task.
+  -- The data of a task's command, by task.
   function module.current()
     return current
   end
@@ -420,7 +422,7 @@ return function(native, lookup)
     open()
     created = created + 1
     local task = { thread = coroutine.create(body), name = "task " .. created, number = created,
-      lane = table.remove(lanes) }
+      lane = table.remove(lanes), line = native.line_of(body) }
     task.can_go_on = function()
       return true
     end
@@ -428,7 +430,7 @@ return function(native, lookup)
     return task
   end
 
-  -- Begins what `body` does, beside the rest: it goes on where its creator next waits.
+  -- Begins a task with `body`: it runs when its creator next waits.
   function words.task(body)
     if type(body) ~= "function" then
       native.fail("BAD_ARGUMENT", ("body: %s (expected a function)"):format(lookup.quote(body)))
@@ -558,7 +560,8 @@ return function(native, lookup)
     return waiter.is_taken == true
   end
 
-  -- The script has come to its end: the run's comes when all tasks are over. One that failed unheard fails the run.
+  -- The script has come to its end; the run ends when all tasks are over. A failed task whose error no task has got
+  -- fails the run.
   function module.finish()
     if is_open then
       wait_idle(function()
@@ -582,7 +585,7 @@ return function(native, lookup)
 
   ----------------------------------------------------------------------------------------------------- jobs
 
-  -- What was given up past all Lua.
+  -- Gives up all tasks after a stop outside of Lua.
   local function abandon()
     for place = #tasks, 1, -1 do
       local task = table.remove(tasks, place)
@@ -594,7 +597,7 @@ return function(native, lookup)
     switch(script)
   end
 
-  -- Without a handle, which would be kept: a host's actions are many.
+  -- Begins a job without a handle: handles are kept, and a host sends many jobs.
   local function begin_job(execute, job)
     local task = begin(function()
       local line = job.line
@@ -607,8 +610,8 @@ return function(native, lookup)
     task.bound, task.station = job.robot, job.station
   end
 
-  -- Plays the lines of jobs side by side, each job's one after another, until none is left: those of hosts at several
-  -- ports. execute(line) returns the number of the error and the answer.
+  -- Plays the lines of jobs side by side, each job's one after another, until none is left. They come from hosts at
+  -- several ports. execute(line) returns the number of the error and the answer.
   function module.serve(execute)
     if created > 0 then
       abandon()

@@ -1,21 +1,22 @@
--- Teaching: the robot finds out with its own motions where a station truly is. By a beam at the station's door:
--- it comes up below the wafer in slot 1 until the vacuum sensor feels it, which tells z; carries it through the
--- beam on both sides, its heading as in the station and turned either way, which tells x and y, and where the
--- beam is; and turns the wafer's notch through the beam, which tells yaw. Last the wafer is put back. By touch:
--- touching.lua.
+-- Teaching: the robot finds a station's true place with its own motions. With a beam at the station's door: the
+-- blade comes up below the wafer in slot 1 until the vacuum sensor feels it; this gives z. It carries the wafer
+-- through the beam on both sides, with the station's heading and turned either way; this gives x and y, and the
+-- beam's place. It turns the wafer's notch through the beam; this gives yaw. Last the wafer is put back. By
+-- touch: touching.lua.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
 return function(native, patterns, lookup, arm, targets, stations, slot_map)
-  -- How far from where the wafer is expected the blade looks for it, mm, and in what steps.
+  -- The search for the wafer: the distance from its expected height, mm, and the step.
   local SEARCH, STEP = 0.35, 0.01
-  -- Through the beam: how fast, and how far before and behind a rim, mm.
+  -- The motion through the beam: its speed, mm/s, and the distance before and after a rim, mm.
   local SPEED, ROOM = 100, 8
   local TURNS = { 0, math.rad(30), math.rad(-30) }
-  -- The notch: how far inside of the rim the beam is, mm, and how far the wafer turns to either side.
+  -- The notch: the beam's distance inside the rim, mm, and the wafer's turn to either side.
   local INSIDE, SWEEP = 0.5, math.rad(2.5)
-  -- How far a flank is from the notch's middle there, as seen from the wafer's: else it is no notch.
+  -- The least and most angle of a flank from the notch's middle, seen from the wafer's middle:
+  -- outside of these it is not a notch.
   local LEAST_FLANK, MOST_FLANK = math.rad(0.05), math.rad(0.6)
 
   local function play(segment)
@@ -26,7 +27,8 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return { way * place.dir_x, way * place.dir_y, height or 0 }
   end
 
-  -- `stays`: it turns where it is, whatever `robot.transit` says, for coming in would lead through the beam.
+  -- `stays`: it turns at its place, whatever `robot.transit` says, because retracting would lead through the
+  -- beam.
   local function go(target, x, y, z, heading, stays)
     play { to = { x = x, y = y, z = z, heading = heading, gripper = target.gripper }, stays = stays }
   end
@@ -35,7 +37,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     play { line = along(target.place, -target.retract), leaves = true, target = target, where = "on the way out of" }
   end
 
-  -- Out of the station with an open mind: nothing was learnt.
+  -- Moves out of the station after a failure: nothing was learnt.
   local function withdraw(target, bottom, name, why)
     local place, gripper = target.place, target.gripper
     play { valves = { [gripper] = 1 } }
@@ -48,7 +50,8 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return native.gripper_pose(target.gripper).r[3] - target.place.z
   end
 
-  -- Up in steps, the valve open, until the sensor is on, from this height: at most to `top`. Returns if it is.
+  -- Moves up in steps from this height, with the valve open, until the sensor is on: at most to `top`. Returns
+  -- whether it is on.
   local function rise(target, top)
     local on = native.sensor(target.gripper)
     for _ = 1, on and 0 or math.ceil((top - height_of(target)) / STEP - 1e-6) do
@@ -62,9 +65,9 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return on
   end
 
-  -- What was felt is a wafer if the sensor goes off with the valve, is off at the height where the search began,
-  -- and comes on again where it did. The wafer is left where it was: a blade that draws it onto its pads lifts it
-  -- by as much before.
+  -- The blade felt a wafer if three things hold: the sensor goes off with the valve, is off at the height where
+  -- the search began, and comes on again at the found height. The wafer stays at its place: a blade that draws it
+  -- onto its pads first lifts by that distance.
   local function is_wafer(target, begin, felt)
     local gripper, projz = target.gripper, native.layout.tolerance.projz
     local drawn = native.layout.seat and projz - STEP / 2 or 0
@@ -86,7 +89,8 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
       and math.abs(height_of(target) - felt) < 1.5 * STEP
   end
 
-  -- Into the station below the wafer, and up to it. Returns the height of the wafer's back face, and the blade's.
+  -- Moves into the station below the wafer, and up to it. Returns the height of the wafer's back face, and the
+  -- blade's.
   local function feel(target)
     local place, projz, gripper = target.place, native.layout.tolerance.projz, target.gripper
     local bottom = target.offset - target.stroke
@@ -118,7 +122,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     leave(target)
   end
 
-  -- What crosses the beams while this plays.
+  -- The beams' crossings while `action` plays.
   local function watch(station, target, action)
     native.arm_beams(station.index, target.gripper, stations.shift(station, target.robot))
     play { dwell = 2 * native.layout.slice }
@@ -133,7 +137,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return found
   end
 
-  -- In and out again over one edge of the beam, beside the wafer's middle.
+  -- Moves in and out again over one edge of the beam, beside the wafer's middle.
   local function cross(station, target, beam, turn, side)
     local place, radius = target.place, station.radius
     local aside = side * radius * 2 / 3
@@ -158,11 +162,11 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return c * x - s * y, s * x + c * y
   end
 
-  -- The notch through the beam, there and back. Returns by how much the station's yaw is off.
+  -- Turns the notch through the beam and back. Returns the error of the station's yaw.
   local function find_yaw(station, target, beam, solved)
     local place = target.place
     local x, y = rotate(-place.heading, solved.x, solved.y)
-    -- In the frame of a blade that took the wafer on a way in of its own.
+    -- The notch in the frame of a blade that took the wafer on its own way in.
     local notch = target.turned and station.notch - target.turned or station.notch
     local heading, radius = place.heading - notch, station.radius - INSIDE
     local to_x, to_y = beam.x + solved.beam_x - radius * place.dir_x, beam.y + solved.beam_y - radius * place.dir_y
@@ -225,7 +229,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return false
   end
 
-  -- By beam or by touch, and of several robots the one that does it: by touch it is the one with the probe.
+  -- Selects beam or touch, and with several robots the robot: for touch it is the one with the probe.
   local function way_of(name, options)
     local station = type(name) == "string" and native.layout.stations[name]
     local own = type(options) == "table" and options or {}
@@ -270,8 +274,8 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return name:match("^[%a_][%w_]*$") or ("[%q]"):format(name)
   end
 
-  -- What a layout should say: the station's place, and its yaw by so much more than the guess. Of several robots the place
-  -- is where this one was taught it, and the yaw all theirs. Without `yaw` that is as it was.
+  -- The entry for a layout: the station's place, and its yaw, which is the guess plus `yaw`. With several robots the place
+  -- is this robot's taught place, and the yaw is for all. Without `yaw` the yaw is unchanged.
   local function result_of(station, robot, guess, at, yaw)
     local roll, pitch, heading = to_rpy(guess.R)
     local result = { at = at, rpy = { roll, pitch, heading + math.deg(yaw or 0) } }
@@ -319,7 +323,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return { result, yaw, stands }
   end
 
-  -- Where it was taken from: on a blade that draws wafers onto its pads it lies lower.
+  -- Puts the wafer back to its place: on a blade that draws wafers onto its pads it lies lower.
   local function put_back(name, target, z, felt)
     local height = (native.layout.seat and z or felt) - target.place.z
     local release = math.min(math.max(height, target.offset - target.stroke), target.offset)
@@ -328,7 +332,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     arm.drive(arm.rehearse(patterns.put, target, true))
   end
 
-  -- By how much a robot's own way in turns from the station's x, rad; false: it comes along that.
+  -- The angle of a robot's own way in from the station's x, rad; false: it comes along x.
   local function turned_by(place, believed)
     local turned = place.heading - math.atan(believed.R[2][1], believed.R[1][1])
     turned = (turned + math.pi) % (2 * math.pi) - math.pi
@@ -386,7 +390,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return result
   end
 
-  -- The options with the robot that is meant.
+  -- The options, with the chosen robot.
   local function with_robot(options, robot)
     local all = {}
     for field, value in pairs(type(options) == "table" and options or {}) do
@@ -396,7 +400,8 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     return type(options) == "table" and all or options == nil and robot and all or options
   end
 
-  -- Where the station truly is, by its beam and the wafer in its slot 1, or by its block: see lua/mcs/words.lua.
+  -- Finds the station's true place, by its beam and the wafer in its slot 1, or by its block: see
+  -- lua/mcs/words.lua.
   return function(station, options)
     local by, robot, toucher = way_of(station, options)
     options = with_robot(options, robot)

@@ -1,4 +1,4 @@
--- A typed line's words, and answers in the same spelling: what this reads it can read back.
+-- Reads a typed line's words, and writes answers in that spelling: it can read back its own text.
 --
 -- Words stand between blanks. A name with blanks stands in double quotes, in which \" is a quote and \\ a
 -- backslash. name=value is an option; its value may be quoted, too.
@@ -13,7 +13,7 @@ return function(native)
     native.fail("BAD_ARGUMENT", text:format(...))
   end
 
-  -- Refuses what is no line of text before anything looks at it.
+  -- Refuses a text that is not a line, before it is read.
   function tokens.check(line)
     if #line > LONGEST then
       refuse("the line is longer than %d bytes", LONGEST)
@@ -83,7 +83,7 @@ return function(native)
     return list
   end
 
-  -- A decimal number, as people write them: no hexadecimal, no inf, no nan.
+  -- A plain decimal number: no hexadecimal, no inf, no nan.
   function tokens.number(what, word)
     local mantissa = word.text:gsub("[eE][+-]?%d+$", "")
     local plain = mantissa:find("^[+-]?%d+%.?%d*$") or mantissa:find("^[+-]?%.%d+$")
@@ -95,7 +95,8 @@ return function(native)
     return value
   end
 
-  -- Of `known` names the very one, else the one that differs in case alone; else the text as it is.
+  -- The `known` name that equals the text, else the only one that differs just in case, else the
+  -- text itself.
   function tokens.match(text, known)
     local found
     for _, name in ipairs(known) do
@@ -125,7 +126,7 @@ return function(native)
     return "nan"
   end
 
-  -- A name as it can be typed. None is nobody's name without quotes.
+  -- A name as it can be typed. An unquoted None is never a name.
   function tokens.spell(name)
     if name == nil then
       return "none"

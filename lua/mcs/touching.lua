@@ -1,17 +1,17 @@
--- Teaching by touch: the ball of a gripper's probe meets faces of the block that a station has: the one that looks
--- towards the robot, at eight places, which tell x and yaw; the one to the right, at three, which tell y; and the
--- upper one, at three, which tell z. The arm goes in a straight line, in small steps, until the switch has closed.
+-- Teaching by touch: the ball of a gripper's probe touches faces of the station's block. Eight places on the face
+-- towards the robot give x and yaw; three on the right face give y; three on the upper face give z. The arm goes
+-- in a straight line, in small steps, until the switch has closed.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local error, ipairs, math, pcall = error, ipairs, math, pcall
 
 return function(native, patterns, lookup, arm, targets)
-  -- From so far before a face the ball goes at most so far on, in such steps, and how fast, mm and mm/s.
+  -- The ball's start before a face, its longest way, its step, and its speed, mm and mm/s.
   local BEFORE, REACH, STEP, SPEED = 2, 4, 0.1, 5
-  -- How far below the upper edge the ball meets an upright face, and how far above it goes across, beside its
-  -- radius, mm.
+  -- The ball touches an upright face this far below the upper edge, and crosses this far above the block,
+  -- plus its radius, mm.
   local BELOW, ABOVE = 2.5, 10
-  -- How far from the edges of a face the ball stays, mm.
+  -- The ball's distance from the edges of a face, mm.
   local EDGE = 4
 
   local FACES = { "towards the robot", "to the right", "upwards" }
@@ -30,7 +30,7 @@ return function(native, patterns, lookup, arm, targets)
     return at
   end
 
-  -- From where the ball is to a point of the station's frame.
+  -- The way from the ball's place to a point of the station's frame.
   local function way_to(block, point)
     local pose, to, way = native.gripper_pose(block.gripper), in_base(block, point), {}
     for i = 1, 3 do
@@ -49,14 +49,14 @@ return function(native, patterns, lookup, arm, targets)
       FACES[face], text))
   end
 
-  -- By `far` mm outside of a face, beside where it is to be touched: a point of the station's frame.
+  -- A point of the station's frame, `far` mm outside of a face, beside the place to be touched.
   local function outside(point, axis, sign, far)
     local at = { point[1], point[2], point[3] }
     at[axis] = at[axis] + sign * far
     return at
   end
 
-  -- Until the switch has closed.
+  -- Moves until the switch has closed.
   local function creep(block, place)
     for step = 1, math.ceil(REACH / STEP) do
       go(block, outside(place.point, place.face, place.sign, block.radius + BEFORE - step * STEP), SPEED)
@@ -93,7 +93,7 @@ return function(native, patterns, lookup, arm, targets)
     go(block, over)
   end
 
-  -- Where to touch: points of the station's frame on its faces.
+  -- The places to touch: points of the station's frame on its faces.
   local function places_of(block)
     local at, size, list = block.at, block.size, {}
     local low = at[3] - math.min(size[3] / 2, block.radius + BELOW)
@@ -112,7 +112,7 @@ return function(native, patterns, lookup, arm, targets)
     return list
   end
 
-  -- Straight in from where a GET begins its way in, above the block.
+  -- Moves straight in from where a GET begins its way in, above the block.
   local function enter(block, target)
     local place, ball = target.place, block.ball
     local c, s = math.cos(place.heading), math.sin(place.heading)
@@ -138,12 +138,12 @@ return function(native, patterns, lookup, arm, targets)
            leaves = true, target = target, where = "on the way out of" }
   end
 
-  -- Where motion control has been told that the station is, and what all touches tell: see native.solve_teaching.
+  -- Returns the station's believed pose, and the result of all touches: see native.solve_teaching.
   return function(name, station, shift)
     local block = native.block(station.index)
     local told, believed = native.begin_teaching(station.index, shift, block.gripper)
     block.station = believed
-    -- Slot 1 as the blade with the probe takes it.
+    -- Slot 1 for the blade with the probe.
     local target = targets.at("get", name, 1, nil, block.gripper)
     arm.check_free()
     if native.sensor(block.gripper) then

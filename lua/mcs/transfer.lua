@@ -1,7 +1,7 @@
--- The operator's words that carry wafers: GET, PUT, SWAP, also in phases and beside what was taught; READY,
--- which only goes there; MAP, which only looks.
+-- The operator's words that carry wafers: GET, PUT, SWAP, also in phases and with corrections; READY, which
+-- only goes there; MAP, which only looks.
 
--- Kept, for a script may set globals of these names.
+-- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
 
 return function(native, patterns, lookup, arm, targets, align, centring, alarms, slot_map)
@@ -13,7 +13,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return native.layout.grippers[gripper].name
   end
 
-  -- A sensor that is on behind a closed valve says nothing of wafers. Passive pads have no valve.
+  -- A sensor that is on with a closed valve does not show a wafer. Passive pads have no valve.
   local function check_empty(target)
     local gripper = target.gripper
     if target.asks and native.sensor(gripper) then
@@ -27,7 +27,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
   end
 
-  -- "EE holds Wafer 1, PA holds Wafer 2": of all grippers, or that none does.
+  -- "EE holds Wafer 1, PA holds Wafer 2": for all grippers, or that none holds a wafer.
   local function holders()
     local list = {}
     for index, gripper in ipairs(native.layout.grippers) do
@@ -44,7 +44,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
   end
 
-  -- A station may take wafers of one face alone.
+  -- A station may take only wafers with one face up.
   local function check_face(target)
     local face = target.face and native.held_face(target.gripper)
     if face and face ~= target.face then
@@ -54,7 +54,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
   end
 
-  -- Why the running command took nothing with it.
+  -- The reason why the running command took nothing.
   local function explain(gripper)
     local name = name_of(gripper)
     local wafer, reasons = native.closest(gripper)
@@ -72,7 +72,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return text == "-0.000" and "0.000" or text
   end
 
-  -- Why the chuck did not take the wafer: it was not let go, or what the running command let go still lies there.
+  -- The reason why the chuck did not take the wafer: it was not let go, or it still lies where the running
+  -- command let it go.
   local function explain_lost(gripper, chuck)
     local kept = native.held(gripper)
     if kept then
@@ -89,7 +90,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return text:format(name_of(chuck), wafer, dx, dy, dz, reasons)
   end
 
-  -- The sensor of a gripper with a wafer that the simulator sees on it.
+  -- Fails for a gripper whose sensor is off although the simulator sees a wafer on it.
   local function fail_late(target, gripper)
     local wafer = native.held(gripper) or "a wafer"
     local text = "the sensor of %s stayed off for %.10g s, its timeout, with %s on its pads"
@@ -106,12 +107,12 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   local SAYS = { jammed = "stands before its window", missed = "stands behind its window", closed = "holds a wafer",
                  closing = "is on its way", still = "has not moved", opening = "is on its way back", open = "is open" }
 
-  -- To a micrometre, but of a small excess all that tells it from nothing.
+  -- To a micrometre; a value with a small excess has all digits, so that the excess shows.
   local function short(value, excess)
     return (excess < 5e-4 and "%.10g" or "%.3f"):format(value)
   end
 
-  -- What became of a wafer, or of none, at a plunger, as an error if that is one.
+  -- The result of a plunger, as an error if it is one.
   local PLUNGER = {}
 
   function PLUNGER.unmoved(_, name, was)
@@ -157,7 +158,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
   end
 
-  -- What a GET's pattern found, as an error unless it is a wafer.
+  -- The result of a GET's pattern, as an error unless it took a wafer.
   local function judge_get(target, found)
     judge_plunger(target, found)
     if found == "missing" and target.is_passive then
@@ -192,6 +193,27 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
   end
 
+  -- Checks that a wafer let go by a PUT lies in its slot. A wafer that is off by a whole pitch or more lies well, but
+  -- in another slot: no other check finds that.
+  local function expect_place(target, wafer)
+    if not wafer then
+      return
+    end
+    local is_elsewhere, station, slot = native.is_elsewhere(wafer, lookup.station(target.station).index, target.slot)
+    local text = ("PUT %s %d: %s in that slot"):format(target.station, target.slot, wafer)
+    native.imply(not is_elsewhere, is_elsewhere and ("%s; it lies in %s slot %d"):format(text, station, slot) or text)
+  end
+
+  -- Fails if a GET has taken the wafer of another slot. Its sensor says nothing of that.
+  local function check_origin(target)
+    local was_elsewhere, wafer, station, slot = native.was_elsewhere(target.gripper,
+      lookup.station(target.station).index, target.slot)
+    if was_elsewhere then
+      local text = "%s holds %s, which lay in %s slot %d (expected the wafer of %s slot %d)"
+      native.fail("WRONG_SLOT", text:format(name_of(target.gripper), wafer, station, slot, target.station, target.slot))
+    end
+  end
+
   local transfers = {
     get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get,
             judge = judge_get, note = slot_map.note_taken },
@@ -207,6 +229,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     check_face(target)
     kind.check_slot(target)
     local plan = arm.rehearse(kind.pattern, target, true)
+    local wafer = word == "put" and native.held(target.gripper)
     local notch, deviation
     if word == "get" then
       notch, deviation = align.notch(target)
@@ -215,7 +238,11 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     align.forget(target.station)
     arm.drive(plan, function(became)
       kind.judge(target, became)
+      if word == "get" then
+        check_origin(target)
+      end
       kind.note(target)
+      expect_place(target, wafer)
       centring.know_notch(target.gripper, notch, deviation)
     end)
     return target.centred
@@ -224,7 +251,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   -- GET and PUT within another command.
   transfer.carry = carry
 
-  -- The options with what an ALIGN has found for the GET, which they do not say themselves.
+  -- The options with an ALIGN's result for the GET, if they do not give a correction themselves.
   local function with_found(station, options, prefix)
     local found = align.correction(station, options, prefix)
     if not found then
@@ -240,7 +267,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return all
   end
 
-  -- The command as the record has it: with its corrections, and where it stops.
+  -- The command's text for the record: with its corrections, and where it stops.
   local function text_of(word, station, slot, options, ...)
     local fields = {}
     for _, prefix in ipairs({ ... }) do
@@ -311,19 +338,22 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     check_face(give)
     slot_map.check_get(take)
     local plan = arm.rehearse(patterns.swap, target, true)
+    local wafer = native.held(give.gripper)
     local notch, deviation = align.notch(take)
     slot_map.forget(take)
     align.forget(take.station)
     arm.drive(plan, function(became)
       judge_get(take, became)
       judge_put(give, became)
+      expect_place(give, wafer)
+      check_origin(take)
       slot_map.note_put(give)
       centring.know_notch(take.gripper, notch, deviation)
       centring.know_notch(give.gripper)
     end)
   end
 
-  -- Takes the wafer there with the empty gripper and puts down what another one holds.
+  -- Takes the wafer there with the empty gripper and puts down the wafer of another one.
   function transfer.swap(station, slot, options)
     local text = text_of("SWAP", station, slot, with_found(station, options, "get_"), "get_", "put_")
     local which = type(options) == "table" and { robot = options.robot }
@@ -339,7 +369,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     arm.play(patterns.ready, target)
   end
 
-  -- Goes in front of the slot, to where a GET or, with a wafer, a PUT enters.
+  -- Moves in front of the slot, to where a GET or, with a wafer, a PUT enters.
   function transfer.ready(station, slot, options)
     local text = lookup.command("READY", station, slot)
     arm.move(arm.needs(true, station, options, true), text, ready, station, slot, options)
@@ -366,7 +396,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return codes
   end
 
-  -- Sweeps over the station's slots; returns a list of their codes: 0 empty, 1 single, 2 double, 4 crossed.
+  -- Sweeps over the station's slots; returns a list of their codes, see slot_map.lua.
   function transfer.map(station, options)
     return arm.move(arm.needs(true, station, options), lookup.command("MAP", station), map, station, options)
   end
@@ -388,8 +418,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   end
 
   -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
-  -- or another gripper (an index). Returns the word of the one that is refused and the error, or nil, nil and
-  -- theta before the slot.
+  -- or another gripper (an index). Returns the word of the refused one and the error, or nil, nil and theta
+  -- before the slot.
   function transfer.rehearse(station, slot, gripper)
     local can_get, got = pcall(plan, "get", station, slot, gripper)
     if not can_get then
@@ -402,7 +432,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return nil, nil, before_slot(got)[arm.first_axis(got.target.gripper)]
   end
 
-  -- Plans a PUT with this gripper that goes aside by what beams say. Returns the error of one that is refused, or nil.
+  -- Plans a PUT with this gripper that goes aside by its beams' result. Returns the error if it is refused, or nil.
   function transfer.rehearse_centring(station, slot, gripper)
     local can, problem = pcall(function()
       arm.rehearse(patterns.put, targets.at("put", station, slot, nil, gripper, ""))
@@ -410,8 +440,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return not can and problem or nil
   end
 
-  -- Plans a GET that goes aside by what an ALIGN may find, its way in as long as `retract`, if that is given. Returns
-  -- the error of one that is refused, or nil.
+  -- Plans a GET that goes aside by a possible ALIGN result. Its way in is as long as `retract`, if that is given.
+  -- Returns the error if it is refused, or nil.
   function transfer.rehearse_aside(station, slot, dx, dy, retract)
     local can, problem = pcall(function()
       local options = { dx = dx, dy = dy, retract = retract }
@@ -422,8 +452,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
 
   ------------------------------------------------------------------------------------------------ trying out
 
-  -- Plays a command as a run does, but for what the sensors say of wafers before it; returns what went wrong.
-  -- Here and below `cell` is what lib/mcs/survey.c stands it in.
+  -- Plays a command like a run, but without the sensors' check for wafers before it; returns the error. Here
+  -- and below `cell` is the cell in which lib/mcs/survey.c places it.
   local function try(word, station, slot, cell, gripper)
     local good, problem = pcall(function()
       gripper = gripper or lookup.station(station).effector
@@ -445,7 +475,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
 
   -- GET and PUT at these slots, one after another in one cell, from in front of the first one; `gripper` as in
   -- transfer.rehearse. Returns the slot at which a command fails, its word and the error; or nil; or false if
-  -- the cell cannot be had.
+  -- the cell is not possible.
   function transfer.try_out(station, slots, cell, gripper)
     if not cell.stage(before(station, slots[1], gripper)) then
       return false
@@ -460,8 +490,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return nil
   end
 
-  -- A GET at `from`, then a PUT at an empty slot: how the wafer lies on the blade is the other station's
-  -- doing. With `again` a GET follows. Returns the word of the one that fails and the error; or nil.
+  -- Plays a GET at `from`, then a PUT at an empty slot: the wafer's place on the blade comes from the
+  -- other station. With `again` a GET follows. Returns the word of the failed one and the error; or nil.
   function transfer.try_carrying(from, station, slot, cell, again)
     cell.stage(before(from, 1), slot)
     if try("get", from, 1, cell) then
@@ -478,7 +508,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return problem and word, problem
   end
 
-  -- The same for MAP: returns the error, or nil.
+  -- Plans a MAP: returns the error, or nil.
   function transfer.rehearse_map(station)
     local can_map, problem = pcall(function()
       arm.rehearse(patterns.map, (map_target(station, nil, lookup.station(station).effector)))

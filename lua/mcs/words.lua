@@ -1,10 +1,10 @@
--- The words of scripts: what each takes and gives, and what it does. lua/mcs/init.lua makes words of these
--- alone, and refuses what one has no parameter for; lua/mcs/definitions.lua writes them for editors.
+-- The words of scripts: their parameters, results and meaning. lua/mcs/init.lua makes only these words,
+-- and refuses arguments without a parameter; lua/mcs/definitions.lua writes them for editors.
 --
 -- takes    { name, type, what it is } of each parameter in order; a type ends in ? if it may be left out
 -- gives    { type, name } of each result in order
 -- does     in words
--- any      true: takes any number of the last
+-- any      true: takes any number of the last parameter
 --
 -- Types are as the Lua language server writes them.
 
@@ -30,6 +30,9 @@ local words = {}
 words.scripts = {
   cell = { takes = { { "path", "string", "a layout's file, relative to the script's folder" } },
            does = "Sets up the cell: comes before all else." },
+  flow = { takes = { { "description", "waferhand.flow", "lots, routes and rule" } },
+           gives = { { "waferhand.flowed", "figures" } },
+           does = "Takes lots along their routes, in a cell whose robots are times alone." },
   study = { takes = { { "errors", "waferhand.study", "what is drawn" } },
             does = "Before cell: what a study draws, in place of the layout's." },
   get = at_slot("get_options", "Takes the wafer there, or fails with WAFER_MISSING and the reason."),
@@ -39,7 +42,7 @@ words.scripts = {
   ready = at_slot("command_options", "Goes in front of the slot, to where GET or PUT enters."),
   map = { takes = { STATION, options("command_options") },
           gives = { { "integer[]", "codes" } },
-          does = "Sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed, slot 1 first." },
+          does = "Sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin; slot 1 first." },
   continue = { takes = {}, gives = { { "waferhand.centring?", "centring" } },
                does = "Goes on with a GET, PUT or SWAP that is held in a phase." },
   stop = { takes = {}, does = "Gives up what is held in a phase." },
@@ -50,7 +53,7 @@ words.scripts = {
   rotate = { takes = { STATION, { "degrees", "number", "degrees" } },
              does = "Turns a prealigner's chuck by so much." },
   centring = { takes = {}, gives = { { "waferhand.centring?", "centring" } },
-               does = "What the beams of the last PUT that centred said of its wafer; nil before one." },
+               does = "The beams' result for the wafer of the last PUT that centred; nil before one." },
   teach = { takes = { STATION, { "options", "waferhand.teach_options?", "how" } },
             gives = { { "waferhand.taught", "taught" } },
             does = "Finds out where a station truly is, by the beam at its door and the wafer in its slot 1, or by its block." },
@@ -100,7 +103,7 @@ words.scripts = {
                does = "The distance of two frames' origins, mm." },
   angle = { takes = { frame("first"), frame("second") }, gives = { { "number", "angle" } },
             does = "The angle between two frames' z axes, degrees." },
-  hits = { takes = {}, gives = { { "waferhand.hit[]", "hits" } }, does = "What hit what so far." },
+  hits = { takes = {}, gives = { { "waferhand.hit[]", "hits" } }, does = "The contacts so far." },
   clearance = { takes = { { "kind", "waferhand.clearance_kind", "which gap" } },
                 gives = { { "number?", "gap" }, { "number?", "limit" }, { "number?", "time" },
                           { "string[]?", "parts" } },
@@ -132,7 +135,7 @@ words.scripts = {
 local POSE = { "waferhand.pose", "base_from_body" }
 local TOLERANCE = { "tolerance", "\"paper\"|\"strict\"|waferhand.tolerance?", "\"paper\" without it" }
 
--- Besides `expect`, in files of checks alone.
+-- Besides `expect`, only in files of checks.
 words.checks = {
   events = { takes = { { "wanted", "waferhand.wanted_events?", "which; all of them without it" } },
              gives = { { "waferhand.recorded_event[]", "events" } },
@@ -156,7 +159,7 @@ words.module = {
            gives = { { "table", "cell" } }, does = "A grasp table of its own." },
 }
 
--- What commands may say for themselves; what is not here is told as the station's field of that name.
+-- The options of commands; an option that is not here has the text of the station's field of that name.
 words.options = {
   angle = "where the notch shall point, in the station's frame",
   correct = "false: GET does not correct by what ALIGN found",
@@ -174,27 +177,27 @@ words.options = {
   turns = "so many turns are taken for each of the two scans, together",
 }
 
--- What words take and give, but for what a layout's reader knows.
+-- The classes of parameters and results, except those of the layout's reader.
 words.classes = {
   { "wanted_events", "Which recorded events: times in seconds.",
     { "kind", "string?", "such as \"picked\"" }, { "wafer", "string?", "a wafer's name" },
     { "gripper", "string?", "a gripper's name" }, { "from", "number?", "not before" }, { "to", "number?", "not after" } },
-  { "recorded_event", "As run --json has it in its list of events; other fields go by the kind.",
+  { "recorded_event", "An event as run --json lists it; other fields go by the kind.",
     { "utime", "integer", "us, from the run's begin" }, { "kind", "string", "such as \"picked\"" },
     { "wafer", "string?", "its name" }, { "gripper", "string?", "its name" } },
-  { "measurement", "What the check found: lengths in mm.",
+  { "measurement", "The values of the check: lengths in mm.",
     { "dr", "number[]", "the paper's (1)" }, { "n1_proj_n2", "number", "the paper's (2)" },
     { "dr_proj_z", "number", "the paper's (3)" },
     { "dr_proj_xy", "number[]", "the paper's (4)" }, { "dr_proj_xy_norm", "number", "the paper's (5)" },
     { "ready", "boolean", "if all three conditions hold" },
     { "failed", "table<string, true>", "the conditions that do not" },
     { "margin", "table<string, number>", "how far inside each limit" } },
-  { "edge_scan", "What an edge sensor saw.",
+  { "edge_scan", "The samples of an edge sensor.",
     { "samples", "integer[]", "dark pixels from the line's inner end, -1: missed" },
     { "first", "integer", "the number of the first sample" },
     { "count", "integer", "how many were asked for" }, { "missed", "integer", "how many never came" },
     { "is_armed", "boolean", "if more were to come when the turn ended" } },
-  { "alignment", "What ALIGN found, seen from above in the station's frame: mm and degrees.",
+  { "alignment", "The result of ALIGN, seen from above in the station's frame: mm and degrees.",
     { "eccentricity", "number", "how far off the axis the wafer was" },
     { "direction", "number", "in which direction" }, { "dx", "number", "the same by the axes" },
     { "dy", "number", "likewise" }, { "notch", "number?", "where its notch, or its primary flat, pointed" },
@@ -205,7 +208,7 @@ words.classes = {
     { "sd_centre", "number", "standard deviation" }, { "sd_notch", "number?", "standard deviation" },
     { "mark", "\"notch\"|\"primary flat\"|\"secondary flat\"|\"none\"", "by what the turn was told" },
     { "radius", "number", "the wafer's own" }, { "seconds", "number", "how long it took" } },
-  { "centring", "What beams at a station's door said of a wafer on its blade: mm and degrees.",
+  { "centring", "The beams' result for a wafer on its blade: mm and degrees.",
     { "station", "string", "whose beams" }, { "gripper", "string", "the blade" },
     { "sure", "boolean", "if the PUT went by it" }, { "error", "integer", "0, or why it did not" },
     { "dx", "number?", "how far the centre was off, in the slot's frame" }, { "dy", "number?", "likewise" },
@@ -223,7 +226,7 @@ words.classes = {
     { "dx", "number", "in the slot's frame" }, { "dy", "number", "likewise" },
     { "radius", "number", "of the wafer" },
     { "sd", "number", "in the worst direction" }, { "used", "integer", "crossings that it rests on" } },
-  { "calibration", "What an edge sensor is off by, and the standard deviations.",
+  { "calibration", "The errors of an edge sensor, and the standard deviations.",
     { "offset", "number", "mm" }, { "zero", "number", "mm" }, { "gain", "number", "a part of the pixels' length" },
     { "latency", "number", "s" }, { "sd_offset", "number", "mm" }, { "sd_zero", "number", "mm" },
     { "sd_gain", "number", "a part of the length" }, { "sd_latency", "number", "s" },
@@ -241,7 +244,17 @@ words.classes = {
     { "sd_yaw", "number?", "by touch: of the yaw" },
     { "beam", "number[]?", "by beam: by how much that is elsewhere, in base" },
     { "text", "string", "of a layout" } },
-  { "task", "What goes on beside the rest; join() waits for it." },
+  { "lot_wafers", "Wafers in slots of a station.",
+    { "[1]", "string", "the station" }, { "[2]", "integer", "the first slot" }, { "[3]", "integer", "the last slot" } },
+  { "flowed", "How a flow went.",
+    { "end", "\"done\"|\"stuck\"|\"broken\"|\"cut\"", "how it ended" }, { "why", "string?", "unless it is done" },
+    { "makespan_s", "number", "s: the end of the last placing" }, { "wafers", "integer", "at their ends, without dummies" },
+    { "cycle_s", "number?", "s a wafer, if there is a steady cycle" }, { "period", "integer?", "wafers after which it repeats" },
+    { "per_hour", "number?", "wafers, by that cycle" }, { "longest_stay_s", "number", "s after a process" },
+    { "stays", "table[]", "those beyond a window: wafer, station, done_s, stay_s, window_s" },
+    { "robots", "table<string, table<string, number>>", "shares of the time by class" },
+    { "stations", "table<string, table<string, number>>", "likewise" } },
+  { "task", "A task goes on beside the rest; join() waits for it." },
   { "bound_words", "The words that move one of several robots: called with a colon.",
     { "get", "fun(self: table, station: string, slot: integer, options: waferhand.get_options?)", "as get" },
     { "put", "fun(self: table, station: string, slot: integer, options: waferhand.put_options?)", "as put" },
@@ -266,7 +279,7 @@ words.classes = {
     { "at", "number[]", "mm, in base" }, { "time", "number", "s" } },
   { "pose", "A body in base.",
     { "r", "number[]", "mm: its origin" }, { "R", "number[][]?", "row by row; its columns are the body's axes" } },
-  { "error", "What a command that fails throws; pcall catches it.",
+  { "error", "The error that a failed command throws; pcall catches it.",
     { "number", "integer", "its number" }, { "name", "string", "its name, as in wh.errors" },
     { "line", "integer", "of the script" }, { "text", "string", "what happened" },
     { "message", "string", "all of it, with its place" } },

@@ -1,5 +1,5 @@
-# `make bench`: programs that measure, and for each peer that is there a shared object of its own beside them, loaded by name.
-# So the flags and inline functions of one never become another's, and a missing one is missing alone.
+# `make bench`: programs that measure. Each peer that is installed gets a shared object of its own beside them, loaded by name.
+# So the flags and inline functions of one peer never reach another, and a missing peer affects no other.
 
 BENCH_IN := $(B)/tests/bench
 BENCH_SUBJECTS := check index step profile program collide serve
@@ -10,7 +10,7 @@ comma := ,
 PEER_FLAGS := -g -fPIC -shared -fvisibility=hidden -DWH_BUILDING_LIBRARY -Ilib -Itests $(SAME_BITS) -fno-math-errno $(WARNINGS) \
               $(if $(WERROR),-Werror)
 
-# $(call peer,NAME,SOURCE,SPEED,PACKAGES,MORE): when pkg-config knows the packages, or FLAGS say where a wheel is
+# $(call peer,NAME,SOURCE,SPEED,PACKAGES,MORE): if pkg-config knows the packages, or FLAGS say where a wheel is
 define peer
 ifneq ($(if $(4),$(shell $(PKG_CONFIG) --exists $(4) 2>/dev/null && echo yes),$(firstword $(5))),)
 PEERS += $(BENCH_IN)/peer_$(1).so
@@ -43,7 +43,7 @@ bench: $(BENCH_SUBJECTS:%=$(BENCH_IN)/%) $(BENCH_IN)/counts $(PEERS) program
 
 $(BENCH_SUBJECTS:%=$(BENCH_IN)/%): $(B)/obj/tests/bench/harness.o
 $(BENCH_SUBJECTS:%=$(BENCH_IN)/%): LIBS = -ldl
-# It reads a recording.
+# The program reads a recording.
 $(BENCH_IN)/collide: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_collision.a $(B)/libwaferhand_lcm.a
 $(BENCH_IN)/collide: COLLISION = $(COLLISION_LIBS)
 $(BENCH_IN)/collide: LIBS = $(PROGRAM_LIBS)

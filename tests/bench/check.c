@@ -1,4 +1,4 @@
-/* What the check of one pair of wafer and gripper costs, against Eigen, libccd and FCL. */
+/* Measures the check of one pair of wafer and gripper against Eigen, libccd and FCL. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,7 +134,7 @@ static void enter_all(race_t *race, const char *prefix, const bench_check_peer_t
     }
 }
 
-/* All those that answer the same question must find as many ready. */
+/* All contenders that answer the same question must find the same number of ready pairs. */
 static void compare(race_t *race, size_t end) {
     for (size_t c = 1; c < end; ++c) {
         if (run(&race->sides[c], 1) != run(&race->sides[0], 1)) {
@@ -156,7 +156,7 @@ static void shuffle(wh_pose_t *wafers, size_t count) {
 /* Column by column, or in any order. */
 typedef enum { COLUMNS, ANY } order_t;
 
-/* Grippers within the columns, at any height: about one in ten is where it takes a wafer. */
+/* Grippers within the columns, at any height: about one in ten is at a height at which it takes a wafer. */
 static void begin(race_t *race, size_t wafers, order_t order, size_t grippers) {
     uint64_t state = 2;
     *race = (race_t){
@@ -187,7 +187,7 @@ typedef struct {
     const bench_check_peer_t *eigen_O2, *eigen_native, *ccd, *fcl;
 } peers_t;
 
-/* Returns where those of other flags begin. */
+/* Returns the index at which those with other flags begin. */
 static size_t enter_eigen(race_t *race, const peers_t *peers) {
     enter_all(race, "Eigen O2 ", peers->eigen_O2);
     const size_t native = race->count;
@@ -242,7 +242,7 @@ static void race_batch(const char *row, size_t wafers, order_t order, size_t gri
 
 /* ------------------------------------------------------------------------------ as fast as memory can be read */
 #if defined(__x86_64__)
-/* Four sums, so that none waits for another. */
+/* There are four sums, so that none waits for another. */
 __attribute__((target("avx2"))) static uint64_t bench_read_avx2(const void *memory, size_t bytes) {
     const __m256i *words = (const __m256i *)memory;
     __m256i a = _mm256_setzero_si256();
@@ -291,8 +291,8 @@ static uint64_t run_read(void *user, size_t repeats) {
     return sum;
 }
 
-/* What a batch reads begins with its spheres, and then come all origins; of those it reads a part, or in any order nearly all.
- */
+/* A batch's data begin with its spheres, and then all origins follow. It reads a part of them, or
+ * in any order nearly all. */
 static void race_memory(const char *row, size_t wafers, order_t order) {
     static race_t race;
     bench_result_t results[3];

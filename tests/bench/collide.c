@@ -1,6 +1,6 @@
-/* What a slice of an EFEM, and of a tool with two robots, costs when all parts are looked at for contact and for the smallest gaps,
- * against FCL and MuJoCo with the same convex parts; and whole runs against real time. To be started at the root, after `make
- * all`. */
+/* Measures a slice of an EFEM, and of a tool with two robots, with contact and smallest gaps
+ * checked for all parts, against FCL and MuJoCo with the same convex parts; and whole runs against
+ * real time. Start it at the root, after `make all`. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,11 +35,11 @@ typedef struct {
     const char *note;
     const char *script, *settings;
     const char *log;
-    size_t slices; /* so many are looked at, from the run's begin */
+    size_t slices; /* the slices that are measured, from the run's begin */
 } scene_t;
 
-/* Of the tool's run that part in which both robots move and wafers come into vacuum and out again: its slices are kept in
- * memory. */
+/* The part of the tool's run in which both robots move and wafers come into vacuum and out again:
+ * its slices are kept in memory. */
 static const scene_t efem = {"a slice of the EFEM",
                              "all parts and wafers of lua/layouts/efem.lua on a run from FOUP to FOUP; "
                              "contact within the slice and the smallest gaps",
@@ -54,7 +54,7 @@ static const scene_t tool = {"a slice of the tool",
                              "build/tests/bench/tool.lcm",
                              40000};
 
-/* One slice as the world reads it, and as peers do. */
+/* One slice in the form that the world reads, and in the form for the peers. */
 typedef struct {
     wh_wafer_t *wafers;
     wh_gripper_t grippers[WH_GRIPPERS];
@@ -92,7 +92,7 @@ static void add_mover(const run_t *run, slice_t *slice, size_t shape, int32_t gr
     }
 }
 
-/* A wafer that is let go may settle, and is there where it was let go. */
+/* A released wafer may settle; it is at the place where it was released. */
 static bool has_moved(const run_t *run, const slice_t *slice, size_t wafer) {
     const wh_wafer_t *before = run->count > 0 ? &slice[-1].wafers[wafer] : NULL;
     return before && (before->holder != WH_NONE || memcmp(&slice->wafers[wafer].base_from_wafer,
@@ -143,7 +143,7 @@ static void on_slice(void *user, const wh_layout_t *layout, const double axes[],
     ++run->count;
 }
 
-/* A wafer from one FOUP over the aligner to the other one. */
+/* Moves a wafer from one FOUP over the aligner to the other FOUP. */
 static void write_efem(void) {
     FILE *script = fopen(EFEM, "w");
     if (!script ||
@@ -155,7 +155,7 @@ static void write_efem(void) {
     }
 }
 
-/* Played by the program and read from its recording. */
+/* The program plays the run, and it is read from its recording. */
 static void record(run_t *run, wh_log_run_t *log) {
     char line[400];
     (void)snprintf(line, sizeof line, "rm -f %s && build/waferhand run %s%s --record %s >/dev/null",
@@ -179,7 +179,7 @@ static wh_world_t *begin(const run_t *run, void *memory, size_t bytes) {
     return wh_world_init(&run->layout->world, &input, memory, bytes);
 }
 
-/* Reads what will be looked at, as the program has it at hand: it has just made it. */
+/* Reads the data of the slice first: the program has just made them, so they are in the cache. */
 static void warm(const void *memory, size_t bytes) {
     static volatile unsigned char sum;
     for (size_t at = 0; at < bytes; at += 64) {
@@ -193,7 +193,7 @@ static void warm_slice(const run_t *run, const slice_t *slice) {
     warm(slice->links.bodies, sizeof slice->links.bodies);
 }
 
-/* ns a slice, over the whole run. */
+/* ns per slice, over the whole run. */
 static double time_ours(const run_t *run, void *memory, size_t bytes) {
     wh_event_t events[16];
     wh_event_list_t list = {events, 16, 0};
@@ -220,7 +220,7 @@ static double time_ours(const run_t *run, void *memory, size_t bytes) {
     return ns / (double)(run->count - 1);
 }
 
-/* True if something begins or ends to move in this slice: peers must not miss it. */
+/* True if a body begins or ends to move in this slice: peers must not miss it. */
 static bool is_turn(const run_t *run, size_t i) {
     const slice_t *slice = &run->slices[i];
     bool same = slice->mover_count == slice[-1].mover_count;
@@ -235,7 +235,7 @@ static bench_slice_t asked_of(const run_t *run, size_t i) {
     return (bench_slice_t){run->slices[i].movers, run->slices[i].mover_count};
 }
 
-/* ns a slice, of each STRIDEth. */
+/* ns per slice, for each STRIDEth slice. */
 static double time_peer(const run_t *run, const bench_collider_t *peer, void *built, size_t first) {
     bench_near_t found[FOUND];
     size_t looked = 0;
@@ -305,13 +305,13 @@ static bool is_pair(const plain_t *plain, size_t a, size_t b) {
     return plain->groups[a] != plain->groups[b] && !plain->cell->neighbours[a * plain->cell->count + b];
 }
 
-/* Deep overlaps must be found and clear gaps must not. What lies between, faces that touch, is for each side to
- * call. */
+/* Deep overlaps must be found, and clear gaps must give no contact. Between them, for faces that
+ * touch, each side may decide. */
 static bool is_wrong(const wh_gap_t *gap, bool is_hit) {
     return is_hit ? gap->state == WH_GAP_CLEAR && gap->gap > 0.05 : gap->state == WH_GAP_HIT;
 }
 
-/* The least gap must be the same, for who tells one; else the contacts. */
+/* Peers that report the least gap must report the same; the others must report the same contacts. */
 static void compare_slice(const plain_t *plain, const bench_collider_t *peer, void *built,
                           const slice_t *slice) {
     bench_near_t found[FOUND];
@@ -350,7 +350,7 @@ static void compare(const run_t *run, const bench_cell_t *cell, const bench_coll
 
 /* ------------------------------------------------------------------------------------------------- racing */
 
-/* All at rest as the run begins. Parts of the arm that follow each other are neighbours. */
+/* All bodies at rest as the run begins. Parts of the arm that follow each other are neighbours. */
 static bench_cell_t cell_of(const run_t *run) {
     const wh_world_config_t *world = &run->layout->world;
     const size_t count = world->part_count + world->wafer_count;
@@ -432,7 +432,7 @@ static void time_run(const scene_t *scene) {
     bench_figure("the EFEM, real time", "x real time", &spread, false, 1000);
 }
 
-/* How many robots move in a slice. */
+/* The number of robots that move in a slice. */
 static size_t count_moving(const run_t *run, size_t i) {
     const wh_pose_t *now = run->slices[i].links.bodies;
     const wh_pose_t *before = run->slices[i - 1].links.bodies;
@@ -448,7 +448,7 @@ static size_t count_moving(const run_t *run, size_t i) {
     return count;
 }
 
-/* What a slice costs in which two robots move, against one in which one does. */
+/* The cost of a slice in which two robots move, against one in which one moves. */
 static double grow(const run_t *run, void *memory, size_t bytes) {
     wh_event_t events[16];
     wh_event_list_t list = {events, 16, 0};

@@ -1,9 +1,11 @@
-/* How many instructions the library's calls take on this machine's processor, one by one: to be run under
- * `valgrind --tool=callgrind`, to which each case is a dump with its name. The counts repeat exactly; those of what lies
- * around a call are taken off (the case `nothing`). tests/end_to_end/instruction_counts holds them against instructions.txt.
+/* Counts the instructions of the library's calls on this machine's processor, one by one. Run it
+ * under `valgrind --tool=callgrind`, to which each case is a dump with its name. The counts repeat
+ * exactly; the cost around a call is taken off (the case `nothing`).
+ * tests/end_to_end/instruction_counts compares them with instructions.txt.
  *
- * Tables have one gripper. idle: it moves by 0.4 mm and no wafer is near; turning: it turns as well; near: it does so within a wafer's neighbourhood;
- * take, carry, release: it does; worst: all wafers are ready, each nearer than those before. */
+ * Tables have one gripper. idle: it moves by 0.4 mm and no wafer is near; turning: it turns as
+ * well; near: it moves within a wafer's neighbourhood; take, carry, release: it does so; worst: all
+ * wafers are ready, each nearer than those before. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <valgrind/callgrind.h>
@@ -19,7 +21,7 @@
         CALLGRIND_DUMP_STATS_AT(name);                                                                       \
     } while (0)
 
-/* Results go here, so that none of the calls can be left out. */
+/* Results go here, so that the compiler can leave out none of the calls. */
 static volatile double sink;
 
 static wh_pose_t at(double x, double y, double z) {
@@ -104,14 +106,14 @@ static void count_step(bench_table_t *made, const char *name, double x, double z
     count_input(made, name, input, events);
 }
 
-/* Turned by a little since the slice before. */
+/* Turned a little since the slice before. */
 static void count_turning(bench_table_t *made, const char *name, double x, double z) {
     const wh_vec3_t there = wh_vec3(x, 0, z);
     const wh_gripper_input_t input = {bench_level(0.001, &there), WH_VALVE_OPEN};
     count_input(made, name, input, 0);
 }
 
-/* Level columns of wafers, the gripper outside and then at the first one's lowest wafer. */
+/* Level columns of wafers; the gripper is outside, and then at the lowest wafer of the first column. */
 static void count_steps(const char *kind, size_t count, bool indexed, wh_check_t check) {
     wh_pose_t *wafers = calloc(count, sizeof *wafers);
     for (size_t w = 0; w < count; ++w) {

@@ -1,5 +1,6 @@
-/* What the gap of a pair costs, in ns: when a guess proves enough, when a face does, and in full. The least of many rounds,
- * for the machine may have other work. */
+/* Measures the gap of a pair, in ns: when a guess proves that it is large enough, when a face
+ * proves it, and in full. The result is the least of many rounds, since the machine may have other
+ * work. */
 #include <stdio.h>
 #include <time.h>
 
@@ -12,7 +13,7 @@ typedef struct {
     const char *name;
     wh_convex_t a, b;
     wh_mat3_t turn;  /* of b */
-    wh_vec3_t place; /* of b at gap 0, about */
+    wh_vec3_t place; /* the place of b at gap 0, about */
     wh_vec3_t way;   /* to gaps */
 } pair_t;
 
@@ -22,7 +23,7 @@ static double now_ns(void) {
     return 1e9 * (double)now.tv_sec + (double)now.tv_nsec;
 }
 
-/* b moves by a little from call to call, as from slice to slice. */
+/* b moves a little from call to call, as from slice to slice. */
 static double cost_ns(const pair_t *pair, double gap, double enough, bool guessing, wh_gap_t *last) {
     double least = HUGE_VAL;
     const wh_pose_t here = wh_test_at(700, 0, 900);

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A race takes 61 rounds, or what fits into its time, and 9 at least. */
+/* A race takes 61 rounds, or as many as fit into its time, and at least 9. */
 enum { ROUNDS = 61, ROUNDS_AT_LEAST = 9, BLOCK_NS = 500000 };
 static const double race_ns = 3e9;
 
@@ -35,7 +35,7 @@ static double timed(const bench_contender_t *contender, size_t repeats) {
     return now_ns() - begin;
 }
 
-/* How often it must be repeated to last a block. */
+/* The number of repeats that last a block. */
 static size_t calibrate(const bench_contender_t *contender) {
     size_t repeats = 1;
     while (timed(contender, repeats) < BLOCK_NS / 2.0) {
@@ -88,7 +88,7 @@ size_t bench_best(const bench_result_t *results, size_t first, size_t end) {
 }
 
 /* ------------------------------------------------------------------------------------------------ printing */
-/* With three digits, whatever its size. */
+/* Three digits, whatever the size. */
 static const char *number(char text[16], double value) {
     const double size = value < 0 ? -value : value;
     const int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;

@@ -1,8 +1,9 @@
-/* How things are measured here: contenders in turns, in one process, on one core.
+/* How the benches measure: contenders take turns in one process, on one core.
  *
- * A race has rounds; in each, every contender works once for about half a millisecond after a short warm-up, and the one that
- * begins changes from round to round. Ratios are taken within a round, so that whatever else the machine does meets both
- * sides. What is printed are medians, and the lower and upper quartile as the spread. */
+ * A race has rounds. In each, every contender works once for about half a millisecond after a short
+ * warm-up. The one that begins changes from round to round. Ratios are taken within a round, so
+ * that other work of the machine affects both sides. Printed are medians, and the lower and upper
+ * quartile as the spread. */
 #ifndef WH_TESTS_BENCH_HARNESS_H
 #define WH_TESTS_BENCH_HARNESS_H
 
@@ -16,32 +17,33 @@ extern "C" {
 
 enum { BENCH_CONTENDERS = 24 };
 
-/* The first of a race is ours. */
+/* The first contender of a race is ours. */
 typedef struct {
     const char *name;
-    /* Does the work `repeats` times; what it returns depends on all of it, so that none of it can be left out. */
+    /* Does the work `repeats` times; the returned value depends on all of it, so that the compiler
+     * can leave out none of it. */
     uint64_t (*run)(void *user, size_t repeats);
     void *user;
-    double units; /* of what is counted, pairs say, in one repeat */
+    double units; /* the counted units (for example pairs) in one repeat */
 } bench_contender_t;
 
 typedef struct {
     double low, median, high; /* quartiles */
 } bench_spread_t;
 
-/* ns a unit, and how many times faster than each contender the first one is. */
+/* ns per unit, and how many times faster than each contender the first one is. */
 typedef struct {
     bench_spread_t ns, faster;
 } bench_result_t;
 
-/* Pins the process to a core, reads --json and $BENCH, and prints the table's head. `unit`: of all numbers but the ratios.
- */
+/* Pins the process to a core, reads --json and $BENCH, and prints the table's head. `unit`: the
+ * unit of all numbers but the ratios. */
 void bench_begin(const char *subject, const char *unit, int argc, char **argv);
 
-/* 0, or 1 when a row missed its goal and --strict was given. */
+/* 0, or 1 if a row missed its goal and --strict was given. */
 int bench_end(void);
 
-/* Whether $BENCH, which may name a subject or a part of a row's name, asks for this one. */
+/* True if $BENCH, which names a subject or a part of a row's name, selects this row. */
 bool bench_wanted(const char *row);
 
 /* Sorts the values. */
@@ -49,24 +51,25 @@ bench_spread_t bench_spread(double *values, size_t count);
 
 void bench_race(const bench_contender_t *contenders, size_t count, bench_result_t *results);
 
-/* A row for the race of contenders[0] against contenders[peer]; `goal`: how many times faster at least, 0: none is set. */
+/* A row for the race of contenders[0] against contenders[peer]; `goal`: how many times faster it
+ * must be, 0: no goal. */
 void bench_row(const char *row, const bench_contender_t *contenders, const bench_result_t *results,
                size_t peer, double goal);
 
 /* The index of the fastest of contenders[first] to contenders[end - 1]. */
 size_t bench_best(const bench_result_t *results, size_t first, size_t end);
 
-/* A row for a single figure with its own unit; `goal` 0: none is set. `at_most`: what kind of goal it is. */
+/* A row for a single figure with its own unit; `goal` 0: no goal. `at_most`: the kind of goal. */
 void bench_figure(const char *row, const char *unit, const bench_spread_t *value, bool at_most, double goal);
 
-/* A line below the table's head: what must be known to read it. Not printed with --json. */
+/* A line below the table's head with facts that the reader needs. Not printed with --json. */
 void bench_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Ends the process: both sides do not give the same answer. */
+/* Ends the process: the two sides do not give the same answer. */
 void bench_differ(const char *who, const char *what);
 
-/* What peer_NAME.so beside the program exports as `bench_peer`, or as `symbol`; null, and the peer skipped by name, when it was
- * not built. */
+/* The object that peer_NAME.so beside the program exports as `bench_peer`, or as `symbol`. Null if
+ * it was not built; the peer is then skipped by name. */
 const void *bench_peer(const char *name, const char *needs);
 const void *bench_peer_symbol(const char *name, const char *symbol, const char *needs);
 

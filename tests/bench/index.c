@@ -1,4 +1,5 @@
-/* What a slice costs for one open, empty gripper among many resting wafers, against nanoflann's and FCL's trees. */
+/* Measures a slice of one open, empty gripper among many resting wafers, against nanoflann's and
+ * FCL's trees. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 
 enum { POSES = 16384, COMPARED = 200, PEERS = 3, SIZES = 4, TURNS = 2 };
 
-/* One side of a race: a path there and back again, over and over. */
+/* One side of a race: along a path and back again, over and over. */
 typedef struct {
     const bench_index_peer_t *peer; /* null: ours */
     void *built;
@@ -54,7 +55,7 @@ static uint64_t run_peer(void *user, size_t repeats) {
 }
 
 /* --------------------------------------------------------------------------------------- the same answers */
-/* Peers against all wafers one by one. */
+/* Compares peers with all wafers one by one. */
 static void compare_peer(const bench_index_peer_t *peer, void *built, const wh_pose_t *wafers, size_t count) {
     const wh_grasp_config_t config = wh_grasp_config_default();
     for (size_t i = 0; i < COMPARED; ++i) {
@@ -69,7 +70,7 @@ static void compare_peer(const bench_index_peer_t *peer, void *built, const wh_p
     }
 }
 
-/* Ours with the index against the plain loop: the whole state, after slices in a row. */
+/* Compares our index with the plain loop: the whole state, after slices in a row. */
 static void compare_ours(const wh_pose_t *wafers, size_t count) {
     bench_table_t *with = bench_table(wafers, count, true);
     bench_table_t *without = bench_table(wafers, count, false);
@@ -128,7 +129,7 @@ static void race(const char *row, size_t count, bool far) {
     free(wafers);
 }
 
-/* In how many of 100 slices of the path a wafer is in the neighbourhood. */
+/* The number of slices per 100 of the path in which a wafer is in the neighbourhood. */
 static double percent_near(bench_table_t *made, const wh_pose_t *path) {
     size_t near = 0;
     for (size_t i = 0; i < POSES; ++i) {

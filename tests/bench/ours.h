@@ -1,4 +1,5 @@
-/* Our side of what is measured: a grasp table with one open, empty gripper, and a scan of a wafer with its estimate. */
+/* Our side of the benches: a grasp table with one open, empty gripper, and a scan of a wafer with
+ * its estimate. */
 #ifndef WH_TESTS_BENCH_OURS_H
 #define WH_TESTS_BENCH_OURS_H
 
@@ -13,7 +14,7 @@ typedef struct {
     int valve; /* open, unless changed */
 } bench_table_t;
 
-/* With an index, or the plain loop. The caller frees it, and hands the storage's arrays to free(). */
+/* With an index, or with the plain loop. The caller frees it, and hands the storage's arrays to free(). */
 static inline bench_table_t *bench_table(const wh_pose_t *wafers, size_t count, bool indexed) {
     bench_table_t *made = calloc(1, sizeof *made);
     const wh_grasp_config_t config = wh_grasp_config_default();
@@ -38,7 +39,7 @@ static inline void bench_table_free(bench_table_t *made) {
     free(made);
 }
 
-/* One slice; how many events it had. */
+/* One slice; returns the number of its events. */
 static inline uint64_t bench_table_step(bench_table_t *made, const wh_pose_t *gripper) {
     const wh_gripper_input_t input = {.base_from_gripper = *gripper, .valve = made->valve};
     if (wh_grasp_step(&made->table, &input, &made->list) != WH_OK) {

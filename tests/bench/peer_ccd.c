@@ -1,4 +1,4 @@
-/* libccd on a wafer as a cylinder and a blade as a box: whether they overlap, by MPR and by GJK. */
+/* libccd on a wafer as a cylinder and a blade as a box: checks whether they overlap, by MPR and by GJK. */
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include "bench/peers.h"
 
 typedef struct {
-    ccd_vec3_t half; /* of the blade; of the wafer: its radius twice, and half its thickness */
+    ccd_vec3_t half; /* the blade; the wafer: its radius twice, and half its thickness */
     ccd_vec3_t columns[3];
     ccd_vec3_t at;
     bool round;

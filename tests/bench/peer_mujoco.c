@@ -1,6 +1,6 @@
-/* MuJoCo: free discs and a blade that is moved, with everything switched off that can be: its kinematics alone, which is less
- * than a step, and its step; and a cell's shapes, of which it finds the contacts. The library of the wheel is called from C; no
- * Python runs. */
+/* MuJoCo: free discs and a moving blade, with every option switched off. Measured are its
+ * kinematics alone, which is less than a step, its step, and the contacts of a cell's shapes. C
+ * code calls the wheel's library; no Python runs. */
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,12 +85,12 @@ typedef struct {
     mjData *data;
     const bool *neighbours;
     size_t count;
-    int32_t *groups; /* of the shapes that move; WH_NONE: it rests */
-    int32_t *bodies; /* of those that may move, from 1; 0: a part of MuJoCo's world */
-    bool sorts;      /* leaves pairs out of which none moves */
+    int32_t *groups; /* the groups of shapes that move; WH_NONE: it rests */
+    int32_t *bodies; /* the bodies of shapes that may move, from 1; 0: a part of MuJoCo's world */
+    bool sorts;      /* leaves pairs out in which none moves */
 } cell_t;
 
-/* MuJoCo asks a function without an argument. */
+/* MuJoCo calls a function without an argument. */
 static const cell_t *asked;
 
 static const char cell_head[] = "<mujoco><size memory='256M'/><option gravity='0 0 0'/><worldbody>";
@@ -103,7 +103,7 @@ static void quaternion(double to[4], const wh_pose_t *pose) {
     mju_mat2Quat(to, rotation);
 }
 
-/* What moves is a body of its own, put into its place in each slice. */
+/* Each moving shape is a body of its own, which is put into its place in each slice. */
 static int write_shape(char *text, size_t room, const bench_cell_t *from, size_t shape, double margin) {
     static const char *const kinds[] = {"box", "cylinder", "capsule"};
     static const wh_vec3_t origin = {0, 0, 0};
@@ -123,7 +123,8 @@ static int write_shape(char *text, size_t room, const bench_cell_t *from, size_t
                     q[3], moves ? "</body>" : "");
 }
 
-/* Geoms are numbered by their bodies, the world's first. Shapes that never move stand first in a cell. */
+/* Geoms are numbered by their bodies, with the world's first. Shapes that never move stand first in
+ * a cell. */
 static mjModel *compile(const bench_cell_t *from, double margin) {
     const size_t room = sizeof cell_head + sizeof tail + from->count * 600;
     char *xml = malloc(room);
@@ -152,7 +153,8 @@ static void put(const cell_t *cell, size_t shape, const wh_pose_t *pose) {
     quaternion(&qpos[3], pose);
 }
 
-/* Of bits that do not meet MuJoCo leaves out pairs before it looks at them: what rests, if the cell sorts. */
+/* MuJoCo leaves out pairs whose bits do not meet before it looks at them: resting shapes, if the
+ * cell sorts. */
 static void set_group(cell_t *cell, size_t shape, int32_t group) {
     const bool moves = group != WH_NONE || !cell->sorts;
     const int32_t body = cell->bodies[shape];
@@ -196,7 +198,7 @@ static void *build_sorted_contacts(const bench_cell_t *from) {
     return build_cell(from, 0, true);
 }
 
-/* Each of a pair has the margin, and MuJoCo takes the larger one. */
+/* Both shapes of a pair have the margin, and MuJoCo takes the larger one. */
 static void *build_margins(const bench_cell_t *from) {
     return build_cell(from, 0.02, false);
 }

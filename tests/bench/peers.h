@@ -1,5 +1,6 @@
-/* What a peer must be able to do to be raced: peer_NAME.so exports one of these as `bench_peer`, or colliders as `bench_cell`. A peer takes its own copy
- * of the wafers into whatever structure is best for it, outside of what is timed. */
+/* The interface of a peer in a race: peer_NAME.so exports one of these as `bench_peer`, or
+ * colliders as `bench_cell`. A peer copies the wafers into the structure that is best for it; this
+ * is not timed. */
 #ifndef WH_TESTS_BENCH_PEERS_H
 #define WH_TESTS_BENCH_PEERS_H
 
@@ -15,7 +16,8 @@
 
 enum { BENCH_VARIANTS = 8 };
 
-/* The check, or what stands for it. `count` says how many pairs of wafer and gripper are ready (in contact). */
+/* The check, or the peer's substitute for it. `count` returns how many pairs of wafer and gripper
+ * are ready (in contact). */
 typedef struct {
     const char *name;
     void *(*build)(const wh_pose_t *wafers, size_t count, const wh_tolerance_t *tolerance);
@@ -23,12 +25,12 @@ typedef struct {
     void (*drop)(void *built);
 } bench_check_variant_t;
 
-/* Variants end with one that has no name. */
+/* The list of variants ends with one that has no name. */
 typedef struct {
     bench_check_variant_t variants[BENCH_VARIANTS];
 } bench_check_peer_t;
 
-/* How many wafers are near each gripper, and how many ready: 2^32 a ready one, 1 a near one. */
+/* The number of wafers near each gripper, and of ready ones: 2^32 for a ready one, 1 for a near one. */
 typedef struct {
     const char *name;
     void *(*build)(const wh_pose_t *wafers, size_t count, const wh_grasp_config_t *config);
@@ -36,7 +38,7 @@ typedef struct {
     void (*drop)(void *built);
 } bench_index_peer_t;
 
-/* A slice of a world in which `wafers` discs lie apart from each other, and one gripper that moves. */
+/* A slice of a world in which `wafers` discs lie apart from each other, and one gripper moves. */
 typedef struct {
     const char *name;
     void *(*build)(size_t wafers);
@@ -48,28 +50,29 @@ typedef struct {
     bench_world_t worlds[BENCH_VARIANTS];
 } bench_step_peer_t;
 
-/* A cell's shapes, all of them at rest. Two that are neighbours (count x count) are never judged against each other. */
+/* A cell's shapes, all at rest. Two neighbours (count x count) are never checked against each other. */
 typedef struct {
     const wh_convex_t *const *convex;
     const wh_pose_t *base_from_shape;
     const bool *neighbours;
-    const bool *moves; /* the shape may ever move */
+    const bool *moves; /* true: the shape may move at some time */
     size_t count;
 } bench_cell_t;
 
-/* A shape that moves, at both ends of a slice. Those of one group are rigid, and not judged against each other. */
+/* A shape that moves, at both ends of a slice. The shapes of one group are rigid, and are not
+ * checked against each other. */
 typedef struct {
     int32_t shape, group;
     wh_pose_t before, now;
 } bench_mover_t;
 
-/* What moves. Other shapes rest where they were last. */
+/* The moving shapes. All other shapes rest at their last place. */
 typedef struct {
     const bench_mover_t *movers;
     size_t count;
 } bench_slice_t;
 
-/* A pair, of which one moves, that touches or overlaps; or the nearest pair with its gap, mm. */
+/* A pair with a moving shape that touches or overlaps; or the nearest pair with its gap, mm. */
 typedef struct {
     int32_t a, b;
     double gap;

@@ -1,4 +1,4 @@
-/* What planning a move from rest to rest costs, against ruckig. */
+/* Measures the planning of a move from rest to rest, against ruckig. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,16 +1,21 @@
-/* What needs no peer: how much faster than real time the program plays the transfer run and a tool, how many instructions a step
- * takes, as callgrind counts them, and how long the estimate of a scan does. To be started at the root, after
- * `make all tests`. */
+/* Figures without a peer: how much faster than real time the program plays the transfer run and a
+ * tool, the cost of its log's other readers beside a replay, the instructions of a step, as callgrind counts
+ * them, and the time of a scan's estimate.
+ * Start it at the root, after `make all tests`. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "bench/harness.h"
 #include "bench/ours.h"
 
 enum { RUNS = 41, FEW_RUNS = 5 };
 
-/* The first number after `key` in what a command prints; the command's own complaints are shown. Negative: there is none. */
+#define LOG "build/tests/bench/tool.log"
+
+/* The first number after `key` in a command's output; the command's own complaints are shown.
+ * Negative: there is none. */
 static double ask(const char *command, const char *key) {
     char line[400];
     double number = -1;
@@ -65,7 +70,7 @@ static uint64_t estimate(void *user, size_t repeats) {
     return verdicts;
 }
 
-/* By the thousand, which makes of the harness's nanoseconds microseconds. */
+/* Works in thousands, which turns the harness's nanoseconds into microseconds. */
 static void time_estimate(const char *row, double goal) {
     static bench_scan_t made;
     bench_result_t result;
@@ -81,14 +86,51 @@ static void time_estimate(const char *row, double goal) {
     bench_figure(row, "us", &result.ns, true, goal);
 }
 
+/* The processor time of a command, s. */
+static double cost_of(const char *command) {
+    struct rusage before;
+    struct rusage after;
+    (void)getrusage(RUSAGE_CHILDREN, &before);
+    if (system(command) != 0) {
+        (void)fprintf(stderr, "bench: %s failed\n", command);
+        exit(1);
+    }
+    (void)getrusage(RUSAGE_CHILDREN, &after);
+    return (double)(after.ru_utime.tv_sec - before.ru_utime.tv_sec + after.ru_stime.tv_sec -
+                    before.ru_stime.tv_sec) +
+           1e-6 * (double)(after.ru_utime.tv_usec - before.ru_utime.tv_usec + after.ru_stime.tv_usec -
+                           before.ru_stime.tv_usec);
+}
+
+/* A log read by a command, against the same log replayed. */
+static void time_reading(const char *row, const char *command, double goal) {
+    char line[200];
+    double times[FEW_RUNS];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    if (system("build/waferhand run lua/examples/27_tool.lua --record " LOG " >/dev/null") != 0) {
+        bench_differ("the recorded run", "a run that passes");
+    }
+    (void)snprintf(line, sizeof line, "build/waferhand %s /dev/null " LOG, command);
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        const double replayed = cost_of("build/waferhand replay " LOG " >/dev/null");
+        times[i] = cost_of(line) / replayed;
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "x its replay", &spread, true, goal);
+}
+
 int main(int argc, char **argv) {
     bench_begin("program", "", argc, argv);
     bench_note(
         "`waferhand run` on the transfer run and on the tool of example 27 with 1 ms slices, by its own "
-        "clock; a step counted by callgrind");
+        "clock; its log read; a step counted by callgrind");
     time_run("run, real time", "01_transfer", RUNS, 5000);
-    /* Two robots, with collisions looked for between all parts, and the smallest gaps. */
+    /* Two robots; collisions between all parts and the smallest gaps are checked. */
     time_run("tool, real time", "27_tool", FEW_RUNS, 300);
+    time_reading("csv, of the tool's log", "csv -o", 4);
+    time_reading("report, of the tool's log", "report -o", 0);
     count_step("step, 2 wafers", "step indexed 2 idle", 400);
     count_step("step, 2, turning", "step indexed 2 turning", 400);
     count_step("step, 2, carrying", "step indexed 2 carry", 400);

@@ -1,5 +1,6 @@
-/* Wafers and grippers that the benches share: FOUP-like columns of 25 at 10 mm pitch, or single ones, on a square grid 500 mm
- * wide, each a little aside and turned from where it should be. The same on every machine. */
+/* Wafers and grippers that the benches share: FOUP-like columns of 25 at 10 mm pitch, or single
+ * ones, on a square grid 500 mm wide. Each wafer lies a little aside from its nominal pose and is
+ * turned a little. The scene is the same on every machine. */
 #ifndef WH_TESTS_BENCH_SCENE_H
 #define WH_TESTS_BENCH_SCENE_H
 
@@ -15,7 +16,7 @@ static inline double bench_uniform(uint64_t *state, double low, double high) {
     return low + (high - low) * (double)(wh_test_splitmix(state) >> 11) / 9007199254740992.0;
 }
 
-/* Turned by `yaw`, then tilted by a small angle about an axis that lies level. */
+/* Turned by `yaw`, then tilted by a small angle about a level axis. */
 static inline wh_pose_t bench_pose(uint64_t *state, double x, double y, double z, double tilt) {
     double s;
     double c;
@@ -39,7 +40,7 @@ static inline wh_pose_t bench_level(double yaw, const wh_vec3_t *at) {
     return pose;
 }
 
-/* How many columns there are along a side of the square. */
+/* The number of columns along a side of the square. */
 static inline size_t bench_side(size_t count, size_t column) {
     size_t side = 1;
     while (side * side * column < count) {
@@ -62,15 +63,16 @@ static inline wh_pose_t *bench_wafers(size_t count, size_t column) {
     return wafers;
 }
 
-/* The nearest to `x` that is among columns on a square of that width. */
+/* The value nearest to `x` that is among columns on a square of that width. */
 static inline double bench_among(double x, double width) {
     const double low = -BENCH_GRID / 2.0;
     return x < low ? low : x > width + low ? width + low : x;
 }
 
-/* Slices of a gripper at 400 mm/s and 1 ms: it goes straight from one random point among the columns to another up to 700 mm
- * away along x and y, level, at a height between two slots, so that it comes near wafers (within 4.5 and 100 mm) but never
- * takes one. Of `turns` legs one is gone while turning, at 0.4 rad/s; 0: none. */
+/* Slices of a gripper at 400 mm/s and 1 ms. It moves straight and level from one random point among
+ * the columns to another, up to 700 mm away along x and y. Its height is between two slots, so it
+ * comes near wafers (within 4.5 and 100 mm) but never takes one. One leg in `turns` also turns, at
+ * 0.4 rad/s; 0: none. */
 static inline void bench_path(wh_pose_t *poses, size_t count, size_t side, size_t column, size_t turns) {
     const double step = 0.4;
     const double width = (double)(side * BENCH_GRID);
@@ -93,7 +95,7 @@ static inline void bench_path(wh_pose_t *poses, size_t count, size_t side, size_
     }
 }
 
-/* A gripper that is somewhere else among the columns in each slice. */
+/* A gripper at another place among the columns in each slice. */
 static inline void bench_teleport(wh_pose_t *poses, size_t count, size_t side, size_t column) {
     uint64_t state = 4;
     const double width = (double)(side * BENCH_GRID);
@@ -105,7 +107,7 @@ static inline void bench_teleport(wh_pose_t *poses, size_t count, size_t side, s
     }
 }
 
-/* 1 for a wafer in the gripper's neighbourhood, and 2^32 more if it is ready. */
+/* 1 for a wafer in the gripper's neighbourhood, plus 2^32 if it is ready. */
 static inline uint64_t bench_look(const wh_pose_t *wafer, const wh_pose_t *gripper,
                                   const wh_grasp_config_t *config) {
     const wh_vec3_t dr = wh_vec3_subtract(&wafer->r, &gripper->r);

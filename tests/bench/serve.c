@@ -1,7 +1,8 @@
-/* How soon `waferhand serve` acknowledges: a controller that does nothing, and three of one cell at once, by the wall clock at
- * 1 kHz slices, without `timing.ack`. The first of the three carries a wafer to and fro; each is asked for its status again as
- * soon as it has answered. From the request's last byte to the answer's, on the host's side, both processes on the cores that
- * there are. To be started at the root, after `make all`. */
+/* Measures how soon `waferhand serve` acknowledges: one idle controller, and three of one cell at
+ * once, by the wall clock at 1 kHz slices, without `timing.ack`. The first of the three carries a
+ * wafer to and fro; each is asked for its status again as soon as it has answered. The time runs
+ * from the request's last byte to the answer's last byte, on the host's side, with both processes
+ * on the available cores. Start it at the root, after `make all`. */
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sched.h>
@@ -20,7 +21,7 @@ enum { PORTS = 3, IDLE_REQUESTS = 3000, BUSY_SECONDS = 10, MOST = 200000, PAUSE_
 
 #define FOLDER "build/tests/bench/"
 
-/* A dialect of lua/dialects with the words that a mechanism has, and how its host asks. */
+/* A dialect of lua/dialects with the words of a mechanism, and the way its host asks. */
 typedef struct {
     const char *name, *mechanism, *words;
 } controller_t;
@@ -33,10 +34,10 @@ static const controller_t controllers[PORTS] = {{"dollar", "robot", "GET PUT STA
 typedef struct {
     int connection;
     unsigned sequence;
-    double asked_us; /* 0: nothing is asked */
+    double asked_us; /* when it was asked; 0: nothing is asked */
     double again_us; /* when it is asked next */
     bool is_running; /* its action */
-    size_t next;     /* of the round trip */
+    size_t next;     /* the next round trip */
     char rest[4096];
     size_t size;
     double us[MOST];
@@ -89,7 +90,8 @@ static void write_dialect(const controller_t *controller) {
     (void)fclose(out);
 }
 
-/* On any core, whatever the harness has chosen for this process; it says where it listens on `to`. */
+/* It runs on any core, whatever core the harness has chosen for this process; it writes the
+ * addresses of its ports to `to`. */
 __attribute__((noreturn)) static void be_server(size_t count, int to) {
     char command[1000] = "exec build/waferhand serve lua/layouts/paper.lua";
     cpu_set_t all;
@@ -116,7 +118,7 @@ static int connect_to(unsigned number) {
     return connection;
 }
 
-/* With so many of the controllers. */
+/* With this number of controllers. */
 static void start(size_t count) {
     int ends[2];
     char line[400];
@@ -136,7 +138,7 @@ static void start(size_t count) {
         memset(&ports[i], 0, sizeof ports[i]);
         ports[i].connection = connect_to((unsigned)strtoul(colon + 1, NULL, 10));
     }
-    (void)dup2(STDERR_FILENO, ends[0]); /* what it says at its end is not read */
+    (void)dup2(STDERR_FILENO, ends[0]); /* its output at the end is not read */
 }
 
 static void finish(size_t count) {
@@ -157,7 +159,7 @@ static void send_text(port_t *port, const char *text) {
     }
 }
 
-/* A telegram with its sum. */
+/* A telegram with its checksum. */
 static void send_telegram(port_t *port, unsigned sequence, const char *text) {
     char body[100];
     char frame[120];
@@ -191,7 +193,7 @@ static bool begins(const char *frame, const char *with) {
 static bool is_telegrams_answer(const char *frame) {
     char expected[40];
     if (frame[0] == '!') {
-        send_telegram(&ports[0], 0, "ACKN");
+        send_telegram(&ports[0], (unsigned)strtoul(frame + 4, NULL, 10), "ACKN");
         ports[0].is_running = false;
     }
     (void)snprintf(expected, sizeof expected, "$,1,%02u,", ports[0].sequence);
@@ -201,7 +203,7 @@ static bool is_telegrams_answer(const char *frame) {
     return frame[0] == '$';
 }
 
-/* True if the frame is the last one of the answer that is waited for. */
+/* True if the frame is the last one of the expected answer. */
 static bool is_answer(size_t i, const char *frame) {
     static const char *const more[PORTS] = {"", "STATUS ", "eROB1."};
     static const char *const wanted[PORTS] = {"", "_RDY", "aROB1.STAT:"};
@@ -214,7 +216,7 @@ static bool is_answer(size_t i, const char *frame) {
     return !begins(frame, more[i]);
 }
 
-/* The frames that have come. */
+/* The frames that have arrived. */
 static void hear(size_t i) {
     port_t *port = &ports[i];
     const ssize_t got = recv(port->connection, port->rest + port->size, sizeof port->rest - port->size, 0);
@@ -234,7 +236,7 @@ static void hear(size_t i) {
     }
 }
 
-/* One look at all ports, and what is to be asked. */
+/* Polls all ports once, and sends the next requests. */
 static void go_on(size_t count) {
     struct pollfd polls[PORTS];
     const struct timespec pause = {0, PAUSE_US * 1000 / 2};
@@ -268,7 +270,7 @@ static void row(const char *name, const char *what, double us, double goal_ms) {
     bench_figure(text, "ms", &spread, true, goal_ms);
 }
 
-/* The goals are of 99.9 % and of the slowest. */
+/* The goals apply to 99.9 % and to the slowest. */
 static void tell(const char *name, port_t *port, double most_goal, double slowest_goal) {
     qsort(port->us, port->count, sizeof *port->us, by_size);
     row(name, "median", port->us[port->count / 2], 0);
@@ -278,7 +280,7 @@ static void tell(const char *name, port_t *port, double most_goal, double slowes
 
 static void measure_idle(void) {
     start(1);
-    ports[0].is_running = true; /* it is asked for nothing but its status */
+    ports[0].is_running = true; /* it is asked only for its status */
     while (ports[0].count < IDLE_REQUESTS) {
         go_on(1);
     }

@@ -1,4 +1,5 @@
-/* What a whole slice costs through the public API with 2 and 100 wafers, against a step of Bullet and MuJoCo. */
+/* Measures a whole slice through the public API with 2 and 100 wafers, against a step of Bullet and
+ * MuJoCo. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,7 @@ typedef struct {
     size_t at;
 } side_t;
 
-/* Empty and moving straight, or turning as well; or holding a wafer, straight. */
+/* Empty and moving straight, or turning as well; or holding a wafer and moving straight. */
 typedef enum { LOOKING, TURNING, CARRYING } kind_t;
 
 static wh_pose_t poses[POSES];
@@ -38,7 +39,7 @@ static uint64_t run_peer(void *user, size_t repeats) {
     return sum;
 }
 
-/* There and back again, so that no slice has a jump. */
+/* The path leads there and back again, so that no slice has a jump. */
 static void make_path(size_t wafers, bool turning) {
     const size_t column = wafers < BENCH_COLUMN ? wafers : BENCH_COLUMN;
     bench_path(poses, POSES / 2, bench_side(wafers, BENCH_COLUMN), column, turning);
@@ -47,7 +48,7 @@ static void make_path(size_t wafers, bool turning) {
     }
 }
 
-/* MuJoCo's kinematics alone, and Bullet's step however light it is made. */
+/* MuJoCo's kinematics alone, and Bullet's step with all options that make it light. */
 static double goal_of(const char *name, size_t wafers) {
     if (strcmp(name, "MuJoCo kinematics") == 0) {
         return wafers == 2 ? 5 : 100;

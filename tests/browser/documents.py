@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build/browser"
 PROGRAM = ROOT / "build/waferhand"
 
-# As many commands as take an hour.
+# Enough commands to fill an hour.
 HOUR = """cell "%s/lua/layouts/paper.lua"
 for i = 1, 460 do
   get("A", 1)   put("B", 2)
@@ -22,7 +22,7 @@ for i = 1, 460 do
 end
 """
 
-# A front end that does the same over and over: the first cycle comes from home.
+# A front end that repeats its cycle; only the first cycle begins at home.
 CYCLES = """cell "%s/lua/layouts/efem.lua"
 for i = 1, 8 do
   cycle()
@@ -31,7 +31,7 @@ end
 cycle()
 """
 
-# The page's template, and what goes into it from elsewhere.
+# The page's template, and the texts that are put into it.
 PAGE = ROOT / "lib/report/page"
 LIBRARIES = {
     "dygraph.min.css": "/usr/share/javascript/dygraphs/dygraph.min.css",

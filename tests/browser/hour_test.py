@@ -6,9 +6,10 @@ import unittest
 import browser
 import documents
 
-# Work of the page's own in a frame, ms: a frame lasts 16.7 on most screens. Ours needs a third; the machine may be busy.
+# The page's own work in a frame, ms; on most screens a frame lasts 16.7 ms. Our page needs a third of this limit; the machine
+# may be busy.
 FRAME_MS = 16
-# From a zoom or a jump that turns the window to the plots that show it.
+# From a zoom or a jump that moves the window to the plots that show it.
 ZOOM_MS = 250
 
 
@@ -17,7 +18,9 @@ class Hour(unittest.TestCase):
     def setUpClass(cls):
         cls.document, cls.path = documents.hour()
         cls.page = browser.common()
-        cls.page.open(cls.path)
+        # The usual times are about 0.7 s and 0.3 s. These wide limits hold on a busy machine, too.
+        cls.limits = (5, 5000)
+        cls.work, cls.interactive = cls.page.opened(cls.path, *cls.limits)
 
     def tearDown(self):
         self.assertEqual(self.page.faults(), [])
@@ -25,9 +28,7 @@ class Hour(unittest.TestCase):
     def test_opens(self):
         """Small, quickly, and near to what was."""
         thinning, points = self.document["thinning"], [len(track["t"]) for track in self.document["tracks"]["axes"]]
-        self.page.cdp("Performance.enable", timeDomain="threadTicks")
-        tries = [self.page.opened(self.path) for _ in range(2)]
-        work, interactive = min(each[0] for each in tries), min(each[1] for each in tries)
+        work, interactive = self.work, self.interactive
         print(f"hour: {self.path.stat().st_size} bytes, {points} points, off by {thinning['gripper_mm']:.3f} mm at most; {work:.2f} s "
               f"of work to show all of it; interactive after {interactive:.0f} ms, machine's load {os.getloadavg()[0]:.1f}")
         self.assertGreater(self.document["duration_s"], 3500)
@@ -35,9 +36,8 @@ class Hour(unittest.TestCase):
         self.assertLess(self.path.stat().st_size, 3e6)
         self.assertLess(thinning["gripper_mm"], 0.1)
         self.assertLess(thinning["mm"], 0.05)
-        # About 0.7 s and 0.3 s; here, however busy the machine, that nothing has gone out of hand.
-        self.assertLess(work, 5)
-        self.assertLess(interactive, 5000)
+        self.assertLess(work, self.limits[0])
+        self.assertLess(interactive, self.limits[1])
 
     def spent(self, steps):
         """Milliseconds of the page's work for each of some steps, and from frame to frame."""

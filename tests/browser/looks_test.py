@@ -10,7 +10,7 @@ import documents
 # The lowest contrast of text that is easily read (WCAG 2, level AA).
 CONTRAST = 4.5
 
-# Every piece of visible text: what it says, its colour, and what is painted behind it, from the front to the back.
+# Every piece of visible text with its colour, and all that is painted behind it, from front to back.
 TEXTS = """
 const seen = (element) => { const box = element.getBoundingClientRect(), style = getComputedStyle(element);
     return box.width > 0 && box.height > 0 && style.visibility !== 'hidden' && !element.closest('[aria-hidden=true].aside'); };
@@ -51,7 +51,7 @@ def painted(behind):
 
 
 class Looks(unittest.TestCase):
-    # What shows the picture of the cell, or prints it.
+    # Controls that show the picture of the cell or print it.
     drawn = ["test_light_and_dark", "test_narrow", "test_controls_do_not_overlap", "test_print", "test_printed_page",
              "test_views"]
 
@@ -68,7 +68,7 @@ class Looks(unittest.TestCase):
         self.page.resize(*size)
         self.page.cdp("Emulation.setEmulatedMedia",
                       features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        self.page.open(path)
+        self.page.fresh(path)
         self.page.seek(t)
         self.page.settle()
 
@@ -103,8 +103,8 @@ class Looks(unittest.TestCase):
             self.assertGreaterEqual(contrast(rgb[name], rgb["stage"]), CONTRAST, name)
 
     def test_light_and_dark(self):
-        for dark in (False, True):
-            for name, t in (("01_transfer", 2.4), ("04_scrape", 4.506), ("05_leak", 2.6)):
+        for name, t in (("01_transfer", 2.4), ("04_scrape", 4.506), ("05_leak", 2.6)):
+            for dark in (False, True):
                 self.open(name, t, dark=dark)
                 self.assertEqual(self.page.js("return document.documentElement.dataset.theme"), "dark" if dark else "light")
                 self.page.shoot(f"{name}_{'dark' if dark else 'light'}")
@@ -115,7 +115,10 @@ class Looks(unittest.TestCase):
                     self.page.shoot(f"whole_{'dark' if dark else 'light'}")
 
     def test_switch_outdoes_the_system(self):
+        self.page.kept = None
         self.open("01_transfer", 0, dark=True)
+        self.assertEqual(self.page.js("return document.documentElement.dataset.theme"), "dark")
+        self.page.kept = None
         self.page.js("document.getElementById('theme').click()")
         self.assertEqual(self.page.js("return document.documentElement.dataset.theme"), "light")
         self.assertEqual(self.page.js("return getComputedStyle(document.body).backgroundColor"), "rgb(244, 246, 248)")
@@ -205,7 +208,7 @@ class Looks(unittest.TestCase):
             self.page.shoot(f"view_{name}")
 
 
-# What can be seen in the cell: kind and number of all nodes that are shown, and the names that are.
+# The visible part of the cell: kind and number of all nodes that are shown, and the names among them.
 SEEN = """const { view } = Waferhand.stage, seen = (object) => !object || (object.visible && seen(object.parent));
     return Object.values(view.named).filter(seen).map((object) => `${object.userData.node.kind} ${object.userData.node.index}`)"""
 TAGS = "return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => [tag.className, tag.textContent])"
@@ -219,7 +222,7 @@ class Cell(unittest.TestCase):
         self.document = json.loads(text)
         self.page = browser.shared(True)
         self.page.resize(1440, 900)
-        self.page.open(path)
+        self.page.fresh(path)
         self.path = path
 
     def tearDown(self):
@@ -360,7 +363,7 @@ class Cell(unittest.TestCase):
         """Parts, names and the trail are in drawings, too; there is no section and no shadow."""
         page = browser.shared(False)
         page.resize(1440, 900)
-        page.open(self.path)
+        page.fresh(self.path)
         self.assertEqual(page.js("return Array.from(document.querySelectorAll('#toolbar .group button'), (each) => each.dataset.name)"),
                          ["whole", "top", "side", "gripper", "names", "frames", "trail", "parts", "link", "picture"])
         still = "return Waferhand.stage.view.still()"

@@ -46,12 +46,18 @@ class Measure:
         station, _, number = name.partition("/")
         return expected.slot(document, station, int(number or 1))
 
-    def compare(self, first, second, t):
+    def told(self, times):
+        """At each time: what the tool computes and what it writes."""
+        return self.page.js("""return arguments[0].map((t) => { Waferhand.clock.seek(t); Waferhand.clock.flush();
+            return [Waferhand.measure.at(t), Object.fromEntries(Array.from(document.querySelectorAll('#measure dd[data-name]'),
+                (each) => [each.dataset.name, each.textContent]))]; })""", times)
+
+    def compare(self, first, second, t, told):
         wanted = expected.measure(self.frame(first, t), self.frame(second, t))
-        found = self.page.js("return Waferhand.measure.at(arguments[0])", t)
+        found, texts = told
         for key, value in wanted.items():
             self.assertAlmostEqual(found[key], value, delta=1e-6 if key == "angle" else 1e-9, msg=(first, second, t, key))
-            text = self.page.text(f"#measure dd[data-name={key}]").replace("\u2212", "-").split("\u00a0")
+            text = texts[key].replace("\u2212", "-").split("\u00a0")
             self.assertAlmostEqual(float(text[0]), value, delta=0.5001e-4, msg=(first, second, t, key))
             self.assertEqual(text[1], "\u00b0" if key == "angle" else "mm")
 
@@ -59,9 +65,9 @@ class Measure:
         pairs = [("EE", "Wafer 1"), ("Wafer 2", "B/10"), ("A", "Wafer 1"), ("base", "EE"), ("A/25", "B/1"), ("PA", "EE")]
         for first, second in pairs:
             self.choose(first, second)
-            for t in (0, 1.158, 2.34567, 3.501, 6.0001, document["duration_s"]):
-                self.page.seek(t)
-                self.compare(first, second, t)
+            times = [0, 1.158, 2.34567, 3.501, 6.0001, document["duration_s"]]
+            for t, told in zip(times, self.told(times), strict=True):
+                self.compare(first, second, t, told)
 
     def test_offset_at_the_end_is_the_run_s(self):
         """Wafer 2 in B slot 10, as the run's own table has it."""
@@ -102,8 +108,7 @@ class Measure:
             x, y = self.spot(name)
             self.page.click(left + x, top + y)
         self.assertEqual(self.page.js("return Waferhand.measure.selects.map((select) => select.value)"), self.clicked)
-        self.page.seek(2.4)
-        self.compare(*self.clicked, 2.4)
+        self.compare(*self.clicked, 2.4, self.told([2.4])[0])
         self.page.shoot("measure" if self.webgl else "measure_without_webgl")
         self.page.js("document.activeElement.blur()")
         self.page.key("m")
@@ -192,10 +197,11 @@ class Lua(unittest.TestCase):
         self.assertEqual(len(ends), len(COMMANDS))
         shown = browser.plain()
         shown.open(page)
-        for i, line in enumerate(lines):
-            t, pair = ends[i // len(PAIRS)], PAIRS[i % len(PAIRS)]
-            shown.js("arguments[0].forEach((name, i) => { document.getElementById('measure-' + i).value = name; })", pair)
-            found = shown.js("return Waferhand.measure.at(arguments[0])", t)
+        asked = [(ends[i // len(PAIRS)], PAIRS[i % len(PAIRS)]) for i in range(len(lines))]
+        figures = shown.js("""return arguments[0].map(([t, pair]) => {
+            pair.forEach((name, i) => { document.getElementById('measure-' + i).value = name; });
+            return Waferhand.measure.at(t); })""", asked)
+        for (t, pair), line, found in zip(asked, lines, figures, strict=True):
             for key, value in zip(KEYS, line.split()):
                 self.assertAlmostEqual(found[key], float(value), delta=1e-9, msg=(t, pair, key))
         self.assertEqual(shown.faults(), [])

@@ -12,7 +12,7 @@ from browser import WEBGL, Browser
 
 PAGE, RUN = sys.argv[1], sys.argv[2]
 
-# Every node below the robots, by its path: where it is in the page's world (y up), whether it has something to show, its colour.
+# Every node below the robots, by its path: its place in the page's world (y up), whether it shows something, and its colour.
 NODES = """
 const found = {};
 const walk = (node, path) => {
@@ -31,7 +31,8 @@ return found;
 """
 CELL, BOARD = ["DRAKE_VIEWER", "0"], ["Visual Geometry", "0"]
 
-# What part of the picture all corners of all shapes take, from -1 to 1 to the right and up; those that are put aside do not count.
+# The part of the picture that the corners of all shapes take, from -1 to 1 to the right and up. Shapes that are put aside do
+# not count.
 PICTURE = """
 const times = (m, [x, y, z, w]) => [0, 1, 2, 3].map((row) => m[row] * x + m[row + 4] * y + m[row + 8] * z + m[row + 12] * w);
 const box = [1e9, 1e9, -1e9, -1e9];

@@ -10,7 +10,7 @@ from documents import PAGE, pack
 def setUpModule():
     global page, document
     document, _ = documents.example("04_scrape")
-    page = browser.common()
+    page = browser.plain()
     for each in (browser.common(), browser.plain()):
         each.resize(640, 480)  # many pages, which nobody looks at
 
@@ -34,8 +34,10 @@ def pruned(keep_run):
 
 
 class Missing(unittest.TestCase):
-    def show(self, changed, name, part=None):
-        page = browser.shared(part is None or drawn(part))
+    def show(self, changed, name, part):
+        """In the browser with WebGL if what was changed is drawn by it."""
+        global page
+        page = browser.shared(drawn(part))
         page.open(documents.page_of(changed, "missing_" + name))
         page.js("""if (Waferhand.shown) { [0, 1, 4.506, 5].forEach((t) => { Waferhand.clock.seek(t);
             Waferhand.clock.flush(); }); }""")
@@ -58,7 +60,7 @@ class Missing(unittest.TestCase):
             self.assertIn(words.get(part, ""), why, part)
 
     def test_log_without_commands(self):
-        why = self.show(pruned(["wafers", "events", "hash"]), "log")
+        why = self.show(pruned(["wafers", "events", "hash"]), "log", "run")
         self.assertIn("a log of moves alone", why)
         self.assertIn("not hold what the time went into", why)
         self.assertIn("no verdict", page.text("#head"))
@@ -67,7 +69,7 @@ class Missing(unittest.TestCase):
         """As a log whose first part is gone: times below its begin are not shown."""
         later = documents.without(document, "thinning")
         later["begin_s"] = 2
-        self.show(later, "begin")
+        self.show(later, "begin", "begin_s")
         page.key("Home")
         self.assertEqual(page.now(), 2)
         page.key("ArrowLeft")
@@ -76,12 +78,13 @@ class Missing(unittest.TestCase):
         self.assertEqual(page.js("return Number(document.getElementById('scrubber').min)"), 2000)
 
     def test_nothing_at_all(self):
-        self.assertIn("holds no scene", self.show({}, "all"))
+        self.assertIn("holds no scene", self.show({}, "all", "scene"))
 
     def test_no_document(self):
         path = documents.page_of(document, "missing_json")
         text = path.read_text()
         begin = text.index('id="document">') + len('id="document">')
+        page = browser.plain()
         for spoilt in (pack('{"format": 2,'), pack("{}")[:8], "<nothing>"):
             path.write_text(text[:begin] + spoilt + text[text.index("</script>", begin):])
             page.open(path)
@@ -90,6 +93,7 @@ class Missing(unittest.TestCase):
 
     def test_old_browser(self):
         """One that cannot unpack the document says so."""
+        page = browser.plain()
         old = page.cdp("Page.addScriptToEvaluateOnNewDocument", source="delete window.DecompressionStream")
         page.open(documents.page_of(document, "missing_stream"))
         page.cdp("Page.removeScriptToEvaluateOnNewDocument", identifier=old["identifier"])
@@ -97,7 +101,7 @@ class Missing(unittest.TestCase):
 
     def test_spoilt_scene(self):
         spoilt = documents.without(document, "scene", "accessors")
-        self.assertIn("the scene cannot be read", self.show(spoilt, "scene_spoilt"))
+        self.assertIn("the scene cannot be read", self.show(spoilt, "scene_spoilt", "scene"))
 
     def test_text_is_text(self):
         """What looks like markup in a name or a message is shown, not run."""
@@ -105,7 +109,7 @@ class Missing(unittest.TestCase):
         changed["title"] = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
         changed["run"]["commands"][0]["text"] = "</script><b>bold</b>"
         changed["names"]["wafers"][0] = "<b>W</b>"
-        self.show(changed, "markup")
+        self.show(changed, "markup", "names")
         self.assertIn("<img src=x", page.text("#head h1"))
         self.assertEqual(page.js("return document.querySelectorAll('#commands b, #measure b, h1 img').length"), 0)
 

@@ -14,14 +14,14 @@ def setUpModule():
 
 
 class Time(unittest.TestCase):
-    # What asks for the picture of the cell, and one each of play, scrubber and zoom beside it.
+    # The control that shows the picture of the cell; beside it one each of play, scrubber and zoom.
     drawn = ["test_opens", "test_whole_cell_is_in_the_picture", "test_play_and_pause", "test_scrubber", "test_zoom_is_shared",
              "test_views_and_switches", "test_riding_along", "test_orbit", "test_link", "test_picture"]
 
     def setUp(self):
         global page
         page = browser.shared(self._testMethodName in self.drawn)
-        page.open(path)
+        page.fresh(path)
         self.events = sorted({event["utime"] / 1e6 for event in document["run"]["events"]})
 
     def tearDown(self):
@@ -29,15 +29,13 @@ class Time(unittest.TestCase):
 
     def test_opens(self):
         """Quickly, alone, small."""
+        # The usual times are about 0.1 s and 0.25 s. These wide limits hold on a busy machine, too.
+        work, interactive = page.opened(path, 2, 10000)
         self.assertEqual(page.outside(), [])
         self.assertLess(path.stat().st_size, 1.5e6)
         self.assertEqual(page.driver.title, document["title"])
-        page.cdp("Performance.enable", timeDomain="threadTicks")
-        tries = [page.opened(path) for _ in range(2)]
-        work, interactive = min(each[0] for each in tries), min(each[1] for each in tries)
         print(f"transfer run: {path.stat().st_size} bytes; {work:.2f} s of work to show all of it; interactive after "
               f"{interactive:.0f} ms, machine's load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
-        # About 0.1 s and 0.25 s; here, however busy the machine, that nothing has gone out of hand.
         self.assertLess(work, 2)
         self.assertLess(interactive, 10000)
 
@@ -242,7 +240,7 @@ class Cycles(unittest.TestCase):
         self.document = json.loads(text)
         self.steady = self.document["run"]["steady_cycle"]
         self.page = browser.plain()
-        self.page.open(self.path)
+        self.page.fresh(self.path)
 
     def tearDown(self):
         self.assertEqual(self.page.faults(), [])

@@ -37,15 +37,16 @@ class Values(unittest.TestCase):
     def test_poses(self):
         for name in self.names:
             document, path = documents.example(name)
-            page.open(path)
-            for t in times_of(document):
-                self.compare_poses(document, t, name)
+            page.fresh(path)
+            times = times_of(document)
+            poses = page.js("""const [times] = arguments, W = Waferhand, tracks = W.shown.tracks;
+                const flat = (pose) => [pose.r, [0, 1, 2].map((i) => W.pose.axis(pose.q, i))];
+                return times.map((t) => [tracks.grippers.map((_, i) => flat(W.robot.gripper(tracks, i, t))),
+                    tracks.wafers.map((_, i) => flat(W.tracks.wafer(tracks, i, t)))])""", times)
+            for t, found in zip(times, poses, strict=True):
+                self.compare_poses(document, t, name, found)
 
-    def compare_poses(self, document, t, name):
-        found = page.js("""const [t] = arguments, W = Waferhand, tracks = W.shown.tracks;
-            const flat = (pose) => [pose.r, [0, 1, 2].map((i) => W.pose.axis(pose.q, i))];
-            return [tracks.grippers.map((_, i) => flat(W.robot.gripper(tracks, i, t))),
-                tracks.wafers.map((_, i) => flat(W.tracks.wafer(tracks, i, t)))]""", t)
+    def compare_poses(self, document, t, name, found):
         for kind, wanted_of in ((0, expected.gripper), (1, expected.wafer)):
             for i, (r, axes) in enumerate(found[kind]):
                 wanted = wanted_of(document, i, t)
@@ -56,11 +57,12 @@ class Values(unittest.TestCase):
 
     def test_links(self):
         document, path = documents.example("01_transfer")
-        page.open(path)
-        for t in times_of(document)[::4]:
-            found = page.js("""const [t] = arguments, W = Waferhand; return [0, 1, 2, 3].map((i) => {
-                const pose = W.robot.link(W.shown.tracks, i, t);
-                return [pose.r, [0, 1].map((k) => W.pose.axis(pose.q, 0)[k])]; })""", t)
+        page.fresh(path)
+        times = times_of(document)[::4]
+        links = page.js("""const [times] = arguments, W = Waferhand; return times.map((t) => [0, 1, 2, 3].map((i) => {
+            const pose = W.robot.link(W.shown.tracks, i, t);
+            return [pose.r, [0, 1].map((k) => W.pose.axis(pose.q, 0)[k])]; }))""", times)
+        for t, found in zip(times, links, strict=True):
             for (r, x), wanted in zip(found, expected.links(document, t), strict=True):
                 for k in range(3):
                     self.assertAlmostEqual(r[k], wanted[0][k], delta=1e-6)
@@ -73,9 +75,10 @@ class Values(unittest.TestCase):
             scene, path = documents.of_robot(name, robot, place, stations)
             page.open(path)
             moved = set()
-            for link, t, r, q in documents.keyframes(scene, "link"):
-                there, turned = page.js("""const pose = Waferhand.robot.link(Waferhand.shown.tracks, ...arguments);
-                    return [pose.r, pose.q]""", link, t)
+            frames = documents.keyframes(scene, "link")
+            poses = page.js("""return arguments[0].map(([link, t]) => { const pose = Waferhand.robot.link(Waferhand.shown.tracks, link, t);
+                return [pose.r, pose.q]; })""", [frame[:2] for frame in frames])
+            for (link, t, r, q), (there, turned) in zip(frames, poses, strict=True):
                 for k in range(3):
                     self.assertAlmostEqual(there[k], 1000 * r[k], delta=1.2, msg=(name, link, t))
                 self.assertGreater(abs(sum(a * b for a, b in zip(turned, q))), 1 - 1e-5, msg=(name, link, t))
@@ -85,18 +88,17 @@ class Values(unittest.TestCase):
     def test_exact_at_points(self):
         """At a point of a track the page computes nothing: the same bits."""
         document, path = documents.example("01_transfer")
-        page.open(path)
+        page.fresh(path)
         for track, axis in enumerate(document["tracks"]["axes"]):
-            for i in range(0, len(axis["t"]), 3):
-                found = page.js("return Waferhand.tracks.curve(Waferhand.shown.tracks.axes[arguments[0]], arguments[1], false)",
-                                track, axis["t"][i])
-                self.assertEqual(found, axis["v"][i])
+            found = page.js("""const [track, times] = arguments, axis = Waferhand.shown.tracks.axes[track];
+                return times.map((t) => Waferhand.tracks.curve(axis, t, false))""", track, axis["t"][::3])
+            self.assertEqual(found, axis["v"][::3])
 
     def test_exact_at_events(self):
         """What the run itself measured, where nothing draws wafers onto the pads, and where it says that they ended."""
         for name in ("01_transfer", "02_prealigner"):
             document, path = documents.example(name)
-            page.open(path)
+            page.fresh(path)
             run, names = document["run"], document["names"]
             for event in [each for each in run["events"] if each["kind"] in ("picked", "handed_over")]:
                 t, g = event["utime"] / 1e6, names["grippers"].index(event["gripper"])
@@ -113,14 +115,15 @@ class Values(unittest.TestCase):
     def test_table_of_now(self):
         for name in self.names:
             document, path = documents.example(name)
-            page.open(path)
-            for t in times_of(document)[::3]:
-                page.seek(t)
-                self.compare_now(document, t, name)
+            page.fresh(path)
+            times = times_of(document)[::3]
+            tables = page.js("""return arguments[0].map((t) => { Waferhand.clock.seek(t); Waferhand.clock.flush();
+                return Array.from(document.querySelectorAll('#now td[data-name]'),
+                    (cell) => [cell.dataset.gripper, cell.dataset.name, cell.textContent]); })""", times)
+            for t, cells in zip(times, tables, strict=True):
+                self.compare_now(document, t, name, cells)
 
-    def compare_now(self, document, t, name):
-        cells = page.js("""return Array.from(document.querySelectorAll('#now td[data-name]'),
-            (cell) => [cell.dataset.gripper, cell.dataset.name, cell.textContent])""")
+    def compare_now(self, document, t, name, cells):
         texts = {(gripper, key): text for gripper, key, text in cells}
         limits = document["limits"]
         for i, gripper in enumerate(document["names"]["grippers"]):
@@ -148,12 +151,13 @@ class Values(unittest.TestCase):
     def test_legends(self):
         """The figures beside the plots, axes among them, at the shown time."""
         document, path = documents.example("01_transfer")
-        page.open(path)
-        for t in times_of(document)[::5]:
-            page.seek(t)
-            values = page.js("""Waferhand.plots.panels.forEach((panel) => { panel.seen = true; }); Waferhand.clock.seek(arguments[0]);
-                Waferhand.clock.flush(); return Array.from(document.querySelectorAll('#axes figcaption .item'),
-                (item) => [item.firstChild.nextSibling.textContent.trim(), item.querySelector('.value').textContent])""", t)
+        page.fresh(path)
+        times = times_of(document)[::5]
+        legends = page.js("""Waferhand.plots.panels.forEach((panel) => { panel.seen = true; });
+            return arguments[0].map((t) => { Waferhand.clock.seek(t); Waferhand.clock.flush();
+                return Array.from(document.querySelectorAll('#axes figcaption .item'),
+                    (item) => [item.firstChild.nextSibling.textContent.trim(), item.querySelector('.value').textContent]); })""", times)
+        for t, values in zip(times, legends, strict=True):
             self.assertEqual(len(values), 2 * len(document["names"]["axes"]))
             for k, (name, text) in enumerate(values):
                 index = next(i for i, axis in enumerate(document["names"]["axes"]) if axis["name"] == name)
@@ -163,13 +167,22 @@ class Values(unittest.TestCase):
                 value *= 180 / 3.141592653589793 if axis["unit"] == "rad" else 1
                 self.assertEqual(text, shown(value, 2 if speed else 3), (t, name, speed))
 
+    def test_verdict_of_a_session(self):
+        """Whoever was told errors alone has not passed."""
+        document, _ = documents.example("03_missed_pick")
+        document["source"], document["run"]["ok"] = "session", True
+        for failing, word in ((1, "1 of 2 commands failed"), (2, "no command succeeded"), (0, "no command failed")):
+            document["run"]["commands"] = [dict(document["run"]["commands"][0], error=42 if i < failing else 0) for i in range(2)]
+            page.open(documents.page_of(document, "session"))
+            self.assertIn(word, page.text(".verdict"))
+
     def test_verdict(self):
         """What a run failed for is said where its expectations do not say it."""
-        page.open(documents.example("04_scrape")[1])
+        page.fresh(documents.example("04_scrape")[1])
         self.assertIn("failed", page.text(".verdict"))
         self.assertRegex(page.text(".failure"), "^It failed for too close: EE .* at 4.505.s; hit: EE .* at 4.506.s, though what "
                          "the script expected came about.$")
-        page.open(documents.example("01_transfer")[1])
+        page.fresh(documents.example("01_transfer")[1])
         self.assertEqual(page.js("return document.querySelectorAll('.failure').length"), 0)
 
     def test_reasons(self):
@@ -199,8 +212,7 @@ class Values(unittest.TestCase):
 
     def test_ticks(self):
         """Neighbours differ in what is written, however narrow the range, and rounding shows nowhere."""
-        document = documents.example("01_transfer")[0]
-        page.open(documents.page_of(document, "ticks"))
+        page.fresh(documents.example("01_transfer")[1])
         told = page.js("""return [[1 - 1.2e-16, 2e-5], [0.99998, 2e-5], [1 - 2e-7, 1e-6], [900.0000001, 5e-7], [900.0000002, 5e-7],
             [3599.999981, 1e-5], [3599.999982, 1e-5], [-2e-17, 3], [0.30000000000000004, 1], [-250, 900]]
             .map(([value, span]) => Waferhand.tick(value, span))""")
@@ -289,7 +301,7 @@ class Values(unittest.TestCase):
 
     def test_tables(self):
         document, path = documents.example("01_transfer")
-        page.open(path)
+        page.fresh(path)
         rows = page.js("""return ['wafers', 'expectations', 'commands', 'events'].map((id) => Array.from(
             document.querySelectorAll(`#${id} tbody tr`), (row) => Array.from(row.cells, (cell) => cell.textContent)))""")
         run = document["run"]

@@ -1,7 +1,7 @@
-# Makes findings of pmccabe's lines: ways through a function, of them with each case of a switch counted, statements, first
-# line, lines, and FILE(LINE): NAME. Anything else it writes is a complaint.
+# Turns pmccabe's lines into findings. Its columns are: paths through a function, the same with each case of a switch counted,
+# statements, first line, lines, and FILE(LINE): NAME. Any other line from pmccabe is a complaint.
 
-# In C++ the name has the names of its spaces and types before it.
+# In C++ the names of namespaces and types stand before the function's name.
 split($6, at, /[():]+/) < 3 {
     print
     failed = 1

@@ -1,5 +1,5 @@
-# What no tool reports: extensions of the language in the embedded library, names that are reserved, suppressions, which belong
-# into lib/DEVIATIONS.md, and what the formatter leaves: it neither shortens a comment nor mends one. Run with LC_ALL=C.
+# Finds what no tool reports: language extensions in the embedded library, reserved names, and suppressions, which belong into
+# lib/DEVIATIONS.md. It also finds what the formatter leaves, which neither shortens nor mends a comment. Run with LC_ALL=C.
 
 function report(rule) {
     print FILENAME ":" FNR ":1: warning: " $0 " [" rule "]"
@@ -15,7 +15,7 @@ FILENAME ~ embedded && /__attribute__|__builtin|__extension__|__asm/ {
     report("inline-suppression")
 }
 
-# In the files that match `tidy`. Bytes that continue a character of UTF-8 are not counted.
+# These rules apply to files that match `tidy`. Continuation bytes of UTF-8 characters are not counted.
 FNR == 1 {
     type_alone = 0
 }
@@ -28,7 +28,7 @@ FILENAME ~ tidy {
     if (line ~ /^ *\/\* ----/ && line !~ /\*\/$/) {
         report("broken-banner")
     }
-    # A type on a line of its own, and its member on the next: a comment behind the member was too long.
+    # A type stands alone on a line and its member on the next: the comment behind the member was too long.
     if (type_alone && line ~ /^ +\**[a-z_0-9]+(\[.*\])*;/) {
         report("torn-member")
     }

@@ -1,9 +1,10 @@
-/* An example to copy: a bench for a controller's firmware, with a simulated machine. Each millisecond the firmware runs once,
- * Waferhand moves the gripper to where the axes stand, and the vacuum switch is read back. What happened stands in words in
- * `said`.
+/* An example to copy: a bench for a controller's firmware, with a simulated machine. Each
+ * millisecond the firmware runs once, Waferhand moves the gripper to the place that the axes give,
+ * and the vacuum switch is read back. `said` holds the events in words.
  *
- * To make it yours: put your firmware's registers into `tick`, your robot's kinematics into `gripper_pose`, your stations into
- * `stations` and `taught`. It needs libwaferhand.a and cmocka, and runs on a host as on a Cortex-M. */
+ * To make it yours: put your firmware's registers into `tick`, your robot's kinematics into
+ * `gripper_pose`, your stations into `stations` and `taught`. It needs libwaferhand.a and cmocka,
+ * and runs on a host as on a Cortex-M. */
 #ifndef BENCH_H
 #define BENCH_H
 
@@ -22,12 +23,12 @@
 
 enum { STATIONS = 2, WAFERS = 2, SAID = 4000 };
 
-/* The machine as it is: two stacks of three slots, 700 mm from the robot, at 0 and at 90 degrees. */
+/* The real machine: two stacks of three slots, 700 mm from the robot, at 0 and at 90 degrees. */
 static const wh_station_t stations[STATIONS] = {
     {{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {700, 0, 900}}, 3, 10, WH_NONE},
     {{{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}, {0, 700, 900}}, 3, 10, WH_NONE}};
 
-/* And as it was taught; a test may teach it badly. */
+/* The machine as it was taught; a test may teach it badly. */
 static taught_t taught[STATIONS];
 
 static registers_t registers;
@@ -39,7 +40,7 @@ static wh_command_t command;
 static wh_state_t state;
 static char said[SAID];
 
-/* Where the gripper is. This robot is Waferhand's own kind: theta, R, Z and yaw. */
+/* The pose of the gripper. This robot is of Waferhand's own kind: theta, R, Z and yaw. */
 static inline wh_pose_t gripper_pose(void) {
     const wh_real_t q[WH_ROBOT_AXES] = {wh_rad_from_deg(WH_REAL(registers.axis[THETA])),
                                         WH_REAL(registers.axis[R]), WH_REAL(registers.axis[Z]),
@@ -58,7 +59,7 @@ static inline void note_events(void) {
     }
 }
 
-/* A millisecond: the firmware, then the machine. */
+/* One millisecond: first the firmware, then the machine. */
 static inline void tick(void) {
     controller_tick(&controller);
     ++command.seq;
@@ -72,7 +73,8 @@ static inline void tick(void) {
     note_events();
 }
 
-/* Wafer 0 lies in slot 1 of station 0, wafer 1 in slot 2 of station 1. The vacuum takes its time, and what is let go settles. */
+/* Wafer 0 lies in slot 1 of station 0, wafer 1 in slot 2 of station 1. The vacuum takes some time
+ * to build up, and a released wafer settles. */
 static inline int set_up(void **unused) {
     (void)unused;
     const wh_grasp_config_t config = wh_grasp_config_default();
@@ -111,7 +113,7 @@ static inline answer_t put(int station, int slot) {
     return finish(controller_put(&controller, station, slot));
 }
 
-/* From the next millisecond on, in the place of a fault of this kind that was there before. */
+/* It acts from the next millisecond on, and replaces an earlier fault of this kind. */
 static inline void break_it(wh_fault_kind_t kind, wh_real_t value) {
     command.faults[0].index = 0;
     command.faults[0].fault = wh_fault_make(kind, 0, value, command.seq + 1, WH_FAULT_FOREVER);
@@ -137,7 +139,7 @@ static inline void assert_not_said(const char *text) {
     }
 }
 
-/* The wafer lies in this slot, flat, within 0.1 mm of its middle. */
+/* True if the wafer lies flat in this slot, within 0.1 mm of its middle. */
 static inline void assert_lies_in(size_t wafer, int station, int slot) {
     wh_pose_t pose;
     int32_t holder;

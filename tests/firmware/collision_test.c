@@ -1,15 +1,16 @@
-/* An example to copy: the same controller, and what its arm runs into. Besides libwaferhand.a it needs libwaferhand_collision.a and
- * libccd, so that there is no float build of it. */
+/* An example to copy: the same controller, with checks for what its arm runs into. Besides
+ * libwaferhand.a it needs libwaferhand_collision.a and libccd, so it has no float build. */
 #include "waferhand_collision.h"
 
 #include "bench.h"
 
-/* Part 0 is the blade, 160 x 150 x 3 mm, its upper side the contact plane; parts 1 and 2 are wafers 0 and 1. */
+/* Part 0 is the blade, 160 x 150 x 3 mm, its upper side the contact plane; parts 1 and 2 are wafers
+ * 0 and 1. */
 static wh_part_t blade;
 static wh_world_config_t shapes;
 static wh_world_t *world;
 
-/* As malloc's would be. */
+/* Aligned as malloc's memory would be. */
 static union {
     double number;
     void *pointer;
@@ -26,7 +27,7 @@ static wh_world_input_t seen(const wh_grasp_t *table) {
     return input;
 }
 
-/* The machine shows each slice to the world, which adds its events to the slice's own. */
+/* The machine passes each slice to the world, which adds its events to the slice's own. */
 static void look(void *user, const wh_command_t *order, const wh_gripper_input_t inputs[],
                  const wh_grasp_t *table, wh_event_list_t *list) {
     const wh_world_input_t input = seen(table);
@@ -77,12 +78,13 @@ static void a_good_get_and_put_touch_nothing(void **unused) {
     assert_int_equal(put(1, 1), CONTROLLER_READY);
     assert_not_said("hit");
     assert_not_said("undecided");
-    /* Slot 1 of station 1 is 10 mm below wafer 1. The other wafer comes in 3 mm above its plane and 0.48 above the blade. */
+    /* Slot 1 of station 1 is 10 mm below wafer 1. The other wafer comes in 3 mm above its plane and
+     * 0.48 mm above the blade. */
     const wh_clearance_t *nearest = &wh_world_clearances(world)[WH_CLEARANCE_WAFER_WAFER];
     assert_true(nearest->gap > 5.72 && nearest->gap < 5.77);
 }
 
-/* Taught 3.4 mm too high the blade goes in at the wafer's own height. */
+/* If it is taught 3.4 mm too high, the blade goes in at the wafer's own height. */
 static void a_station_taught_too_high_is_a_collision(void **unused) {
     (void)unused;
     taught[0].z += 3.4;
@@ -91,7 +93,8 @@ static void a_station_taught_too_high_is_a_collision(void **unused) {
     assert_said("part 0 and part 1 touch at ");
 }
 
-/* No switch tells the firmware that a wafer lies in the slot: the blade, on its way in above the slot's plane, runs into it. */
+/* No switch tells the firmware that a wafer lies in the slot. The blade comes in above the slot's
+ * plane and runs into the wafer. */
 static void a_put_onto_a_wafer_is_a_collision(void **unused) {
     (void)unused;
     assert_int_equal(get(0, 1), CONTROLLER_READY);

@@ -6,7 +6,7 @@
 static const double speeds[AXES] = {180, 1000, 300, 180};
 #define STROKE_SPEED 20.0
 
-/* A PUT lets go this far above the slot's plane. */
+/* A PUT releases the wafer this far above the slot's plane. */
 #define RELEASE_HEIGHT 0.25
 
 void controller_init(controller_t *controller, registers_t *registers, const taught_t *stations, int count) {
@@ -27,7 +27,7 @@ static bool is_slot(const controller_t *c, int station, int slot) {
     return station >= 0 && station < c->station_count && slot >= 1 && slot <= c->stations[station].slots;
 }
 
-/* A GET goes in below the wafer and lifts it out of the slot; a PUT is its mirror. */
+/* A GET goes in below the wafer and lifts it out of the slot; a PUT does the reverse. */
 static void plan(controller_t *c, int station, int slot) {
     const taught_t *taught = &c->stations[station];
     const double plane = taught->z + (slot - 1) * taught->pitch;
@@ -69,7 +69,7 @@ answer_t controller_put(controller_t *controller, int station, int slot) {
 
 /* ------------------------------------------------------------------------------------------------- motion */
 
-/* One axis goes on for a tick; true if it was there already. */
+/* Moves one axis for a tick; true if it was already there. */
 static bool move(controller_t *c, int axis, double target, double speed) {
     const double left = target - c->registers->axis[axis];
     const double step = speed * TICK_S;
@@ -91,7 +91,7 @@ static bool turn(controller_t *c) {
     return there;
 }
 
-/* A GET opens the vacuum below the wafer; a PUT shuts it just above the slot. */
+/* A GET opens the vacuum valve below the wafer; a PUT shuts it just above the slot. */
 static bool reach_switch(controller_t *c) {
     if (c->is_put && !move(c, Z, c->switch_at, STROKE_SPEED)) {
         return false;
@@ -107,7 +107,7 @@ static void end(controller_t *c, answer_t answer) {
     c->answer = answer;
 }
 
-/* What lies on the blade without vacuum goes back into its slot: the rest of the GET is a PUT. */
+/* A wafer that lies on the blade without vacuum goes back into its slot: the rest of the GET is a PUT. */
 static void put_back(controller_t *c) {
     c->outcome = ERROR_NOT_TAKEN;
     c->is_put = true;
@@ -126,7 +126,7 @@ static void wait_for_sensor(controller_t *c) {
     ++c->waited;
 }
 
-/* True if the phase is over and its successor is to begin. */
+/* True if the phase is over and the next one is to begin. */
 static bool run_phase(controller_t *c) {
     switch (c->phase) {
     case TURN:
@@ -163,7 +163,7 @@ static void begin_next(controller_t *c) {
     c->waited = 0;
 }
 
-/* The arm carries a wafer, says the command, but not the switch. */
+/* According to the command the arm carries a wafer, but the switch is off. */
 static bool is_lost(const controller_t *c) {
     const bool carries = c->is_put ? c->phase == TURN || c->phase == EXTEND : c->phase == RETRACT;
     return carries && c->outcome == CONTROLLER_READY && !c->registers->sensor;

@@ -1,5 +1,6 @@
-/* An example: the firmware of a wafer robot's controller, as small as one can be that does GET and PUT. It knows registers, taught
- * stations and time. Nothing in it knows of Waferhand: a firmware of yours stands in its place. */
+/* An example: the firmware of a wafer robot's controller, as small as a controller with GET and PUT
+ * can be. It knows registers, taught stations and time. Nothing in it depends on Waferhand: put
+ * your own firmware in its place. */
 #ifndef CONTROLLER_H
 #define CONTROLLER_H
 
@@ -14,7 +15,7 @@ typedef struct {
     bool sensor; /* the vacuum switch under the blade */
 } registers_t;
 
-/* Where a station was taught: slot 1, and how the blade goes in. */
+/* The taught station: slot 1, and how the blade goes in. */
 typedef struct {
     double theta, reach, z; /* degrees, mm */
     int slots;
@@ -33,7 +34,7 @@ typedef enum {
     ERROR_WAFER_LOST      /* the switch went off on the way */
 } answer_t;
 
-/* What the controller does just now: one phase of a command after the other, in this order. */
+/* The phase in which the controller is; the phases of a command follow each other in this order. */
 typedef enum {
     IDLE,
     TURN,   /* to the station, at the height of entry */
@@ -65,11 +66,12 @@ typedef struct {
 /* The arm stands retracted, the vacuum is off. */
 void controller_init(controller_t *controller, registers_t *registers, const taught_t *stations, int count);
 
-/* A command begins: CONTROLLER_BUSY, or why it does not. `station` counts from 0, `slot` from 1. */
+/* Begins a command: returns CONTROLLER_BUSY, or why it does not begin. `station` counts from 0,
+ * `slot` from 1. */
 answer_t controller_get(controller_t *controller, int station, int slot);
 answer_t controller_put(controller_t *controller, int station, int slot);
 
-/* To be called each millisecond. */
+/* Call it each millisecond. */
 void controller_tick(controller_t *controller);
 
 #endif

@@ -1,4 +1,4 @@
-/* An example to copy: tests of a controller's firmware, which is controller.c. bench.h has the simulated machine around it. */
+/* An example to copy: tests of the firmware in controller.c. bench.h simulates the machine around it. */
 #include "bench.h"
 
 /* -------------------------------------------------------------------------------------------------- good commands */
@@ -20,7 +20,7 @@ static void a_wafer_goes_from_slot_to_slot(void **unused) {
     assert_not_said("off centre");
 }
 
-/* The switch comes on some time after the blade has touched the wafer: the arm must not leave before. */
+/* The switch comes on some time after the blade touches the wafer. The arm must wait for it. */
 static void a_get_waits_for_the_vacuum(void **unused) {
     (void)unused;
     int64_t touched = 0;
@@ -35,7 +35,7 @@ static void a_get_waits_for_the_vacuum(void **unused) {
     assert_true(command.seq > sensed);
 }
 
-/* A pump three times as slow still comes in time. */
+/* A pump three times as slow is still in time. */
 static void a_slower_pump_is_waited_for(void **unused) {
     (void)unused;
     break_it(WH_FAULT_SLOW_VACUUM, WH_REAL(0.3));
@@ -65,7 +65,7 @@ static void an_empty_slot_is_found_empty(void **unused) {
     assert_int_equal(get(0, 1), CONTROLLER_READY); /* the next command works */
 }
 
-/* The slot was taught 55 mm short: the stroke goes past the wafer, and Waferhand says what was wrong. */
+/* The slot was taught 55 mm short. The stroke misses the wafer, and Waferhand names the cause. */
 static void a_badly_taught_slot_is_explained(void **unused) {
     (void)unused;
     taught[0].reach = 645;
@@ -74,7 +74,7 @@ static void a_badly_taught_slot_is_explained(void **unused) {
     assert_lies_in(0, 0, 1);
 }
 
-/* Without vacuum the wafer lies on the blade all the same: the arm must put it back, not drag it along. */
+/* The wafer lies on the blade even without vacuum. The arm must put it back instead of dragging it along. */
 static void a_dead_pump_leaves_the_wafer_in_its_slot(void **unused) {
     (void)unused;
     break_it(WH_FAULT_NO_VACUUM, 0);
@@ -117,7 +117,7 @@ static void a_leak_on_the_way_stops_the_arm(void **unused) {
     assert_held(0);
 }
 
-/* The valve does not shut: the arm must not go down and away with a wafer that still hangs on it. */
+/* The valve does not shut. The arm must not go down and away while a wafer still hangs on it. */
 static void a_stuck_valve_ends_the_put_in_the_slot(void **unused) {
     (void)unused;
     assert_int_equal(get(0, 1), CONTROLLER_READY);
@@ -145,7 +145,7 @@ static void a_put_beside_the_middle_is_seen_from_outside(void **unused) {
 
 /* ------------------------------------------------------------------------------------------------------ a snapshot */
 
-/* The way to the slot is simulated once; each fault is then tried from there. */
+/* The way to the slot is simulated once; each fault is then tried from that state. */
 static void many_faults_are_tried_from_one_moment(void **unused) {
     (void)unused;
     static const wh_fault_kind_t kinds[] = {WH_FAULT_NO_VACUUM, WH_FAULT_SENSOR_OFF, WH_FAULT_COMMAND_LOST};

@@ -1,7 +1,7 @@
-/* A program of somebody else's, as C99 and as C++11: whatever it is compiled with, and the library with, it prints
- * the same lines. Needs nothing but the library.
+/* A program as a user of the library writes it, in C99 and in C++11. It prints the same lines with
+ * every compiler, both of the program and of the library. It needs nothing but the library.
  *
- * Its own arithmetic rounds once in each statement, so that only the library's headers are on trial. */
+ * Its own arithmetic rounds once in each statement, so that only the library's headers are tested. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static wh_real_t random_number(void) {
     return (wh_real_t)(int32_t)(state >> 40) / WH_REAL(16777216) - WH_REAL(0.5);
 }
 
-/* Almost level, near the origin. */
+/* Poses that are almost level, near the origin. */
 static wh_pose_t random_pose(void) {
     wh_pose_t pose;
     const wh_real_t roll = 10 * random_number();
@@ -36,7 +36,8 @@ static wh_pose_t random_pose(void) {
     return pose;
 }
 
-/* The header's verdict at the very limit, where one rounding less turns it: how often it is not the library's. */
+/* Poses at the very limit, where one rounding less changes the verdict. Counts how often header and
+ * library differ. */
 static int verdicts_that_differ(void) {
     int differ = 0;
     for (int i = 0; i < POSES; ++i) {
@@ -60,13 +61,13 @@ static int verdicts_that_differ(void) {
     return differ;
 }
 
-/* What flags of a compiler could change, and what the library then would read wrongly. */
+/* Layouts that compiler flags could change, so that the library would read them wrongly. */
 static void print_sizes(void) {
     printf("sizes %u %u %u %u %u\n", (unsigned)sizeof(wh_status_t), (unsigned)sizeof(wh_check_t),
            (unsigned)sizeof(wh_event_kind_t), (unsigned)sizeof(wh_fault_kind_t), (unsigned)sizeof(bool));
 }
 
-/* A wafer on the way up through a slot is taken, drawn onto the pads, carried and let go. */
+/* A wafer on the way up through a slot is taken, drawn onto the pads, carried and released. */
 static int play(wh_simulator_t *simulator, wh_wafer_t *wafers, wh_gripper_t *grippers) {
     wh_grasp_config_t config = wh_grasp_config_default();
     wh_grasp_storage_t storage;

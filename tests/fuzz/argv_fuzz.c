@@ -1,7 +1,9 @@
-/* Any words as the program's arguments, one a line, the subcommand first: they are refused, or the options that the
- * subcommand would go on with are in their ranges. Nothing is run, opened or written.
+/* Any words as the program's arguments, one on each line, the subcommand first. They are refused,
+ * or the options that the subcommand would use are in their ranges. Nothing is run, opened or
+ * written.
  *
- * The linker puts __wrap_... in the place of what would end the process or begin the work: see tests/fuzz/fuzz.mk. */
+ * The linker replaces functions that end the process or begin the work by __wrap_...: see
+ * tests/fuzz/fuzz.mk. */
 #include <argp.h>
 #include <math.h>
 #include <setjmp.h>
@@ -31,8 +33,8 @@ static int word_count;
 
 /* ------------------------------------------------------------------------------------------------- parsing */
 
-/* argp_error ends the process; here it ends the parser's call, which then fails. The first call alone does not:
- * argp would keep its memory. */
+/* argp_error ends the process; here it ends the parser's call, which then fails. The first call
+ * alone does not end it: argp would keep its memory. */
 static jmp_buf parser_call;
 static argp_parser_t own_parser;
 
@@ -131,7 +133,7 @@ int __wrap_wh_run_and_print(wh_run_arguments_t *arguments) {
     return WH_EXIT_USAGE;
 }
 
-/* Two of the files are one. */
+/* Two of the files are the same one. */
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints) {
     const bool apart = __real_wh_files_are_apart(files, count, prints);
     refused = refused || !apart;
@@ -155,7 +157,7 @@ bool __wrap_wh_study_open(wh_study_t *study) {
     return false;
 }
 
-/* Ranges are read as they are; one that is none is refused. */
+/* Ranges are read as they are; an invalid one is refused. */
 bool __wrap_wh_sweep_open(wh_script_sweep_t *sweep) {
     refused = refused || !__real_wh_sweep_open(sweep);
     return !refused;
@@ -188,7 +190,7 @@ bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test
     return false;
 }
 
-/* It would wait for somebody to save a file. */
+/* It would wait until somebody saves a file. */
 int __wrap_wh_watch(const wh_watch_options_t *options) {
     reached = true;
     REQUIRE(options->act != NULL);
@@ -241,7 +243,7 @@ bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *o
     return false;
 }
 
-/* `serve`, at whose ports nothing is listened for. */
+/* `serve`, with ports at which nothing listens. */
 bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
     reached = true;
     if (!refused) {
@@ -282,13 +284,14 @@ bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *recor
     return false;
 }
 
-/* `sim` hands its parameters to a sandbox before it reads the layout: one serves a thousand inputs. */
+/* `sim` hands its parameters to a sandbox before it reads the layout: one sandbox serves a thousand
+ * inputs. */
 static wh_sandbox_t *shared;
 static unsigned uses;
 
 void __real_wh_sandbox_free(wh_sandbox_t *sandbox);
 
-/* The real function sets each parameter: what it refuses it says in one line. */
+/* The real function sets each parameter; it explains a refusal in one line. */
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                          size_t count, wh_sandbox_result_t *result) {
     bool set = true;
@@ -321,7 +324,7 @@ const wh_layout_t *__wrap_wh_layout_load(wh_sandbox_t *sandbox, const char *path
     return NULL;
 }
 
-/* The fuzzer, too, opens files: to keep what it finds. */
+/* The fuzzer opens files, too: it saves its findings. */
 FILE *__wrap_fopen(const char *path, const char *mode) {
     if (mode[0] == 'w') {
         return __real_fopen(path, mode);
@@ -341,7 +344,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
 
 /* ------------------------------------------------------------------------------------------------- the words */
 
-/* argp's own hidden option, which sleeps for an hour: it is abbreviated by its first letters, too. */
+/* argp's own hidden option, which sleeps for an hour; its abbreviations by the first letters count, too. */
 static bool sleeps(const char *word) {
     return strncmp(word, "--H", 3) == 0;
 }

@@ -1,8 +1,9 @@
-/* Any text as a dialect's file, and what a host sends to it.
+/* Any text as a dialect's file, and the bytes that a host sends to it.
  *
- * The text goes up to the first byte 1E; frames follow, each ended by one. A text that is no dialect is refused in one line that
- * names the file. Of one that is, each call keeps its budget: a mistake, in whatever of its functions, is one line that
- * names the file, and what is told in its place is told. Nothing that it does to its sandbox ends the process. */
+ * The text ends at the first byte 1E; frames follow, each ended by such a byte. A text that is no
+ * dialect is refused in one line that names the file. In a valid dialect each call keeps its
+ * budget. A mistake in any of its functions gives one line that names the file, and its substitute
+ * is reported. Nothing that the dialect does to its sandbox ends the process. */
 #include <lauxlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -12,7 +13,7 @@
 #include "layout/layout.h"
 
 #define FRAME_END 0x1E
-/* At most, of an input. */
+/* The largest number in an input. */
 #define FRAMES 16
 
 static const char status[] = "phase=idle seq=1965 time=1.965 theta=0 r=300 z=900 yaw=-1.5 "
@@ -20,7 +21,7 @@ static const char status[] = "phase=idle seq=1965 time=1.965 theta=0 r=300 z=900
 
 static const wh_layout_t *layout;
 static wh_port_mechanism_t cell;
-static char path[40]; /* of a file in memory */
+static char path[40]; /* the path of a file in memory */
 static int file;
 static wh_dialect_t dialect;
 
@@ -54,7 +55,7 @@ static void check_message(void) {
     REQUIRE(strstr(dialect.message, path) != NULL && fuzz_is_one_line(dialect.message));
 }
 
-/* What is no frame of its replies is a mistake as well, which is found out before anything is sent. */
+/* A reply that is no frame is a mistake as well; it is detected before anything is sent. */
 static void check_text(void) {
     uint8_t frame[WH_FRAMING_LINE];
     for (size_t at = 0; dialect.text && at <= dialect.text_size;) {
@@ -79,7 +80,7 @@ static void tell(wh_encoder_t encoder, const wh_told_t *told) {
 
 /* ------------------------------------------------------------------------------------------------- frames */
 
-/* What came of it: well, and as an error that its bytes choose. */
+/* The outcomes: success, and an error that the input's bytes choose. */
 static void answer(const wh_request_t *request, size_t size) {
     const wh_status_t number = (wh_status_t)(1 + size % 127);
     wh_result_t result = {.answer = "OK wafer=\"Wafer 1\" codes=1024 seconds=1.965",

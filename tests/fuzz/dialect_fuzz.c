@@ -1,8 +1,10 @@
-/* Any frames to each of lua/dialects, in its sandbox, as a controller takes them.
+/* Any frames to each of lua/dialects, in its sandbox, in the way a controller receives them.
  *
- * The first byte chooses the dialect. Frames follow, each ended by the byte 1E; what begins with the byte 1D goes to the framer
- * as it is, the rest as the body of a good frame. Nothing that a host sends is a mistake in the dialect: its functions keep
- * their budgets, each request's lines are such as are typed, and whatever comes of it is told in frames that a host can read. */
+ * The first byte chooses the dialect. Frames follow, each ended by the byte 1E. A frame that begins
+ * with the byte 1D goes to the framer unchanged; the rest become bodies of good frames. Nothing
+ * that a host sends is a mistake in the dialect. Its functions keep their budgets, each request
+ * becomes lines that an operator could type, and every result is reported in frames that a host can
+ * read. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,7 +43,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
 
 /* ------------------------------------------------------------------------------------------------ answers */
 
-/* Each body is a frame: what would be a mistake of the dialect is none. */
+/* Each body is a frame, so the dialect makes no mistake. */
 static void check_text(wh_encoder_t encoder, bool made) {
     uint8_t frame[WH_FRAMING_LINE];
     if (!made) {
@@ -78,7 +80,7 @@ static void refuse(const wh_request_t *request, const wh_failure_t *failure) {
     tell(WH_ENCODE_REFUSE, &told);
 }
 
-/* What came of it: well, and as an error that its bytes choose. */
+/* The outcomes: success, and an error that the input's bytes choose. */
 static void answer(const wh_request_t *request, wh_encoder_t encoder, const wh_lines_t *lines, size_t size) {
     const wh_status_t number = (wh_status_t)(1 + size % 127);
     char error[200];

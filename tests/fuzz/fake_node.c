@@ -96,11 +96,11 @@ void wh_node_close(wh_node_t *node) {
 }
 
 int64_t wh_node_clock_us(void) {
-    /* Never 0, and no two the same, as with a real one. */
+    /* The number is never 0 and never repeats, as with a real node. */
     return ++fuzz_clock_us;
 }
 
-/* What would be said must be one line. Nobody hears it. */
+/* A complaint must be one line. Nobody reads it. */
 __attribute__((format(printf, 1, 0))) static void check_line(const char *format, va_list arguments) {
     char text[600];
     REQUIRE(vsnprintf(text, sizeof text, format, arguments) > 0);

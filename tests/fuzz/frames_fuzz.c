@@ -1,8 +1,9 @@
 /* Any bytes on a line, and any bytes as a transcript.
  *
- * The first byte chooses: a description of frames, or a transcript. What a framer tells does not depend on how the bytes are
- * cut, every byte is told of or counted as passed over, and what is encoded is a good frame with the same body. A transcript
- * that is read, written in either form and read again is the same. */
+ * The first byte chooses: a description of frames, or a transcript. A framer's output does not
+ * depend on how the bytes are cut. Every byte is reported, or counted as skipped. An encoded body
+ * is a good frame with the same body. A transcript that is read, written in either form and read
+ * again is the same. */
 #include <string.h>
 
 #include "fuzz.h"
@@ -30,7 +31,7 @@ static wh_framing_t framing_of(uint8_t choice) {
     return framing;
 }
 
-/* Appends what was told to a text of numbers; the hash of its bytes tells the rest. */
+/* Appends the framer's output to a text of numbers; the hash of its bytes stands for the rest. */
 static void note(uint8_t told[TOLD], size_t *size, const wh_frame_t *frame) {
     REQUIRE(frame->size >= 1 && frame->size <= 64 && frame->body_size <= frame->size);
     REQUIRE(frame->body >= frame->bytes && frame->body + frame->body_size <= frame->bytes + frame->size);
@@ -44,7 +45,7 @@ static void note(uint8_t told[TOLD], size_t *size, const wh_frame_t *frame) {
     }
 }
 
-/* A byte's time is 10 us for each byte before it, and a pause before each 0. */
+/* The time of a byte is 10 us for each byte before it, plus a pause before each 0. */
 static int64_t time_of(const uint8_t *data, size_t i) {
     static size_t pauses;
     pauses = i == 0 ? 0 : pauses;
@@ -147,7 +148,7 @@ static void check_transcript(const uint8_t *data, size_t size) {
     wh_transcript_t first;
     wh_transcript_t again;
     if (wh_transcript_parse(&first, "fuzz", data, size)) {
-        /* JSON has its times as doubles. */
+        /* In JSON times are doubles. */
         bool has_json = true;
         for (size_t i = 0; i < first.count; ++i) {
             has_json = has_json && first.entries[i].time_us < 9000000000000000;

@@ -1,4 +1,5 @@
-/* What the fuzz targets share. A target is a file *_fuzz.c with LLVMFuzzerTestOneInput, run from the project's root. */
+/* Functions that the fuzz targets share. A target is a file *_fuzz.c with LLVMFuzzerTestOneInput,
+ * run from the project's root. */
 #ifndef WH_TESTS_FUZZ_FUZZ_H
 #define WH_TESTS_FUZZ_FUZZ_H
 
@@ -14,7 +15,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv);
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max_size);
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size, unsigned int seed);
 
-/* A property of every input: broken, the fuzzer keeps the input and says where. */
+/* A property of every input. If it is broken, the fuzzer keeps the input and prints the place. */
 #define REQUIRE(condition) fuzz_require((condition), #condition, __FILE__, __LINE__)
 
 static inline void fuzz_require(bool condition, const char *text, const char *file, int line) {
@@ -24,13 +25,13 @@ static inline void fuzz_require(bool condition, const char *text, const char *fi
     }
 }
 
-/* What the program says on standard error is not for the fuzzer's log. */
+/* The program's standard error is kept out of the fuzzer's log. */
 static inline void fuzz_silence(void) {
     stderr = fopen("/dev/null", "w");
     REQUIRE(stderr != NULL);
 }
 
-/* One line, and none that a terminal would obey. */
+/* One line, without control characters that a terminal would obey. */
 static inline bool fuzz_is_one_line(const char *text) {
     for (; *text != '\0'; ++text) {
         if ((unsigned char)*text < 0x20 || *text == 0x7f) {

@@ -1,5 +1,6 @@
 # Fuzz targets for clang's libFuzzer; tests/verify/fuzz builds them, with its flags. Each is linked with an archive of all
-# parts, so that it can bring one of its own: what it defines itself is not taken from there. The sanitizer checks types of C++, too.
+# parts. A target can bring a part of its own: functions that it defines are not taken from the archive. The sanitizer checks
+# types of C++, too.
 
 FUZZERS := $(basename $(wildcard tests/fuzz/*_fuzz.c))
 FUZZ_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(filter-out %_fuzz.c,$(wildcard tests/fuzz/*.c)))
@@ -8,16 +9,20 @@ FUZZ_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(filter-out %_fuzz.c,$(wildcard tes
 fuzzers: $(FUZZERS:%=$(B)/%)
 
 $(FUZZERS:%=$(B)/obj/%.o) $(FUZZ_SUPPORT): $(B)/lcm/waferhand_messages.h
+# No target calls the estimates: Eigen under sanitizers took a third of the build.
+ifneq ($(findstring fuzzer-no-link,$(EXTRA)),)
+$(filter $(B)/obj/lib/estimate/%,$(PROGRAM_CXX_OBJECTS)): override EXTRA := -w
+endif
 $(B)/fuzz_parts.a: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/sources
 	$(archive)
 
-# Lua's memory from snapshots; LCM without a network; argp without exits, and nothing behind it.
+# Lua's memory comes from snapshots, LCM has no network, and argp neither exits nor starts the work.
 $(B)/tests/fuzz/script_fuzz $(B)/tests/fuzz/line_fuzz $(B)/tests/fuzz/dialect_fuzz: $(B)/obj/tests/fuzz/snapshot.o
 $(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o
 WRAPPED := $(shell grep -oE '__wrap_[a-z_]+' tests/fuzz/argv_fuzz.c | sed 's/__wrap_//' | sort -u)
 $(B)/tests/fuzz/argv_fuzz: LINK += $(WRAPPED:%=-Wl,--wrap=%)
 
-# What a target puts in the place of a part must be one: a name that has changed would leave the part itself in place.
+# A target's replacement must replace an existing part: otherwise, after a change of names, the part itself would stay in place.
 fuzzers: check-fuzz-parts
 .PHONY: check-fuzz-parts check-fuzz-names
 check-fuzz-parts: $(B)/fuzz_parts.a $(FUZZERS:%=$(B)/obj/%.o) $(FUZZ_SUPPORT)

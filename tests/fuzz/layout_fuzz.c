@@ -1,5 +1,6 @@
-/* Any text as a layout: refused in one line that names the file, or a cell that can be set up as it is, told in a message,
- * and taken back from it. Read in a second sandbox the same text is refused or read alike. */
+/* Any text as a layout. It is refused in one line that names the file, or it is a cell that can be
+ * set up unchanged, sent in a message, and read back from it. In a second sandbox the same text is
+ * refused or read alike. */
 #include <lauxlib.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ typedef struct {
     const wh_layout_t *layout;
 } job_t;
 
-/* As wh_layout_load does it, but from memory. Runs protected. */
+/* Loads as wh_layout_load does, but from memory. It runs protected. */
 static int load(lua_State *L) {
     job_t *const job = lua_touserdata(L, 1);
     wh_sandbox_result_t result;
@@ -77,7 +78,7 @@ static void check_set_up(const wh_layout_t *layout) {
     free(wafers);
 }
 
-/* What `sim` tells of its cell is what `replay` makes its own of. */
+/* `replay` builds its cell from the message in which `sim` describes its own. */
 static void check_message(const wh_layout_t *layout) {
     static uint8_t bytes[WH_LINK_DATAGRAM];
     static wh_link_cell_t room;
@@ -89,7 +90,7 @@ static void check_message(const wh_layout_t *layout) {
     REQUIRE(wh_link_cell_from_layout(layout, &identity, &room));
     const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &room.message);
     if (size < 0) {
-        return; /* no datagram holds it */
+        return; /* no datagram can hold it */
     }
     REQUIRE(wh_link_decode_cell(bytes, (size_t)size, &cell));
     wh_layout_t *const again = wh_link_layout_from_cell(&cell);

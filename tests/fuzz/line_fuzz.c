@@ -1,5 +1,6 @@
-/* Any bytes as an operator's lines, one after the other in one cell: each is answered in one line, OK or an error's number,
- * a line that is not understood moves nothing, and the word under the cursor completes to what can be typed. */
+/* Any bytes as an operator's lines, one after the other in one cell. Each is answered in one line,
+ * OK or an error's number. A line that is not understood moves nothing, and the word under the
+ * cursor completes to words that can be typed. */
 #include <string.h>
 
 #include "fuzz.h"
@@ -54,7 +55,7 @@ static void check_completion(const char *line) {
 static void execute(const char *line) {
     static char answer[WH_SESSION_ANSWER_BYTES];
     const uint64_t before = wh_grasp_hash(&session.mcs.local.simulator.table);
-    /* A short answer now and then, for its end. */
+    /* Now and then the buffer is short, to test the answer's end. */
     const size_t room = strlen(line) % 16 == 15 ? 40 : sizeof answer;
     const wh_status_t status = wh_session_execute(&session, line, answer, room);
     if (room == sizeof answer) {
@@ -84,7 +85,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (next) {
             *next = '\0';
         }
-        /* RESET makes a new sandbox, which the snapshot does not know: tests/unit/mcs/session_test.c has it. */
+        /* RESET makes a new sandbox, which the snapshot does not know:
+         * tests/unit/mcs/session_test.c tests it. */
         if (!wh_session_says(line, "RESET")) {
             execute(line);
         }

@@ -1,8 +1,9 @@
-/* Any bytes as a recording, read and stepped again as `waferhand replay` does it: the reader's places add up, the counts of
- * each run too, the exit status says what was found, and --json prints JSON. A block of slices that can be decoded can be
- * encoded, to the same slices.
+/* Any bytes as a recording, read and stepped again as `waferhand replay` does it. The reader's
+ * places add up, and so do the counts of each run. The exit status reports the findings, and --json
+ * prints JSON. A block of slices that can be decoded can be encoded, to the same slices.
  *
- * Mutation goes event by event: lengths and sync words of a log are right more often than chance would have it. */
+ * Mutation changes single events, so that lengths and sync words of a log are right more often than
+ * by chance. */
 #include <fcntl.h>
 #include <jansson.h>
 #include <string.h>
@@ -51,7 +52,7 @@ static void check_runs(const wh_replay_t *replay) {
     }
 }
 
-/* Adds up what a block gives, which is then the same of another. */
+/* Hashes a block's data; another block with the same data gives the same value. */
 static void give(const wh_slices_t *slices, wh_slices_t *to) {
     waferhand_command command;
     int32_t told[WH_GRIPPERS];
@@ -92,7 +93,7 @@ static void check_event(const wh_log_t *log, wh_log_result_t result, uint64_t *c
     REQUIRE(strlen(log->channel) < sizeof log->channel);
 }
 
-/* Places add up: nothing of the file is left out, nothing is read twice. */
+/* Places add up: no part of the file is left out, and none is read twice. */
 static void check_places(FILE *in, wh_log_t *log, size_t size) {
     uint64_t count = 0;
     uint64_t end = 0;
@@ -109,7 +110,7 @@ static void check_places(FILE *in, wh_log_t *log, size_t size) {
     REQUIRE(log->offset == end && (result == WH_LOG_CUT || end == size));
 }
 
-/* Reads the whole log; returns what it shows. */
+/* Reads the whole log; returns its findings. */
 static wh_reading_verdict_t read_log(size_t size) {
     static wh_replay_t replay;
     static wh_log_t log;
@@ -118,11 +119,12 @@ static wh_reading_verdict_t read_log(size_t size) {
     REQUIRE(in != NULL);
     check_places(in, &log, size);
     memset(&replay, 0, sizeof replay);
-    wh_reading_replay(in, &log, &replay, &reading);
+    const wh_log_files_t files = {.files = {in}, .count = 1};
+    wh_reading_replay(&files, &log, &replay, &reading);
     check_runs(&replay);
     const wh_reading_verdict_t verdict = wh_reading_judge(&replay, &reading, false, NULL);
     const wh_reading_verdict_t lenient = wh_reading_judge(&replay, &reading, true, NULL);
-    /* Leniency excuses what is missing, and nothing else. */
+    /* Leniency excuses missing data, and nothing else. */
     REQUIRE(verdict == lenient || verdict == WH_READING_INCOMPLETE);
     REQUIRE(verdict != WH_READING_SAME || (reading.damage_count == 0 && !reading.is_cut));
     wh_replay_close(&replay);
@@ -133,7 +135,7 @@ static wh_reading_verdict_t read_log(size_t size) {
 
 /* ------------------------------------------------------------------------------------------------- reporting */
 
-/* Whatever is read can be shown: as JSON that can be read back. */
+/* All data that can be read can be shown, as JSON that can be read back. */
 static void report(void) {
     static wh_log_run_t run;
     const wh_log_run_options_t options = {.path = path};
@@ -164,7 +166,7 @@ static void report(void) {
 
 /* ---------------------------------------------------------------------------------------------- the program */
 
-/* Runs a subcommand with standard output in memory, to be freed. */
+/* Runs a subcommand with standard output in memory; the caller frees it. */
 static char *print(int *status, int argc, char **argv) {
     char *text = NULL;
     size_t size = 0;
@@ -217,7 +219,7 @@ static void put_number(uint8_t *data, size_t at, uint32_t value) {
     }
 }
 
-/* The length of the event at the beginning of so many bytes, 0 if there is none. */
+/* The length of the event at the beginning of this many bytes, 0 if there is none. */
 static size_t event_length(const uint8_t *data, size_t left) {
     if (left < HEADER) {
         return 0;
@@ -226,7 +228,7 @@ static size_t event_length(const uint8_t *data, size_t left) {
     return length <= left ? (size_t)length : 0;
 }
 
-/* Changes one event's data, puts its length and check right. Returns the log's new size. */
+/* Changes one event's data, and corrects its length and check. Returns the log's new size. */
 static size_t mutate_event(uint8_t *data, size_t at, size_t size, size_t max_size, bool seal) {
     static uint8_t rest[1 << 16];
     const size_t begin = at + HEADER + number_at(data, at + 20);

@@ -1,9 +1,10 @@
-/* Any datagrams on the channels of the two processes, to the simulator's real handlers or to motion control's, over a network
- * that is a function call and a clock that is a number.
+/* Any datagrams on the channels of the two processes, to the real handlers of the simulator or of
+ * motion control. The network is a function call and the clock is a number.
  *
- * The simulator: a datagram that is not stepped or taken over leaves the state as it was; whatever state it comes to,
- * another simulator takes over with the same hash. Motion control: every state that it takes is sound and of the hash that
- * it says, every event of it can be reported; else what it knows stays as it was. */
+ * The simulator: a datagram that is neither stepped nor taken over leaves the state unchanged.
+ * Another simulator takes over every state that it reaches, with the same hash. Motion control:
+ * every state that it takes over is sound and has the hash that it names, and each of its events
+ * can be reported. Otherwise the known state stays unchanged. */
 #include <string.h>
 
 #include "fake_node.h"
@@ -20,9 +21,9 @@
 
 /* ------------------------------------------------------------------------------------------------- datagrams */
 
-/* A sequence of datagrams in the bytes of an input, and what a fuzzer cannot guess put right in them. */
+/* A sequence of datagrams in the bytes of an input; fields that a fuzzer cannot guess are corrected. */
 
-/* Each begins with four bytes: channel, what to put right, and the length, big-endian. */
+/* Each begins with four bytes: channel, the fields to correct, and the length, big-endian. */
 typedef struct {
     const char *channel;
     uint8_t *bytes; /* in memory of the frame's own, free for use until the next */
@@ -32,11 +33,11 @@ typedef struct {
 typedef struct {
     const uint8_t *at;
     size_t left;
-    const wh_link_identity_t *identity; /* whose run and layout a message is made to belong to */
+    const wh_link_identity_t *identity; /* a message can be made to belong to this run and layout */
     int64_t next_seq;                   /* likewise */
 } frames_t;
 
-/* What to put right, or-ed. */
+/* The fields to correct, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };
 
 static const char *const channels[] = {WH_CHANNEL_COMMAND,   WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
@@ -71,7 +72,7 @@ static void put_word(const frame_t *frame, size_t at, int64_t value) {
     }
 }
 
-/* wh_grasp_hash of what a state message says, in its own terms; 0 when it cannot be. */
+/* wh_grasp_hash over a state message, computed from the message's fields; 0 if it cannot be computed. */
 static uint64_t hash_of(const waferhand_state *message) {
     static wh_link_arrays_t arrays;
     const wh_tolerance_t tolerance = wh_tolerance_paper();
@@ -90,7 +91,7 @@ static uint64_t hash_of(const waferhand_state *message) {
     return wh_physics_state_hash(&arrays.physics, &table);
 }
 
-/* Where the hash stands: fingerprint, four words, status and five counts before it. */
+/* The offset of the hash: fingerprint, four words, status and five counts stand before it. */
 #define HASH_AT (8 + 4 * 8 + 6 * 4)
 
 static void put_hash(frame_t *frame) {
@@ -126,7 +127,7 @@ static void put_right(const frames_t *frames, frame_t *frame, unsigned what) {
     }
 }
 
-/* The next one; false when there is none. */
+/* The next frame; false if there is none. */
 static bool next_frame(frames_t *frames, frame_t *frame) {
     static uint8_t bytes[WH_LINK_DATAGRAM + 1];
     if (frames->left < 4) {
@@ -169,7 +170,7 @@ DEFINE_CHECK(cell)
 DEFINE_CHECK(edge_scan)
 DEFINE_CHECK(centring)
 
-/* Whatever its channel's decoder takes, LCM encodes to the same bytes. True when it was taken. */
+/* LCM encodes every message that its channel's decoder accepts to the same bytes. True if it was accepted. */
 static bool check_decoding(const frame_t *frame) {
     static bool (*const checks[])(const frame_t *frame) = {again_command,   again_state,   again_state,
                                                            again_mcs,       again_request, again_cell,
@@ -187,7 +188,7 @@ static bool check_decoding(const frame_t *frame) {
 /* An input's first byte. */
 enum { TO_MOTION_CONTROL = 1, FREE_RUNNING = 2, SWEPT = 4 };
 
-/* Not a random one. */
+/* A fixed value instead of a random one. */
 #define RUN 4711
 
 static const wh_layout_t *sampled, *swept;
@@ -213,7 +214,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     return 0;
 }
 
-/* Both arrays in a table that takes over only what is sound. */
+/* Both arrays in a table, which takes over only sound ones. */
 static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
                         const wh_physics_state_t *condition, uint64_t slice, uint64_t hash) {
     static wh_link_arrays_t arrays;
@@ -242,7 +243,7 @@ static void check_cell(const frame_t *frame) {
     wh_layout_t *const made = wh_link_layout_from_cell(&cell);
     if (made) {
         REQUIRE(wh_protocol_server_open(&server, made) == WH_OK);
-        /* A table of nothing would be one that was refused. */
+        /* A table of nothing would count as refused. */
         REQUIRE(server.simulator.table.storage.gripper_count == (size_t)cell.gripper_count);
         REQUIRE(server.simulator.table.storage.wafer_count == (size_t)cell.wafer_count);
     }
@@ -261,7 +262,7 @@ static void check_counters(void) {
     REQUIRE(c->restores == c->restored + c->restore_ignored + c->restore_refused);
 }
 
-/* What goes out can be read; a whole state, by another simulator. */
+/* Sent messages can be read; a whole state can be read by another simulator. */
 static void check_published(const char *channel, const void *data, size_t size) {
     static wh_protocol_server_t twin;
     waferhand_state message;
@@ -325,7 +326,7 @@ static wh_mcs_process_t control;
 static frames_t *incoming;
 static volatile sig_atomic_t stop;
 static wh_record_t record;
-static wh_record_t asked; /* what STATUS looks at */
+static wh_record_t asked; /* the data that STATUS reads */
 
 static bool next_message(wh_node_t *to) {
     frame_t frame;
@@ -338,7 +339,7 @@ static bool next_message(wh_node_t *to) {
     if (strcmp(frame.channel, WH_CHANNEL_CELL) == 0) {
         check_cell(&frame);
     }
-    /* What the state that is known has as its hash, it has after each datagram. */
+    /* After each datagram, the known state has the hash that it names. */
     fuzz_deliver(to, frame.channel, frame.bytes, frame.size);
     const wh_protocol_client_t *const client = &control.client;
     if (client->has_state) {
@@ -352,7 +353,7 @@ static bool is_index(int32_t index, size_t count) {
     return index >= 0 && (size_t)index < count;
 }
 
-/* As grasp/event.h has it: whoever explains an event looks its wafer and grippers up. */
+/* The rule of grasp/event.h: the code that explains an event looks its wafer and grippers up. */
 static void check_event(const wh_event_t *event, int64_t seq) {
     const size_t wafers = layout->wafer_count;
     const size_t grippers = layout->machine.gripper_count;
@@ -372,7 +373,7 @@ static void check_event(const wh_event_t *event, int64_t seq) {
     }
 }
 
-/* The events of the states that were taken, as a run's report has them. */
+/* The events of the accepted states, in the form of a run's report. */
 static void check_report(void) {
     static const wh_style_t style = {.utf8 = true, .width = 80};
     if (record.event_count > 0) {

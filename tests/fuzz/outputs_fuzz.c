@@ -1,5 +1,6 @@
-/* Any bytes as outputs.txt: valves are set if and only if the parser says good, and then to 0 or 1; what is
- * good stays good, with the same valves, when the white space around the values changes.
+/* Any bytes as outputs.txt: valves are set if and only if the parser reports the file as good, and
+ * then to 0 or 1. A good file stays good, with the same valves, if the white space around the
+ * values changes.
  *
  * The first byte chooses the count. */
 #include <string.h>

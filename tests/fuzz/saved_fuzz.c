@@ -1,8 +1,9 @@
-/* Snapshots that someone has changed, with the sum at the end put right: refused, and the simulator is as it was, bit for bit;
- * or a sound state, which is written as it was read and goes on.
+/* Snapshots that were changed, with a correct sum at the end. They are refused, and the simulator
+ * is unchanged, bit for bit; or they are a sound state, which is written as it was read and can be
+ * stepped.
  *
- * The first byte chooses one of the states of a lively run, the second how many bytes are cut off its end; then each three bytes
- * are a change: where, and the byte that stands there now. */
+ * The first byte chooses one of the states of a lively run, the second the number of bytes cut off
+ * its end. Then each three bytes are a change: the place, and the byte that stands there now. */
 #include "sim/snapshot.h"
 
 #include <string.h>
@@ -45,7 +46,7 @@ static void begin(void) {
     REQUIRE(wh_simulator_set_physics(&run.simulator, &physics) == WH_OK);
 }
 
-/* Both grippers go up through the wafers and down again, their valves take turns. */
+/* Both grippers move up through the wafers and down again; their valves take turns. */
 static wh_status_t step(int64_t seq) {
     wh_command_t command;
     wh_state_t state;
@@ -87,7 +88,7 @@ static void seal(uint8_t bytes[], size_t size) {
     }
 }
 
-/* The changed bytes, in memory of their own so that a look beyond them is seen. */
+/* The changed bytes, in memory of their own so that a sanitizer sees a read beyond them. */
 static uint8_t *change(const uint8_t *data, size_t left, size_t *size) {
     const size_t state = data[0] % STATES;
     const size_t cut = data[1];

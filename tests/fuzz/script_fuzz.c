@@ -1,5 +1,6 @@
-/* Any text as a motion script: it ends within its budget and memory, its error is one line that begins with its name,
- * the cell is sound, and its report is JSON. Now and then the same text runs twice, to the same bits. */
+/* Any text as a motion script. It ends within its budget and memory, its error is one line that
+ * begins with its name, the cell is sound, and its report is JSON. Now and then the same text runs
+ * twice, to the same bits. */
 #include <jansson.h>
 #include <string.h>
 
@@ -14,7 +15,8 @@
 #define NAME "tests/fuzz/script.lua"
 #define MEMORY ((size_t)4 << 20)
 #define BUDGET 20000
-/* What one charge may go beyond the budget: none is for more than all memory, read at one step for each byte. */
+/* The amount by which one charge may exceed the budget. No charge is for more than all memory, read
+ * at one step for each byte. */
 #define OVERDRAFT MEMORY
 
 static wh_sandbox_t *sandbox;
@@ -37,7 +39,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     wh_sandbox_result_t result;
     sandbox = wh_sandbox_new(&limits);
     REQUIRE(nowhere && sandbox && wh_mcs_open(&mcs, sandbox, NAME, &record, &result));
-    mcs.keep_segments = true;
+    mcs.wanted.keeps_segments = true;
     lua_pushcfunction(sandbox->main, name_cell);
     REQUIRE(wh_sandbox_call(sandbox->main, 0, 0, &result));
     sandbox->budget = BUDGET;
@@ -88,7 +90,7 @@ static void check_report(void) {
     REQUIRE(wh_record_print_table(&record, nowhere, &style, &all) == 0);
 }
 
-/* A sandbox that an input has been through does its work once it has a new budget. */
+/* After an input a sandbox still does its work once it has a new budget. */
 static void check_usable(void) {
     static const char text[] = "return 6 * 7";
     lua_State *const L = wh_sandbox_state(sandbox);
@@ -97,7 +99,7 @@ static void check_usable(void) {
     lua_pop(L, 1);
 }
 
-/* Runs the script; returns bits of all that it did. */
+/* Runs the script; returns a hash of all its results. */
 static uint64_t run(const uint8_t *data, size_t size) {
     wh_sandbox_result_t result;
     lua_State *const L = wh_sandbox_state(sandbox);

@@ -1,9 +1,10 @@
-/* Any bytes as a cell, physics and commands, to the public calls of lib/cell and lib/sim. Arrays are as long as their counts
- * say, in memory of their own, so that the sanitizer sees each look beyond them.
+/* Any bytes as a cell, physics and commands, to the public calls of lib/cell and lib/sim. Arrays
+ * are as long as their counts say, in memory of their own, so that the sanitizer sees each read
+ * beyond them.
  *
- * A refused call changes nothing. What wh_simulator_init takes is what wh_cell_validate takes. After each step that is not
- * refused the table is consistent, poses are rotations, the state is one that a second simulator takes over with the same
- * hash, and this one goes on in step with the first. */
+ * A refused call changes nothing. wh_simulator_init accepts the same cells as wh_cell_validate.
+ * After each step that is not refused the table is consistent and poses are rotations. A second
+ * simulator takes over the state with the same hash, and this one keeps step with the first. */
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +47,7 @@ static double take_bits(bytes_t *in) {
     return value;
 }
 
-/* Mostly one that a cell may have, near another one; now and then any at all. */
+/* Mostly a pose that a cell may have, near another one; now and then any pose. */
 static double take_real(bytes_t *in) {
     static const double known[] = {0,          0.1,   -0.1,    0.4,      0.6,
                                    1,          5,     10,      50,       100,
@@ -71,7 +72,7 @@ static int32_t take_int(bytes_t *in) {
     return any;
 }
 
-/* Around the first station, level or turned; now and then no pose. */
+/* Around the first station, level or turned; now and then an invalid pose. */
 static wh_pose_t take_pose(bytes_t *in) {
     wh_pose_t pose = wh_pose_identity();
     const uint8_t kind = take_byte(in);
@@ -217,7 +218,7 @@ static void end_run(run_t *run) {
     free(run->buckets);
 }
 
-/* A simulator of which nobody has set up anything. */
+/* A simulator that nobody has set up. */
 static void check_blank(const wh_command_t *command) {
     static wh_simulator_t blank;
     wh_state_t state;
@@ -239,7 +240,7 @@ static void check_places(const wh_cell_t *cell, const run_t *run) {
     }
 }
 
-/* As grasp/event.h has it: an index is one, or WH_NONE. */
+/* The rule of grasp/event.h: an index is valid, or WH_NONE. */
 static void check_events(const run_t *run) {
     REQUIRE(run->state.event_count <= WH_SLICE_EVENTS);
     for (size_t i = 0; i < run->state.event_count; ++i) {
@@ -279,7 +280,7 @@ static void check_counts(const wh_physics_state_t *physics, size_t gripper_count
 
 /* ------------------------------------------------------------------------------------------------ running */
 
-/* The second simulator takes over what the first one is in. */
+/* The second simulator takes over the state of the first one. */
 static void hand_over(void) {
     REQUIRE(wh_grasp_restore(&second.simulator.table, first.simulator.table.slice, first.wafers,
                              first.grippers) == WH_OK);
@@ -287,7 +288,8 @@ static void hand_over(void) {
     REQUIRE(wh_simulator_hash(&second.simulator) == wh_simulator_hash(&first.simulator));
 }
 
-/* True if the step was taken. A refused one leaves wafers, grippers and physics byte for byte. */
+/* True if the step was accepted. A refused one leaves wafers, grippers and physics unchanged, byte
+ * for byte. */
 static bool step(run_t *run, const wh_command_t *command) {
     static wh_wafer_t wafers[WAFERS];
     static wh_gripper_t grippers[GRIPPERS];
@@ -343,7 +345,7 @@ static void set_up_scanning(run_t *run) {
     REQUIRE(wh_simulator_set_scanning(&run->simulator, &scanning) == WH_OK);
 }
 
-/* Vacuum that sees front faces, where the cell has a thickness. */
+/* Vacuum that sees front faces, if the cell has a thickness. */
 static void set_up_grips(run_t *run, const wh_cell_t *cell) {
     static const wh_grip_t vacuum[WH_GRIPPERS];
     static wh_grip_state_t states[WH_GRIPPERS];
@@ -396,7 +398,7 @@ static wh_cell_t take_cell(bytes_t *in, wh_station_t stations[], size_t count) {
 
 /* ------------------------------------------------------------------------------------------- the grips beside the table */
 
-/* Numbers near good ones, or any at all. */
+/* Numbers near valid ones, or any numbers. */
 static void take_doubles(bytes_t *in, double *numbers[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         *numbers[i] += take_byte(in) < 200 ? (take_byte(in) - 128) / 1024.0 : take_real(in);
@@ -442,7 +444,8 @@ static void check_passive(bytes_t *in) {
     REQUIRE(wafer.carried == (change == WH_PASSIVE_TAKEN || (before.carried && change == WH_PASSIVE_STAYS)));
 }
 
-/* Any grips, any poses: what a step refuses it leaves as it was, and after each one the table agrees with itself. */
+/* Any grips, any poses: a refused step changes nothing, and after each accepted one the table is
+ * consistent. */
 static void check_grips(bytes_t *in) {
     enum { MIXED = 2 };
     wh_wafer_t wafers[MIXED] = {0};

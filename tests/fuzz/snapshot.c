@@ -7,7 +7,7 @@
 
 #include "fuzz.h"
 
-/* The allocator of the sandbox, on the arena; the linker then leaves the one of lib/script out. */
+/* The allocator of the sandbox, on the arena; the linker then leaves out the one of lib/script. */
 #define realloc fuzz_arena_resize
 #define free fuzz_arena_free
 #include "script/sandbox_memory.c"
@@ -25,7 +25,8 @@ typedef struct {
     uint32_t class;
 } header_t;
 
-/* Blocks of 64 << class bytes, taken from the end or from a list of free ones; a free block begins with the next. */
+/* Blocks of 64 << class bytes, taken from the end or from a list of free ones; a free block begins
+ * with a pointer to the next. */
 static struct {
     size_t used;
     uint8_t *free[CLASSES];
@@ -44,7 +45,7 @@ static struct {
     size_t object_count;
 } snapshot;
 
-/* What these touch is poisoned for everybody else; and where they go is no coverage. */
+/* The memory of these functions is poisoned for all others, and their paths do not count as coverage. */
 #define UNCHECKED __attribute__((no_sanitize("address", "coverage")))
 
 static UNCHECKED uint8_t *take_block(uint32_t class) {
@@ -113,7 +114,7 @@ static uint8_t *shadow_of_arena(void) {
     return (uint8_t *)(((uintptr_t)bytes >> scale) + offset);
 }
 
-/* In pieces that are copied in place: AddressSanitizer would look into a call of memcpy. Blocks are multiples of 64. */
+/* It is copied in pieces: AddressSanitizer would check a call of memcpy. Blocks are multiples of 64. */
 static UNCHECKED __attribute__((noinline)) void copy_blocks(uint8_t *to, const uint8_t *from, size_t size) {
     for (size_t i = 0; i < size; i += SHADOW) {
         __builtin_memcpy(to + i, from + i, SHADOW);

@@ -1,4 +1,4 @@
-/* What holds of a cell after any script and any line. */
+/* Properties of a cell that hold after any script and any line. */
 #ifndef WH_TESTS_FUZZ_SOUND_CELL_H
 #define WH_TESTS_FUZZ_SOUND_CELL_H
 
@@ -6,7 +6,8 @@
 #include "grasp/restore.h"
 #include "mcs/mcs.h"
 
-/* Its state is one that another table may take over, its axes are within their travel, its slices are all there. */
+/* Another table may take over its state, its axes are within their travel, and none of its slices
+ * is missing. */
 static inline void fuzz_check_cell(const wh_mcs_t *mcs) {
     wh_wafer_t wafers[16];
     wh_gripper_t grippers[WH_GRIPPERS];

@@ -1,5 +1,5 @@
-/* Any bytes as an STL file: either one line says why not and nothing is handed out, or the points are a body, sorted, and
- * each there once. */
+/* Any bytes as an STL file: either one line gives the reason for refusing it and nothing is handed
+ * out, or the points form a body, sorted, without duplicates. */
 #include <stdlib.h>
 #include <string.h>
 

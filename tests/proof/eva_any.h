@@ -1,5 +1,5 @@
-/* Any values, for the programs that Eva analyses. Eva takes what is read from a volatile object for any value of its type, NaN
- * and infinities among them. */
+/* Values of any kind, for the programs that Eva analyses. For Eva, a read from a volatile object
+ * gives any value of its type, including NaN and infinities. */
 #ifndef WH_TESTS_PROOF_EVA_ANY_H
 #define WH_TESTS_PROOF_EVA_ANY_H
 

@@ -1,9 +1,10 @@
-/* The program that Eva analyses: it calls every public function of the core, in every order, with every bit pattern.
+/* The program that Eva analyses: it calls every public function of the core, in every order, with
+ * every bit pattern.
  *
- * Assumed, as the headers ask: pointers are null only where a function refuses null; arrays have as many elements as
- * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
- * What the arrays hold, before and between the calls, is otherwise up to the library; what the slice, counters and
- * buckets hold is anything.
+ * Assumed, as the headers ask: pointers are null only if a function refuses null; arrays have as
+ * many elements as their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only passed
+ * on once wh_grasp_init accepted it. Apart from that, the library alone decides what the arrays
+ * hold, before and between the calls. The slice, the counters and the buckets hold anything.
  */
 #include "eva_any.h"
 #include "grasp/edge.h"
@@ -13,8 +14,11 @@
 #include "grasp/passive.h"
 #include "grasp/restore.h"
 
+/* EVA_GRIPS: the table with grips of any kind takes long, so it is apart from all others. */
+#if !defined(GRIPPERS)
 #define GRIPPERS 2
 #define WAFERS 3
+#endif
 #define EVENTS (GRIPPERS * WH_EVENTS_PER_GRIPPER)
 #define BUCKETS WH_GRASP_BUCKETS(WAFERS, GRIPPERS)
 
@@ -237,8 +241,8 @@ static void call_questions(const wh_grasp_t *table) {
     (void)wh_grasp_hash(table);
 }
 
-/* Before each call the slice and the counters, which only count, and the buckets are anything: more than the calls before it
- * can have made of them, and nothing that must be followed count by count. */
+/* Before each call the slice, the counters and the buckets get any values. This covers more than
+ * earlier calls can have left, and Eva need not follow each count. */
 static void spoil(wh_grasp_t *table) {
     table->slice = word;
     table->counters = any_counters();
@@ -249,7 +253,7 @@ static void spoil(wh_grasp_t *table) {
     }
 }
 
-/* Any calls in any order, without end. */
+/* Makes any calls in any order, without end. */
 static void use(wh_grasp_t *table, size_t gripper_count) {
     while (any_bool()) {
         spoil(table);
@@ -284,7 +288,7 @@ static void call_grips_step(wh_grips_t *grips) {
     (void)wh_grips_step(any_bool() ? grips : NULL, any_bool() ? inputs : NULL, any_bool() ? &list : NULL);
 }
 
-/* States as a message may have them. */
+/* States as a message may contain them. */
 static void call_complete(const wh_grips_parts_t *parts, const wh_gripper_t grippers[]) {
     wh_grip_state_t states[GRIPPERS];
     for (size_t g = 0; g < GRIPPERS; ++g) {
@@ -302,7 +306,8 @@ static void call_complete(const wh_grips_parts_t *parts, const wh_gripper_t grip
     (void)wh_grips_complete(parts, grippers, GRIPPERS, WAFERS, states);
 }
 
-/* A table of its own, whose grips are of any kind; steps, in which wafers are picked and let go, and questions between. */
+/* A table of its own with grips of any kind: steps in which wafers are picked and released, and
+ * questions between them. */
 static void call_table_of_grips(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
     static wh_grip_state_t states[GRIPPERS];
     static wh_wafer_t seen[WAFERS];
@@ -325,7 +330,7 @@ static void call_table_of_grips(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
     if (wh_grasp_init(&table, &config, &storage) != WH_OK || wh_grips_init(&grips, &parts, &table) != WH_OK) {
         return;
     }
-    /* That each is one of these is what was asked just now. */
+    /* The check just above has shown that each value is one of these. */
     for (size_t g = 0; g < GRIPPERS; ++g) {
         kinds[g].kind = any_bool() ? WH_GRIP_VACUUM : WH_GRIP_EDGE;
         kinds[g].kind = any_bool() ? WH_GRIP_PASSIVE : kinds[g].kind;
@@ -385,6 +390,10 @@ int main(void) {
     for (size_t w = 0; w < WAFERS; ++w) {
         wafers[w] = any_wafer();
     }
+#if defined(EVA_GRIPS)
+    call_table_of_grips(wafers, grippers);
+    return 0;
+#else
     call_names();
     call_grips();
     call_values();
@@ -392,7 +401,6 @@ int main(void) {
     call_vacuum();
     call_holding();
     call_refused_init(wafers, grippers);
-    call_table_of_grips(wafers, grippers);
     call_empty();
     call_blank();
 
@@ -403,4 +411,5 @@ int main(void) {
         use(&table, GRIPPERS);
     }
     return 0;
+#endif
 }

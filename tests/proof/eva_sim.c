@@ -1,12 +1,13 @@
 /* The program that Eva analyses for lib/cell and lib/sim: their public functions, with every bit pattern.
  *
- * Assumed, as in eva_main.c: pointers are null only where a function refuses null, a bool is 0 or 1, arrays are as long as
- * their counts say. Where a header says that nothing is checked, arguments are such as the function that checks them has
- * accepted. The grasp table is not analysed again: of a step, a placement and a set-up this file says what eva_main.c and
- * the contracts of the table say, that any wafer may be anywhere, held by any gripper or by none.
+ * Assumed, as in eva_main.c: pointers are null only if a function refuses null, a bool is 0 or 1,
+ * arrays are as long as their counts say. If a header says that nothing is checked, the arguments
+ * are ones that the checking function has accepted. The grasp table is not analysed again. For a
+ * step, a placement and a set-up this file assumes the result of eva_main.c and of the table's
+ * contracts: any wafer may be anywhere, held by any gripper or by none.
  *
- * Faults are checked here in any number and with any bits, but none acts: that each names what the table has is a relation that
- * Eva loses on the way. tests/fuzz/simulator_fuzz.c has them act.
+ * Faults are checked here in any number and with any bits, but none acts. Each fault names parts of
+ * the table; Eva loses this relation on the way. In tests/fuzz/simulator_fuzz.c they act.
  */
 #include "eva_any.h"
 #include "sim/simulator.h"
@@ -57,7 +58,7 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     return WH_OK;
 }
 
-/* No release: what the cell says of one is asked apart. */
+/* Without a release; the cell's report of a release is asked apart. */
 static void add_event(const wh_grasp_t *table, wh_event_list_t *list) {
     const wh_proximity_t measured = {.dr_proj_z = real};
     wh_event_t *event = &list->events[list->count++];
@@ -107,7 +108,7 @@ static wh_station_t any_station(void) {
     return station;
 }
 
-/* As wh_cell_validate accepts it. */
+/* A cell that wh_cell_validate accepts. */
 static wh_station_t good_station(void) {
     wh_station_t station = any_station();
     station.slots = station.slots >= 1 && station.slots <= 1000 ? station.slots : 1;
@@ -156,7 +157,7 @@ static void call_cell(void) {
     }
 }
 
-/* One release of any wafer, in a list with room for what the cell says, or without. */
+/* One release of any wafer, in a list with room for the cell's report, or without room. */
 static void call_judge(void) {
     static wh_grasp_t table;
     static wh_wafer_t wafers[WAFERS];
@@ -267,7 +268,7 @@ static void call_simulator(wh_simulator_t *simulator) {
     }
 }
 
-/* Of zeroes, and refused by wh_simulator_init. */
+/* A simulator of zeroes, or one that wh_simulator_init refuses. */
 static void call_blank(void) {
     static wh_simulator_t blank;
     static wh_command_t command;
@@ -295,6 +296,7 @@ int main(void) {
     call_blank();
     if (wh_simulator_init(any_bool() ? &simulator : NULL, any_bool() ? &config : NULL,
                           any_bool() ? &storage : NULL, any_bool() ? &cell : NULL) == WH_OK) {
+        (void)wh_simulator_set_strict(any_bool() ? &simulator : NULL, any_bool());
         call_simulator(&simulator);
     }
     return 0;

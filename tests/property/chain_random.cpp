@@ -1,5 +1,6 @@
-/* Chains against Orocos KDL, which multiplies the joints' frames out one by one; and lines of chains, sampled each
- * millisecond, against each axis's limits. */
+/* Chains compared with Orocos KDL, which multiplies the joints' frames one by one. Lines of chains,
+ * sampled each millisecond, are compared with each axis's limits. */
+/* Plain alone: under sanitizers chain_test calls the same functions of lib/motion, without Orocos KDL. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,8 +18,9 @@ extern "C" {
 
 namespace {
 
-constexpr int poses = 1000000 / WH_TEST_SHARE;
-constexpr int lines = 6000 / WH_TEST_SHARE;
+constexpr int chains = 2000;
+constexpr int poses = 500; /* of each */
+constexpr int lines = 6000;
 const char *const names[] = {"TRZY", "TRZ", "SCARA"};
 
 double coin() {
@@ -32,7 +34,7 @@ void set_axis(wh_chain_t &chain, size_t axis, double min, double max, double spe
     chain.home[axis] = min + (max - min) * wh_test_uniform(0, 1);
 }
 
-/* With and without rail, tilt, flip and a place of its own. */
+/* With and without rail, tilt, flip and a mounting place. */
 wh_chain_t random_chain(wh_chain_kind_t kind) {
     wh_chain_t chain = {};
     chain.kind = kind;
@@ -134,7 +136,7 @@ wh_chain_choice_t choice_at(const double q[WH_CHAIN_AXES]) {
     return {q[WH_CHAIN_RAIL], q[WH_CHAIN_FLIP], q[WH_CHAIN_REACH] < 0 ? WH_ELBOW_LEFT : WH_ELBOW_RIGHT};
 }
 
-/* From somewhere within a third of a turn of q, where the shorter way round leads back to q. */
+/* From a start within a third of a turn of q, from which the shorter way round leads back to q. */
 void near(const double q[WH_CHAIN_AXES], double near_q[WH_CHAIN_AXES]) {
     std::copy(q, q + WH_CHAIN_AXES, near_q);
     near_q[WH_CHAIN_THETA] += wh_test_uniform(-2, 2);
@@ -142,7 +144,7 @@ void near(const double q[WH_CHAIN_AXES], double near_q[WH_CHAIN_AXES]) {
     near_q[WH_CHAIN_REACH] = 0;
 }
 
-/* By how much inverse misses the axes, except where a straight elbow hides them. */
+/* The error of inverse in the axes, except if a straight elbow hides it. */
 double axes_missed(const wh_chain_t &chain, const double q[WH_CHAIN_AXES],
                    const double found[WH_CHAIN_AXES]) {
     double most = 0;
@@ -157,12 +159,13 @@ void compare_with_kdl(wh_chain_kind_t kind) {
     Off forward;
     Off back;
     double missed = 0;
-    for (int i = 0; i < poses; i += 500) {
+    wh_rounds_t rounds = WH_ROUNDS(32, chains, 0.15);
+    while (wh_round(&rounds)) {
         const wh_chain_t chain = random_chain(kind);
         const KDL::Chain kdl = kdl_of(chain);
         KDL::ChainFkSolverPos_recursive solver(kdl);
         KDL::JntArray joints(WH_CHAIN_AXES);
-        for (int k = 0; k < 500; ++k) {
+        for (int k = 0; k < poses; k += WH_TEST_SHARE) {
             double q[WH_CHAIN_AXES], near_q[WH_CHAIN_AXES], found[WH_CHAIN_AXES];
             random_axes(chain, q);
             std::copy(q, q + WH_CHAIN_AXES, joints.data.data());
@@ -188,7 +191,6 @@ void compare_with_kdl(wh_chain_kind_t kind) {
 }
 
 void poses_are_kdls(void **) {
-    wh_test_seed();
     compare_with_kdl(WH_CHAIN_TRZY);
     compare_with_kdl(WH_CHAIN_TRZ);
     compare_with_kdl(WH_CHAIN_SCARA);
@@ -196,7 +198,7 @@ void poses_are_kdls(void **) {
 
 /* ------------------------------------------------------------------------------------------------- lines */
 
-/* A step in base: of TRZ along its arm and up, else anyhow. */
+/* A step in base: for TRZ along its arm and up, otherwise in any direction. */
 wh_vec3_t random_step(const wh_chain_t &chain, const double q[WH_CHAIN_AXES]) {
     const double length = wh_test_decades(1, 500);
     const double lift = coin() * wh_test_uniform(-30, 30);
@@ -260,7 +262,7 @@ Shares shares_of(const wh_chain_t &chain, const Axes &axes, double apart) {
     return shares;
 }
 
-/* How far a line's samples are off it, and whether they stay within travel. */
+/* The distance of a line's samples from it, and whether they stay within travel. */
 void see_way(const wh_chain_t &chain, const Axes &axes, const wh_vec3_t &step, Off &off) {
     wh_pose_t start;
     wh_chain_forward(&chain, axes.front().data(), &start);
@@ -278,7 +280,7 @@ void see_way(const wh_chain_t &chain, const Axes &axes, const wh_vec3_t &step, O
     }
 }
 
-/* A SCARA is kept from where its elbow is nearly straight: limits hold there, too, but rounding shows. */
+/* A SCARA does not come near the straight elbow. The limits hold there, too, but rounding shows. */
 bool is_bent(const wh_chain_t &chain, const wh_chain_line_t &line) {
     return chain.kind != WH_CHAIN_SCARA || (std::fabs(std::sin(line.from[WH_CHAIN_REACH])) > 0.1 &&
                                             std::fabs(std::sin(line.to[WH_CHAIN_REACH])) > 0.1);
@@ -290,7 +292,8 @@ void look_at_lines(wh_chain_kind_t kind) {
     int planned = 0;
     int slowed = 0;
     double least = 1;
-    for (int i = 0; i < lines; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(100, lines, 0.2);
+    while (wh_round(&rounds)) {
         const wh_chain_t chain = random_chain(kind);
         double q[WH_CHAIN_AXES];
         random_axes(chain, q);
@@ -317,14 +320,13 @@ void look_at_lines(wh_chain_kind_t kind) {
                 "at least %.3f\n",
                 names[kind], planned, slowed, off.mm, off.rad, shares.of[0], shares.of[1], shares.of[2],
                 least);
-    assert_true(planned > lines / 8);
+    assert_true(planned > rounds.made / 10);
     assert_true(off.mm <= 1e-9 && off.rad <= 1e-12);
     assert_true(shares.of[0] <= 1 + 1e-9 && shares.of[1] <= 1 + 1e-8 && shares.of[2] <= 1 + 1e-5);
-    assert_true(least > 0.9); /* a slowed SCARA is slowed no more than needed */
+    assert_true(least > 0.9); /* a SCARA is slowed no more than needed */
 }
 
 void lines_keep_to_way_and_limits(void **) {
-    wh_test_seed();
     look_at_lines(WH_CHAIN_TRZY);
     look_at_lines(WH_CHAIN_TRZ);
     look_at_lines(WH_CHAIN_SCARA);

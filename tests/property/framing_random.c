@@ -1,10 +1,11 @@
-/* A framer against a plain reading of the whole line, byte by byte with all of it at hand; and the same frames however the
- * bytes are cut into pieces, with waits between them. What is encoded comes back. */
+/* A framer compared with a plain reading of the whole line, byte by byte with all of it at hand.
+ * The frames are the same however the bytes are cut into pieces, with waits between them. Encoded
+ * bodies come back. */
 #include "support/support.h"
 
 #include "host/framing.h"
 
-#define ROUNDS (20000 / WH_TEST_SHARE)
+#define ROUNDS 20000
 #define BYTES 400
 
 /* A line: bytes, each with its time. */
@@ -12,7 +13,7 @@ static uint8_t line[BYTES];
 static int64_t times[BYTES];
 static size_t count;
 
-/* What was told, as a text: cheap to compare and to print. */
+/* The framer's output as a text: easy to compare and to print. */
 typedef struct {
     char text[40 * BYTES];
     size_t size;
@@ -36,7 +37,7 @@ static void tell(told_t *told, wh_frame_kind_t kind, const uint8_t *bytes, size_
 
 /* ------------------------------------------------------------------------------------------- descriptions */
 
-/* Marks of one byte each, or an end of two that begins as another does: what the plain reading knows. */
+/* The plain reading knows marks of one byte each, or an end of two bytes that begins like another mark. */
 static wh_framing_t draw_framing(void) {
     wh_framing_t framing = {.longest = WH_FRAMING_LEAST + wh_test_below(20), .end_count = 1};
     framing.ends[0] = (wh_framing_mark_t){"\r", 1};
@@ -98,7 +99,7 @@ static bool is_start(const wh_framing_t *framing, uint8_t byte) {
     return (framing->start_count > 0 && byte == '$') || (framing->start_count > 1 && byte == '!');
 }
 
-/* True if what stands behind a body of `size` bytes is its sum. */
+/* True if the bytes behind a body of `size` bytes are its sum. */
 static bool is_sum(const wh_framing_t *framing, const uint8_t *body, size_t size, bool is_second) {
     const char *sum = (const char *)body + size;
     const bool is_separated = framing->separator.size == 0 || sum[0] == ',';
@@ -108,7 +109,7 @@ static bool is_sum(const wh_framing_t *framing, const uint8_t *body, size_t size
            strtoul(digits, NULL, 16) == wh_framing_sum(framing, is_second ? 1 : 0, body, size);
 }
 
-/* The bytes from `from` to before `to`, the last of which is the end. */
+/* The bytes from `from` to before `to`; the last of them is the end. */
 static void tell_ended(const wh_framing_t *framing, size_t from, size_t to, told_t *told) {
     const size_t start = framing->start_count > 0 ? 1 : 0;
     const size_t around = framing->sum != WH_SUM_NONE ? 2 + framing->separator.size : 0;
@@ -144,7 +145,7 @@ static size_t find_end(const wh_framing_t *framing, size_t from, wh_frame_kind_t
     return i;
 }
 
-/* A line that is too long or lost its end, which it was for `kind`. */
+/* A line that is too long or has lost its end; `kind` was its mark. */
 static void tell_lost(const wh_framing_t *framing, size_t from, size_t end, wh_frame_kind_t kind,
                       told_t *told) {
     const bool is_long = end - from > framing->longest;
@@ -156,7 +157,7 @@ static void tell_lost(const wh_framing_t *framing, size_t from, size_t end, wh_f
     tell(told, kind, line + from, size, line + from, size);
 }
 
-/* The line from `from` on up to where it ends. Returns where the next one begins. */
+/* Reads the line from `from` on to its end. Returns where the next line begins. */
 static size_t read_plainly(const wh_framing_t *framing, size_t from, told_t *told) {
     wh_frame_kind_t kind = WH_FRAME_NONE;
     const size_t end = find_end(framing, from, &kind);
@@ -214,7 +215,7 @@ static void read_in_pieces(const wh_framing_t *framing, uint32_t most, told_t *t
         in_frames += frame.size;
         note(&frame, told);
     }
-    /* No byte is lost track of. */
+    /* No byte is lost. */
     assert_int_equal(framer.counters.bytes, count);
     assert_int_equal(in_frames + framer.counters.passed, count);
 }
@@ -223,9 +224,9 @@ static void same_in_pieces(void **state) {
     (void)state;
     static told_t plain;
     static told_t cut;
-    (void)wh_test_seed();
     size_t kinds = 0;
-    for (int round = 0; round < ROUNDS; ++round) {
+    wh_rounds_t rounds = WH_ROUNDS(400, ROUNDS, 0.4);
+    while (wh_round(&rounds)) {
         const wh_framing_t framing = draw_framing();
         draw_line(&framing);
         plain.size = 0;
@@ -238,7 +239,7 @@ static void same_in_pieces(void **state) {
             cut.text[0] = '\0';
             read_in_pieces(&framing, most, &cut);
             if (strcmp(plain.text, cut.text) != 0) {
-                print_error("round %d, pieces up to %u\n", round, most);
+                print_error("round %d, pieces up to %u\n", rounds.number, most);
             }
             assert_string_equal(cut.text, plain.text);
         }
@@ -249,11 +250,12 @@ static void same_in_pieces(void **state) {
     assert_int_equal(kinds, (1 << WH_FRAME_KINDS) - (1 << WH_FRAME_GOOD));
 }
 
-/* Marks of any length: what is encoded is read back, behind any other frame as well, however it is cut. */
+/* Marks of any length: an encoded body is read back, also behind any other frame, however it is cut. */
 static void encoded_comes_back(void **state) {
     (void)state;
     size_t encoded = 0;
-    for (int round = 0; round < ROUNDS; ++round) {
+    wh_rounds_t rounds = WH_ROUNDS(400, ROUNDS, 0.3);
+    while (wh_round(&rounds)) {
         wh_framing_t framing = wh_framing_default();
         uint8_t body[WH_FRAMING_LINE];
         uint8_t frame[WH_FRAMING_LINE];
@@ -282,7 +284,7 @@ static void encoded_comes_back(void **state) {
             assert_int_equal(found.start, start);
         }
     }
-    assert_in_range(encoded, ROUNDS / 4, ROUNDS);
+    assert_in_range(encoded, rounds.made / 4, rounds.made);
 }
 
 int main(void) {

@@ -1,6 +1,7 @@
-/* The gap of pairs that are put at a known one: with an axis n, a point of a farthest along n and one of b farthest
- * against it, b placed so that its point is the other's + g n, the distance is g for g >= 0 whatever the shapes, for n
- * proves it to be no less and the two points no more. For g < 0 n proves the depth to be at most -g. */
+/* The gap of pairs that are put at a known gap. Take an axis n, a point of a farthest along n and
+ * one of b farthest against it, and place b so that its point is the other's + g n. For g >= 0 the
+ * distance is g, whatever the shapes: n proves it to be no less, and the two points no more. For g
+ * < 0 n proves the depth to be at most -g. */
 #include "collision/gap.h"
 #include "support/convex.h"
 #include "support/support.h"
@@ -17,7 +18,7 @@ static wh_gap_t measure(const wh_convex_t *a, const wh_pose_t *base_from_a, cons
 
 /* --------------------------------------------------------------------------------- a thin wafer and a blade */
 
-/* In base, of a point in the frame of a pose, and back. */
+/* Transforms of a point from the frame of a pose to base, and back. */
 static wh_vec3_t to_base(const wh_pose_t *pose, double x, double y, double z) {
     const wh_vec3_t point = {x, y, z};
     const wh_vec3_t turned = wh_mat3_transform(&pose->R, &point);
@@ -30,14 +31,16 @@ static void assert_clear(const wh_gap_t *gap, double want) {
     assert_true(gap->gap <= want + 1e-9);
 }
 
-/* Level above the blade, the blade anyhow in base; below 0 the wafer may be in the blade or come out below it. */
+/* Level above the blade, the blade in any pose in base; below 0 the wafer may be in the blade or
+ * come out below it. */
 static void a_level_wafer_is_judged_right(void **state) {
     (void)state;
     const wh_convex_t wafer = wh_test_wafer();
     const wh_convex_t blade = wh_test_blade();
-    for (size_t g = 0; g < 2 * sizeof gaps / sizeof gaps[0]; ++g) {
-        const double want = g % 2 ? -gaps[g / 2] : gaps[g / 2];
-        for (int i = 0; i < 2000; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(5, 2000, 0.08);
+    while (wh_round(&rounds)) {
+        for (size_t g = 0; g < 2 * sizeof gaps / sizeof gaps[0]; ++g) {
+            const double want = g % 2 ? -gaps[g / 2] : gaps[g / 2];
             const wh_pose_t base_from_blade = wh_test_random_pose(1000);
             wh_pose_t base_from_wafer = base_from_blade;
             base_from_wafer.r = to_base(&base_from_blade, wh_test_uniform(-150, 150),
@@ -58,12 +61,14 @@ static void a_tilted_wafer_is_judged_right(void **state) {
     (void)state;
     const wh_convex_t wafer = wh_test_wafer();
     const wh_convex_t blade = wh_test_blade();
-    for (size_t g = 0; g < 2 * sizeof gaps / sizeof gaps[0]; ++g) {
-        const double want = g % 2 ? -gaps[g / 2] : gaps[g / 2];
-        for (int i = 0; i < 2000; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(5, 2000, 0.08);
+    while (wh_round(&rounds)) {
+        for (size_t g = 0; g < 2 * sizeof gaps / sizeof gaps[0]; ++g) {
+            const double want = g % 2 ? -gaps[g / 2] : gaps[g / 2];
             const wh_pose_t base_from_blade = wh_test_random_pose(1000);
             const double way = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
-            /* 5 mm deep the lowest point is below the blade, so the wafer must be steep enough to be in it nearby. */
+            /* At a depth of 5 mm the lowest point is below the blade. The wafer must be steep
+             * enough to be in the blade nearby. */
             const double tilt = want < -3 ? wh_test_uniform(0.1, 0.26) : wh_test_decades(1e-4, 0.26);
             wh_pose_t blade_from_wafer = wh_test_at(0, 0, 0);
             blade_from_wafer.R = wh_test_rotation(-sin(way), cos(way), 0, tilt);
@@ -92,7 +97,7 @@ typedef struct {
     wh_vec3_t axis;
 } pair_t;
 
-/* A direction in which a face or an edge of each lies across, or any. */
+/* A direction at right angles to a face or an edge of each, or any direction. */
 static wh_vec3_t draw_axis(const pair_t *pair) {
     const wh_vec3_t of_a = wh_mat3_column(&pair->base_from_a.R, wh_test_below(3));
     const wh_vec3_t of_b = wh_mat3_column(&pair->base_from_b.R, wh_test_below(3));
@@ -113,7 +118,7 @@ static wh_vec3_t farthest(const wh_convex_t *shape, const wh_pose_t *pose, const
     return wh_mat3_transform(&pose->R, &point);
 }
 
-/* Two of some kinds, g apart along an axis; some nearly parallel. */
+/* Two shapes of some kinds, g apart along an axis; some are nearly parallel. */
 static void draw(pair_t *pair, wh_convex_kind_t kind_a, wh_convex_kind_t kind_b, double g) {
     do {
         pair->a = wh_test_random_shape(kind_a, pair->points_a);
@@ -137,13 +142,16 @@ static wh_gap_t measure_pair(const pair_t *pair) {
     return measure(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b);
 }
 
-static void for_all_kinds(int rounds, void (*check)(pair_t *, wh_convex_kind_t, wh_convex_kind_t)) {
+/* Returns how many rounds there were. */
+static int for_all_kinds(int full, void (*check)(pair_t *, wh_convex_kind_t, wh_convex_kind_t)) {
     pair_t pair;
-    for (int i = 0; i < rounds; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(5, full, 0.12);
+    while (wh_round(&rounds)) {
         for (unsigned kinds = 0; kinds < 16; ++kinds) {
             check(&pair, (wh_convex_kind_t)(kinds / 4), (wh_convex_kind_t)(kinds % 4));
         }
     }
+    return rounds.made;
 }
 
 static void check_gap(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
@@ -158,7 +166,7 @@ static void check_gap(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
 
 static void every_gap_is_found(void **state) {
     (void)state;
-    for_all_kinds(2000, check_gap);
+    (void)for_all_kinds(2000, check_gap);
 }
 
 static void check_touching(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
@@ -169,7 +177,7 @@ static void check_touching(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b)
 
 static void what_touches_is_touching(void **state) {
     (void)state;
-    for_all_kinds(500, check_touching);
+    (void)for_all_kinds(500, check_touching);
 }
 
 static int deeper_touching, deeper_hit;
@@ -181,20 +189,20 @@ static void check_deeper(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
     deeper_hit += gap.state == WH_GAP_HIT;
 }
 
-/* Where nothing is proven, the axis of least depth is still nearly always found. */
+/* Even without a proof, the axis of least depth is nearly always found. */
 static void what_overlaps_less_than_it_may_is_touching(void **state) {
     (void)state;
-    for_all_kinds(500, check_deeper);
+    const int made = for_all_kinds(500, check_deeper);
     printf("touching %d, taken for hits %d\n", deeper_touching, deeper_hit);
-    assert_int_equal(deeper_touching + deeper_hit, 500 * 16);
-    assert_true(deeper_hit < 80);
+    assert_int_equal(deeper_touching + deeper_hit, made * 16);
+    assert_true(deeper_hit <= 4 + made * 16 / 100);
 }
 
-/* A point of each within the other by twice the touch: they hit, in whatever way. */
+/* A point of each lies within the other by twice the touch: they hit, whatever the way. */
 static void check_hit(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
     draw(pair, a, b, 0);
     const wh_vec3_t depth = wh_vec3_scale(wh_test_decades(0.002, 0.25), &pair->axis);
-    /* Both grow by `depth` all round, where that is simple: for boxes, cylinders and capsules. */
+    /* Both grow by `depth` on all sides if that is simple: boxes, cylinders and capsules. */
     const wh_real_t by = wh_vec3_norm(&depth);
     wh_convex_t *const shapes[2] = {&pair->a, &pair->b};
     for (size_t i = 0; i < 2; ++i) {
@@ -208,7 +216,7 @@ static void check_hit(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
 
 static void what_overlaps_is_a_hit(void **state) {
     (void)state;
-    for_all_kinds(500, check_hit);
+    (void)for_all_kinds(500, check_hit);
 }
 
 static void check_swapped(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
@@ -224,10 +232,10 @@ static void check_swapped(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) 
 
 static void swapped_shapes_have_the_same_gap(void **state) {
     (void)state;
-    for_all_kinds(300, check_swapped);
+    (void)for_all_kinds(300, check_swapped);
 }
 
-/* Any guess, good or bad, gives the same; what is enough is enough. */
+/* Any guess, good or bad, gives the same gap; a gap that is large enough stays large enough. */
 static void check_guess(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
     const double want = wh_test_decades(0.00101, 300);
     draw(pair, a, b, want);
@@ -242,10 +250,10 @@ static void check_guess(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b) {
 
 static void a_guess_changes_nothing(void **state) {
     (void)state;
-    for_all_kinds(300, check_guess);
+    (void)for_all_kinds(300, check_guess);
 }
 
-/* A little on, or, now and then, somewhere else. */
+/* A small step on, or now and then a place elsewhere. */
 static void go_on(pair_t *pair) {
     const bool jumps = wh_test_below(8) == 0;
     const wh_vec3_t direction = wh_test_direction();
@@ -256,7 +264,7 @@ static void go_on(pair_t *pair) {
     wh_mat3_orthonormalise(&pair->base_from_b.R);
 }
 
-/* Only how deep a shallow overlap is found to be depends on where the search begins. */
+/* Only the depth found for a shallow overlap depends on where the search begins. */
 static void assert_same_gap(const wh_gap_t *followed, const wh_gap_t *gap, const pair_t *pair) {
     const double depth = -wh_gap_along(&pair->a, &pair->base_from_a, &pair->b, &pair->base_from_b, gap->axis);
     if (followed->state == gap->state) {
@@ -288,10 +296,10 @@ static void check_followed(pair_t *pair, wh_convex_kind_t a, wh_convex_kind_t b)
     }
 }
 
-/* Wherever the two have been, and whatever was enough there. */
+/* The result does not depend on earlier places of the two, nor on earlier limits. */
 static void what_is_followed_has_the_same_gap(void **state) {
     (void)state;
-    for_all_kinds(300, check_followed);
+    (void)for_all_kinds(300, check_followed);
 }
 
 int main(void) {

@@ -1,5 +1,6 @@
-/* The grasp table beside a slow, obvious model of it: random runs, compared bit for bit after every step. And a hundred thousand GETs
- * and PUTs of one wafer that lies beside its slot's centre: how far does it creep? */
+/* The grasp table beside a slow, obvious model of it: random runs, compared bit for bit after every
+ * step. A second test makes a hundred thousand GETs and PUTs of one wafer that lies beside its
+ * slot's centre, and measures its drift. */
 #include "grasp/grasp.h"
 #include "support/grasp.h"
 #include "support/grasp_model.h"
@@ -9,8 +10,8 @@
 #define RUNS 30000
 #endif
 
-/* The grasp table and its model side by side: the first difference between them, and what must hold of the table
- * alone, as a phrase; null when all is well. */
+/* The grasp table and its model side by side: the first difference between them, or a rule that the
+ * table breaks, as a phrase; null if all is well. */
 typedef struct {
     wh_grasp_t table;
     wh_wafer_t wafer[MODEL_WAFERS];
@@ -127,7 +128,7 @@ static const char *check_wafer(const pair_t *p, const pair_t *before, size_t w) 
     return count_holders(p, w) == (p->wafer[w].holder >= 0) ? NULL : "a holder that holds nothing";
 }
 
-/* What must hold whatever the model says. */
+/* Rules that must hold whatever the model does. */
 static const char *check_invariants(const pair_t *p, const pair_t *before) {
     const char *wrong = NULL;
     for (size_t g = 0; g < p->table.storage.gripper_count && !wrong; ++g) {
@@ -148,7 +149,7 @@ static const char *check_refusal(const pair_t *p, const pair_t *before) {
 
 enum { STEPS = 24 };
 
-/* A run, drawn beforehand, so that a failing one can be repeated with fewer steps. */
+/* A run that is drawn beforehand, so that a failing one can be repeated with fewer steps. */
 typedef struct {
     wh_grasp_config_t config;
     size_t wafers, grippers;
@@ -169,7 +170,7 @@ static wh_pose_t draw_pose(bool grid, double reach, double height) {
     return pose;
 }
 
-/* As far from orthonormal as may be, or farther now and then. */
+/* The rotation is as far from orthonormal as is allowed, or now and then farther. */
 static void wear_out(wh_mat3_t *R) {
     const double limit = 0.45 * (double)WH_ROTATION_TOLERANCE;
     const wh_mat3_t exact = *R;
@@ -202,7 +203,7 @@ static void spoil(wh_gripper_input_t *input) {
     }
 }
 
-/* How a run is drawn. */
+/* The parameters from which a run is drawn. */
 typedef struct {
     bool grid, worn;
     double height;
@@ -272,7 +273,7 @@ static void start(pair_t *p, script_t *s) {
     }
 }
 
-/* One step of both: what is wrong after it, or null. */
+/* One step of both; returns what is wrong after it, or null. */
 static const char *take_step(pair_t *p, const wh_gripper_input_t *input) {
     static pair_t before;
     memcpy(&before, p, sizeof before);
@@ -285,7 +286,7 @@ static const char *take_step(pair_t *p, const wh_gripper_input_t *input) {
     return wrong || status == WH_OK ? wrong : check_refusal(p, &before);
 }
 
-/* Plays the script's steps; the step at which table and model part, or STEPS. */
+/* Plays the script's steps; returns the step at which table and model differ, or STEPS. */
 static size_t play(pair_t *p, script_t *s, const char **wrong) {
     start(p, s);
     for (size_t step = 0; step < STEPS; ++step) {
@@ -300,7 +301,7 @@ static size_t play(pair_t *p, script_t *s, const char **wrong) {
     return STEPS;
 }
 
-/* Leaves out each step without which it still fails, and says what is left. */
+/* Leaves out each step without which it still fails, and prints the remaining ones. */
 static void explain(pair_t *p, script_t *s, unsigned run, size_t step, const char *wrong) {
     print_error("run %u, step %zu: %s (%zu wafers, %zu grippers)\n", run, step, wrong, s->wafers,
                 s->grippers);
@@ -327,13 +328,13 @@ static void table_and_model_agree(void **state) {
     static pair_t pair;
     static script_t script;
     wh_grasp_counters_t sum = {0};
-    (void)wh_test_seed();
-    for (unsigned run = 0; run < RUNS; ++run) {
+    wh_rounds_t rounds = WH_ROUNDS(300, RUNS, 0.6);
+    while (wh_round(&rounds)) {
         const char *wrong = NULL;
         draw_script(&script);
         const size_t step = play(&pair, &script, &wrong);
         if (step != STEPS) {
-            explain(&pair, &script, run, step, wrong);
+            explain(&pair, &script, (unsigned)rounds.number, step, wrong);
         }
         const wh_grasp_counters_t *c = &pair.table.counters;
         sum.picked += c->picked;
@@ -345,11 +346,12 @@ static void table_and_model_agree(void **state) {
     }
     printf("%d runs: %llu picked, %llu released, %llu handed over, %llu near misses, %llu contested, %llu "
            "refused\n",
-           RUNS, (unsigned long long)sum.picked, (unsigned long long)sum.released,
+           rounds.made, (unsigned long long)sum.picked, (unsigned long long)sum.released,
            (unsigned long long)sum.handed_over, (unsigned long long)sum.near_misses,
            (unsigned long long)sum.contested, (unsigned long long)sum.refused);
-    assert_true(sum.picked > RUNS && sum.released > RUNS / 2 && sum.handed_over > RUNS / 10 &&
-                sum.near_misses > RUNS / 10 && sum.contested > RUNS / 10 && sum.refused > RUNS / 50);
+    const uint64_t runs = (uint64_t)rounds.made;
+    assert_true(sum.picked > runs && sum.released > runs / 2 && sum.handed_over > runs / 10 &&
+                sum.near_misses > runs / 10 && sum.contested > runs / 10 && sum.refused > runs / 50);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ does it creep? */
@@ -391,7 +393,7 @@ static void get(cell_t *cell, const station_t *s, uint32_t slot) {
     go(cell, s, slot, 3, OPEN);
 }
 
-/* And of a PUT: let go where it was taken, so that the height repeats as well. */
+/* The key poses of a PUT: the wafer is released where it was taken, so that the height repeats as well. */
 static void put(cell_t *cell, const station_t *s, uint32_t slot) {
     go(cell, s, slot, 3, OPEN);
     go(cell, s, slot, -0.25, CLOSED);
@@ -399,7 +401,8 @@ static void put(cell_t *cell, const station_t *s, uint32_t slot) {
     go(cell, s, slot, -3, CLOSED);
 }
 
-/* Another one each time: a few that recur would catch the wafer on the few numbers that they round to. */
+/* Each time it is another value: few recurring values would hold the wafer on the few numbers that
+ * they round to. */
 static station_t draw_station(void) {
     const double around = wh_test_uniform(0, 2 * WH_TEST_PI);
     const double radius = wh_test_uniform(500, 900);

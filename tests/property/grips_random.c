@@ -1,6 +1,7 @@
-/* A table of mixed grips beside a slow, obvious model of the rules of grips.h: random steps, compared after each. No wafer is held
- * twice, none vanishes, none is supported and carried at once. With vacuum alone and backs alone, wh_grasp_step's bits. WH_GRIPS_STEPS
- * says how many steps of mixed grips; 200,000 without it. */
+/* A table of mixed grips beside a slow, obvious model of the rules of grips.h: random steps,
+ * compared after each. No wafer is held twice, none vanishes, and none is supported and carried at
+ * once. With only vacuum and only backs it has the bits of wh_grasp_step. WH_GRIPS_STEPS is the
+ * number of steps with mixed grips; 200,000 without it. */
 #include "grasp/grips.h"
 #include "grasp/passive.h"
 #include "support/pose.h"
@@ -9,7 +10,7 @@ enum { WAFERS = 3, GRIPPERS = 3, SUPPORTS = 2, STEPS = 100 };
 
 #define THICKNESS WH_REAL(0.775)
 
-/* What does not change in a run. */
+/* The values that do not change in a run. */
 typedef struct {
     wh_grasp_config_t config;
     wh_grip_t grips[GRIPPERS];
@@ -18,14 +19,14 @@ typedef struct {
     double dt;
 } world_t;
 
-/* The rules, read aloud. */
+/* The rules, one by one as the header states them. */
 typedef struct {
     wh_pose_t wafer[WAFERS], gripper[GRIPPERS], grasp[GRIPPERS];
     int holder[WAFERS], let_go_by[WAFERS], began_with[GRIPPERS], meets[GRIPPERS];
     wh_grip_phase_t phase[GRIPPERS];
     double s[GRIPPERS];
     wh_edge_wafer_t lying[GRIPPERS];
-    wh_pose_t lay[GRIPPERS]; /* the grasp when the plunger set off */
+    wh_pose_t lay[GRIPPERS]; /* the grasp when the plunger began to move */
     int steps, picked, handed_over, released;
 } model_t;
 
@@ -108,7 +109,7 @@ static void model_plunger(const world_t *world, model_t *m, int g, bool closed) 
     }
 }
 
-/* True if a support takes the wafer over. */
+/* True if a support takes over the wafer. */
 static bool model_leave(const world_t *world, model_t *m, const wh_gripper_input_t *input, int g, int w) {
     for (int s = 0; s < SUPPORTS; ++s) {
         wh_passive_change_t change;
@@ -138,7 +139,7 @@ static void model_move(const world_t *world, model_t *m, const wh_gripper_input_
     }
 }
 
-/* How a wafer lies on the gripper. */
+/* The pose of a wafer on the gripper. */
 static wh_edge_wafer_t lying_on(const world_t *world, const model_t *m, const wh_pose_t *gripper, int w) {
     wh_edge_wafer_t lying = world->shapes[w];
     const wh_pose_t seen = seen_by(&m->wafer[w], gripper);
@@ -157,7 +158,8 @@ static bool edge_finds(const wh_proximity_t *p, const wh_edge_wafer_t *lying) {
     return p->margin_projz > 0 && p->margin_planar > 0 && fabs(lying->x) <= 50 && fabs(lying->y) <= 50;
 }
 
-/* The wafer that vacuum, or an edge grip, finds: the nearest that nobody holds; how an edge grip finds it lying is kept. */
+/* The wafer that vacuum, or an edge grip, finds: the nearest free one. For an edge grip, the pose
+ * in which it finds the wafer is kept. */
 static int find(const world_t *world, model_t *m, const wh_pose_t *gripper, int g) {
     int best = -1;
     double least = 0;
@@ -203,7 +205,7 @@ static void pick_edge(const world_t *world, model_t *m, const wh_pose_t *gripper
     }
 }
 
-/* How far the face that looks at a plane is above it. */
+/* The height above a plane of the face that looks at it. */
 static wh_real_t above(const wh_pose_t *wafer, const wh_pose_t *plane) {
     const wh_pose_t face = seen_by(wafer, plane);
     const wh_vec3_t dr = wh_vec3_subtract(&face.r, &plane->r);
@@ -325,7 +327,7 @@ static void begin(subject_t *subject, const world_t *world, const wh_pose_t star
     assert_int_equal(wh_grips_init(&subject->grips, &parts, &subject->table), WH_OK);
 }
 
-/* A height of a grid, of the thickness too, so that planes meet exactly. */
+/* A height on a grid that includes the thickness, so that planes meet exactly. */
 static double draw_height(void) {
     return ((int)wh_test_below(17) - 8) * 0.125 + (wh_test_below(4) == 0 ? (double)THICKNESS : 0);
 }
@@ -363,7 +365,7 @@ static void draw_world(world_t *world, bool vacuum_alone) {
     }
 }
 
-/* Now and then elsewhere; else a little up or down, or still. */
+/* Now and then elsewhere; otherwise a little up or down, or at rest. */
 static void draw_input(bool level, bool first, wh_gripper_input_t *input) {
     if (first || wh_test_below(12) == 0) {
         input->base_from_gripper = draw_pose(level);
@@ -414,8 +416,23 @@ static void compare(const subject_t *subject, const model_t *m, const world_t *w
 #define CLOSE 1e-9
 #endif
 
-/* A held wafer is where its gripper carries it; an event names the face that looks at its gripper. */
+/* The faces that looked at each gripper at the ends of the last slices, by slice. */
+#define HISTORY 4096
+static wh_face_t history[HISTORY][GRIPPERS][WAFERS];
+
+static void note_faces(const subject_t *subject) {
+    for (int g = 0; g < GRIPPERS; ++g) {
+        for (int w = 0; w < WAFERS; ++w) {
+            history[subject->table.slice % HISTORY][g][w] =
+                wh_face_towards(&subject->wafer[w].base_from_wafer, &subject->gripper[g].base_from_gripper);
+        }
+    }
+}
+
+/* A held wafer is where its gripper carries it; an event names the face that looked at its gripper when it was
+ * measured. */
 static void check_places(const subject_t *subject) {
+    note_faces(subject);
     for (int g = 0; g < GRIPPERS; ++g) {
         const wh_gripper_t *gripper = &subject->gripper[g];
         if (gripper->wafer >= 0) {
@@ -428,8 +445,8 @@ static void check_places(const subject_t *subject) {
     }
     for (size_t i = 0; i < subject->list.count; ++i) {
         const wh_event_t *event = &subject->event[i];
-        assert_int_equal(event->face, wh_face_towards(&subject->wafer[event->wafer].base_from_wafer,
-                                                      &subject->gripper[event->gripper].base_from_gripper));
+        assert_true(subject->table.slice - event->measured_slice < HISTORY);
+        assert_int_equal(event->face, history[event->measured_slice % HISTORY][event->gripper][event->wafer]);
     }
 }
 
@@ -441,7 +458,7 @@ static int holders_of(const subject_t *subject, int w) {
     return holders;
 }
 
-/* A wafer on passive pads that went from above a support to below it. */
+/* A wafer on passive pads that moved from above a support to below it. */
 static void check_not_through(const world_t *world, const wh_pose_t *then, const wh_pose_t *now) {
     for (int s = 0; s < SUPPORTS && world->config.check == WH_CHECK_SAMPLED; ++s) {
         const wh_pose_t *plane = &world->supports[s];
@@ -450,8 +467,8 @@ static void check_not_through(const world_t *world, const wh_pose_t *then, const
     }
 }
 
-/* Whatever the model says: no wafer held twice, none without a place, none that nobody touched moves, and none went down through a
- * support on passive pads. */
+/* Rules for any model state: no wafer is held twice, each has a place, none moves that nothing
+ * touched, and none went down through a support on passive pads. */
 static void check_sound(const subject_t *subject, const subject_t *before, const world_t *world) {
     for (int w = 0; w < WAFERS; ++w) {
         const wh_wafer_t *now = &subject->wafer[w];
@@ -470,7 +487,7 @@ static void check_sound(const subject_t *subject, const subject_t *before, const
     assert_true(wh_grasp_is_consistent(&subject->table));
 }
 
-/* The state alone is enough: arrays that are copied out and back go on with the same bits. */
+/* The state alone is enough: arrays that are copied out and back continue with the same bits. */
 static void check_restored(const subject_t *subject, const world_t *world, const wh_gripper_input_t *input,
                            uint64_t hash) {
     static subject_t other;
@@ -484,13 +501,10 @@ static void check_restored(const subject_t *subject, const world_t *world, const
     assert_true(wh_grips_hash(&other.grips) == hash);
 }
 
-static int64_t how_many(void) {
-    const char *text = getenv("WH_GRIPS_STEPS");
-    const long steps = text ? strtol(text, NULL, 0) : 200000 / WH_TEST_SHARE;
-    return steps < STEPS ? STEPS : steps;
-}
+/* In full, with STEPS steps each. */
+enum { PLAYS = 10000 };
 
-/* What happened in a run; a test that saw none of one kind shows nothing. */
+/* The events of a run; a test without one of the kinds shows nothing about it. */
 typedef struct {
     int64_t steps, picked, handed_over, released, jammed, missed, closed, fronts, on_passive;
 } sum_t;
@@ -551,11 +565,11 @@ static void play(sum_t *sum, bool with_model) {
 static void grips_and_model_agree(void **state) {
     (void)state;
     sum_t sum = {0};
-    const int64_t steps = how_many();
-    (void)wh_test_seed();
-    while (sum.steps < steps) {
+    wh_rounds_t rounds = WH_ROUNDS(400, PLAYS, 0.5);
+    while (wh_round(&rounds)) {
         play(&sum, true);
     }
+    const int64_t steps = sum.steps;
     printf("%lld steps: %lld picked (%lld by the front), %lld handed over, %lld released; %lld closed, %lld "
            "jammed, %lld missed; "
            "%lld slices on passive pads\n",
@@ -570,8 +584,8 @@ static void grips_and_model_agree(void **state) {
 static void swept_and_seated_steps_are_sound(void **state) {
     (void)state;
     sum_t sum = {0};
-    (void)wh_test_seed();
-    while (sum.steps < how_many() / 4) {
+    wh_rounds_t rounds = WH_ROUNDS(50, PLAYS / 4, 0.25);
+    while (wh_round(&rounds)) {
         play(&sum, false);
     }
     assert_true(sum.fronts > 0 && sum.on_passive > 0 && sum.closed > 0);
@@ -591,14 +605,15 @@ static void check_same(const subject_t *subject, const subject_t *plain) {
     }
 }
 
-/* Nothing but vacuum, nothing but backs: both steps, to the bit and to the event. */
+/* Only vacuum and only backs: both steps agree to the bit and to the event. */
 static void vacuum_alone_is_the_table(void **state) {
     (void)state;
     static subject_t subject;
     static subject_t plain;
     world_t world;
-    (void)wh_test_seed();
-    for (int run = 0; run < 1000 / WH_TEST_SHARE; ++run) {
+    wh_rounds_t rounds = WH_ROUNDS(16, 1000, 0.25);
+    while (wh_round(&rounds)) {
+        const int run = rounds.number;
         wh_pose_t start[WAFERS];
         wh_gripper_input_t input[GRIPPERS];
         draw_world(&world, true);
@@ -622,7 +637,7 @@ static void vacuum_alone_is_the_table(void **state) {
     }
 }
 
-/* One edge grip below one wafer, in slices of a tenth of a second: 4 mm of the plunger. */
+/* One edge grip below one wafer, in slices of a tenth of a second: the plunger moves 4 mm. */
 static void begin_edge(subject_t *subject, world_t *world, double x, double y, double radius) {
     const wh_pose_t start[WAFERS] = {wh_test_at(x, y, 0.25), wh_test_at(0, 0, 500), wh_test_at(0, 0, 600)};
     (void)wh_test_seed();
@@ -633,7 +648,7 @@ static void begin_edge(subject_t *subject, world_t *world, double x, double y, d
     begin(subject, world, start);
 }
 
-/* Gripper 0 goes to this height; the others stay away. */
+/* Gripper 0 moves to this height; the others stay away. */
 static void step_to(subject_t *subject, double z, int32_t valve) {
     const wh_gripper_input_t input[GRIPPERS] = {{wh_test_at(0, 0, z), valve},
                                                 {wh_test_at(0, 0, -500), WH_VALVE_CLOSED},
@@ -641,7 +656,7 @@ static void step_to(subject_t *subject, double z, int32_t valve) {
     assert_int_equal(wh_grips_step(&subject->grips, input, &subject->list), WH_OK);
 }
 
-/* The wafer goes with a blade that rises while it closes, and ends where the closed form says. */
+/* The wafer moves with a blade that rises while it closes, and ends at the place of the closed form. */
 static void a_plunger_takes_its_time(void **state) {
     (void)state;
     static subject_t subject;
@@ -669,7 +684,8 @@ static void a_plunger_takes_its_time(void **state) {
     assert_int_equal(subject.state[0].wafer, WH_NONE);
 }
 
-/* 3 mm off: jammed by half a millimetre. Nothing there, and a wafer out of reach: missed. Far too large: jammed by nothing. */
+/* 3 mm off: jammed by half a millimetre. No wafer there, and a wafer out of reach: missed. Far too
+ * large: jammed without contact. */
 static void a_jam_says_by_how_much(void **state) {
     (void)state;
     static subject_t subject;
@@ -693,14 +709,14 @@ static void a_jam_says_by_how_much(void **state) {
     }
 }
 
-/* What is wrong with the parts of a good set-up, one thing at a time. */
+/* Faults in the parts of a good set-up, one at a time. */
 typedef struct {
     wh_grips_parts_t parts;
     world_t world;
 } setting_t;
 
 static wh_status_t try_init(subject_t *subject, const setting_t *setting) {
-    static const wh_grips_t blank = {{0}, NULL, 0};
+    static const wh_grips_t blank = {{0}, NULL, 0, 0};
     subject->grips = blank;
     const wh_status_t status = wh_grips_init(&subject->grips, &setting->parts, &subject->table);
     assert_true((status == WH_OK) == (subject->grips.mark == WH_GRIPS_MARK));

@@ -1,5 +1,6 @@
-/* Hand-overs from the end-effector to chucks at random heights, with either order of the valves. And random
- * cells: `layout`, a run, and closed forms of a polar robot agree on which slots GET and PUT reach. */
+/* Hand-overs from the end-effector to chucks at random heights, with either order of the valves. In
+ * random cells, `layout`, a run, and the closed forms of a polar robot agree on which slots GET and
+ * PUT reach. */
 #include "support/support.h"
 
 #include "math/trig.h"
@@ -8,12 +9,12 @@
 
 #include <unistd.h>
 
-#define TRANSFERS (750 / WH_TEST_SHARE)
+#define TRANSFERS 750
 
-/* The margin to eps_projz that a hand-over leaves at least, mm. */
+/* The least margin to eps_projz that a hand-over leaves, mm. */
 #define LEAST_MARGIN 0.2
 
-/* A chuck at a height and with a valve order that are drawn. */
+/* A chuck with a random height and a random order of the valves. */
 static const char handover_layout[] =
     "return {\n"
     "  grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },\n"
@@ -25,7 +26,7 @@ static const char handover_layout[] =
     "  wafers = { { name = 'Wafer', station = 'B', slot = 1, dx = params.dx, dy = params.dy } },\n"
     "}\n";
 
-/* The layout, and the script that fetches and puts. */
+/* The layout, and the script with its GETs and PUTs. */
 static char layout_path[WH_TEST_PATH], script[WH_TEST_PATH];
 
 static FILE *create(char path[WH_TEST_PATH]) {
@@ -83,11 +84,12 @@ static double play(const char *handover) {
 
 static void test_transfers(const char *handover) {
     double least = 1;
-    for (int i = 0; i < TRANSFERS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(1, TRANSFERS, 0.3);
+    while (wh_round(&rounds)) {
         const double margin = play(handover);
         least = margin < least ? margin : least;
     }
-    print_message("%s: %d transfers, least margin %.6f mm\n", handover, TRANSFERS, least);
+    print_message("%s: %d transfers, least margin %.6f mm\n", handover, rounds.made, least);
     assert_true(least >= LEAST_MARGIN);
 }
 
@@ -103,9 +105,10 @@ static void within_the_same_slice(void **state) {
 
 /* ----------------------------------------------------------------------------------------- what is in reach */
 
-#define CELLS (300 / WH_TEST_SHARE)
+#define CELLS 300
 
-/* A tilted or an upright station, a blade that sits aside on the end-effector, and a robot with little room. */
+/* A tilted or an upright station, a blade that is mounted aside on the end-effector, and a robot
+ * with little room. */
 static const char reach_layout[] =
     "local p = params\n"
     "return {\n"
@@ -118,7 +121,7 @@ static const char reach_layout[] =
     "                     retract = p.retract } },\n"
     "}\n";
 
-/* Every GET and PUT from home. What is refused by planning ends the script. */
+/* Every GET and PUT from home. A command that planning refuses ends the script. */
 static const char reach_script[] = "for slot = 1, params.slots do\n"
                                    "  home() get('A', slot, { vacuum_check = 'none' })\n"
                                    "  home() put('A', slot, { vacuum_check = 'none', force = true })\n"
@@ -171,7 +174,7 @@ static void draw_numbers(void) {
     }
 }
 
-/* How far a value is within its travel; below 0: outside. */
+/* The distance of a value from the ends of its travel; below 0: outside. */
 static double within(double value, double min, double max) {
     return value - min < max - value ? value - min : max - value;
 }
@@ -180,14 +183,15 @@ static double turned_to_half(double angle) {
     return angle - 360 * ceil((angle - 180) / 360);
 }
 
-/* Theta begins the way in here and turns by so much on it. */
+/* Theta has this value at the start of the way in, and turns by this angle on it. */
 static double room_of_turn(double theta, double turn) {
     return fmin(within(theta, numbers[THETA_MIN], numbers[THETA_MAX]),
                 within(theta + turn, numbers[THETA_MIN], numbers[THETA_MAX]));
 }
 
-/* The least room in the axes' travel on the way into a slot, mm or degrees, by the words of motion/robot.h
- * and nothing of its code: a polar robot that comes from theta 0, the longer way round if it has to. */
+/* The least room in the axes' travel and of the links on the way into a slot, mm or degrees. It follows the
+ * text of motion/robot.h and layout/shapes.h and uses none of their code: a polar robot starts from theta 0,
+ * and takes the longer way round if it has to. */
 static double room_at(const wh_layout_t *layout, int32_t slot) {
     const wh_pose_t at = wh_station_slot(&layout->places[0], slot);
     const double degree = M_PI / 180;
@@ -218,7 +222,13 @@ static double room_at(const wh_layout_t *layout, int32_t slot) {
     const wh_layout_station_t *station = &layout->stations[0];
     const double low = (double)(at.r.z - (station->stroke - station->offset));
     const double high = (double)(at.r.z + station->offset);
-    return fmin(room, fmin(low - numbers[Z_MIN], numbers[Z_MAX] - high));
+    room = fmin(room, fmin(low - numbers[Z_MIN], numbers[Z_MAX] - high));
+    /* Both links stretched come to the wrist, behind the end-effector. */
+    const wh_arm_t *arm = &layout->shapes.arm;
+    const double back_x = (double)arm->reach * cos(wrist), back_y = (double)arm->reach * sin(wrist);
+    const double stretched =
+        fmax(hypot(from_x - back_x, from_y - back_y), hypot(to_x - back_x, to_y - back_y));
+    return fmin(room, 2 * (double)arm->link - stretched);
 }
 
 /* The least room of all slots. */
@@ -230,7 +240,7 @@ static double room_of(const wh_layout_t *layout) {
     return room;
 }
 
-/* What `layout` says: true if nothing is refused from home. */
+/* The verdict of `layout`: true if nothing is refused from home. */
 static bool layout_passes(double *room) {
     static wh_survey_t survey;
     wh_sandbox_result_t result;
@@ -245,7 +255,8 @@ static bool layout_passes(double *room) {
     bool passes = true;
     for (size_t i = 0; i < check.count; ++i) {
         const wh_finding_t *finding = &check.findings[i];
-        passes = passes && (finding->kind != WH_FINDING_REACH || strstr(finding->text, "coming from theta"));
+        passes = passes && finding->kind != WH_FINDING_LINKS &&
+                 (finding->kind != WH_FINDING_REACH || strstr(finding->text, "coming from theta"));
     }
     *room = room_of(layout);
     wh_feasibility_free(&check);
@@ -277,7 +288,8 @@ static void layout_and_run_agree_on_what_is_in_reach(void **state) {
     (void)state;
     int counts[2] = {0, 0};
     write_files();
-    for (int i = 0; i < CELLS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(12, CELLS, 0.4);
+    while (wh_round(&rounds)) {
         double room;
         draw_numbers();
         const bool by_layout = layout_passes(&room);
@@ -289,7 +301,7 @@ static void layout_and_run_agree_on_what_is_in_reach(void **state) {
         ++counts[by_layout ? 1 : 0];
     }
     print_message("%d cells refused, %d not\n", counts[0], counts[1]);
-    assert_true(counts[0] > CELLS / 20 && counts[1] > CELLS / 20);
+    assert_true(counts[0] > rounds.made / 20 && counts[1] > rounds.made / 20);
     assert_int_equal(unlink(reach_path) + unlink(reach_script_path), 0);
 }
 

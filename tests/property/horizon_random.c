@@ -1,23 +1,24 @@
-/* Two grasp tables with the same wafers and inputs, one with buckets and one without, do the same to the last bit. */
+/* Two grasp tables with the same wafers and inputs, one with buckets and one without, agree to the
+ * last bit. */
 #include "grasp/grasp.h"
 #include "grasp/horizon_internal.h"
 #include "grasp/restore.h"
 #include "support/pose.h"
 
 #ifndef RUNS
-#define RUNS (5000 / WH_TEST_SHARE)
+#define RUNS 5000
 #endif
 
-/* Random cells and motions for the horizon: where a wafer that is not looked at would be missed. */
+/* Random cells and motions for the horizon: cases in which an unobserved wafer would be missed. */
 enum { WAFERS = 70, GRIPPERS = 4 };
 
 enum { STAND, GO, JUMP_AND_GO, JUMP, EDGE, KINDS };
 
-/* What a gripper is doing for a while. */
+/* The motion of a gripper for a while. */
 typedef struct {
     int kind;
     uint32_t left;  /* slices */
-    wh_pose_t next; /* of kind EDGE: just inside */
+    wh_pose_t next; /* for kind EDGE: just inside */
     wh_vec3_t way;  /* of one slice */
     int32_t valve;
 } doing_t;
@@ -28,7 +29,7 @@ typedef struct {
     wh_wafer_t wafer[WAFERS];
     double size;      /* half of the cell's edge, mm */
     wh_vec3_t centre; /* of the cell */
-    double tilt;      /* of wafers and grippers */
+    double tilt;      /* the tilt of wafers and grippers */
     doing_t doing[GRIPPERS];
 } scene_t;
 
@@ -55,7 +56,7 @@ static wh_grasp_config_t draw_config(void) {
 
 static wh_mat3_t draw_turn(double tilt) {
     wh_mat3_t R = tilt > 0 ? wh_test_random_turn(tilt) : wh_mat3_identity();
-    /* Columns as long or as short as may be. */
+    /* Columns as long or as short as is allowed. */
     if (wh_test_below(4) == 0) {
         const wh_real_t scale = 1 + WH_REAL(wh_test_uniform(-0.49, 0.49)) * WH_ROTATION_TOLERANCE;
         for (int k = 0; k < 9; ++k) {
@@ -71,7 +72,8 @@ static wh_vec3_t draw_place(const scene_t *scene) {
                    scene->centre.z + WH_REAL(wh_test_uniform(-scene->size, scene->size)));
 }
 
-/* Columns of wafers 10 mm above each other, or one here and there, or a level grid on which distances are equal. */
+/* Columns of wafers 10 mm above each other, or single wafers, or a level grid on which distances
+ * are equal. */
 static void draw_wafers(scene_t *scene) {
     const uint32_t kind = wh_test_below(3);
     wh_pose_t slot = {draw_turn(scene->tilt), draw_place(scene)};
@@ -111,7 +113,7 @@ static void draw_scene(scene_t *scene) {
     draw_wafers(scene);
 }
 
-/* Beside the wafer by these distances, and by a few last places more or less: on the edge of what they are limits of. */
+/* Beside the wafer by these distances, give or take a few last places: on the edge of their limits. */
 static wh_pose_t beside(const wh_pose_t *wafer, double z, double xy, double tilt) {
     const double angle = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
     const double edge = wh_test_below(2) ? 0 : wh_test_decades(1e-12, 0.1) * (wh_test_below(2) ? 1 : -1);
@@ -126,8 +128,8 @@ static wh_pose_t beside(const wh_pose_t *wafer, double z, double xy, double tilt
     return pose;
 }
 
-/* Outside of the neighbourhood, or of the tolerance, by up to as much again, and then by that way inside: as far as a
- * horizon may let it go. */
+/* Outside the neighbourhood or the tolerance, by up to as much again, and then the same way inside:
+ * the largest step that a horizon may allow. */
 static wh_pose_t draw_edge(const scene_t *scene, const wh_pose_t *wafer, wh_pose_t *inside) {
     const wh_grasp_config_t *config = &scene->config;
     const bool near = wh_test_below(2);
@@ -153,7 +155,7 @@ static wh_pose_t draw_edge(const scene_t *scene, const wh_pose_t *wafer, wh_pose
     return poses[0];
 }
 
-/* Somewhere in the cell, or where a gripper would take or watch it, or very far away. */
+/* Anywhere in the cell, or where a gripper would take or watch it, or very far away. */
 static wh_pose_t draw_rest(const scene_t *scene, const wh_gripper_t grippers[]) {
     const wh_pose_t *gripper = &grippers[wh_test_below((uint32_t)scene->grippers)].base_from_gripper;
     wh_pose_t pose = {draw_turn(wh_test_below(3) ? scene->tilt : WH_TEST_PI), draw_place(scene)};
@@ -171,7 +173,7 @@ static wh_pose_t draw_rest(const scene_t *scene, const wh_gripper_t grippers[]) 
     }
 }
 
-/* To a wafer's edge of the tolerance or of the neighbourhood, or close by. */
+/* To the edge of the tolerance or of the neighbourhood of a wafer, or close by. */
 static wh_pose_t jump(const scene_t *scene, const wh_pose_t *wafer) {
     const wh_grasp_config_t *config = &scene->config;
     const bool near = wh_test_below(2);
@@ -192,7 +194,7 @@ static wh_pose_t jump(const scene_t *scene, const wh_pose_t *wafer) {
     }
 }
 
-/* Straight away from, towards or past a wafer, in slices of a given length. */
+/* Straight away from a wafer, towards it or past it, in slices of a given length. */
 static wh_vec3_t draw_way(const wh_pose_t *wafer, const wh_vec3_t *place) {
     static const double lengths[] = {0.4, 0.4, 0.02, 1, 5, 40};
     const double length = wh_test_below(2) ? lengths[wh_test_below(6)] : wh_test_decades(1e-4, 100);
@@ -216,7 +218,7 @@ static void draw_doing(const scene_t *scene, const wh_wafer_t wafers[], const wh
     doing->valve = wh_test_below(4) ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
 }
 
-/* Two grippers at one wafer: one lets go of what it holds, or not, where the other is ready. */
+/* Two grippers at one wafer: one releases the wafer that it holds, or keeps it, while the other is ready. */
 static void meet(const scene_t *scene, wh_gripper_input_t inputs[]) {
     const uint32_t count = (uint32_t)scene->grippers;
     const size_t g = wh_test_below(count);
@@ -272,7 +274,7 @@ typedef struct {
     wh_event_list_t list;
 } side_t;
 
-/* A state of both, to go back to. */
+/* A saved state of both. */
 typedef struct {
     uint64_t slice;
     wh_wafer_t wafer[WAFERS];
@@ -281,7 +283,7 @@ typedef struct {
 
 static uint32_t buckets[WH_GRASP_BUCKETS(WAFERS, GRIPPERS) + GUARDS];
 
-/* How often there was something to save, over all runs: that the test is about what it says. */
+/* The number of steps that were saved, over all runs: it shows that the test does what it says. */
 static struct { unsigned long long looks, covered, listed, all; } tally;
 
 static void begin(side_t *side, const scene_t *scene, bool with_buckets) {
@@ -339,7 +341,7 @@ static void place_somewhere(side_t *plain, side_t *indexed, const scene_t *scene
     assert_int_equal(wh_grasp_place(&plain->table, w, &pose), wh_grasp_place(&indexed->table, w, &pose));
 }
 
-/* To an earlier state, on one side only once in a while: then the other goes there from somewhere else. */
+/* Back to an earlier state, now and then on one side only; then the other gets there from another state. */
 static void keep_or_restore(side_t *plain, side_t *indexed, kept_t *kept) {
     if (kept->slice == 0 || wh_test_below(2)) {
         kept->slice = plain->table.slice;
@@ -404,10 +406,10 @@ static void buckets_change_no_bit(void **state) {
     (void)state;
     static scene_t scene;
     wh_grasp_counters_t sum = {0};
-    (void)wh_test_seed();
-    for (unsigned run = 0; run < RUNS; ++run) {
+    wh_rounds_t rounds = WH_ROUNDS(50, RUNS, 1);
+    while (wh_round(&rounds)) {
         draw_scene(&scene);
-        play(&scene, run, &sum);
+        play(&scene, (unsigned)rounds.number, &sum);
     }
     print_message("%llu picks, %llu releases, %llu hand-overs, %llu near misses, %llu contests\n",
                   (unsigned long long)sum.picked, (unsigned long long)sum.released,
@@ -415,8 +417,9 @@ static void buckets_change_no_bit(void **state) {
                   (unsigned long long)sum.contested);
     print_message("of %llu looks %llu were within the horizon, %llu in cells, %llu at all wafers\n",
                   tally.looks, tally.covered, tally.listed, tally.all);
-    assert_true(sum.picked > RUNS && sum.released > RUNS && sum.near_misses > RUNS);
-    assert_true(sum.handed_over > RUNS / 10 && sum.contested > RUNS / 10);
+    const uint64_t runs = (uint64_t)rounds.made;
+    assert_true(sum.picked > runs && sum.released > runs && sum.near_misses > runs);
+    assert_true(sum.handed_over > runs / 10 && sum.contested > runs / 10);
     assert_true(tally.covered > tally.looks / 10 && tally.listed > tally.looks / 50 &&
                 tally.all > tally.looks / 50);
 }

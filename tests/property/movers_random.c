@@ -1,17 +1,15 @@
-/* Two robots that go, stand and go on for thousands of slices, one of them with a wafer: the smallest gaps, of the run and
- * over time, are those of a plain loop over all pairs at each slice's end. */
+/* Two robots move, stand and move on for thousands of slices; one of them has a wafer. The smallest
+ * gaps, of the run and over time, are those of a plain loop over all pairs at each slice's end. */
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "collision/gap.h"
 #include "collision/world.h"
 #include "support/pose.h"
-#include "support/random.h"
 
 enum { ROBOTS = 2, FIXED = 3, UPPER = FIXED, BLADE = UPPER + ROBOTS, PARTS = BLADE + 2 * ROBOTS, WAFERS = 3 };
-enum { ITEMS = PARTS + WAFERS, RUNS = 120 / WH_TEST_SHARE + 1, SLICES = 1500, LEG = 50 };
+enum { ITEMS = PARTS + WAFERS, RUNS = 121, SLICES = 1500, LEG = 50 };
 
-static uint64_t seed = 20261127;
 static wh_part_t parts[PARTS];
 static wh_world_config_t config;
 static wh_grasp_config_t grasp;
@@ -19,10 +17,10 @@ static wh_cell_t cell;
 static wh_wafer_t wafers[WAFERS];
 static wh_gripper_t grippers[ROBOTS];
 
-/* A point of a robot goes less far in a slice, mm. */
+/* The upper bound for a robot's point in a slice, mm. */
 #define FASTEST 6
 
-/* A robot's place and how it goes on, each slice. */
+/* A robot's place and its motion in each slice. */
 typedef struct {
     double x, y, z, turn_deg;
     double dx, dy, dz, dturn_deg;
@@ -31,15 +29,11 @@ typedef struct {
 
 typedef struct {
     wh_real_t least[WH_CLEARANCES], now[WH_CLEARANCES], bin[WH_CLEARANCES];
-    wh_real_t nearest; /* of all at the slice's end */
+    wh_real_t nearest; /* the nearest of all at the slice's end */
 } oracle_t;
 
 static walk_t walks[ROBOTS];
 static wh_pose_t links[ROBOTS * WH_ARM_BODIES];
-
-static double draw(double low, double high) {
-    return low + (high - low) * (double)(wh_test_splitmix(&seed) >> 11) * 0x1p-53;
-}
 
 static wh_part_t box_part(wh_part_kind_t kind, int32_t owner, wh_vec3_t size, wh_pose_t at) {
     wh_part_t part = {.kind = kind, .owner = owner};
@@ -85,7 +79,7 @@ static void set_up_scene(void) {
     assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
 }
 
-/* Robot 0 holds wafer 0; the others lie about. */
+/* Robot 0 holds wafer 0; the others lie in the cell. */
 static void place_robots(void) {
     for (int r = 0; r < ROBOTS; ++r) {
         const walk_t *walk = &walks[r];
@@ -102,23 +96,23 @@ static void place_robots(void) {
     wafers[0].holder = 0;
 }
 
-/* Home is 110 mm to one side. What has not moved yet has no gap yet: both begin by going. */
+/* Home is 110 mm to one side. A body that has not moved yet has no gap, so both robots begin with a move. */
 static void begin_leg(int r, int slice) {
     walk_t *walk = &walks[r];
     const double home = r == 0 ? -110 : 110;
-    const bool stands = slice > 1 && draw(0, 1) < 0.3;
-    const double fast = draw(0, 3);
-    walk->until = slice + 1 + (int)draw(0, draw(0, 1) < 0.5 ? 6 : LEG);
+    const bool stands = slice > 1 && wh_test_uniform(0, 1) < 0.3;
+    const double fast = wh_test_uniform(0, 3);
+    walk->until = slice + 1 + (int)wh_test_uniform(0, wh_test_uniform(0, 1) < 0.5 ? 6 : LEG);
     walk->dx = walk->dy = walk->dz = walk->dturn_deg = 0;
     if (!stands) {
-        walk->dx = fast * draw(-1, 1) - 0.008 * (walk->x - home);
-        walk->dy = fast * draw(-1, 1) - 0.006 * walk->y;
-        walk->dz = draw(-0.5, 0.5) - 0.008 * (walk->z - (r == 0 ? -14 : 14));
-        walk->dturn_deg = draw(-0.3, 0.3);
+        walk->dx = fast * wh_test_uniform(-1, 1) - 0.008 * (walk->x - home);
+        walk->dy = fast * wh_test_uniform(-1, 1) - 0.006 * walk->y;
+        walk->dz = wh_test_uniform(-0.5, 0.5) - 0.008 * (walk->z - (r == 0 ? -14 : 14));
+        walk->dturn_deg = wh_test_uniform(-0.3, 0.3);
     }
 }
 
-/* A leg is gone evenly, as fast as it likes, or stood. */
+/* On a leg the robot moves evenly, at any speed, or stands. */
 static void walk_on(int r, int slice) {
     walk_t *walk = &walks[r];
     if (slice == 1 || slice == walk->until) {
@@ -159,7 +153,7 @@ static wh_pose_t place_of(size_t item) {
     return wh_pose_compose(body, &convex->body_from_shape);
 }
 
-/* A wafer that somebody has is within another one's reach: the two may come together. */
+/* A wafer that one robot holds is within reach of the other: the two may come together. */
 static bool is_reached(const wh_wafer_t *wafer, const wh_gripper_t *gripper) {
     const wh_pose_t seen = wh_pose_relative(&gripper->base_from_gripper, &wafer->base_from_wafer);
     const wh_real_t limit = grasp.tolerance.projxy;
@@ -167,7 +161,7 @@ static bool is_reached(const wh_wafer_t *wafer, const wh_gripper_t *gripper) {
            wh_real_abs(seen.r.z) <= grasp.near_projz;
 }
 
-/* Of a wafer, at `w`, and a part. */
+/* The gap between a wafer at `w` and a part. */
 static wh_clearance_kind_t of_wafer(size_t w, size_t part) {
     const int robot = robot_of(part);
     const wh_wafer_t *wafer = &wafers[w - PARTS];
@@ -184,7 +178,7 @@ static wh_clearance_kind_t of_wafer(size_t w, size_t part) {
                                                 : WH_CLEARANCE_BLADE_WAFER_BELOW;
 }
 
-/* Of two parts of which one moves at least. */
+/* The gap between two parts; at least one moves. */
 static wh_clearance_kind_t of_parts(size_t a, size_t b) {
     const bool has_arm = kind_of(a) == WH_PART_ARM || kind_of(b) == WH_PART_ARM;
     if (robot_of(a) == robot_of(b)) {
@@ -193,7 +187,7 @@ static wh_clearance_kind_t of_parts(size_t a, size_t b) {
     return has_arm ? WH_CLEARANCE_ARM_OTHER : WH_CLEARANCE_BLADE_OTHER;
 }
 
-/* Of two items, a before b; WH_CLEARANCES: they do not count. */
+/* The kind of gap between two items, a before b; WH_CLEARANCES: they do not count. */
 static wh_clearance_kind_t clearance_of(size_t a, size_t b) {
     if (robot_of(a) == WH_NONE && robot_of(b) == WH_NONE) {
         return WH_CLEARANCES;
@@ -256,11 +250,15 @@ static void compare(const wh_world_t *world, uint64_t slice, oracle_t *oracle) {
 static void begin_run(wh_world_t **world, void *memory, size_t bytes, oracle_t *oracle) {
     set_up_scene();
     for (int r = 0; r < ROBOTS; ++r) {
-        walks[r] = (walk_t){.x = r == 0 ? -260 : 260, .y = draw(-60, 60), .z = r == 0 ? -20 : 20};
-        walks[r].turn_deg = draw(-20, 20) + 180 * r;
+        walks[r] = (walk_t){.x = r == 0 ? -260 : 260, .y = wh_test_uniform(-60, 60), .z = r == 0 ? -20 : 20};
+        walks[r].turn_deg = wh_test_uniform(-20, 20) + 180 * r;
     }
-    wafers[1] = (wh_wafer_t){wh_test_at(draw(-60, 60), draw(180, 260), draw(-40, 40)), WH_NONE, WH_NONE};
-    wafers[2] = (wh_wafer_t){wh_test_at(draw(-60, 60), draw(-240, -180), draw(-40, 40)), WH_NONE, WH_NONE};
+    wafers[1] = (wh_wafer_t){
+        wh_test_at(wh_test_uniform(-60, 60), wh_test_uniform(180, 260), wh_test_uniform(-40, 40)), WH_NONE,
+        WH_NONE};
+    wafers[2] = (wh_wafer_t){
+        wh_test_at(wh_test_uniform(-60, 60), wh_test_uniform(-240, -180), wh_test_uniform(-40, 40)), WH_NONE,
+        WH_NONE};
     place_robots();
     *oracle = (oracle_t){.nearest = WH_CLEARANCE_RANGE};
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -301,15 +299,13 @@ static int play_run(void) {
 
 static void gaps_are_those_of_a_plain_loop(void **state) {
     (void)state;
-    const char *given = getenv("WH_SEED");
     int slices = 0;
-    seed = given ? strtoull(given, NULL, 10) : seed;
-    print_message("WH_SEED=%llu\n", (unsigned long long)seed);
-    for (int run = 0; run < RUNS; ++run) {
+    wh_rounds_t rounds = WH_ROUNDS(4, RUNS, 1);
+    while (wh_round(&rounds)) {
         slices += play_run();
     }
     print_message("%d slices\n", slices);
-    assert_true(slices > RUNS * 200);
+    assert_true(slices > rounds.made * 100);
 }
 
 int main(void) {

@@ -1,4 +1,5 @@
-/* Curves: between their points no sample is off by more than the tolerance, and forced samples are not off at all. */
+/* Curves: no sample between their points is off by more than the tolerance, and forced samples have
+ * no error at all. */
 #include "support/support.h"
 
 #include "record/path.h"
@@ -15,7 +16,7 @@ static sample_t samples[SAMPLES];
 
 /* ------------------------------------------------------------------------------------------------- signals */
 
-/* A rest or a move from a sample on: jerk-limited or not, with a jolt now and then, or a gap. */
+/* A rest or a move from a sample on: jerk-limited or not, sometimes with a jolt, or a gap. */
 typedef struct {
     double from, way;
     size_t begin, length;
@@ -31,7 +32,7 @@ static void begin_move(move_t *move, size_t begin, bool gaps) {
     move->is_gap = gaps && begin > 0 && wh_test_below(5) == 0;
 }
 
-/* Positions of a robot's moves, and of what jumps. */
+/* Positions of a robot's moves, and of values that jump. */
 static void make_signal(bool gaps, bool jolts) {
     move_t move = {.length = 0};
     for (size_t i = 0; i < SAMPLES; ++i) {
@@ -103,27 +104,29 @@ static void check(bool gaps, bool jolts) {
 
 static void values_stay_within_the_tolerance(void **state) {
     (void)state;
-    (void)wh_test_seed();
-    for (int i = 0; i < 80; ++i) {
-        check(false, i % 2 == 0);
+    wh_rounds_t rounds = WH_ROUNDS(6, 80, 0.3);
+    while (wh_round(&rounds)) {
+        check(false, rounds.number % 2 == 0);
     }
 }
 
 static void a_break_is_a_break(void **state) {
     (void)state;
-    for (int i = 0; i < 80; ++i) {
-        check(true, i % 2 == 0);
+    wh_rounds_t rounds = WH_ROUNDS(6, 80, 0.3);
+    while (wh_round(&rounds)) {
+        check(true, rounds.number % 2 == 0);
     }
 }
 
-/* The tolerance grows, is told, and holds; forced samples stay, and so do rests. */
+/* The tolerance grows, is reported, and holds; forced samples stay, and so do rests. */
 static void a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
-    for (int i = 0; i < 80; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(6, 80, 0.3);
+    while (wh_round(&rounds)) {
         wh_path_t curve;
         const size_t limit = 20 + wh_test_below(100);
         wh_path_open(&curve, wh_test_decades(1e-5, 1e-2), limit);
-        make_signal(i % 2 == 0, i % 3 == 0);
+        make_signal(rounds.number % 2 == 0, rounds.number % 3 == 0);
         draw(&curve);
         assert_points(&curve);
         assert_within(&curve);
@@ -132,7 +135,7 @@ static void a_limit_is_kept_and_the_tolerance_told(void **state) {
     }
 }
 
-/* Three times the third power of a time: one cubic, whose slope is known. */
+/* Three times the third power of a time: a single cubic with a known slope. */
 static void a_cubic_has_two_points(void **state) {
     (void)state;
     wh_path_t curve;
@@ -153,7 +156,7 @@ static void a_cubic_has_two_points(void **state) {
     wh_path_close(&curve);
 }
 
-/* However long; forced samples within it cost no point. */
+/* However long it is, forced samples within it add no point. */
 static void a_rest_has_two_points(void **state) {
     (void)state;
     wh_path_t curve;

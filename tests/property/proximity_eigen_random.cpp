@@ -1,5 +1,7 @@
-/* (1)-(5) and the pose algebra against fixed-size Eigen: an independent implementation of the same products.
- * The difference is counted in units of 2^-53 (float: 2^-24) times the sum of the absolute terms. */
+/* (1)-(5) and the pose algebra compared with fixed-size Eigen: an independent implementation of the
+ * same products. The difference is counted in units of 2^-53 (float: 2^-24) times the sum of the
+ * absolute terms. */
+/* Plain alone: under sanitizers proximity_test and pose_test call the same functions, without Eigen. */
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -19,8 +21,9 @@ using Matrix = Eigen::Matrix<wh_real_t, 3, 3>;
 using Vector = Eigen::Matrix<wh_real_t, 3, 1>;
 
 constexpr int pairs = 1000000;
-/* Sums in the same order differ by nothing, and the double build's are. Eigen's vectorised products add in
- * another order, and then either side may be off by one rounding for each of up to four terms. */
+/* Sums in the same order do not differ, and the double build adds in the same order. Eigen's
+ * vectorised products add in another order: then either side may be off by one rounding for each of
+ * up to four terms. */
 constexpr double allowed_reordered = 8;
 #if defined(WH_FLOAT)
 constexpr double allowed = allowed_reordered;
@@ -69,7 +72,7 @@ struct Worst {
     }
 };
 
-/* Half of the pairs are close to each other, where cancellation shows. */
+/* Half of the pairs are close to each other, so that cancellation shows. */
 void draw(int pair, wh_pose_t &a, wh_pose_t &b) {
     a = wh_test_random_pose(1000);
     b = wh_test_random_pose(1000);
@@ -80,12 +83,12 @@ void draw(int pair, wh_pose_t &a, wh_pose_t &b) {
 }
 
 void measured_values_are_eigens(void **) {
-    wh_test_seed();
     const wh_tolerance_t paper = wh_tolerance_paper();
     Worst dr, planar, z, xy, norm;
-    for (int pair = 0; pair < pairs; ++pair) {
+    wh_rounds_t rounds = WH_ROUNDS(1000, pairs, 0.4);
+    while (wh_round(&rounds)) {
         wh_pose_t wafer, gripper;
-        draw(pair, wafer, gripper);
+        draw(rounds.number, wafer, gripper);
         wh_proximity_t p;
         assert_int_equal(wh_proximity_measure(&wafer, &gripper, &paper, &p), WH_OK);
         const Matrix R_w = matrix(wafer.R);
@@ -113,9 +116,10 @@ void measured_values_are_eigens(void **) {
 
 void pose_algebra_is_eigens(void **) {
     Worst compose_R, compose_r, relative_R, relative_r;
-    for (int pair = 0; pair < pairs; ++pair) {
+    wh_rounds_t rounds = WH_ROUNDS(1000, pairs, 0.4);
+    while (wh_round(&rounds)) {
         wh_pose_t a, b;
-        draw(pair, a, b);
+        draw(rounds.number, a, b);
         const wh_pose_t product = wh_pose_compose(&a, &b);
         const wh_pose_t quotient = wh_pose_relative(&a, &b);
         const Matrix A = matrix(a.R);

@@ -1,4 +1,4 @@
-/* Oracle: all slots of all stations, each looked at by the words of cell/station.h in long double. */
+/* Oracle: all slots of all stations, each checked by the text of cell/station.h in long double. */
 #include "cell/station.h"
 #include "support/pose.h"
 
@@ -13,7 +13,7 @@ static long double dot(const long double a[3], const wh_mat3_t *R, int column) {
            a[2] * (long double)R->m[2][column];
 }
 
-/* A few stations of a few slots, so near each other that a wafer can lie in several. */
+/* A few stations with a few slots, so near each other that a wafer can lie in several. */
 static void draw_cell(void) {
     for (size_t s = 0; s < STATIONS; ++s) {
         stations[s].base_from_station = wh_test_random_pose(60);
@@ -28,7 +28,7 @@ static void draw_cell(void) {
     cell.tolerance.projxy = WH_REAL(wh_test_uniform(20, 90));
 }
 
-/* The square of the distance to a slot in which the wafer lies, or -1; *edge says that rounding decides. */
+/* The square of the distance to a slot in which the wafer lies, or -1; *edge is true if rounding decides. */
 static long double distance(const wh_station_t *station, int slot, const wh_pose_t *wafer, bool *edge) {
     const wh_pose_t *at = &station->base_from_station;
     const long double up = (long double)(slot - 1) * (long double)station->pitch;
@@ -52,7 +52,7 @@ static long double distance(const wh_station_t *station, int slot, const wh_pose
     return inside ? x * x + y * y + z * z : -1;
 }
 
-/* The two nearest of all slots in which the wafer lies; -1 for a distance that none has. */
+/* The two nearest of all slots in which the wafer lies; -1 if there is no such slot. */
 typedef struct {
     int32_t station, slot;
     long double best, second;
@@ -84,7 +84,8 @@ static search_t search_all(const wh_pose_t *wafer) {
 static void the_nearest_slot_of_all_is_found(void **state) {
     (void)state;
     int found = 0;
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(500, ROUNDS, 0.3);
+    while (wh_round(&rounds)) {
         draw_cell();
         wh_pose_t wafer = wh_test_random_pose(100);
         wafer.R = wh_test_random_turn(0.2);
@@ -98,13 +99,14 @@ static void the_nearest_slot_of_all_is_found(void **state) {
             found += lies;
         }
     }
-    assert_true(found > ROUNDS / 20);
+    assert_true(found > rounds.made / 20);
 }
 
-/* However rounding falls at the ends of a stack, what is found is a slot of it. */
+/* However rounding falls at the ends of a stack, the slot found belongs to the stack. */
 static void what_is_found_is_a_slot(void **state) {
     (void)state;
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(500, ROUNDS, 0.3);
+    while (wh_round(&rounds)) {
         draw_cell();
         cell.count = 1;
         stations[0].base_from_station = wh_pose_identity();

@@ -1,5 +1,5 @@
-/* Swept checking against brute force: the slice sampled at very many instants, with quaternions written here.
- */
+/* Swept checking compared with brute force: the slice sampled at very many instants, with
+ * quaternions written here. */
 #include "grasp/sweep_internal.h"
 #include "support/grasp.h"
 
@@ -69,8 +69,8 @@ static values_t values_at(const slice_t *s, double t) {
     return v;
 }
 
-/* Positive: ready by that much, in units of the limits; a mm of z, a mm of xy and 0.01 of the cosine count
- * alike. */
+/* The margin of readiness in units of the limits, positive if ready: 1 mm of z, 1 mm of xy and 0.01
+ * of the cosine count alike. */
 static double readiness(const slice_t *s, double t) {
     const values_t v = values_at(s, t);
     const wh_tolerance_t *limit = &s->config.tolerance;
@@ -84,7 +84,7 @@ static double closeness(const slice_t *s, const values_t *v) {
     return z * z + xy * xy;
 }
 
-/* A turn about any axis or one near n2; small, large, none, or hardly less than half a revolution. */
+/* A turn about any axis or one near n2; small, large, none, or a little less than half a revolution. */
 static wh_mat3_t draw_turn(quaternion_t *turn) {
     const double spreads[] = {1, 0.2, 0};
     const double spread = spreads[wh_test_below(3)];
@@ -109,7 +109,7 @@ static wh_mat3_t draw_turn(quaternion_t *turn) {
     return wh_test_rotation(a[0], a[1], a[2], angle);
 }
 
-/* A wafer anywhere, and a gripper that passes by it: in the wafer's frame from one point to another. */
+/* A wafer in any place, and a gripper that passes it: from one point to another in the wafer's frame. */
 static void draw(slice_t *s) {
     memset(s, 0, sizeof *s);
     s->config = wh_grasp_config_default();
@@ -134,7 +134,7 @@ static void draw(slice_t *s) {
     s->travel[2] = (double)s->to.r.z - (double)s->from.r.z;
 }
 
-/* The wafer comes only when the gripper waits open at its beginning: no earlier slice can take it. */
+/* The wafer comes only when the gripper waits open at its beginning, so no earlier slice can take it. */
 static void play(cell_t *cell, const slice_t *s) {
     cell_begin(cell, &s->config);
     cell->input[0].base_from_gripper = s->from;
@@ -147,7 +147,7 @@ static void play(cell_t *cell, const slice_t *s) {
     cell_step(cell);
 }
 
-/* When the table took the wafer: where on its way the gripper was, by the event. */
+/* The instant at which the table took the wafer: the gripper's place on its way, from the event. */
 static double instant_of(const slice_t *s, const wh_event_t *e) {
     const double at[3] = {(double)s->wafer.r.x - (double)e->measured.dr.x - (double)s->from.r.x,
                           (double)s->wafer.r.y - (double)e->measured.dr.y - (double)s->from.r.y,
@@ -161,7 +161,7 @@ static double instant_of(const slice_t *s, const wh_event_t *e) {
     return along / square;
 }
 
-/* Taken at t: ready there; the values and gripper_from_wafer are those of t. */
+/* Taken at t: the pair is ready there, and the values and gripper_from_wafer are those of t. */
 static void check_pick(const slice_t *s, const cell_t *cell, const wh_event_t *e, double t) {
     const values_t v = values_at(s, t);
     assert_true(readiness(s, t) > -SLACK * 100);
@@ -189,7 +189,7 @@ static void check_pick(const slice_t *s, const cell_t *cell, const wh_event_t *e
     assert_near(wh_test_difference_r(&end, &cell->wafer[0].base_from_wafer), 0, SLACK);
 }
 
-/* The first of `count` instants at which it is ready by more than rounding; 2 when it never is. */
+/* The first of `count` instants at which it is ready by more than rounding; 2 if it never is. */
 static double first_ready(const slice_t *s, int count) {
     for (int i = 0; i <= count; ++i) {
         const double t = (double)i / count;
@@ -246,8 +246,8 @@ static void compare(const slice_t *s, int count, tally_t *tally) {
         return;
     }
     check_pick(s, &cell, e, t);
-    /* Never later than the samples say. Earlier only by a sample, or at an instant that they step over, which
-     * check_pick has looked at. */
+    /* It is never later than the samples show. It may be earlier by one sample, or at an instant
+     * that the samples miss; check_pick has tested that instant. */
     assert_true(t <= expected + SLACK * 100 + 1e-5);
     assert_true(expected > 1 || t >= expected - 1.0 / count - SLACK * 100 || readiness(s, t) > -SLACK * 100);
     ++*(t < 1e-9 ? &tally->beginning : &tally->inside);
@@ -255,22 +255,24 @@ static void compare(const slice_t *s, int count, tally_t *tally) {
 
 static void picks_at_the_first_instant(void **state) {
     (void)state;
-    (void)wh_test_seed();
     tally_t tally = {0, 0, 0, 0, 0};
-    for (int run = 0; run < 3040; ++run) {
+    wh_rounds_t rounds = WH_ROUNDS(150, 3040, 0.5);
+    while (wh_round(&rounds)) {
         slice_t s;
         draw(&s);
-        compare(&s, run < 40 ? 100000 : 1500, &tally);
+        compare(&s, rounds.number % 76 == 0 ? 100000 : 1500, &tally);
     }
     printf("%d picked inside the slice, %d at its beginning, %d at its end; %d never, %d of them near\n",
            tally.inside, tally.beginning, tally.end, tally.never, tally.near);
-    assert_true(tally.inside > 300 && tally.beginning > 30 && tally.never > 300 && tally.near > 100);
+    const int made = rounds.made;
+    assert_true(tally.inside > made / 10 && tally.beginning > made / 100 && tally.never > made / 10 &&
+                tally.near > made / 30);
 }
 
 /* ----------------------------------------------------------------------------------------- parts of a slice */
 
-/* The parts of a slice that lie within the limits, against their definition: inside at both ends and in between,
- * outside before and after. And which of several wafers is taken. */
+/* The parts of a slice within the limits, compared with their definition: inside at both ends and
+ * in between, outside before and after. The test also checks which of several wafers is taken. */
 
 #define ROUNDS 20000
 #define SAMPLES 200
@@ -281,7 +283,8 @@ typedef struct {
     wh_real_t projz, projxy;
 } slice_t_part;
 
-/* Along any line, along z alone, within the plane alone, or not at all; the limits are met now and then. */
+/* Along any line, along z alone, within the plane alone, or at rest; now and then the limits are
+ * met exactly. */
 static void draw_part(slice_t_part *s) {
     const uint32_t kind = wh_test_below(5);
     const bool climbs = kind != 1 && kind != 2;
@@ -302,7 +305,7 @@ static void draw_part(slice_t_part *s) {
     s->projxy = WH_REAL(wh_test_uniform(20, 70));
 }
 
-/* By how much the gripper is within both limits at t; negative: it is not. */
+/* The margin of the gripper to both limits at t; negative: it is outside. */
 static double room(const slice_t_part *s, double t) {
     double dr[3];
     double p[3] = {0, 0, 0};
@@ -321,7 +324,7 @@ static double room(const slice_t_part *s, double t) {
     return fmin((double)s->projz - fabs(p[2]), (double)s->projxy - sqrt(p[0] * p[0] + p[1] * p[1]));
 }
 
-/* Inside the part there is room, outside there is none. */
+/* Inside the part the margin is positive, outside it is negative. */
 static void check_samples(const slice_t_part *s, double first, double last) {
     for (int k = 0; k <= SAMPLES; ++k) {
         const double t = (double)k / SAMPLES;
@@ -333,7 +336,8 @@ static void check_samples(const slice_t_part *s, double first, double last) {
 static void the_part_is_where_both_limits_hold(void **state) {
     (void)state;
     int found = 0;
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(200, ROUNDS, 0.15);
+    while (wh_round(&rounds)) {
         slice_t_part s;
         wh_sweep_t sweep;
         wh_span_t part;
@@ -347,12 +351,13 @@ static void the_part_is_where_both_limits_hold(void **state) {
         check_samples(&s, first, last);
         assert_true(!within || (room(&s, first) > -SLACK_PART && room(&s, last) > -SLACK_PART));
     }
-    assert_true(found > ROUNDS / 5 && found < 4 * ROUNDS / 5);
+    assert_true(found > rounds.made / 5 && found < 4 * rounds.made / 5);
 }
 
 static void poses_run_from_one_end_to_the_other(void **state) {
     (void)state;
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(200, ROUNDS, 0.15);
+    while (wh_round(&rounds)) {
         const wh_pose_t from = wh_test_random_pose(100);
         const wh_pose_t to = wh_test_random_pose(100);
         wh_sweep_t sweep;
@@ -371,13 +376,15 @@ static void poses_run_from_one_end_to_the_other(void **state) {
     }
 }
 
-/* A turn so slow that rounding hides for a while on which side of the limit it is: found soon for all that. */
+/* The turn is so slow that rounding hides for a while on which side of the limit it is. It is found
+ * soon all the same. */
 static void a_creeping_turn_is_found_soon(void **state) {
     (void)state;
     const wh_tolerance_t tolerance = wh_tolerance_paper();
     const wh_pose_t wafer = wh_test_at(0, 0, 0);
     const double limit = acos((double)tolerance.planar);
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(200, ROUNDS, 0.15);
+    while (wh_round(&rounds)) {
         const double rate = wh_test_decades(1e-11, 1e-2);
         const double before = wh_test_uniform(0.1, 0.9) * rate;
         const wh_pose_t from = wh_test_pose(wh_test_rotation(1, 0, 0, limit + before), 1, 2, 0.1);
@@ -386,14 +393,15 @@ static void a_creeping_turn_is_found_soon(void **state) {
         wh_real_t t;
         wh_sweep_between(&from, &to, &sweep);
         assert_true(wh_sweep_first_ready(&sweep, &wafer, &tolerance, &t));
-        /* A thousandth of the rest of the slice late, and what the poses' own rounding makes of the crossing. */
+        /* A delay of a thousandth of the rest of the slice, and the effect of the poses' own
+         * rounding on the crossing. */
         const double crossing = before / rate;
         assert_near(t, crossing, (1 - crossing) / 1000 + 1e-15 / rate + 1e-3 * rate);
     }
 }
 
-/* Gripper 0 passes the wafers from below, some of which lie at one height, or sideways, some of which come within its reach
- * at once but at different heights. */
+/* Gripper 0 passes the wafers. From below, some of them lie at one height; sideways, some come
+ * within its reach at once but at different heights. */
 static void draw_wafers(cell_t *cell) {
     wh_grasp_config_t config = wh_grasp_config_default();
     config.check = WH_CHECK_SWEPT;
@@ -416,11 +424,11 @@ static void draw_wafers(cell_t *cell) {
 }
 
 typedef struct {
-    int wafer, ready; /* WH_NONE; how many could be taken */
+    int wafer, ready; /* WH_NONE; the number that could be taken */
     double t, distance;
 } choice_t;
 
-/* When, between the slices, wafer w can be taken; 2: at the end only; 3: not at all. */
+/* The instant in the slice at which wafer w can be taken; 2: at the end only; 3: not at all. */
 static double instant(const cell_t *cell, int w, double *distance) {
     const wh_pose_t *wafer = &cell->wafer[w].base_from_wafer;
     const wh_tolerance_t *tolerance = &cell->table.config.tolerance;
@@ -438,7 +446,7 @@ static double instant(const cell_t *cell, int w, double *distance) {
     return between ? (double)t : wh_proximity_ready(wafer, &then, tolerance) ? 2 : 3;
 }
 
-/* The earliest, of equally early ones the nearest, of equally near ones the first. */
+/* The earliest; among equally early ones the nearest; among equally near ones the first. */
 static choice_t choose(const cell_t *cell) {
     choice_t best = {WH_NONE, 0, 3, 0};
     for (int w = 0; w < CELL_WAFERS; ++w) {
@@ -457,7 +465,8 @@ static choice_t choose(const cell_t *cell) {
 static void the_earliest_then_the_nearest_is_taken(void **state) {
     (void)state;
     int several = 0;
-    for (int i = 0; i < ROUNDS; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(200, ROUNDS, 0.15);
+    while (wh_round(&rounds)) {
         cell_t cell;
         draw_wafers(&cell);
         const choice_t best = choose(&cell);
@@ -470,7 +479,7 @@ static void the_earliest_then_the_nearest_is_taken(void **state) {
             assert_near(fabs((double)picked->measured.dr_proj_z), best.distance, 1e-12);
         }
     }
-    assert_true(several > ROUNDS / 10);
+    assert_true(several > rounds.made / 10);
 }
 
 int main(void) {

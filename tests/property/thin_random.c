@@ -1,4 +1,5 @@
-/* Thinned signals: between their points nothing is off by more than the tolerance, and forced samples are not off at all. */
+/* Thinned signals: between their points no value is off by more than the tolerance, and forced
+ * samples have no error at all. */
 #include "support/support.h"
 
 #include "record/quaternion.h"
@@ -66,7 +67,8 @@ static void make_sample(const move_t *move, size_t i, size_t width, bool turns) 
     sample->forced = wh_test_below(50) == 0;
 }
 
-/* Rests and smooth moves of random lengths, as a robot makes them, with a jolt now and then; the moves turn about random axes. */
+/* Rests and smooth moves of random lengths, as a robot makes them, sometimes with a jolt; the moves
+ * turn about random axes. */
 static void make_signal(size_t width, bool turns) {
     move_t move = {.from = {0, 0, 0, 0, 0, 0, 1}, .length = 0};
     for (size_t i = 0; i < SAMPLES; ++i) {
@@ -105,7 +107,7 @@ static void assert_within(const wh_thin_t *thin, size_t i, size_t width) {
     }
     if (thin->turns) {
         assert_near(angle_between(read + width, samples[i].values + width), 0,
-                    factor * thin->turn + 1e-7 /* of the angle's own rounding, near 0 */);
+                    factor * thin->turn + 1e-7 /* the rounding of the angle itself, near 0 */);
     }
 }
 
@@ -137,23 +139,25 @@ static void check(size_t width, bool turns, size_t limit) {
 
 static void numbers_stay_within_the_tolerance(void **state) {
     (void)state;
-    (void)wh_test_seed();
-    for (int i = 0; i < 60; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(4, 60, 0.3);
+    while (wh_round(&rounds)) {
         check(1 + wh_test_below(3), false, SIZE_MAX);
     }
 }
 
 static void poses_stay_within_both_tolerances(void **state) {
     (void)state;
-    for (int i = 0; i < 60; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(4, 60, 0.3);
+    while (wh_round(&rounds)) {
         check(3, true, SIZE_MAX);
     }
 }
 
-/* The tolerance grows, is told, and holds. */
+/* The tolerance grows, is reported, and holds. */
 static void a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
-    for (int i = 0; i < 60; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(4, 60, 0.3);
+    while (wh_round(&rounds)) {
         check(3, wh_test_below(2) == 0, 20 + wh_test_below(200));
     }
 }
@@ -180,7 +184,7 @@ static void a_straight_line_has_two_points(void **state) {
     wh_thin_close(&thin);
 }
 
-/* A forced sample within a rest costs no point, and the rest stays exact. */
+/* A forced sample within a rest adds no point, and the rest stays exact. */
 static void a_rest_has_two_points(void **state) {
     (void)state;
     wh_thin_t thin;

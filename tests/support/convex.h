@@ -1,4 +1,5 @@
-/* Convex shapes for tests: drawn at random, and with farthest points found independently of the library. */
+/* Convex shapes for tests: they are drawn at random, and their farthest points are found
+ * independently of the library. */
 #ifndef WH_TESTS_SUPPORT_CONVEX_H
 #define WH_TESTS_SUPPORT_CONVEX_H
 
@@ -21,7 +22,8 @@ static inline wh_convex_t wh_test_blade(void) {
     return wh_test_shape(WH_CONVEX_BOX, 80, 75, 1.5);
 }
 
-/* Of some kind, some flat, some long; a mesh has its points (WH_TEST_MESH_POINTS of them) in `points`. */
+/* A shape of any kind, some flat, some long; a mesh has its points (WH_TEST_MESH_POINTS of them) in
+ * `points`. */
 static inline wh_convex_t wh_test_random_shape(wh_convex_kind_t kind, wh_vec3_t *points) {
     const double x = wh_test_decades(1, 150);
     const double y = wh_test_decades(1, 150);
@@ -44,7 +46,7 @@ static inline wh_vec3_t wh_test_direction(void) {
     return wh_mat3_column(&R, wh_test_below(3));
 }
 
-/* Half an extent with the sign of d; anywhere between the ends where d is as good as zero. */
+/* Half an extent with the sign of d; any point between the ends if d is nearly zero. */
 static inline double wh_test_end(double half, double d, double flat) {
     if (fabs(d) < flat) {
         return wh_test_uniform(-half, half);
@@ -64,8 +66,9 @@ static inline wh_vec3_t wh_test_farthest_point(const wh_convex_t *mesh, const wh
     return mesh->points[best];
 }
 
-/* The point of a shape farthest along the unit vector d, both in the shape's frame; where many are, one drawn at random:
- * faces and edges within `flat` of a right angle to d count as lying across. */
+/* The point of a shape farthest along the unit vector d, both in the shape's frame. If there are
+ * many, one is drawn at random: faces and edges within `flat` of a right angle to d count as
+ * perpendicular to it. */
 static inline wh_vec3_t wh_test_farthest(const wh_convex_t *shape, const wh_vec3_t *d, double flat) {
     const wh_vec3_t *half = &shape->half;
     if (shape->kind == WH_CONVEX_MESH) {

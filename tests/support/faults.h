@@ -1,4 +1,5 @@
-/* A small cell for one test file about faults: two wafers, two grippers, a simulator, and faults for its next command. */
+/* A small cell for one test file about faults: two wafers, two grippers, a simulator, and faults
+ * for its next command. */
 #ifndef WH_TESTS_SUPPORT_FAULTS_H
 #define WH_TESTS_SUPPORT_FAULTS_H
 
@@ -52,7 +53,7 @@ static inline wh_fault_t fault_of(wh_fault_kind_t kind, int32_t target) {
     return fault;
 }
 
-/* For the next command. */
+/* These faults act on the next command. */
 static inline void bring(int32_t index, const wh_fault_t *fault) {
     command.faults[command.fault_count].index = index;
     command.faults[command.fault_count].fault = *fault;

@@ -5,7 +5,7 @@
 #include "grasp/grasp.h"
 #include "support/pose.h"
 
-/* Swept checking, where the library has it. */
+/* Swept checking, if the library has it. */
 #define SWEPT_IF_BUILT (WH_SWEEP_BUILT ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED)
 
 enum { CELL_WAFERS = 4, CELL_GRIPPERS = 3, OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
@@ -44,13 +44,13 @@ static inline void cell_step(cell_t *cell) {
     assert_int_equal(wh_grasp_step(&cell->table, cell->input, &cell->list), WH_OK);
 }
 
-/* Gripper g, level, goes to (x, y, z) in the next slice, with this valve. */
+/* Gripper g, level, moves to (x, y, z) in the next slice, with this valve. */
 static inline void cell_set(cell_t *cell, int g, double x, double y, double z, int valve) {
     cell->input[g].base_from_gripper = wh_test_at(x, y, z);
     cell->input[g].valve = valve;
 }
 
-/* Somewhere level within `reach` of wafer 0 along x and `height` along z; open or closed. */
+/* A level pose within `reach` of wafer 0 along x and `height` along z; the valve is open or closed. */
 static inline void cell_set_randomly(cell_t *cell, int g, double reach, double height) {
     const double x = wh_test_uniform(-reach, reach);
     const double z = wh_test_uniform(-height, height);
@@ -80,7 +80,7 @@ static inline const wh_event_t *cell_event(const cell_t *cell, wh_event_kind_t k
     return found;
 }
 
-/* That the last step's only event was this one. */
+/* Asserts that the last step's only event was this one. */
 static inline const wh_event_t *cell_expect(const cell_t *cell, wh_event_kind_t kind, int wafer, int gripper,
                                             int other) {
     assert_int_equal(cell->list.count, 1);
@@ -98,7 +98,7 @@ static inline void cell_expect_nothing(const cell_t *cell) {
     assert_int_equal(cell->list.count, 0);
 }
 
-/* Wafer and gripper agree that one holds the other; WH_NONE on either side: neither does. */
+/* Asserts that wafer and gripper agree that one holds the other; WH_NONE on either side: neither does. */
 static inline void cell_expect_held(const cell_t *cell, int wafer, int gripper) {
     int32_t holder = -2;
     int32_t held = -2;

@@ -1,5 +1,6 @@
-/* A slow, obvious model of the sampled grasp table: the rules read aloud, with none of the library's code but
- * its structs. Each sum is written from left to right, as the library promises, so bits can be compared. */
+/* A slow, obvious model of the sampled grasp table: it follows the rules one by one, with none of
+ * the library's code but its structs. Each sum is written from left to right, as the library
+ * promises, so bits can be compared. */
 #ifndef WH_TESTS_SUPPORT_GRASP_MODEL_H
 #define WH_TESTS_SUPPORT_GRASP_MODEL_H
 
@@ -146,7 +147,7 @@ static void model_event(model_t *m, wh_event_kind_t kind, int w, int g, int othe
     m->counters.contested += kind == WH_EVENT_CONTESTED;
 }
 
-/* The wafer with the smallest |dr_proj_z| of those that this gripper is ready on, free or held. */
+/* The wafer with the smallest |dr_proj_z| among those for which this gripper is ready, free or held. */
 static int model_best(const model_t *m, const wh_pose_t *by, bool held) {
     int best = -1;
     for (int w = 0; w < m->wafers; ++w) {
@@ -316,7 +317,7 @@ static wh_status_t model_step(model_t *m, const wh_gripper_input_t *in) {
     return WH_OK;
 }
 
-/* The state's hash once more, from the header's words alone, over the model's state. */
+/* The state's hash over the model's state, written from the text of the header alone. */
 static void model_hash_word(uint64_t *h, uint64_t w) {
     *h = (*h ^ w) * UINT64_C(0x9e3779b97f4a7c15);
     *h ^= *h >> 32;

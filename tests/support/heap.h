@@ -1,5 +1,6 @@
-/* Counts what the whole program asks of the heap: malloc and its kin are replaced by ones that count, or sanitizers say what theirs
- * do. Include it in one file of a test and run its own test too. Where another C library has other names, nothing is counted and
+/* Counts the calls of the heap in the whole program: malloc and its kin are replaced by functions
+ * that count; under sanitizers the sanitizer's counts are used. Include it in one file of a test
+ * and run its own test too. If a C library has other names, nothing is counted and
  * WH_TEST_COUNTS_HEAP is not defined. */
 #ifndef WH_TESTS_SUPPORT_HEAP_H
 #define WH_TESTS_SUPPORT_HEAP_H
@@ -17,7 +18,7 @@
 
 #if defined(WH_TEST_SANITIZED) || defined(__GLIBC__)
 #define WH_TEST_COUNTS_HEAP
-static volatile unsigned long calls; /* compilers take it that malloc changes none of ours */
+static volatile unsigned long calls; /* compilers assume that malloc changes no variable of ours */
 #endif
 
 #if defined(WH_TEST_SANITIZED)
@@ -66,7 +67,7 @@ void free(void *memory) {
 #endif
 
 #if defined(WH_TEST_COUNTS_HEAP)
-/* The count would show it. */
+/* Shows that calls are counted. */
 static void the_count_counts(void **state) {
     (void)state;
     const unsigned long before = calls;
@@ -81,7 +82,7 @@ static void the_count_counts(void **state) {
 }
 #endif
 
-/* What was asked of it until now; 0 where nothing is counted. */
+/* The number of calls until now; 0 if nothing is counted. */
 static inline unsigned long heap_calls(void) {
 #if defined(WH_TEST_COUNTS_HEAP)
     return calls;

@@ -31,7 +31,7 @@ static inline void indexed_begin_default(indexed_t *indexed) {
     indexed_begin(indexed, &config);
 }
 
-/* What gripper 0 finds around a place. */
+/* The wafers that gripper 0 finds around a place. */
 static inline wh_found_t indexed_look(indexed_t *indexed, double x, double y, double z, double margin) {
     const wh_pose_t pose = wh_test_at(x, y, z);
     return wh_index_near(&indexed->cell.table, 0, &pose.r, &pose.r, WH_REAL(margin));

@@ -1,4 +1,5 @@
-/* Layouts from their text, for one test file: a sandbox as fixture, what is read in it, what is refused. */
+/* Layouts from their text, for one test file: a sandbox as fixture, the layout that is read in it,
+ * and the refusals. */
 #ifndef WH_TESTS_SUPPORT_LAYOUT_H
 #define WH_TESTS_SUPPORT_LAYOUT_H
 
@@ -27,7 +28,7 @@ static inline int read_here(lua_State *L) {
     return 1;
 }
 
-/* What the table describes; null when it is refused, then `result.message` tells. */
+/* The layout that the table describes; null if it is refused, then `result.message` holds the reason. */
 static inline const wh_layout_t *read_layout(const char *fields) {
     lua_State *L = wh_sandbox_state(sandbox);
     char text[4096];
@@ -38,7 +39,7 @@ static inline const wh_layout_t *read_layout(const char *fields) {
     return wh_sandbox_call(L, 1, 1, &result) ? lua_touserdata(L, -1) : NULL;
 }
 
-/* A layout that is not to be refused. */
+/* A layout that must not be refused. */
 static inline const wh_layout_t *read_sound(const char *fields) {
     const wh_layout_t *layout = read_layout(fields);
     if (!layout) {
@@ -47,7 +48,7 @@ static inline const wh_layout_t *read_sound(const char *fields) {
     return layout;
 }
 
-/* Refused, with this in the message. */
+/* Asserts that it is refused, with this in the message. */
 static inline void expect_refused(const char *fields, const char *message) {
     if (read_layout(fields)) {
         fail_msg("accepted: %s", fields);

@@ -1,5 +1,5 @@
-/* What the tests of outputs.txt share: a folder of their own, a reader with a clock that the test turns, and
- * the checks that hold after every update. */
+/* Shared by the tests of outputs.txt: a folder of their own, a reader with a clock that the test
+ * moves, and the checks that hold after every update. */
 #ifndef WH_TESTS_SUPPORT_OUTPUTS_H
 #define WH_TESTS_SUPPORT_OUTPUTS_H
 
@@ -28,8 +28,8 @@ static inline int outputs_remove_one(const char *path, const struct stat *status
     return remove(path);
 }
 
-/* In memory unless TMPDIR says otherwise: these are thousands of files, and a disk begins to write with
- * each. */
+/* In memory unless TMPDIR says otherwise: there are thousands of files, and each would make a disk
+ * write. */
 static inline void outputs_setup(outputs_fixture_t *f) {
     const char *const wanted = getenv("TMPDIR");
     const char *const usual = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
@@ -45,7 +45,7 @@ static inline void outputs_teardown(outputs_fixture_t *f) {
     assert_int_equal(nftw(f->folder, outputs_remove_one, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
-/* A file of the folder, in memory that the next call but three uses again. */
+/* The path of a file of the folder, in memory that the fourth call from now uses again. */
 static inline const char *outputs_path(const outputs_fixture_t *f, const char *name) {
     static char paths[4][256];
     static unsigned next;
@@ -80,7 +80,7 @@ static inline uint64_t outputs_looks(const wh_outputs_t *reader) {
     return looks;
 }
 
-/* Updates now; what is returned agrees with what has changed. */
+/* Updates now; the returned result agrees with the change. */
 static inline unsigned outputs_update(outputs_fixture_t *f) {
     const wh_outputs_t before = f->reader;
     const unsigned result = wh_outputs_update(&f->reader, f->now_us);
@@ -96,7 +96,7 @@ static inline unsigned outputs_update(outputs_fixture_t *f) {
     return result;
 }
 
-/* Lets time pass, updating whenever the reader asks for it. Returns all results or-ed. */
+/* Lets time pass, and updates whenever the reader asks for it. Returns all results or-ed. */
 static inline unsigned outputs_pass(outputs_fixture_t *f, int64_t us) {
     const int64_t end_us = f->now_us + us;
     unsigned result = outputs_update(f);
@@ -115,7 +115,7 @@ static inline void outputs_assert_valves(const outputs_fixture_t *f, const char 
     }
 }
 
-/* A reader of as many valves as the text has digits. */
+/* A reader with as many valves as the text has digits. */
 static inline void outputs_open(outputs_fixture_t *f, const char *path, const char *valves) {
     int32_t values[WH_GRIPPERS];
     for (size_t i = 0; valves[i] != '\0'; ++i) {
@@ -134,7 +134,7 @@ static inline void outputs_begin(outputs_fixture_t *f) {
     outputs_assert_valves(f, "01");
 }
 
-/* Files in the folder. */
+/* The number of files in the folder. */
 static inline int outputs_files(const outputs_fixture_t *f) {
     DIR *folder = opendir(f->folder);
     assert_non_null(folder);

@@ -27,7 +27,7 @@ static inline wh_real_t wh_test_neighbour(wh_real_t from, wh_real_t to) {
 #endif
 }
 
-/* `steps` numbers further away from zero; negative steps: towards it. */
+/* The number `steps` places further away from zero; negative steps: towards it. */
 static inline wh_real_t wh_test_ulps(wh_real_t from, int steps) {
     for (; steps > 0; --steps) {
         from = wh_test_neighbour(from, from < 0 ? -WH_REAL(1e30) : WH_REAL(1e30));
@@ -54,7 +54,7 @@ static inline wh_mat3_t wh_test_rotation(double x, double y, double z, double an
     return R;
 }
 
-/* By up to `angle` about an axis of any direction. */
+/* A rotation by up to `angle` about an axis of any direction. */
 static inline wh_mat3_t wh_test_random_turn(double angle) {
     double a[3];
     do {
@@ -70,12 +70,12 @@ static inline wh_pose_t wh_test_pose(wh_mat3_t R, double x, double y, double z) 
     return pose;
 }
 
-/* Level, at a place. */
+/* A level pose at a place. */
 static inline wh_pose_t wh_test_at(double x, double y, double z) {
     return wh_test_pose(wh_mat3_identity(), x, y, z);
 }
 
-/* Anywhere within `reach` of base's origin, turned anyhow. */
+/* A pose within `reach` of base's origin, with any rotation. */
 static inline wh_pose_t wh_test_random_pose(double reach) {
     const wh_mat3_t R = wh_test_random_turn(WH_TEST_PI);
     const double x = wh_test_uniform(-reach, reach);

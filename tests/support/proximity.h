@@ -15,7 +15,7 @@ static inline wh_real_t wh_test_about(wh_real_t limit) {
     return sign * limit * WH_REAL(where == 2 ? wh_test_uniform(0, 1) : wh_test_uniform(0.99, 1.01));
 }
 
-/* A gripper, and a wafer beside it at a point of its own frame that is on or about the limits. */
+/* A gripper, and a wafer beside it at a point of the wafer's own frame that is on the limits or near them. */
 static inline void wh_test_pair(const wh_tolerance_t *t, wh_pose_t *wafer, wh_pose_t *gripper) {
     const bool turned = wh_test_below(2) != 0;
     const bool far = wh_test_below(2) != 0;
@@ -36,7 +36,7 @@ static inline void wh_test_pair(const wh_tolerance_t *t, wh_pose_t *wafer, wh_po
     wafer->r = wh_vec3_add(&gripper->r, &dr);
 }
 
-/* A preset, or one time in four a tolerance of its own. */
+/* A preset, or one time in four a random tolerance. */
 static inline wh_tolerance_t wh_test_tolerance(int pair) {
     wh_tolerance_t t = pair % 2 ? wh_tolerance_paper() : wh_tolerance_strict();
     if (pair % 4 == 0) {

@@ -1,4 +1,4 @@
-/* A layout and records of runs, built by hand: what the tests of JSON and tables print. */
+/* A layout and records of runs, built by hand; the tests of JSON and tables print them. */
 #ifndef WH_TESTS_SUPPORT_RECORD_H
 #define WH_TESTS_SUPPORT_RECORD_H
 
@@ -25,7 +25,7 @@ typedef struct {
     wh_wafer_record_t wafers[FIXTURE_WAFERS];
 } fixture_t;
 
-/* Tilted by `degrees` about base's x. */
+/* A pose tilted by `degrees` about base's x. */
 static inline wh_mat3_t fixture_tilt(double degrees) {
     const double radians = degrees * WH_PI / 180;
     const double s = sin(radians), c = cos(radians);
@@ -77,7 +77,7 @@ static inline void fixture_empty(fixture_t *f) {
     f->record.wafers = f->wafers;
 }
 
-/* A run in which nothing was commanded yet, on the paper's layout. */
+/* A run without commands so far, on the paper's layout. */
 static inline void fixture_begin(fixture_t *f) {
     fixture_empty(f);
     fixture_layout(f);
@@ -118,7 +118,7 @@ static inline wh_event_t *fixture_event(fixture_t *f, wh_event_kind_t kind, int6
     return &record->event;
 }
 
-/* What a level gripper measures on a wafer at dx, dy, dz from it, tilted by `degrees`. */
+/* The values that a level gripper measures on a wafer at dx, dy, dz from it, tilted by `degrees`. */
 static inline void fixture_measure(fixture_t *f, wh_event_t *event, double dx, double dy, double dz,
                                    double degrees) {
     const wh_pose_t base_from_gripper = wh_pose_identity();

@@ -1,4 +1,4 @@
-/* Sandboxes for one test file: small ones that print to nowhere, and whether one is still usable. */
+/* Sandboxes for one test file: small ones that do not print, and a check that one is still usable. */
 #ifndef WH_TESTS_SUPPORT_SANDBOX_H
 #define WH_TESTS_SUPPORT_SANDBOX_H
 
@@ -28,7 +28,7 @@ static inline bool evaluate(wh_sandbox_t *sandbox, const char *text, wh_sandbox_
     return wh_sandbox_evaluate_text(wh_sandbox_state(sandbox), "case.lua", text, strlen(text), result);
 }
 
-/* A further script runs, as the one before had never been. */
+/* A further script runs as if the one before had never run. */
 static inline void assert_usable(wh_sandbox_t *sandbox) {
     wh_sandbox_result_t result;
     wh_sandbox_renew(sandbox);

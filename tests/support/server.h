@@ -1,4 +1,5 @@
-/* A server at the end of a call: what motion control asks of it goes as messages, without a network. For one file of a test. */
+/* A server that is called directly: requests of motion control go to it as messages, without a
+ * network. For one file of a test. */
 #ifndef WH_TESTS_SUPPORT_SERVER_H
 #define WH_TESTS_SUPPORT_SERVER_H
 
@@ -9,7 +10,7 @@
 
 enum { TEST_RUN = 4711 };
 
-/* The one that answers; a test may put another in its place in the middle of a run. */
+/* The server that answers; a test may replace it in the middle of a run. */
 static wh_protocol_server_t *server;
 
 static inline waferhand_command message_of(const wh_command_t *command) {
@@ -19,7 +20,7 @@ static inline waferhand_command message_of(const wh_command_t *command) {
     return message;
 }
 
-/* The bytes that a network would carry; returns how many. */
+/* Writes the bytes that a network would carry; returns how many there are. */
 static inline size_t encode_command(const wh_command_t *command, uint8_t bytes[], size_t room) {
     const waferhand_command message = message_of(command);
     const int size = waferhand_command_encode(bytes, 0, (int)room, &message);

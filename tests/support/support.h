@@ -1,4 +1,5 @@
-/* What every test program needs: cmocka in the order it wants, seeded random numbers, one assert for reals. */
+/* Every test program needs this: cmocka in the order it wants, seeded random numbers, one assert
+ * for reals. */
 #ifndef WH_TESTS_SUPPORT_SUPPORT_H
 #define WH_TESTS_SUPPORT_SUPPORT_H
 
@@ -22,17 +23,27 @@ extern "C" {
 
 #include "support/random.h"
 
-/* What a long random test divides its rounds by: under sanitizers, which look at how a thing is done, a share is enough, and
- * on a target under emulation, where the same bits come of the same inputs. */
+/* In a program of many tests each test has a main with its own name: see support/together.h. */
+#if defined(WH_TEST_MAIN)
+int WH_TEST_MAIN(void);
+#define main WH_TEST_MAIN
+#endif
+
+/* The divisor or stride of a long loop over fixed cases. Under sanitizers, which check how a thing
+ * is done, a share of the cases is enough. It is also enough on a target under emulation, where the
+ * same inputs give the same bits. Random rounds are cut by time: support/rounds.h. The script that
+ * judges mutants under sanitizers sets it itself. */
+#if !defined(WH_TEST_SHARE)
 #if defined(__SANITIZE_ADDRESS__)
-#define WH_TEST_SHARE 5
+#define WH_TEST_SHARE 20
 #elif !defined(__unix__)
 #define WH_TEST_SHARE 10
 #else
 #define WH_TEST_SHARE 1
 #endif
+#endif
 
-/* Room for what wh_test_path writes. */
+/* Room for the text that wh_test_path writes. */
 #define WH_TEST_PATH 200
 
 /* A template for mkstemp and mkdtemp, in TMPDIR if the environment has one. Returns `path`. */
@@ -43,18 +54,28 @@ static inline char *wh_test_path(char path[WH_TEST_PATH], const char *name) {
     return path;
 }
 
-static uint64_t wh_test_state;
+static uint64_t wh_test_state, wh_test_first;
 static int wh_test_seeded;
 
-/* The run's seed: WH_SEED from the environment, else a fixed one. Printed, so that a failure can be repeated.
- * Random numbers start afresh from it. */
+/* The run's seed: WH_SEED from the environment, otherwise a fixed one. It is printed, so that a
+ * failure can be repeated. Random numbers start afresh from it. */
 static inline uint64_t wh_test_seed(void) {
     const char *text = getenv("WH_SEED");
     const uint64_t seed = text ? strtoull(text, NULL, 0) : UINT64_C(20240229);
     printf("WH_SEED=%llu\n", (unsigned long long)seed);
-    wh_test_state = seed;
+    (void)fflush(stdout); /* a sanitizer may end the program at once */
+    wh_test_state = wh_test_first = seed;
     wh_test_seeded = 1;
     return seed;
+}
+
+/* The random numbers of the seed's n-th row, n > 0. */
+static inline void wh_test_restart_at(uint64_t n) {
+    if (!wh_test_seeded) {
+        (void)wh_test_seed();
+    }
+    wh_test_state = wh_test_first ^ n * UINT64_C(0xd1342543de82ef95);
+    wh_test_state = wh_test_splitmix(&wh_test_state);
 }
 
 /* 64 random bits of this run. */
@@ -79,6 +100,8 @@ static inline double wh_test_decades(double lo, double hi) {
 static inline uint32_t wh_test_below(uint32_t n) {
     return (uint32_t)((wh_test_random() >> 32) * n >> 32);
 }
+
+#include "support/rounds.h"
 
 /* Fails unless |a - b| <= tolerance, and for any NaN. */
 #define assert_near(a, b, tolerance)                                                                         \

@@ -1,7 +1,9 @@
-/* How many instructions the check, a step and the estimate of a scan take, on a Cortex-M under emulation: `-icount shift=6` makes each instruction
- * last 64 ns, and SysTick counts 25 MHz. Prints "NAME COUNT" for each case; the count repeats exactly.
+/* Counts the instructions of the check, a step and the estimate of a scan, on a Cortex-M under
+ * emulation. With `-icount shift=6` each instruction lasts 64 ns, and SysTick counts at 25 MHz.
+ * Prints "NAME COUNT" for each case; the count repeats exactly.
  *
- * The worst case of a step is looked for in 20,000 random steps beside the ones that are built on purpose. */
+ * The worst case of a step is the worst of 20,000 random steps and of some that are built on
+ * purpose. */
 #include <stdio.h>
 
 #include <waferhand.h>
@@ -37,7 +39,7 @@ static wh_pose_t at(wh_real_t x, wh_real_t y, wh_real_t z) {
     return pose;
 }
 
-/* Not put into its caller, where the poses are known beforehand. */
+/* It is not inlined: its caller knows the poses beforehand. */
 static __attribute__((noinline)) bool check(const wh_pose_t *wafer, const wh_pose_t *gripper,
                                             const wh_tolerance_t *tolerance) {
     return wh_proximity_ready(wafer, gripper, tolerance);
@@ -97,14 +99,15 @@ static uint32_t step(void) {
     return status == WH_OK ? count : 0;
 }
 
-/* All wafers far away: what most slices are. */
+/* All wafers are far away, as in most slices. */
 static void count_idle(const char *name, wh_check_t check) {
     begin_table(check, false, 10);
     (void)step();
     printf("step %s idle %u\n", name, (unsigned)step());
 }
 
-/* Both grippers are open between two slots of the stack, as on their way in: no wafer is near enough to be watched. */
+/* Both grippers are open between two slots of the stack, as on their way in. No wafer is near
+ * enough to be watched. */
 static void count_between(const char *name, wh_check_t check) {
     begin_table(check, false, 10);
     inputs[0].base_from_gripper = at(0, 0, 115);
@@ -125,7 +128,8 @@ static void count_carry(void) {
     printf("step sampled carry %u%s\n", (unsigned)step(), table.counters.picked == 2 ? "" : " WRONG");
 }
 
-/* 25 wafers in reach of both grippers, the last of them the best: each check runs through and each is better. */
+/* Both grippers reach all 25 wafers, and the last is the best. Each check runs through, and each
+ * wafer is better than the one before. */
 static uint32_t crowded(wh_check_t check, bool seat) {
     begin_table(check, seat, 0);
     for (size_t w = 0; w < WAFERS; ++w) {
@@ -166,7 +170,7 @@ static void count_worst(const char *name, wh_check_t check) {
 }
 
 #if defined(__ARM_FP) && (__ARM_FP & 8) != 0
-/* Where double is the processor's own. */
+/* Here the processor has double in hardware. */
 static void count_estimate(void) {
     static bench_scan_t made;
     bench_scan_make(&made);

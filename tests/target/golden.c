@@ -1,7 +1,9 @@
-/* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles
- * in float as well; both faces of a wafer, and an edge grip's path; steps of mixed grips. Prints a hash of each: the lines of tests/target/golden.txt for its number type, but for the last,
- * "transfer", which tests/verify/bits makes.
+/* A long run whose bits have to be the same on every machine. It makes random steps of the grasp
+ * table, and random calls of everything in lib/motion. It takes the bytes of a snapshot, random
+ * numbers, and scans of rims with their circles, which are doubles in float as well. It tries both
+ * faces of a wafer, an edge grip's path, and steps of mixed grips. Prints a hash of each: the lines
+ * of tests/target/golden.txt for its number type, except the last, "transfer", which
+ * tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
 #include <stdio.h>
@@ -16,7 +18,8 @@ enum { WAFERS = 5, GRIPPERS = 3, STEPS = 25000, CALLS = 5000 };
 static uint64_t state;
 static uint64_t hash;
 
-/* Of 24 bits, so that it is exact in float too. One call an expression: C leaves the order within one open. */
+/* The number has 24 bits, so that it is exact in float too. An expression holds one call: C does
+ * not fix the order of two. */
 static wh_real_t uniform(wh_real_t lo, wh_real_t hi) {
     const wh_real_t share = (wh_real_t)(wh_test_splitmix(&state) >> 40) / WH_REAL(16777216);
     return lo + (hi - lo) * share;
@@ -40,7 +43,7 @@ static wh_mat3_t turn_about(size_t axis, wh_real_t angle) {
     return R;
 }
 
-/* Near the origin's wafers, more or less level. */
+/* Poses near the wafers at the origin, more or less level. */
 static wh_pose_t somewhere(wh_real_t reach, wh_real_t height) {
     wh_pose_t pose;
     const wh_mat3_t yaw = turn_about(2, uniform(-3, 3));
@@ -93,7 +96,7 @@ static bool is_lively(const wh_grasp_counters_t *c) {
            c->contested > 50;
 }
 
-/* One way of checking, with seating or without; false when a step was refused. */
+/* One way of checking, with or without seating; false if a step was refused. */
 static bool steps(wh_check_t check, bool seat) {
     static wh_wafer_t wafers[WAFERS];
     static wh_gripper_t grippers[GRIPPERS];
@@ -178,8 +181,8 @@ static void moves(const wh_robot_t *robot) {
     }
 }
 
-/* The bytes of a snapshot, of a gripper that has just taken a wafer: the same on machines of either byte order. False if it is
- * not read again. */
+/* The bytes of a snapshot, of a gripper that has just taken a wafer. They are the same for both
+ * byte orders. False if the snapshot cannot be read back. */
 static bool snapshot(void) {
     static wh_simulator_t simulator;
     static wh_wafer_t wafers[2];
@@ -222,7 +225,7 @@ static void add_double(double x) {
     hash = wh_hash_word(hash, bits);
 }
 
-/* Numbers drawn by name and number, and the logarithm behind the normal ones. */
+/* Random numbers, drawn by name and number, and the logarithm that the normal ones use. */
 static void deviates(void) {
     wh_trial_t trial;
     trial.seed = wh_test_splitmix(&state);
@@ -234,8 +237,8 @@ static void deviates(void) {
     add_double(wh_ln((double)(1 + below(1U << 31)) / 1024));
 }
 
-/* A wafer with a notch and a chip, seen with noise: its circle and, of enough samples, its notch. False if the scan
- * does not tell them. */
+/* A wafer with a notch and a chip, scanned with noise: its circle and, with enough samples, its
+ * notch. False if the scan does not give them. */
 static bool scan(int32_t samples) {
     static wh_rim_point_t points[3600];
     static wh_rim_ray_t rays[3600];
@@ -272,7 +275,8 @@ static bool scan(int32_t samples) {
     return good && (samples < 3600 || result.verdict == WH_OK);
 }
 
-/* A known wafer in two places, the chuck turning either way: what the sensor is off by. False if they do not tell. */
+/* A known wafer in two places, with the chuck turning either way: the offset of the sensor. False
+ * if the scans do not give it. */
 static bool calibrate(void) {
     static wh_rim_point_t points[5][180];
     static wh_rim_ray_t rays[180];
@@ -307,7 +311,8 @@ static bool calibrate(void) {
     return status == WH_OK && fabs(found.error.offset - 0.0625) < 0.05;
 }
 
-/* A wafer on a gripper goes through two beams; when, and the centre that this tells. False if it tells none. */
+/* A wafer on a gripper passes through two beams: the times, and the centre that follows from them.
+ * False if they give no centre. */
 static bool pass_beams(void) {
     const double across[2] = {60, -110};
     const wh_pose_t base = wh_pose_identity();
@@ -344,7 +349,7 @@ static bool pass_beams(void) {
     return status == WH_OK;
 }
 
-/* In halves: newlib-nano prints no integer of 64 bits. */
+/* It prints two halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
     printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
            (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffU));
@@ -362,7 +367,7 @@ static bool scans(void) {
     return calibrate() && good;
 }
 
-/* A robot of each kind with all that it may have. */
+/* A robot of each kind, with all options that it may have. */
 static wh_chain_t chain_of(wh_chain_kind_t kind) {
     const wh_limits_t limits = {uniform(1, 9), uniform(10, 90), uniform(100, 900)};
     wh_chain_t chain;
@@ -421,8 +426,9 @@ static bool chains(uint32_t call) {
     return good;
 }
 
-/* A wafer before a gripper, either face towards it, and turned over; on passive pads; on its way in an edge grip, a few angles of the
- * notch at a rest. False if a call is refused, or a gripped wafer is not held. */
+/* A wafer before a gripper, either face towards it, and turned over; on passive pads; on its way in
+ * an edge grip, with the notch at some angles to a rest. False if a call is refused, or a gripped
+ * wafer is not held. */
 static bool grips(void) {
     static const double along[4] = {-8, -2, -0.125, 4};
     const wh_pose_t gripper = somewhere(60, 2);
@@ -500,8 +506,8 @@ static void redraw_inputs(wh_gripper_input_t inputs[GRIPPERS], bool all) {
     }
 }
 
-/* Steps of a table with vacuum, an edge grip and passive pads; some wafers lie face down, and slices are long enough for plungers to
- * come to their ends. False if a call is refused. */
+/* Steps of a table with vacuum, an edge grip and passive pads. Some wafers lie face down. Slices
+ * are long enough for plungers to reach their ends. False if a call is refused. */
 static bool mix(wh_check_t check, bool seat) {
     static wh_wafer_t wafers[WAFERS];
     static wh_wafer_t seen[WAFERS];

@@ -1,6 +1,6 @@
-/* Addition of doubles for a Cortex-M4, instead of libgcc's, which rounds wrongly in rare cases: where the exponents differ by
- * 33 and the difference loses a bit, as in 1 - 0x1.83cdf608367dep-33 (gcc 12). Everything else in libgcc's software
- * arithmetic is correctly rounded, as far as our runs tell. */
+/* Addition of doubles for a Cortex-M4. libgcc's addition (gcc 12) rounds wrongly in rare cases: the
+ * exponents differ by 33 and the difference loses a bit, as in 1 - 0x1.83cdf608367dep-33.
+ * Everything else in libgcc's software arithmetic is correctly rounded, as far as our runs show. */
 #include <stdint.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ static uint64_t shift_right(uint64_t m, int places) {
     return m >> places | ((m & ((UINT64_C(1) << places) - 1)) != 0);
 }
 
-/* To nearest, ties to even; a carry runs into the exponent, as it should. */
+/* Round to nearest, ties to even; a carry correctly runs into the exponent. */
 static uint64_t pack(uint64_t m, int e) {
     const uint64_t half = UINT64_C(1) << (GUARD - 1);
     const uint64_t rest = m & (2 * half - 1);

@@ -9,7 +9,7 @@ pointers, and on functions that are neither in the files nor in LEAVES.
 import re
 import sys
 
-# What a compiler calls on its own account, and what newlib's versions take.
+# Functions that a compiler calls on its own account, and the stack that newlib's versions take.
 LEAVES = {"memcpy": 16, "memset": 16,
           # conversions of 64-bit integers in libgcc: pushes from its code, the larger of the Cortex-M7's and the M4F's
           "__aeabi_d2lz": 48, "__aeabi_f2lz": 40, "__aeabi_l2d": 16, "__aeabi_l2f": 16}

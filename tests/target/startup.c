@@ -1,5 +1,6 @@
-/* What a Cortex-M of QEMU's mps2 boards needs before newlib's own start: vectors, and the floating-point unit. Host files,
- * arguments and the exit status come by semihosting (rdimon.specs). */
+/* The code that a Cortex-M of QEMU's mps2 boards needs before newlib's own start: vectors, and the
+ * floating-point unit. Host files, arguments and the exit status come by semihosting
+ * (rdimon.specs). */
 #include <stdint.h>
 #include <stdlib.h>
 

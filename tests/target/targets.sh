@@ -1,4 +1,4 @@
-# The machines that the library is tried on besides the host: how to compile for each, and how to run what was compiled.
+# The machines on which the library is tested besides the host: how to compile for each, and how to run the result.
 # shellcheck shell=bash disable=SC2034 # what target sets is for the scripts that ask
 
 readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -DWH_NO_CONTRACTION -Wall -Wextra -Ilib -Itests'
@@ -7,8 +7,8 @@ readonly M0='-mthumb -mcpu=cortex-m0plus'
 readonly M4='-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'
 
 # Sets COMPILER, FLAGS, LINK, RUN and FLOAT for m7 (Cortex-M7, double), m4f (Cortex-M4F, float), m0 (Cortex-M0+, float in
-# software, on an M4 that knows the same instructions), m4 (the same machine,
-# double in software, with an addition of our own: tests/target/soft_double.c says why), rv64, aarch64 and powerpc (big-endian, 32 bits).
+# software, on an M4 that knows the same instructions), m4 (the same machine, double in software, with an addition of our own:
+# tests/target/soft_double.c says why), rv64, aarch64 and powerpc (big-endian, 32 bits).
 target() {
     FLOAT='' LINK='' RUN=()
     case $1 in
@@ -40,11 +40,20 @@ target() {
     esac
 }
 
-# build_library FOLDER: for the chosen target
+# build_library FOLDER: for the chosen target. A folder is built by one process at a time, since parallel checks share some
+# folders.
 build_library() {
     local ar=ar
     [[ $COMPILER != *-gcc ]] || ar=${COMPILER%gcc}ar
-    make -s -j"$(nproc)" library B="$1" CC="$COMPILER" AR="$ar" CFLAGS="$FLAGS" FLOAT="$FLOAT" >/dev/null
+    mkdir -p "$1"
+    flock "$1/lock" make -s -j"$(nproc)" library B="$1" CC="$COMPILER" AR="$ar" CFLAGS="$FLAGS" FLOAT="$FLOAT" >/dev/null
+}
+
+# build_target NAME: chooses it, and builds its library in the folder $library; the checks share it
+build_target() {
+    target "$1"
+    library=build/verify/targets/$1
+    build_library "$library"
 }
 
 # compile FOLDER PROGRAM ARGUMENT...: against the library in FOLDER

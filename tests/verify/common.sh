@@ -1,11 +1,11 @@
-# What the scripts of this folder share: the place to work in, and how they skip.
+# Functions that the scripts of this folder share: the place to work in, and how a script skips.
 # shellcheck shell=bash
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
 unset MAKEFLAGS
-# A pattern that matches no file is an error: what moved is not left out in silence.
+# A pattern that matches no file is an error, so that a file that moved is not left out in silence.
 shopt -s failglob
 
-# What is proved: the grasp table and all that it stands on.
+# The sources that are proved: the grasp table and all that it builds on.
 # shellcheck disable=SC2034 # for the scripts that ask
 {
     proved_sources=(lib/math/{pose,status,status_name}.c lib/grasp/*.c)
@@ -15,7 +15,7 @@ shopt -s failglob
 work=build/verify/$(basename "$0")
 mkdir -p "$work"
 
-# need TOOL=PACKAGE...: all of them, or the check is skipped by name.
+# need TOOL=PACKAGE...: the check is skipped by name unless all tools are there
 need() {
     local pair missing=''
     for pair; do
@@ -32,8 +32,8 @@ fail() {
     exit 1
 }
 
-# same_table TABLE KEY FILE: the lines of TABLE that begin with KEY are the ones of FILE. A compiler of another version
-# has figures of its own: they are shown, not judged. ACCEPT=1 puts FILE's lines into TABLE.
+# same_table TABLE KEY FILE: the lines of TABLE that begin with KEY must be those of FILE. Another version of the compiler gives
+# other figures: they are shown, but not judged. ACCEPT=1 puts FILE's lines into TABLE.
 same_table() {
     local table=$1 key=$2 file=$3
     if [[ ${ACCEPT:-} ]]; then
@@ -47,19 +47,19 @@ same_table() {
     fi
 }
 
-# at_most LIMIT NAME FILE: the figure at the end of the line that ends in "NAME figure"
+# at_most LIMIT NAME FILE: checks the figure at the end of the line that ends in "NAME figure"
 at_most() {
     local figure
     figure=$(sed -n "s/^.* $2 \([0-9]*\)$/\1/p" "$3")
     [[ $figure && $figure -le $1 ]] || fail "$2 is ${figure:-missing}, more than $1"
 }
 
-# python_with_mutants: sets $python to one that has the generator of mutants.
+# python_with_mutants: sets $python to a Python that has the generator of mutants.
 python_with_mutants() {
     local venv=build/verify/mutation/venv
     need python3=python3
     if ! "$venv/bin/python" -c 'import universalmutator' 2>/dev/null; then
-        # Without its dependencies: the generator alone needs none.
+        # It is installed without its dependencies, which the generator does not need.
         if ! { python3 -m venv "$venv" && "$venv/bin/pip" install --quiet --disable-pip-version-check --no-deps \
             --require-hashes -r tests/verify/mutants/requirements.txt; }; then
             echo "SKIPPED $(basename "$0"): no universalmutator (from PyPI; tests/verify/mutants/requirements.txt says which)," \

@@ -18,7 +18,7 @@ typedef struct {
     char *value;
 } field_t;
 
-/* What a row begins with. */
+/* True if the text is the beginning of a row: a wafer. */
 static bool is_wafer(const char *text) {
     static const char wafer[] = "wafer=";
     return strncmp(text, wafer, sizeof wafer - 1) == 0;

@@ -1,4 +1,4 @@
-/* What WHERE answers, as a table for people. */
+/* The answer of WHERE as a table for people. */
 #ifndef WH_APP_PROMPT_ANSWER_H
 #define WH_APP_PROMPT_ANSWER_H
 

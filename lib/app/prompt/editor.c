@@ -44,7 +44,7 @@ static char *prompt_text(EditLine *edit) {
 
 /* --------------------------------------------------------------------------------------------- characters */
 
-/* Stops the process; until it goes on the terminal is as the shell expects it. */
+/* Stops the process. Until it goes on, the terminal is in the state that the shell expects. */
 static void suspend(EditLine *edit) {
     el_set(edit, EL_PREP_TERM, 0);
     raise(SIGSTOP);
@@ -226,7 +226,7 @@ static void set_up(wh_editor_t *editor) {
     el_set(editor->edit, EL_SIGNAL, 0);
     el_set(editor->edit, EL_PROMPT, prompt_text);
     el_set(editor->edit, EL_EDITOR, "emacs");
-    /* The wide function: of narrow names libedit makes copies that it never frees. */
+    /* This is the wide function: libedit copies narrow names and never frees the copies. */
     el_wset(editor->edit, EL_ADDFN, L"wh-complete", L"completes a command or a name", complete);
     el_set(editor->edit, EL_BIND, "^I", "wh-complete", NULL);
     el_set(editor->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
@@ -278,7 +278,7 @@ void wh_editor_say(wh_editor_t *editor, const char *line) {
         const LineInfo *typed = el_line(editor->edit);
         const size_t shown = strlen(PROMPT) + (size_t)(typed->lastchar - typed->buffer);
         const size_t length = wh_style_columns(printable);
-        /* Blanks over what is there; a line that has become longer than the terminal stays where it is. */
+        /* Writes blanks over the old line; a line that is longer than the terminal now stays where it is. */
         const bool fits = columns == 0 || shown < columns;
         fflush(stdout);
         fprintf(wh_guard_terminal(), "%s%s%*s\n", fits ? "\r" : "\n", printable,

@@ -2,13 +2,13 @@
  *
  * It is where wh_output_state_path puts "history", readable by its owner alone; without such a place the path
  * is empty. Each line is appended as it is typed, so that a killed program and two prompts at a time lose
- * nothing; a file that has grown long is cut when it is read. Whatever goes wrong with it, the prompt works
- * without.
+ * nothing; a file that has grown long is cut when it is read. If anything fails with the file, the prompt
+ * works without it.
  */
 #ifndef WH_APP_PROMPT_HISTORY_H
 #define WH_APP_PROMPT_HISTORY_H
 
-/* The last lines are kept. A file of twice as many lines, or of so many bytes, is cut to them. */
+/* The last lines are kept. A file of twice as many lines, or of this number of bytes, is cut to them. */
 #define WH_HISTORY_LINES 500
 #define WH_HISTORY_BYTES 1048576
 

@@ -1,10 +1,10 @@
-/* Where the prompt waits: for standard input, for signals, and for what else is looked after.
+/* The prompt's waits: for standard input, for signals, and for the watch.
  *
  * While a prompt is open, signals arrive only where it waits and while a command runs, so that none is missed
- * between a look and a wait. Held are SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH; one
- * that was ignored when the program began stays ignored, one that its caller had blocked (for a signalfd)
- * stays blocked. During a command the first three stop it, the others wait. One thread, one prompt: what is
- * held is the process's.
+ * between a look and a wait. It holds SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH. A
+ * signal that was ignored when the program began stays ignored; one that its caller had blocked (for a
+ * signalfd) stays blocked. During a command the first three stop it, the others wait. One thread, one prompt:
+ * signals are held for the whole process.
  */
 #ifndef WH_APP_PROMPT_INPUT_H
 #define WH_APP_PROMPT_INPUT_H
@@ -22,7 +22,7 @@ typedef enum {
     WH_INPUT_BROKEN  /* waiting is not possible: errno says why */
 } wh_input_event_t;
 
-/* Waits, and looks after the watch each time that it wakes. */
+/* Waits, and serves the watch each time that it wakes. */
 wh_input_event_t wh_input_wait(const wh_input_t *input);
 
 /* ------------------------------------------------------------------------------------------------ signals */

@@ -206,7 +206,7 @@ static wh_line_event_t take_lines(wh_prompt_t *prompt) {
     return event;
 }
 
-/* The arm stays in a station behind a command that nobody ended. */
+/* The arm is still in a station, after a command that was not ended. */
 static void judge_held(wh_prompt_t *prompt) {
     const wh_mcs_held_t *held = wh_mcs_find_held(&prompt->input.session->mcs, WH_NONE);
     if (held) {
@@ -224,6 +224,7 @@ int wh_prompt_run(wh_prompt_t *prompt) {
     if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }
-    const bool failed = !prompt->editor && (prompt->failed || prompt->input.session->complaints > 0);
+    const wh_session_t *session = prompt->input.session;
+    const bool failed = !prompt->editor && (prompt->failed || session->complaints + session->unmet > 0);
     return event == WH_LINE_LEAVING || prompt->leaving || failed ? WH_EXIT_FAILED : WH_EXIT_MET;
 }

@@ -4,15 +4,15 @@ import java.util.ArrayList;
 import java.util.List;
 import java.util.Locale;
 
-/** What beams told of a wafer that passed them, as the message has it, and in words. */
+/** Messages of beams about a wafer that passed them, as numbers and in words. */
 final class CentringPass {
-    /** The error's number if the centre is not told for sure. */
+    /** The error's number if the centre is not sure. */
     static final int TOO_FEW_SAMPLES = 70;
     static final int CENTRE_NOT_SURE = 75;
 
     final centring told;
     final boolean sure;
-    /** The verdict first. */
+    /** The verdict comes first. */
     final List<String> lines = new ArrayList<>();
 
     private CentringPass(centring told) {
@@ -49,7 +49,7 @@ final class CentringPass {
             name(told, i), at.x, at.y, 1000 * at.sd_x, 1000 * at.sd_y, at.radius, at.used);
     }
 
-    /** What a place is called: one that is not sure is not called the centre. */
+    /** The name of a place; a place that is not sure is not called the centre. */
     static String name(centring told, int i) {
         if (told.status == 0) {
             return i == 0 ? "centre" : "as near as the same";
@@ -57,7 +57,7 @@ final class CentringPass {
         return told.centre_count < 2 ? "not likely" : i == 0 ? "likelier place" : "other place";
     }
 
-    /** How far a crossing is outside of a place's circle, µm. */
+    /** The distance of a crossing outside of a place's circle, µm. */
     double residual(int place, int crossing) {
         final centre at = told.centres[place];
         final crossing of = told.crossings[crossing];
@@ -70,8 +70,8 @@ final class CentringPass {
         private final List<CentringPass> list = new ArrayList<>();
         private long refused;
 
-        /** False, and it is counted, if the message does not make sense. What comes again, as of a log that is
-            played again, replaces what was there. */
+        /** Returns false, and counts it, if the message does not make sense. A message that comes again, for example
+         * from a log that is played again, replaces the old one. */
         synchronized boolean add(centring told) {
             if (!isSound(told)) {
                 refused++;
@@ -110,7 +110,7 @@ final class CentringPass {
             return List.copyOf(list);
         }
 
-        /** What was lost, in words; empty if nothing was. */
+        /** The losses in words; empty if there are none. */
         synchronized String lost() {
             return refused > 0 ? refused + " messages refused" : "";
         }

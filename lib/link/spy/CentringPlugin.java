@@ -11,7 +11,7 @@ import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** lcm-spy's view of what beams told. It collects from lcm-spy's start, whether or not a view is open. */
+/** lcm-spy's view of the beams' messages. It collects from lcm-spy's start, whether or not a view is open. */
 public final class CentringPlugin implements SpyPlugin {
     private static final String CHANNEL = "WAFERHAND_LATCH";
     private final CentringPass.History history = new CentringPass.History();
@@ -25,13 +25,13 @@ public final class CentringPlugin implements SpyPlugin {
         return fingerprint == centring.LCM_FINGERPRINT;
     }
 
-    /** The action that a double click does, in a desktop of its own. Both are null when only its name is asked for. */
+    /** The action of a double click, in a desktop of its own. Both are null when only its name is asked for. */
     @Override
     public Action getAction(JDesktopPane desktop, ChannelData channel) {
         return new Open(desktop, history);
     }
 
-    /** What has been collected. */
+    /** The collected centrings. */
     CentringPass.History history() {
         return history;
     }

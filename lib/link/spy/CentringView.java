@@ -48,14 +48,14 @@ final class CentringView extends JPanel {
         timer.stop();
     }
 
-    /** To an earlier or later one; past the last the newest is followed again. */
+    /** Steps to an earlier or later one; after the last one it follows the newest again. */
     void step(int by) {
         final List<CentringPass> list = history.list();
         final int next = Math.max(0, place(list) + by);
         chosen = next < list.size() - 1 ? list.get(next) : null;
     }
 
-    /** A chosen one that has been dropped was the oldest. */
+    /** A chosen one that was dropped counts as the oldest. */
     private int place(List<CentringPass> list) {
         return chosen == null ? list.size() - 1 : Math.max(0, list.indexOf(chosen));
     }
@@ -120,7 +120,8 @@ final class CentringView extends JPanel {
     }
 
     // ---------------------------------------------------------------------------------------------- blade
-    /** What the frame must hold: circles, crossings and the blade's middle, mm to each side of that. */
+    /** The part of the blade that the frame must hold: circles, crossings and the blade's middle, mm to each side of
+     * that. */
     private static double reach(CentringPass of) {
         double reach = 10;
         for (int i = 0; i < of.told.centre_count; i++) {
@@ -157,7 +158,7 @@ final class CentringView extends JPanel {
         }
     }
 
-    /** What counts is filled. Without a place no crossing was taken for anything, whatever the message has. */
+    /** Crossings that count are filled. Without a place no crossing has a use, whatever the message says. */
     private static void paintMark(Graphics2D g, CentringPass of, int k, int x, int y) {
         final crossing at = of.told.crossings[k];
         final int up = at.edge == 0 ? 1 : -1;
@@ -175,7 +176,7 @@ final class CentringView extends JPanel {
     }
 
     // ------------------------------------------------------------------------------------------ residuals
-    /** The residuals that the first place rests on fill the scale; a notch's would flatten them. */
+    /** The residuals of the first place's crossings fill the scale; those at a notch would flatten them. */
     private static double most(CentringPass of) {
         double most = 1;
         for (int k = 0; of.told.centre_count > 0 && k < of.told.crossing_count; k++) {
@@ -208,7 +209,7 @@ final class CentringView extends JPanel {
         }
     }
 
-    /** One that leaves the scale is told by an arrow's head at its side. */
+    /** An arrow's head at the side marks a residual beyond the scale. */
     private static void paintResidual(Graphics2D g, double part, int x, Rectangle plot, int place) {
         final double within = Math.max(-0.96, Math.min(0.96, part));
         final int y = (int)Math.round(plot.getCenterY() - plot.height / 2.0 * within);

@@ -6,23 +6,24 @@ import java.util.Arrays;
 import java.util.List;
 import java.util.stream.Collectors;
 
-/** A whole scan of a wafer's edge, as its parts told it: each sample, the fitted circle, and the estimate in words. */
+/** A whole scan of a wafer's edge, put together from its parts: each sample, the fitted circle, and the estimate in
+ * words. */
 final class EdgeScan {
     final long run;
     final long utime;
     final int number, gripper, taken, missed;
     /** Whether the estimate is sure of all that it says. */
     final boolean sure;
-    /** The verdict first. */
+    /** The verdict comes first. */
     final List<String> lines;
-    /** In which direction the sensor looked, degrees; where along it the rim was, mm; how far that is outside of the circle,
-        um. NaN where the rim was not seen, the sample is missing, or there is no circle. */
+    /** The direction in which the sensor looked, degrees; the place of the rim along it, mm; its distance outside of
+     * the circle, um. NaN where the rim was not seen, the sample is missing, or there is no circle. */
     final double[] theta, rho, residual;
     /** Whether a sample counts for the circle. */
     final boolean[] counts;
     /** The circle, mm; the radius is 0 without one. */
     final double x, y, radius;
-    /** Where the axis sees the notch or flat, degrees, else NaN. */
+    /** The direction in which the axis sees the notch or flat, degrees, or NaN. */
     final double markAt;
     final boolean isNotch;
 
@@ -50,7 +51,7 @@ final class EdgeScan {
         }
     }
 
-    /** LCM's Java takes each byte of a text for a character; ours are UTF-8. */
+    /** LCM's Java takes each byte of a text as a character; our texts are UTF-8. */
     private static String text(String told) {
         return new String(told.getBytes(StandardCharsets.ISO_8859_1), StandardCharsets.UTF_8);
     }
@@ -70,7 +71,7 @@ final class EdgeScan {
         }
     }
 
-    /** Where the circle's rim is in a direction, mm; NaN without one. */
+    /** The circle's rim in a direction, mm; NaN without a circle. */
     double circle(double degrees) {
         final double a = Math.toRadians(degrees);
         final double aside = x * Math.sin(a) - y * Math.cos(a);
@@ -96,7 +97,7 @@ final class EdgeScan {
         private edge_scan[] parts = new edge_scan[0];
         private long refused, incomplete;
 
-        /** Takes a part. False, and it is counted, if it does not make sense. */
+        /** Takes a part. Returns false, and counts it, if it does not make sense. */
         synchronized boolean add(edge_scan part) {
             if (!isSound(part)) {
                 refused++;
@@ -113,7 +114,7 @@ final class EdgeScan {
             return true;
         }
 
-        /** Parts that come again, as of a log that is played again, make the scan again. */
+        /** Parts that come again, for example from a log that is played again, make the scan again. */
         private void keep() {
             final edge_scan[] whole = parts;
             parts = new edge_scan[0];
@@ -153,7 +154,7 @@ final class EdgeScan {
             return List.copyOf(scans);
         }
 
-        /** What was lost, in words; empty if nothing was. */
+        /** The losses in words; empty if there are none. */
         synchronized String lost() {
             return (incomplete > 0 ? incomplete + " scans came in part only " : "") +
                 (refused > 0 ? refused + " messages refused" : "");

@@ -26,13 +26,13 @@ public final class EdgeScanPlugin implements SpyPlugin {
         return fingerprint == edge_scan.LCM_FINGERPRINT;
     }
 
-    /** The action that a double click does, in a desktop of its own. Both are null when only its name is asked for. */
+    /** The action of a double click, in a desktop of its own. Both are null when only its name is asked for. */
     @Override
     public Action getAction(JDesktopPane desktop, ChannelData channel) {
         return new Open(desktop, channel, collector);
     }
 
-    /** What has been collected of a channel. */
+    /** The collected scans of a channel. */
     EdgeScan.History history(String channel) {
         return collector.history(channel);
     }
@@ -41,7 +41,7 @@ public final class EdgeScanPlugin implements SpyPlugin {
         private static final int HISTORIES = 4;
         private final Map<String, EdgeScan.History> histories = new HashMap<>();
 
-        /** Beyond a few channels there is one that nothing fills. */
+        /** After a few channels all others share one history, which nothing fills. */
         synchronized EdgeScan.History history(String channel) {
             if (histories.size() >= HISTORIES && !histories.containsKey(channel)) {
                 return new EdgeScan.History();

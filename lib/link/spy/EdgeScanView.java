@@ -71,14 +71,14 @@ final class EdgeScanView extends JPanel {
         SpyWindow.bind(this, key, command);
     }
 
-    /** To an earlier or later scan; past the last one the newest is followed again. */
+    /** Steps to an earlier or later scan; after the last one it follows the newest again. */
     void step(int by) {
         final List<EdgeScan> scans = history.scans();
         final int next = Math.max(0, place(scans) + by);
         chosen = next < scans.size() - 1 ? scans.get(next) : null;
     }
 
-    /** A chosen scan that has been dropped was the oldest. */
+    /** A chosen scan that was dropped counts as the oldest. */
     private int place(List<EdgeScan> scans) {
         return chosen == null ? scans.size() - 1 : Math.max(0, scans.indexOf(chosen));
     }
@@ -149,7 +149,7 @@ final class EdgeScanView extends JPanel {
         return low <= high ? new double[] {low - air, high + air} : new double[] {0, 1};
     }
 
-    /** The residuals that count fill the scale; a notch's would flatten them. */
+    /** The residuals that count fill the scale; those at a notch would flatten them. */
     private static double[] residualRange(EdgeScan scan) {
         double most = 0;
         for (int i = 0; i < scan.taken; i++) {
@@ -248,7 +248,7 @@ final class EdgeScanView extends JPanel {
         g.drawString(name, scan.markAt > 180 ? at - room : at + 5, plot.y + plot.height - 5);
     }
 
-    /** What the sample below the mouse is, else the keys. */
+    /** Shows the sample below the mouse, or the keys. */
     private void paintFooter(Graphics2D g, EdgeScan scan, Rectangle plot, int line) {
         final double degrees = 360.0 * (mouse - plot.x) / plot.width;
         final int i = mouse >= 0 && degrees >= 0 && degrees <= 360 ? scan.nearest(degrees) : -1;

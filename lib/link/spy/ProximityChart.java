@@ -10,7 +10,8 @@ import java.awt.Shape;
 import java.awt.geom.Path2D;
 import java.util.Locale;
 
-/** One value over time beside its limit. Colours from the set of Okabe and Ito, which colour-blind people tell apart. */
+/** One value over time beside its limit. The colours are those of Okabe and Ito, which colour-blind people can tell
+ * apart. */
 final class ProximityChart {
     static final Color INK = new Color(0x22, 0x22, 0x22);
     static final Color FAINT = new Color(0x70, 0x70, 0x70);
@@ -18,7 +19,7 @@ final class ProximityChart {
     static final Color LINE = new Color(0x00, 0x72, 0xb2);
     static final Color LIMIT = new Color(0xd5, 0x5e, 0x00);
     static final Color GOOD = new Color(0x00, 0x9e, 0x73);
-    /** Where the condition holds. */
+    /** The colour where the condition holds. */
     private static final Color INSIDE = new Color(0xe6, 0xf4, 0xef);
 
     private static final String[] NAMES = {"|dr_proj_z|", "|dr_proj_xy|", "n1_proj_n2"};
@@ -32,7 +33,7 @@ final class ProximityChart {
     private final boolean logarithmic;
     private double bottom, top;
 
-    /** Of one of ProximityHistory's values. The plot is the part within the axes. */
+    /** Charts one of ProximityHistory's values. The plot is the part within the axes. */
     ProximityChart(int value, double limit, Rectangle plot, boolean logarithmic) {
         this.value = value;
         this.limit = limit;
@@ -191,7 +192,7 @@ final class ProximityChart {
         }
     }
 
-    /** 1, 2 or 5 times a power of ten, and no less than that. */
+    /** 1, 2 or 5 times a power of ten, not below `least`. */
     static double niceStep(double least) {
         final double power = Math.pow(10, Math.floor(Math.log10(Math.max(least, 1e-300))));
         for (final double step : new double[] {1, 2, 5}) {
@@ -202,7 +203,7 @@ final class ProximityChart {
         return 10 * power;
     }
 
-    /** Without trailing zeros. */
+    /** Writes a number without trailing zeros. */
     static String shortest(double number) {
         final String text = String.format(Locale.ROOT, "%.6f", number);
         return text.replaceFirst("\\.?0+$", "").replaceFirst("^-0$", "0");

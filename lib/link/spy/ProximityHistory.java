@@ -4,32 +4,32 @@ import java.util.ArrayList;
 import java.util.Arrays;
 import java.util.List;
 
-/**
- * The proximity messages of one run, as far back as there is room, and what is marked beside them. It needs no display,
- * and may be filled and read by different threads. Whatever a message contains, it is stored, or dropped and counted.
+/** The proximity messages of one run, as far back as there is room, and the marks beside them. It needs no display, and
+ * may be filled and read by different threads. Every message is stored, or dropped and counted, whatever it contains.
  */
 final class ProximityHistory {
     /** Values of a gripper. */
     static final int Z = 0, XY = 1, PLANAR = 2, VALUES = 3;
     /** Bits of a gripper's flags. */
     static final int READY = 1, OPEN = 2, HOLDS = 4, FRONT = 64;
-    /** Shifted left by the value's number: its condition holds. */
+    /** Shifted left by the value's number, it says that the condition of that value holds. */
     static final int CONDITION = 8;
     private static final int MOMENTARY = READY | OPEN | HOLDS | FRONT;
 
-    /** Samples: 87 minutes of those that come each 5 ms; of eight grippers 137 MB. */
+    /** Samples: 87 minutes at one each 5 ms; 137 MB with eight grippers. */
     static final int CAPACITY = 1 << 20;
     private static final int CHUNK = 1 << 12;
     private static final int GRIPPERS = 16;
-    /** A message older than the newest by more than this, us, is the same run played again, not a late one. */
+    /** If a message is older than the newest by more than this, us, the run is being played again; the message is not
+     * late. */
     private static final double LATE = 1e6;
-    /** So are this many late ones in a row. */
+    /** This many late messages in a row mean it, too. */
     private static final int LATE_IN_A_ROW = 50;
     /** Samples further apart than this, us, and than several usual steps, are not joined by a line. */
     private static final double GAP = 0.25e6;
     private static final double GAP_STEPS = 8;
 
-    /** One gripper between two times, in columns of pixels. Of a column without samples the numbers are NaN. */
+    /** One gripper between two times, in columns of pixels. In a column without samples the numbers are NaN. */
     static final class Strip {
         /** By value and column: the smallest, the largest, the first and the last number. */
         final double[][] low, high, first, last;
@@ -37,7 +37,7 @@ final class ProximityHistory {
         final boolean[] joined, same;
         /** By column: flags that are set in one of its samples; 0 without samples. */
         final int[] flags;
-        /** By column: how many samples. */
+        /** By column: the number of samples. */
         final int[] samples;
 
         Strip(int columns) {
@@ -90,23 +90,23 @@ final class ProximityHistory {
         int[] flags, wafer;
     }
 
-    /** How the run goes, in numbers. */
+    /** The run's progress in numbers. */
     static final class Summary {
         long run, first, last, seen, unseen, late, refused, statesMissing;
         int grippers;
         double[] limits;
-        /** As the layout has them; null where it is not known. */
+        /** The layout's names; null where they are not known. */
         String[] names, valves;
-        /** What holds wafers, as ProximityPlungers has it. */
+        /** The kinds of grips, as in ProximityPlungers. */
         int[] grips;
     }
 
-    /** Samples that lie together. A full one never changes, so copies share it. */
+    /** A group of samples. A full one never changes, so copies share it. */
     private static final class Chunk {
         final int grippers;
         final long[] utimes = new long[CHUNK], seqs = new long[CHUNK];
         final boolean[] joins = new boolean[CHUNK];
-        /** By sample and gripper, and the values by number, too. */
+        /** By sample, gripper and the value's number. */
         final float[] values;
         final byte[] flags;
         final short[] wafers;
@@ -181,7 +181,7 @@ final class ProximityHistory {
         marks.add(message);
     }
 
-    /** Takes how far a command has come. */
+    /** Takes a command's progress. */
     synchronized void add(ProximityMarks.Progress message) {
         marks.add(message);
     }
@@ -191,7 +191,7 @@ final class ProximityHistory {
         named = names;
     }
 
-    /** Counts what could not be decoded. */
+    /** Counts a message that could not be decoded. */
     synchronized void refuse() {
         refused++;
     }
@@ -270,7 +270,7 @@ final class ProximityHistory {
         chunk.flags[k] = (byte)flags;
     }
 
-    /** Whether the message goes on from the newest sample; counts the slices between them. */
+    /** Whether the message continues from the newest sample; counts the slices between them. */
     private boolean follows(proximity message) {
         final double elapsed = (double)message.utime - newest();
         final double slices = (double)message.seq - chunk(count - 1).seqs[(count - 1) % CHUNK];
@@ -361,7 +361,7 @@ final class ProximityHistory {
         return marks.commands(run, from, to);
     }
 
-    /** Where a gripper's plunger was at that time, us; or null. */
+    /** The plunger of a gripper at that time, us; or null. */
     synchronized ProximityPlungers.Plunger plunger(int gripper, double time) {
         return marks.plunger(gripper, time);
     }

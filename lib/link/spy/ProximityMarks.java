@@ -6,22 +6,21 @@ import java.util.ArrayList;
 import java.util.List;
 import java.util.Locale;
 
-/**
- * What is marked on the time axis of a run: the events and plungers out of state messages, and the commands out of motion
- * control's.
- * Both are read by hand: the generated classes believe any count and any length.
+/** The marks on the time axis of a run: the events and plungers from state messages, and the commands from motion
+ * control's messages. Both are decoded by hand, because the generated classes trust any count and any length.
  */
 final class ProximityMarks {
-    /** More of each than a run of many hours has; beyond that the oldest are forgotten. */
+    /** The most of each kind; a run of many hours has fewer. After it the oldest are forgotten. */
     static final int MOST = 1 << 15;
 
-    /** As event.lcm numbers them. */
-    private static final String[] KINDS = {
-        "picked",     "released",      "handed over", "near miss",   "contested",   "bad input",
-        "no support", "slot occupied", "off centre",  "askew",       "settled",     "hit",
-        "undecided",  "too close",     "slipped",     "vacuum lost", "fault armed", "fault cleared"};
+    /** In the order of event.lcm. */
+    private static final String[] KINDS = {"picked",      "released",      "handed over",   "near miss",
+                                           "contested",   "bad input",     "no support",    "slot occupied",
+                                           "off centre",  "askew",         "settled",       "hit",
+                                           "undecided",   "too close",     "slipped",       "vacuum lost",
+                                           "fault armed", "fault cleared", "pushed through"};
     private static final int HANDED_OVER = 2, NEAR_MISS = 3, CONTESTED = 4;
-    /** By kind, a bit: what is as it should be. */
+    /** A bit for each kind that is normal. */
     private static final int WELCOME = 1 | 1 << 1 | 1 << HANDED_OVER | 1 << 10 | 1 << 17;
 
     /** Something that happened in a slice. */
@@ -34,7 +33,7 @@ final class ProximityMarks {
             return kind >= 0 && kind < KINDS.length && (WELCOME >> kind & 1) != 0;
         }
 
-        /** Whether it is marked where this gripper's values are shown. Those of no gripper are marked everywhere. */
+        /** Whether it is marked with this gripper's values. Events of no gripper are marked everywhere. */
         boolean concerns(int which) {
             final boolean isOther = (kind == HANDED_OVER || kind == CONTESTED) && other == which;
             return gripper < 0 || gripper == which || isOther;
@@ -86,7 +85,7 @@ final class ProximityMarks {
     static final class State {
         private static final int HEAD = 117, WAFER = 101, GRIPPER = 515, EVENT = 157, FAULT = 328, SAMPLE = 4,
                                  LOST = 1, DOOR = 8, LATCHING = 41, LATCH = 24, CHECK = 8;
-        /** Of a gripper's bytes, before its plunger's phase. */
+        /** The bytes of a gripper before its plunger's phase. */
         private static final int PLUNGER = 270;
         private static final int WAFERS = 256, GRIPPERS = 16, EVENTS = 128, FAULTS = 16, SAMPLES = 64,
                                  DOORS = 8, LATCHES = 16;
@@ -221,7 +220,7 @@ final class ProximityMarks {
         return new String(bytes, 0, length - 1, StandardCharsets.UTF_8);
     }
 
-    /** Another run begins, or the same one again: keeps only commands of it that have begun already. */
+    /** Another run begins, or the current one again: keeps only commands of it that have begun already. */
     void begin(long run, long utime) {
         events.clear();
         plungers.clear();
@@ -233,7 +232,7 @@ final class ProximityMarks {
         missing = 0;
     }
 
-    /** Takes the events of a state that comes for the first time. A state that is sent again has them again. */
+    /** Takes the events of a state that comes for the first time. A state that is sent again has its events again. */
     void add(State message) {
         if (message.seq <= lastSeq) {
             return;
@@ -247,8 +246,8 @@ final class ProximityMarks {
         plungers.add(message.plungers);
     }
 
-    /** Takes how far a command has come. Messages may be missing: what goes on or ends has begun. The first command of a
-     * run begins before motion control has drawn the run's number. */
+    /** Takes a command's progress. Messages may be missing: a command that continues or ends has begun. The first
+     * command of a run begins before motion control has drawn the run's number. */
     void add(Progress message) {
         final boolean answers = message.request != 0 && message.phase >= Command.DONE;
         if (message.phase < Progress.BEGINS || message.phase > Command.FAILED || answers ||
@@ -280,7 +279,7 @@ final class ProximityMarks {
         command.result = message.text;
     }
 
-    /** The last command of a task, of which one runs at a time; or null. */
+    /** The last command of a task, which runs one at a time; or null. */
     private Command last(int task) {
         for (int k = commands.size() - 1; k >= 0; k--) {
             if (commands.get(k).task == task) {
@@ -296,12 +295,12 @@ final class ProximityMarks {
         }
     }
 
-    /** Where a gripper's plunger was at that time, us; or null. */
+    /** The plunger of a gripper at that time, us; or null. */
     ProximityPlungers.Plunger plunger(int gripper, double time) {
         return plungers.at(gripper, time);
     }
 
-    /** How many states of the run never came, and with them what happened there. */
+    /** The number of the run's states that never came; their events are missing, too. */
     long missing() {
         return missing;
     }
@@ -317,8 +316,8 @@ final class ProximityMarks {
         return found;
     }
 
-    /** The commands of a run that lie at least in part between two times, us. One that is not over goes on to `to`,
-     * unless another one of its task has begun. */
+    /** The commands of a run that lie at least in part between two times, us. A command that is not over extends to
+     * `to`, unless another one of its task has begun. */
     List<Command> commands(long run, double from, double to) {
         final List<Command> found = new ArrayList<>();
         for (int k = 0; k < commands.size(); k++) {
@@ -331,7 +330,7 @@ final class ProximityMarks {
         return found;
     }
 
-    /** When the next command of the same task begins; `otherwise` if there is none. */
+    /** The time at which the next command of the same task begins; `otherwise` if there is none. */
     private double next(int place, double otherwise) {
         for (int k = place + 1; k < commands.size(); k++) {
             if (commands.get(k).task == commands.get(place).task) {
@@ -341,7 +340,8 @@ final class ProximityMarks {
         return otherwise;
     }
 
-    /** For each command, which are in the order in which they begin, a row in which none is shown at the same time. */
+    /** A row for each command, so that commands shown at the same time have different rows. The commands are in the
+     * order of their begin. */
     static int[] rows(List<Command> commands) {
         final int[] rows = new int[commands.size()];
         final ArrayList<Long> ends = new ArrayList<>();

@@ -4,14 +4,13 @@ import java.io.IOException;
 import java.nio.charset.StandardCharsets;
 import lcm.lcm.LCMDataInputStream;
 
-/**
- * The names out of a cell message. Read by hand: the generated class believes any count and any length, and asks for
- * arrays of gigabytes when a message is damaged.
+/** The names in a cell message. They are decoded by hand, because the generated class trusts any count and any length.
+ * With a damaged message it asks for arrays of gigabytes.
  */
 final class ProximityNames {
     final long layout;
     final String[] grippers, valves, wafers;
-    /** What holds wafers, by gripper, as ProximityPlungers has it. */
+    /** The kind of grip, by gripper, as in ProximityPlungers. */
     final byte[] grips;
 
     private static final int GRIPPERS = 16;
@@ -78,7 +77,7 @@ final class ProximityNames {
         }
     }
 
-    /** Its length in bytes, with the 0 at its end, and then the bytes. */
+    /** A text is its length in bytes, with the 0 at its end, and then the bytes. */
     private static String text(LCMDataInputStream data) throws IOException {
         final int length = data.readInt();
         if (length < 1 || length > data.available()) {

@@ -16,9 +16,8 @@ import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/**
- * lcm-spy's view of a channel of proximity messages. lcm-spy finds it by its interface, and makes one when it starts: from
- * then on it collects, whether or not a view is open.
+/** lcm-spy's view of a channel of proximity messages. lcm-spy finds it by its interface, and makes one when it starts:
+ * from then on it collects, whether or not a view is open.
  */
 public final class ProximityPlugin implements SpyPlugin {
     private final Collector collector = new Collector();
@@ -32,18 +31,18 @@ public final class ProximityPlugin implements SpyPlugin {
         return fingerprint == proximity.LCM_FINGERPRINT;
     }
 
-    /** The action that a double click does, in a desktop of its own. Both are null when only its name is asked for. */
+    /** The action of a double click, in a desktop of its own. Both are null when only its name is asked for. */
     @Override
     public Action getAction(JDesktopPane desktop, ChannelData channel) {
         return new Open(desktop, channel, collector);
     }
 
-    /** What has been collected of a channel. */
+    /** The collected history of a channel. */
     ProximityHistory history(String channel) {
         return collector.history(channel);
     }
 
-    /** Fills histories, one for each beginning that channels have before PROXIMITY, STATE, MCS and CELL. */
+    /** Fills histories, one for each prefix that channels have before PROXIMITY, STATE, MCS and CELL. */
     static final class Collector implements LCMSubscriber {
         private static final Pattern CHANNELS = Pattern.compile("(.*?)(PROXIMITY|STATE|MCS|CELL)");
         private static final int HISTORIES = 4;
@@ -53,7 +52,7 @@ public final class ProximityPlugin implements SpyPlugin {
             lcm.subscribe(CHANNELS.pattern(), this);
         }
 
-        /** The one that a channel belongs to. Beyond a few there is one that nothing fills. */
+        /** The history that a channel belongs to. After a few histories all others share one, which nothing fills. */
         synchronized ProximityHistory history(String channel) {
             final Matcher matcher = CHANNELS.matcher(channel);
             final String beginning = matcher.matches() ? matcher.group(1) : channel;

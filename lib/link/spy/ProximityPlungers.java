@@ -4,12 +4,12 @@ import java.util.ArrayList;
 import java.util.List;
 import java.util.Locale;
 
-/** Where the plungers of edge grips were over time, by the states: of each gripper whatever changed. */
+/** The plungers of edge grips over time, from the states: each change for each gripper. */
 final class ProximityPlungers {
-    /** As cell.lcm numbers what holds wafers. */
+    /** The grips' numbers in cell.lcm. */
     static final int VACUUM = 0, EDGE = 1, PASSIVE = 2;
     private static final int GRIPPERS = 16;
-    /** As gripper_state.lcm numbers them. */
+    /** The phases' numbers in gripper_state.lcm. */
     private static final String[] PHASES = {"open", "closes", "holds", "jammed", "missed", "opens"};
 
     /** One plunger from a slice on. */
@@ -25,7 +25,7 @@ final class ProximityPlungers {
             this.excess = excess;
         }
 
-        /** Such as "plunger -0.215 mm, holds". Of one that is open no message says where that is. */
+        /** Words such as "plunger -0.215 mm, holds". No message tells the place of an open plunger. */
         String words() {
             if (phase == 0) {
                 return "plunger open";
@@ -48,7 +48,7 @@ final class ProximityPlungers {
         }
     }
 
-    /** Of one slice, by gripper, later than those before it. */
+    /** Adds the plungers of one slice, by gripper; it is later than the slices before. */
     void add(List<Plunger> plungers) {
         for (int g = 0; g < plungers.size(); g++) {
             final ArrayList<Plunger> own = seen.get(g);
@@ -59,7 +59,7 @@ final class ProximityPlungers {
         }
     }
 
-    /** Where a gripper's plunger was at that time, us; or null. */
+    /** The plunger of a gripper at that time, us; or null. */
     Plunger at(int gripper, double time) {
         final ArrayList<Plunger> own = seen.get(gripper);
         int from = 0, to = own.size();

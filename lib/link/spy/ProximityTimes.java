@@ -14,7 +14,7 @@ import java.util.Locale;
 
 /** The time axis of one gripper's charts, with the events and commands that are marked on it. */
 final class ProximityTimes {
-    /** What is not as it should be, what is, and the boxes of commands. */
+    /** The colours of alarms, of usual events, and of the boxes of commands. */
     private static final Color ALARM = ProximityChart.LIMIT, USUAL = new Color(0x55, 0x55, 0x55),
                                COMMAND = new Color(0xdc, 0xe3, 0xea);
     private static final Color PALE_ALARM = new Color(0xd5, 0x5e, 0x00, 0x90),
@@ -27,7 +27,7 @@ final class ProximityTimes {
     private final double from, to;
     private final int left, width;
 
-    /** From one time to another, us, over this width. */
+    /** The axis reaches from one time to another, us, over this width. */
     ProximityTimes(double from, double to, int left, int width) {
         this.from = from;
         this.to = to;
@@ -63,7 +63,7 @@ final class ProximityTimes {
         g.fillRect(lane.x, lane.y + lane.height / 2, lane.width, 1);
     }
 
-    /** What stands within a lane is smaller. Returns the baseline there. */
+    /** Uses smaller letters within a lane. Returns the baseline there. */
     private static int small(Graphics2D g, Rectangle lane) {
         g.setFont(g.getFont().deriveFont(Math.max(10f, 0.75f * g.getFont().getSize2D())));
         final FontMetrics metrics = g.getFontMetrics();
@@ -119,7 +119,7 @@ final class ProximityTimes {
         g.drawString(text, begin, baseline);
     }
 
-    /** Of a row of commands a box from each one's begin to its end, with its line where there is room. */
+    /** Draws a row of commands: a box from each one's begin to its end, with its line where there is room. */
     void paintCommands(Graphics2D g, List<ProximityMarks.Command> commands, int row, Rectangle lane) {
         laneName(g, row == 0 ? "command" : "beside", lane);
         final Font plain = g.getFont();
@@ -133,7 +133,7 @@ final class ProximityTimes {
         g.setFont(plain);
     }
 
-    /** How many rows the commands have: at least one; commands that would need more share the last one. */
+    /** The number of rows of commands: at least one; commands that would need more share the last one. */
     static int countRows(List<ProximityMarks.Command> commands) {
         int most = 0;
         for (final int row : ProximityMarks.rows(commands)) {
@@ -154,7 +154,7 @@ final class ProximityTimes {
         g.drawString(text, begin + (wide - g.getFontMetrics().stringWidth(text)) / 2, baseline);
     }
 
-    /** What is marked near a place: of each event a line or two, of the command one. */
+    /** The marks near a place: a line or two for each event, one for the command. */
     List<String> words(int x, int near, List<ProximityMarks.Event> events,
                        List<ProximityMarks.Command> commands, ProximityHistory names) {
         final List<String> words = new ArrayList<>();

@@ -20,9 +20,8 @@ import javax.swing.JComponent;
 import javax.swing.JPanel;
 import javax.swing.Timer;
 
-/**
- * Each gripper's proximity values over simulated time, as in the paper's Fig. 9, with its valve and what it holds, events
- * and commands. Which wafer is measured, and whether it is ready, the messages say.
+/** Each gripper's proximity values over simulated time, as in the paper's Fig. 9, with its valve, the wafer that it
+ * holds, events and commands. The messages say which wafer is measured, and whether it is ready.
  */
 final class ProximityView extends JPanel {
     private static final long serialVersionUID = 1;
@@ -35,26 +34,26 @@ final class ProximityView extends JPanel {
                                                  new Color(0xe6, 0x9f, 0x00)};
     static final Color PAPER = new Color(0xf7, 0xf7, 0xf7);
     private static final int FRAMES_PER_SECOND = 25;
-    /** Painting may take this part of the time: what lasts longer is painted less often. */
+    /** Painting may take this part of the time; a slow painting is repeated less often. */
     private static final int PAINTING_PART = 4;
-    /** How near to an event the mouse must be, pixels. */
+    /** The greatest distance of the mouse from an event, pixels. */
     private static final int NEAR = 4;
     /** Without a message for this long, ns, the view says that it is waiting. */
     private static final long SILENCE = 1_000_000_000L;
 
     private final transient ProximityHistory live;
-    /** A copy while the view is frozen, else null. Messages go on being collected. */
+    /** A copy while the view is frozen, else null. Messages are still collected. */
     private transient ProximityHistory frozen;
-    /** What is being painted. */
+    /** The history that is being painted. */
     private transient ProximityHistory shown;
     private final JButton freeze = new JButton("Freeze");
     private final Timer timer;
     private int span = 5;
-    /** How far the right end is behind the newest sample, us; 0 unless frozen. */
+    /** The distance of the right end behind the newest sample, us; 0 unless frozen. */
     private double behind;
     private boolean logarithmic = true;
     private int mouse = -1, mouseY;
-    /** What is said beside the mouse. */
+    /** The text beside the mouse. */
     private transient List<String> words = List.of();
     private long lastSeen;
     private long lastChange = System.nanoTime();
@@ -121,7 +120,7 @@ final class ProximityView extends JPanel {
         SpyWindow.bind(this, key, command);
     }
 
-    /** Stops the picture, or lets it go on. */
+    /** Stops the picture, or lets it continue. */
     void freeze() {
         behind = 0;
         frozen = frozen == null ? live.copy() : null;
@@ -290,7 +289,7 @@ final class ProximityView extends JPanel {
         g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
     }
 
-    /** The valve and what it works, in words, and in fewer; passive pads have none. */
+    /** The valve and its effect, in words, and in fewer words; passive pads have none. */
     private String[] grip(ProximityHistory.Summary summary, int gripper, int flags, double time) {
         final boolean open = (flags & ProximityHistory.OPEN) != 0;
         final String valve = summary.valves[gripper] == null ? "valve" : summary.valves[gripper];
@@ -309,7 +308,7 @@ final class ProximityView extends JPanel {
         return reading == null ? null : shown.waferName(reading.wafer[gripper]);
     }
 
-    /** The first of the texts that is no wider than that, else the last. */
+    /** The first of the texts that is no wider than that, or the last. */
     static String fitting(Graphics2D g, int width, String... texts) {
         for (final String text : texts) {
             if (g.getFontMetrics().stringWidth(text) <= width) {

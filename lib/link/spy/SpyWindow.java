@@ -14,7 +14,7 @@ import javax.swing.KeyStroke;
 import javax.swing.SwingUtilities;
 import javax.swing.WindowConstants;
 
-/** A view in the window that lcm-spy has opened around its desktop, else in one of our own. */
+/** A view in the window that lcm-spy has opened around its desktop, or in a window of our own. */
 final class SpyWindow {
     private SpyWindow() {
     }
@@ -33,7 +33,7 @@ final class SpyWindow {
         });
     }
 
-    /** `closed` is done when the window closes. */
+    /** `closed` is called when the window closes. */
     static void open(JDesktopPane desktop, String title, JComponent view, Runnable closed) {
         final Window window = desktop == null ? null : SwingUtilities.getWindowAncestor(desktop);
         final JFrame frame = window instanceof JFrame ? (JFrame)window : new JFrame();

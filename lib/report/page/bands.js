@@ -1,11 +1,11 @@
-/* What is too dense to be drawn line by line: of a curve the lowest, the highest and the mean value in each column of pixels,
- * of bars how much of a column's time each colour takes. */
+/* Draws what is too dense for single lines. A curve shows the lowest, the highest and the mean value in each column of pixels.
+ * Bars show how much of a column's time each colour takes. */
 (function (W) {
     'use strict';
 
-    const WIDE = 8; /* pixels of a column: a few cycles, or their beat with the columns would be seen */
-    const TURNS = 6; /* fewer pixels from turn to turn of a curve, and it is a comb */
-    const BARS = 4; /* fewer pixels from bar to bar, and they are */
+    const WIDE = 8; /* pixels of a column: a few cycles, otherwise one would see their beat with the columns */
+    const TURNS = 6; /* with fewer pixels from turn to turn a curve is a comb */
+    const BARS = 4; /* with fewer pixels from bar to bar bars are too dense */
 
     /* How often values turn from rising to falling, or back. */
     function turns(values) {
@@ -19,10 +19,10 @@
         return count;
     }
 
-    /* Points of straight lines in so many pixels: true if they are a comb. */
+    /* The points of straight lines within a number of pixels; true if they are a comb. */
     const isComb = (values, pixels) => turns(values) * TURNS > pixels;
 
-    /* Takes a straight line's part within one column into it. */
+    /* Adds the part of a straight line within one column to that column. */
     function take(column, from, to, seconds) {
         column.low = Math.min(column.low, from, to);
         column.high = Math.max(column.high, from, to);
@@ -30,7 +30,7 @@
         column.seconds += seconds;
     }
 
-    /* One straight line, column by column. */
+    /* Spreads one straight line, column by column. */
     function spread(columns, window, width, line) {
         const { t, v } = line;
         const value = (at) => (t[1] > t[0] ? v[0] + (v[1] - v[0]) * (at - t[0]) / (t[1] - t[0]) : v[1]);
@@ -42,7 +42,7 @@
         }
     }
 
-    /* { t, low, high, mean } of the columns; nulls where the curve has gaps all over a column. */
+    /* Returns { t, low, high, mean } of the columns; a column is null where the curve is a gap all over it. */
     function curve([times, values], window, pixels) {
         const count = Math.max(Math.floor(pixels / WIDE), 1);
         const width = (window[1] - window[0]) / count;
@@ -60,7 +60,7 @@
             mean: columns.map((column) => told(column, column.seconds > 0 ? column.sum / column.seconds : column.low)) };
     }
 
-    /* True if bars in a window so many pixels wide, `first` to `last` of them, are narrower than can be seen. */
+    /* True if the bars `first` to `last`, in a window of that many pixels, are too narrow to be seen. */
     const areDense = (first, last, pixels) => (last - first) * BARS > pixels;
 
     /* For each column a map from colour to its share of the column's time. */

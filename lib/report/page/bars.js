@@ -1,8 +1,8 @@
-/* What the lanes show: for each lane its name and its bars { from, to, text, colour, hatch, seek } or a curve. */
+/* The content of the lanes: each lane has its name and its bars { from, to, text, colour, hatch, seek } or a curve. */
 (function (W) {
     'use strict';
 
-    /* Intervals in which a track of steps has a value. */
+    /* The intervals in which a track of steps has a value. */
     function intervals(track, wanted, end) {
         const made = [];
         track.t.forEach((t, i) => {
@@ -43,7 +43,7 @@
             why: 'The document holds no valves, vacuum or sensors.' };
     }
 
-    /* One lane a gripper, with the wafers that it held. */
+    /* A lane for each gripper, with the wafers that it held. */
     function holders(doc) {
         const lanes = doc.names.grippers.map((name) => ({ name, bars: [] }));
         doc.tracks.wafers.forEach((states, wafer) => states.forEach((state, i) => {
@@ -57,13 +57,13 @@
             }
         }));
         lanes.forEach((lane) => lane.bars.sort((a, b) => a.from - b.from));
-        return { id: 'holders', title: 'Who holds which wafer', lanes: doc.tracks.wafers.length > 0 ? lanes : [],
+        return { id: 'holders', title: 'Wafers and their holders', lanes: doc.tracks.wafers.length > 0 ? lanes : [],
             why: 'The document does not hold who held what.' };
     }
 
     const COLOURS = { loaded: 's0', empty: 's5', vacuum: 's3', handover: 's2', waiting: 's4' };
 
-    /* Of several robots each has its name. */
+    /* If there are several robots, each has its name. */
     function laneName(entry) {
         if (entry.resource === 'robot') {
             return entry.gripper || 'robot';
@@ -71,7 +71,7 @@
         return `${entry.gripper} ${entry.resource === 'gripper' ? 'holds' : entry.resource}`;
     }
 
-    /* The robot's, the chucks' and the doors' time, by what it went into; grippers and valves have lanes of their own above. */
+    /* How the robot, the chucks and the doors spend their time; grippers and valves have lanes of their own above. */
     function busy(doc) {
         const lanes = new Map();
         (doc.run.gantt || []).filter((entry) => ['robot', 'chuck', 'door'].includes(entry.resource)).forEach((entry) => {
@@ -85,11 +85,11 @@
         return Array.from(lanes.values());
     }
 
-    /* Who waited for what, of a script with tasks. */
+    /* The waits of a script with tasks: who waits, and for what. */
     const waits = (doc) => (doc.run.waits || []).map((wait) => ({ from: wait.from_s, to: wait.to_s,
         text: `${wait.task > 0 ? `task ${wait.task}` : 'script'}: ${wait.for}`, colour: COLOURS.waiting }));
 
-    /* Bars that overlap get lanes of their own. */
+    /* Gives bars that overlap lanes of their own. */
     function apart(name, bars) {
         const lanes = [];
         bars.forEach((bar) => {
@@ -103,10 +103,10 @@
         return lanes;
     }
 
-    /* Which of several robots carries a command out; the text says it at its end, the name may be quoted. */
+    /* The robot, of several, that carries a command out. The command's text says it at its end; the name may be quoted. */
     const robotOf = (text) => (/.* robot=("?)(.*)\1$/.exec(text || '') || [])[2];
 
-    /* Each of several robots has its own commands in lanes of its own, all others come first. */
+    /* Each of several robots has its commands in lanes of its own; all others come first. */
     function commandLanes(doc) {
         const by = new Map([[undefined, []]]);
         doc.commands.filter((command) => typeof command.begin_s === 'number').forEach((command) => {

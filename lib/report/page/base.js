@@ -1,4 +1,4 @@
-/* The page's one name, and the small helpers that every part uses. */
+/* The page's one global name, and the small helpers that every part uses. */
 window.Waferhand = {};
 (function (W) {
     'use strict';
@@ -6,7 +6,7 @@ window.Waferhand = {};
     const DASH = '\u2013';
     const MINUS = '\u2212';
 
-    /* An element: attributes by name (a function listens, `text` is the text), then children or strings. */
+    /* Makes an element: attributes by name (a function listens, `text` is the text), then children or strings. */
     function element(name, attributes, ...children) {
         const made = document.createElement(name);
         Object.entries(attributes || {}).forEach(([key, value]) => {
@@ -22,7 +22,7 @@ window.Waferhand = {};
         return made;
     }
 
-    /* A number for people: fixed decimals, a true minus, no negative zero, a dash for none. */
+    /* Writes a number for people: fixed decimals, a true minus, no negative zero, a dash for none. */
     function number(value, decimals) {
         if (typeof value !== 'number' || !isFinite(value)) {
             return DASH;
@@ -31,7 +31,7 @@ window.Waferhand = {};
         return Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS);
     }
 
-    /* Four significant digits and no more: 0.4923, 49.99, 1235. */
+    /* Writes at most four significant digits: 0.4923, 49.99, 1235. */
     function figure(value) {
         if (typeof value !== 'number' || !isFinite(value)) {
             return DASH;
@@ -44,8 +44,8 @@ window.Waferhand = {};
         return number(value, Math.max(0, 3 - before + (size < 1 ? 1 : 0)));
     }
 
-    /* A tick's number: as many digits as tell it from its neighbours in a range so wide, and none that rounding left. Near to
-     * 1, what is missing to it tells more. */
+    /* Writes a tick's number, with the digits that tell it from its neighbours in a range of this width, and without rounding
+     * errors. Near 1 the difference to 1 tells more. */
     function tick(value, span) {
         const decimals = clamp(3 - Math.floor(Math.log10(span)), 0, 18);
         const lack = Number((1 - value).toFixed(decimals));
@@ -55,7 +55,7 @@ window.Waferhand = {};
 
     const SPACE = 'http://www.w3.org/2000/svg';
 
-    /* A shape within an SVG, or the SVG itself; a function listens. */
+    /* Makes a shape within an SVG, or the SVG itself; a function listens. */
     function shape(name, attributes, text) {
         const made = document.createElementNS(SPACE, name);
         Object.entries(attributes).forEach(([key, value]) => {
@@ -71,7 +71,7 @@ window.Waferhand = {};
         return made;
     }
 
-    /* A small picture of filled paths on 24 by 24. */
+    /* Makes a small picture of filled paths on a grid of 24 by 24. */
     function icon(path) {
         const made = shape('svg', { viewBox: '0 0 24 24', class: 'icon', 'aria-hidden': 'true' });
         made.append(shape('path', { d: path }));
@@ -80,15 +80,15 @@ window.Waferhand = {};
 
     const seconds = (t) => number(t, 3) + '\u00a0s';
 
-    /* A word as the program's JSON spells it, for people. */
+    /* Writes a word of the program's JSON for people. */
     const words = (text) => String(text).replace(/_/g, ' ');
 
     const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
-    /* What a section says in place of what the document does not hold. */
+    /* The text that a section shows if the document lacks its content. */
     const why = (text) => element('p', { class: 'why', text });
 
-    /* Tells those who hear the page instead of seeing it. */
+    /* Tells screen readers a text. */
     function say(text) {
         document.getElementById('said').textContent = text;
     }

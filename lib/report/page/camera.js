@@ -1,16 +1,16 @@
-/* Where the cell is seen from: the whole, from above, from the side, or riding along with a gripper. z is up. */
+/* The views of the cell: the whole, from above, from the side, or riding along with a gripper. z is up. */
 (function (W) {
     'use strict';
 
     const THREE = window.THREE;
     const WIDTH_DEG = 32;
-    const FLAT_DEG = 7; /* from above and from the side lines that are parallel nearly stay so */
-    const AIR = 1.13; /* so that buttons and the legend cover nothing */
+    const FLAT_DEG = 7; /* a narrow angle: from above and from the side parallel lines stay nearly parallel */
+    const AIR = 1.13; /* room, so that buttons and the legend cover nothing */
 
-    /* From where to look at the middle in each view that stands still. */
+    /* The direction from the middle to the eye, in each view that stands still. */
     const VIEWS = { whole: [0.62, -0.75, 0.62], top: [0, -0.0005, 1], side: [0, -1, 0.0005] };
 
-    /* The corners of all meshes' boxes: what has to be in the picture. */
+    /* The corners of all meshes' boxes; the picture has to contain them. */
     function corners(scene) {
         const found = [];
         scene.updateMatrixWorld(true);
@@ -27,8 +27,8 @@
         return found;
     }
 
-    /* From how far, looking along `back` at `middle`, every corner is in the picture, and where the middle of the picture
-     * would better be. */
+    /* The distance from which, looking along `back` at `middle`, every corner is in the picture, and a better middle of the
+     * picture. */
     function fit(camera, points, middle, back) {
         const right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
         const up = new THREE.Vector3().crossVectors(back, right);
@@ -77,7 +77,7 @@
         camera.updateProjectionMatrix();
     }
 
-    /* What is nearer than this is not drawn: as far as may be, for depths have few digits. */
+    /* Moves the near plane as far away as possible, because depths have few digits. */
     function clip(rig) {
         const { camera, controls } = rig;
         const near = Math.max(0.02, camera.position.distanceTo(controls.target) - 3);
@@ -106,7 +106,7 @@
         rig.controls.update();
     }
 
-    /* Behind and above the gripper, looking where it enters. */
+    /* Places the eye behind and above the gripper, looking in the direction in which it enters. */
     function ride(rig) {
         const pose = rig.rider && rig.rider();
         if (!pose) {

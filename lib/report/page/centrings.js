@@ -1,5 +1,5 @@
-/* What beams at a station's door told of a wafer on its blade: the crossings and the circles through them, the middle enlarged,
- * the residuals, and the estimate in words; one centring at a time. */
+/* Shows what the beams at a station's door tell of a wafer on its blade, one centring at a time. It draws the crossings and the
+ * circles through them, the middle enlarged and the residuals, and gives the estimate in words. */
 (function (W) {
     'use strict';
 
@@ -12,7 +12,7 @@
 
     const scale = (low, high, from, to) => (value) => from + (value - low) / (high - low) * (to - from);
 
-    /* Steps of 1, 2 or 5 times a power of ten, about so many on each side of 0. */
+    /* Steps of 1, 2 or 5 times a power of ten, about `count` of them on each side of 0. */
     function ticks(reach, count) {
         const rough = reach / count;
         const power = Math.pow(10, Math.floor(Math.log10(rough)));
@@ -25,7 +25,7 @@
     const LEFT = 46;
     const BELOW = 34;
 
-    /* A square of the blade's frame with its axes, `reach` mm to each side of the middle. */
+    /* Draws a square of the blade's frame with its axes, `reach` mm to each side of the middle. */
     function square(reach, label) {
         const made = picture(SIZE + LEFT + 8, SIZE + BELOW + 8, label);
         const x = scale(-reach, reach, LEFT, LEFT + SIZE);
@@ -42,7 +42,7 @@
 
     const triangle = (x, y, up) => `M${x - 6} ${y + 4 * up}h12l-6 ${-10 * up}z`;
 
-    /* By what it was taken for: what counts is filled, what is left out is not. */
+    /* The mark tells how a crossing is used: one that counts is filled, one that is left out is not. */
     function crossingMark({ edge, use, beam }, x, y) {
         const mark = use === 'rim' ? shape('path', { class: 'rim', d: triangle(x, y, edge === 'in' ? 1 : -1) })
             : use === 'notch' ? shape('rect', { class: 'notch', x: x - 5, y: y - 5, width: 10, height: 10 })
@@ -52,7 +52,7 @@
         return mark;
     }
 
-    /* An arrow to the notch, where motion control knew its direction. */
+    /* Draws an arrow to the notch, if motion control knew its direction. */
     function notchArrow(known, x, y) {
         if (typeof known.notch_deg !== 'number') {
             return [];
@@ -85,7 +85,7 @@
         return made;
     }
 
-    /* The residuals of the crossings that count fill the scale; a notch's would flatten them. */
+    /* The residuals of the crossings that count fill the scale; a residual at the notch would flatten them. */
     function residualScale(centring) {
         const counting = centring.candidates.flatMap((each) => each.residuals_um.filter((_, k) => each.uses[k] === 'rim'));
         return Math.max(1, ...counting.map((um) => 1.6 * Math.abs(um)));
@@ -114,7 +114,7 @@
     const PANELS = [{ name: 'on the blade', draw: blade }, { name: 'middle, enlarged', draw: middle },
         { name: 'residuals, \u00b5m', draw: residuals, wide: true, note: 'in numbers where they leave the scale' }];
 
-    /* What the two places are called: one that is not sure is not called fitted. */
+    /* The names of the two places; a place that is not sure is not called fitted. */
     function placeNames(centring) {
         if (centring.candidates.length === 2 && !centring.sure) {
             return ['likelier place', 'other place'];

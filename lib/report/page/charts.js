@@ -1,4 +1,5 @@
-/* Drawings of a study: histograms, clouds of points, correlations with their intervals. As SVG, from plain numbers. */
+/* Drawings of a study: histograms, clouds of points, correlations with their intervals. They are SVG, made from plain
+ * numbers. */
 (function (W) {
     'use strict';
 
@@ -7,7 +8,7 @@
     const picture = (width, height, label) => shape('svg', { class: 'chart', viewBox: `0 0 ${width} ${height}`, role: 'img',
         'aria-label': label });
 
-    /* Steps of 1, 2 or 5 times a power of ten, about so many. */
+    /* Steps of 1, 2 or 5 times a power of ten, about `count` of them. */
     function ticks(low, high, count) {
         const rough = (high - low) / count;
         const power = Math.pow(10, Math.floor(Math.log10(rough)));
@@ -21,7 +22,7 @@
 
     const scale = (low, high, from, to) => (value) => from + (value - low) / (high - low) * (to - from);
 
-    /* Counts as bars, with the smallest and largest value below them. */
+    /* Draws counts as bars, with the smallest and largest value below them. */
     function histogram(of, name) {
         const [width, height, left, bottom] = [300, 150, 8, 128];
         const made = picture(width, height, `Histogram of ${name}`);
@@ -65,7 +66,7 @@
             shape('text', { x: left - 5, y: y(value) + 4, 'text-anchor': 'end' }, W.tick(value, 2 * around.half))));
     }
 
-    /* Points { x, y, ok, trial } against boxes that they should be in; `choose` hears which trial was clicked. */
+    /* Draws points { x, y, ok, trial } and the boxes that they should be in; `choose` is called with the clicked trial. */
     function cloud(points, limits, name, choose) {
         const [size, left] = [420, 58];
         const made = picture(left + size, size + 40, `Where ${name} ends in each trial`);
@@ -89,7 +90,7 @@
         return made;
     }
 
-    /* Correlations { name, r, low, high }, each a dot on its interval; null is not determined. */
+    /* Draws correlations { name, r, low, high }, each a dot on its interval; null means not determined. */
     function correlations(rows, label) {
         const [width, left, row] = [760, 210, 22];
         const bottom = 8 + row * rows.length;

@@ -1,4 +1,4 @@
-/* The shown time and the shown window of it. All parts listen here, and none talks to another. */
+/* The shown time and the shown window of it. All parts listen here; no part talks to another. */
 (function (W) {
     'use strict';
 
@@ -8,7 +8,7 @@
 
     const clock = { now: 0, begin: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [] };
 
-    /* Listeners are called once a frame however often something changed. */
+    /* Calls the listeners once a frame, however often something changes. */
     function changed(what) {
         if (pending.size === 0) {
             requestAnimationFrame(clock.flush);
@@ -24,7 +24,7 @@
 
     clock.on = (what, listener) => listeners[what].push(listener);
 
-    /* The time of a slice, computed as the program computes an event's: equal times are equal to the last bit. */
+    /* The time of a slice. It is computed like the program's event times: equal times are equal to the last bit. */
     clock.time = (number) => number * Math.round(clock.slice * 1e6) / 1e6;
     clock.number = (t) => Math.round(t / clock.slice);
 
@@ -36,7 +36,7 @@
         changed('time');
     };
 
-    /* Turns the page, as it were, when the time leaves the shown window. */
+    /* Moves the shown window on when the time leaves it, as one turns a page. */
     function follow() {
         const width = clock.window[1] - clock.window[0];
         const from = clock.now - 0.05 * width;
@@ -61,7 +61,7 @@
 
     clock.stepSlice = (count) => clock.seek(clock.time(clock.number(clock.now) + count));
 
-    /* To the next (1) or the one before (-1) of the events. */
+    /* Steps to the next (1) or the previous (-1) event. */
     clock.stepStop = function (way) {
         const at = W.tracks.index(clock.stops, clock.now);
         const before = at >= 0 && clock.stops[at] === clock.now ? at - 1 : at;

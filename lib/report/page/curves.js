@@ -1,6 +1,7 @@
-/* Which curves there are: groups of panels, each with its curves and limits, taken from the document's tracks. A curve is
- * { name, colour, unit, decimals, t, read(i, share), at(t) }: `read` between its points i and i + 1, null in a gap; a limit
- * { value, text, below }: what is allowed lies below it, or above; `most` is the widest range of values that is worth showing. */
+/* The list of curves: groups of panels, each with its curves and limits, taken from the document's tracks. A curve is { name,
+ * colour, unit, decimals, t, read(i, share), at(t) }; `read` gives a value between its points i and i + 1, null in a gap. A
+ * limit is { value, text, below }: the allowed values lie below it, or above. `most` is the widest range of values that is
+ * worth showing. */
 (function (W) {
     'use strict';
 
@@ -57,7 +58,7 @@
             why: 'No gripper came near a wafer, or the document does not hold how near.' };
     }
 
-    /* One panel for the axes in mm, one for those that turn, and one for those whose unit nobody knows. */
+    /* There is one panel for the axes in mm, one for those that turn, and one for those whose unit is not known. */
     function axisPanel(doc, unit, speed) {
         const factor = unit === 'rad' ? DEGREES : 1;
         const per = speed ? '/s' : '';
@@ -73,7 +74,7 @@
         return { title: speed ? 'Speeds' : 'Positions', unit: shown, curves, limits: [], zero: speed };
     }
 
-    /* What an axis may do, in words. */
+    /* The limits of an axis, in words. */
     function bounds(axis, factor, speed) {
         if (speed) {
             return axis.speed > 0 ? `at most ${W.figure(axis.speed * factor)}` : '';

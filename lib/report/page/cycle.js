@@ -1,16 +1,16 @@
-/* Which part of the run the plots show: where the whole run would be a comb, the first steady cycle to begin with. The program
- * finds it (run.steady_cycle), and says why where there is none. */
+/* Chooses the part of the run that the plots show. If the whole run would be a comb, they begin with the first steady cycle.
+ * The program finds this cycle (run.steady_cycle), or says why there is none. */
 (function (W) {
     'use strict';
 
-    const COMB = 6; /* so many cycles beside each other, and nobody sees one */
-    const MANY = 40; /* so many commands, and one would like a cycle */
+    const COMB = 6; /* with so many cycles side by side no single one can be seen */
+    const MANY = 40; /* with so many commands a reader wants to see one cycle */
     const cycle = { found: null, reason: '', opened: null };
 
     const same = (a, b) => a.every((t, i) => Math.abs(t - b[i]) < 1e-6);
     const isShown = (window) => cycle.found !== null && same(window, cycle.found.window);
 
-    /* The cycle in all plots, and the time within it. */
+    /* Shows the cycle in all plots, and a time within it. */
     cycle.show = function () {
         if (!cycle.found) {
             W.say(cycle.reason);
@@ -33,7 +33,7 @@
             : 'the document holds none'}`;
     }
 
-    /* What the plots show, in words. */
+    /* Says in words what the plots show. */
     cycle.text = function () {
         const [from, to] = W.clock.window;
         const all = same([from, to], [W.clock.begin, W.clock.end]);
@@ -50,7 +50,7 @@
             { type: 'button', title: `${title} (${key})`, 'aria-label': title, 'aria-keyshortcuts': key, click: act }, text));
     }
 
-    /* Above the plots. */
+    /* The toolbar above the plots. */
     cycle.toolbar = function () {
         const made = buttons();
         const text = W.element('span', { class: 'note window' });

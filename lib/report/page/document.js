@@ -1,4 +1,4 @@
-/* The document that the page shows: read once, with something in the place of every part that may be missing. */
+/* Reads the document that the page shows, once; a part that is missing gets a default. */
 (function (W) {
     'use strict';
 
@@ -30,7 +30,7 @@
             .map((event) => Object.assign({ t: event.utime / 1e6 }, event)).sort((a, b) => a.t - b.t);
     }
 
-    /* The last time that anything in the document has, for one that does not say how long it is. */
+    /* The last time in the document, for one that does not give its length. */
     function lastTime(doc) {
         const last = (track) => (track && track.t && track.t.length > 0 ? track.t[track.t.length - 1] : 0);
         const moved = doc.tracks.axes.concat(doc.tracks.grippers).map(last);
@@ -79,7 +79,7 @@
         return made;
     }
 
-    /* The text that was deflated, and written as base64. */
+    /* Inflates a text that was deflated and written as base64. */
     function inflate(packed) {
         if (!window.DecompressionStream) {
             throw new Error('it takes a browser of 2023 or later to unpack it');
@@ -88,12 +88,12 @@
         return new Response(stream).text();
     }
 
-    /* Promises what the page carries, as it is. */
+    /* Promises the text that the page carries. */
     async function unpack() {
         return object(JSON.parse(await inflate(document.getElementById('document').textContent.trim())));
     }
 
-    /* Promises the document, or null with `W.fault` telling why. */
+    /* Promises the document, or null; `W.fault` then tells why. */
     async function read() {
         try {
             return complete(await unpack());

@@ -1,8 +1,8 @@
-/* The cell without WebGL: drawings from above and from the side, moved to the shown time. It does what scene.js does. */
+/* Shows the cell without WebGL: drawings from above and from the side, moved to the shown time. It does what scene.js does. */
 (function (W) {
     'use strict';
 
-    /* Across, up and towards the eye, of base's axes. */
+    /* The directions across, up and towards the eye, as base's axes. */
     const SIDES = {
         top: { title: 'from above', across: 0, up: 1, near: (p) => p[2] },
         side: { title: 'from the side', across: 0, up: 2, near: (p) => -p[1] },
@@ -18,7 +18,7 @@
         return found;
     }
 
-    /* Where each body's points are now; what stands still is computed once. */
+    /* Computes the points of each body now; bodies that stand still are computed once. */
     function pose(view, t) {
         view.at = t;
         Object.values(view.movers).forEach((mover) => { mover.pose = mover.at(t); });
@@ -43,7 +43,7 @@
         return box;
     }
 
-    /* The panels that are shown, side by side or, where it is narrow, one above the other. */
+    /* The panels in view, side by side or, where it is narrow, one above the other. */
     function panels(view) {
         const sides = view.shown === 'top' || view.shown === 'side' ? [view.shown] : ['top', 'side'];
         const { clientWidth: width, clientHeight: height } = view.host;
@@ -57,7 +57,7 @@
 
     const size = (box, side) => [side.across, side.up].map((i) => box.high[i] - box.low[i]);
 
-    /* One scale for both, so that they can be compared. */
+    /* All panels have one scale, so that they can be compared. */
     function scaleOf(box, sides, area) {
         return Math.min(...sides.map((side) => Math.min((area.w - 40) / size(box, side)[0],
             (area.h - 120) / size(box, side)[1])));
@@ -88,7 +88,7 @@
         });
     }
 
-    /* Triangles are filled as one, and have no lines between them. */
+    /* Fills a body's triangles as one shape, without lines between them. */
     function drawBody(view, panel, body) {
         const pen = view.pen;
         path(pen, W.hulls.shapes(body, body.now.map(panel.spot)));
@@ -113,7 +113,7 @@
         pen.lineWidth = 1;
     }
 
-    /* Obstacles are named in the middle of their tops. */
+    /* The names of obstacles, in the middle of their tops. */
     function obstacles(view) {
         return view.bodies.filter((body) => body.owner && body.owner.kind === 'obstacle').map(({ owner, points }) => {
             const middle = [0, 1].map((i) => points.reduce((sum, p) => sum + p[i], 0) / points.length);
@@ -121,7 +121,7 @@
         });
     }
 
-    /* What has a name, the weightiest first, and where it is. */
+    /* The things that have names, the most important first, with their places. */
     function named(view) {
         const { slots, names } = view.doc;
         const moving = Object.values(view.movers).filter((mover) => mover.pose)
@@ -132,7 +132,7 @@
             moving.filter(({ kind }) => kind === 'wafer')).filter(({ kind, i }) => !W.parts.isHidden(kind, i));
     }
 
-    /* Where two would cover each other the first stays. */
+    /* If two names would cover each other, the first stays. */
     function drawNames(view, panel) {
         const taken = [];
         named(view).forEach(({ name, kind, at }) => {
@@ -147,7 +147,7 @@
         });
     }
 
-    /* Older parts of it are fainter. */
+    /* Draws the trail; its older parts are fainter. */
     function drawTrail(view, panel, i) {
         const points = W.trail.points(view.doc, i, view.at);
         const spots = points.map((point) => panel.spot(point.r));
@@ -186,7 +186,7 @@
         pen.lineWidth = 1;
     }
 
-    /* Words beside a mark, within the panel; those of several marks stand one above the other. */
+    /* Writes words beside a mark, within the panel; the words of several marks stand one above the other. */
     function drawWords(view, panel, words, [x, y]) {
         const { x: left, w: width } = panel.area;
         const last = left + width - view.pen.measureText(words).width - 6;
@@ -256,7 +256,7 @@
         }
     }
 
-    /* The frames whose origins are drawn within a finger's width of the pointer, the nearest first. */
+    /* The frames whose origins are within a finger's width of the pointer, the nearest first. */
     function pick(view, event) {
         const area = view.canvas.getBoundingClientRect();
         const spot = [event.clientX - area.left, event.clientY - area.top];

@@ -1,5 +1,5 @@
-/* Reads the document's scene: a glTF 2.0 object with its buffers inside. What is read is what the program writes: nodes
- * (matrix or translation, rotation, scale), triangles, base colours. Without three.js, so that drawings have it too. */
+/* Reads the document's scene: a glTF 2.0 object with its buffers inside. It reads what the program writes: nodes (matrix or
+ * translation, rotation, scale), triangles, base colours. It needs no three.js, so that drawings can use it too. */
 (function (W) {
     'use strict';
 
@@ -35,7 +35,7 @@
         return made;
     }
 
-    /* As screens want it: glTF's colours are linear. */
+    /* Encodes colours for screens: glTF's colours are linear. */
     const encoded = (x) => (x <= 0.0031308 ? 12.92 * x : 1.055 * Math.pow(x, 1 / 2.4) - 0.055);
 
     function material(file, i) {
@@ -52,7 +52,7 @@
         return Object.assign({ positions, indices }, material(file, primitive.material));
     }
 
-    /* Primitives of triangles only; a mesh is read once however many nodes show it. */
+    /* Reads primitives of triangles only; a mesh is read once, however many nodes show it. */
     function mesh(file, i) {
         if (!file.parts[i]) {
             file.parts[i] = file.meshes[i].primitives
@@ -65,7 +65,7 @@
     const NODE = { name: '', translation: [0, 0, 0], rotation: [0, 0, 0, 1], scale: [1, 1, 1], matrix: null, children: [],
         extras: {} };
 
-    /* `kind` and `index` say what a node is, for names need not be unique. */
+    /* `kind` and `index` identify a node, because names need not be unique. */
     function node(file, i) {
         const from = Object.assign({}, NODE, file.nodes[i]);
         const { kind = '', index = 0 } = from.extras;
@@ -74,7 +74,7 @@
             children: from.children.map((child) => node(file, child)) };
     }
 
-    /* The scene's root nodes, or null where there is none that can be read. */
+    /* The scene's root nodes, or null if no scene can be read. */
     function read(scene) {
         if (!scene || !scene.nodes || !scene.scenes) {
             return null;
@@ -89,12 +89,12 @@
         }
     }
 
-    /* The page's own colour for a material that it knows, else the file's. */
+    /* The page's own colour for a material that it knows, otherwise the file's. */
     function colour(look) {
         return W.theme.colour('part-' + look.name) || `rgb(${look.colour.map((x) => Math.round(255 * x)).join()})`;
     }
 
-    /* What a node is, among the nodes: the same for a gripper, a wafer, a link of the document. */
+    /* The key of a node; a gripper, a wafer and a link of the document have such a key too. */
     const key = (kind, i) => `${kind} ${i}`;
 
     W.gltf = { read, colour, key };

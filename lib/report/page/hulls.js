@@ -1,11 +1,11 @@
-/* The scene's parts as convex bodies in mm of base, and their outlines from above and from the side: what drawings are
- * made of. A mesh of several bodies that do not touch is taken apart. */
+/* The scene's parts as convex bodies in mm of base, and their outlines from above and from the side. Drawings are made of
+ * these. A mesh of several bodies that do not touch is split. */
 (function (W) {
     'use strict';
 
     const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-    /* Columns one after the other, as in glTF. */
+    /* Multiplies matrices; their columns follow one another, as in glTF. */
     function product(a, b) {
         return IDENTITY.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[(i & 3) + 4 * k] * b[k + (i & 12)], 0));
     }
@@ -29,7 +29,7 @@
         return root;
     }
 
-    /* Numbers of a part's vertices, those of one place being one. */
+    /* Numbers a part's vertices; vertices at one place share a number. */
     function places(part) {
         const seen = new Map();
         const p = part.positions;
@@ -44,7 +44,8 @@
 
     const vertex = (part, i) => [0, 1, 2].map((k) => 1000 * part.positions[3 * i + k]);
 
-    /* No corner of a convex body lies before any of its faces by more than this share of its size: a wafer's notch passes. */
+    /* No corner of a convex body lies before any of its faces by more than this share of its size; a wafer's notch is small
+     * enough. */
     const DENT = 0.03;
 
     function isConvex(points, triangles) {
@@ -56,7 +57,7 @@
         });
     }
 
-    /* A part's bodies, mm: the points that triangles connect, and the triangles themselves where a hull would hide dents. */
+    /* A part's bodies, mm: the points that triangles connect, and the triangles themselves if a hull would hide dents. */
     function bodies(part) {
         if (part.bodies) {
             return part.bodies;
@@ -83,8 +84,8 @@
         return part.bodies;
     }
 
-    /* Goes through the tree; a node in `movers` begins anew, for its own pose is set later. A body's owner is the nearest node
-     * above it that is of a kind. */
+    /* Goes through the tree; a node in `movers` begins anew, because its own pose is set later. A body's owner is the nearest
+     * node above it that has a kind. */
     function collect(node, above, { mover, owner }, movers, found) {
         const own = movers[W.gltf.key(node.kind, node.index)];
         const below = { mover: own || mover, owner: node.kind ? node : owner };
@@ -95,7 +96,7 @@
         node.children.forEach((child) => collect(child, matrix, below, movers, found));
     }
 
-    /* y up becomes z up for what stands still. */
+    /* Turns y up into z up for bodies that stand still. */
     const Z_UP = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1];
 
     function make(roots, movers) {
@@ -124,7 +125,8 @@
         return chain(sorted).concat(chain(sorted.reverse()));
     }
 
-    /* What to fill for a body whose points are seen there: its outline, or each of its triangles that faces us. */
+    /* The shapes to fill for a body whose points are seen there: its outline, or each of its triangles that faces the
+     * viewer. */
     function shapes(body, points) {
         if (!body.dented) {
             return [outline(points)];

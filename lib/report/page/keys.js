@@ -39,7 +39,7 @@
     const MOVES = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End'];
     const OWN = { BUTTON: [' '], SUMMARY: [' '], checkbox: [' '], radio: [' ', ...MOVES], range: MOVES };
 
-    /* Keys that an element with the focus needs itself; the scrubber's do what the page's do. */
+    /* True for keys that the focused element needs itself; the scrubber's keys do the same as the page's. */
     function isTaken(target, key) {
         const kind = target.tagName === 'INPUT' ? target.type : target.tagName;
         return kind === 'TEXTAREA' || kind === 'SELECT' || (target.id !== 'scrubber' && (OWN[kind] || []).includes(key));

@@ -1,11 +1,12 @@
-/* Words in the picture: names of stations and what moves, marks, and the measured distance with its line. */
+/* Words in the picture: names of stations and of moving things, marks, and the measured distance with its line. */
 (function (W) {
     'use strict';
 
     const THREE = window.THREE;
     const M = 0.001;
     const MANY = 20;
-    /* Of a name: left of its point, pixels lower. Of wafers that nobody holds the first only where names are many. */
+    /* Places of a name: left of its point, and pixels lower. A wafer that nobody holds has only the first place if there are
+     * many names. */
     const PLACES = [[false, 0], [true, 0], [false, 19], [true, 19], [false, -19], [true, -19]];
 
     function make(view, kind, text) {
@@ -14,7 +15,7 @@
         return made;
     }
 
-    /* Stations are named at their lowest slots. */
+    /* Stations have their names at their lowest slots. */
     function stations(view) {
         const { slots, names } = view.doc;
         return slots.filter((slot) => slot.slot === 1 && names.stations[slot.station] !== undefined)
@@ -22,7 +23,7 @@
                 label: make(view, 'station', names.stations[slot.station]) }));
     }
 
-    /* Obstacles in the middle of their tops. */
+    /* Obstacles have their names in the middle of their tops. */
     function obstacles(view) {
         return Object.values(view.named).map((object) => ({ object, node: object.userData.node }))
             .filter(({ node }) => node.kind === 'obstacle').map(({ object, node }) => {
@@ -32,8 +33,8 @@
             });
     }
 
-    /* Names for what moves by itself, stations and obstacles, the weightiest first: where two would cover each other the first
-     * stays. And the ruler. */
+    /* Names for what moves by itself, stations and obstacles, the most important first. If two would cover each other, the
+     * first stays. It adds the ruler, too. */
     function add(view) {
         const movers = view.moving.map(({ object, kind, i, name }) => ({ at: object.position, object, kind, i, name }));
         const named = (kind) => movers.filter((mover) => mover.kind === kind)
@@ -45,7 +46,7 @@
         view.scene.add(view.ruler);
     }
 
-    /* Those that are held before the others. */
+    /* Wafers that are held come before the others. */
     const isHeld = (view, tag) => tag.kind === 'wafer' && view.moving.some((mover) => mover.kind === 'wafer' && mover.i === tag.i
         && mover.holder >= 0);
 
@@ -73,8 +74,8 @@
         taken.push(...(tag.label.hidden ? [] : [tag.label.getBoundingClientRect()]));
     }
 
-    /* Puts a label beside its point, to the left of it if asked for or if that is where a mark's has room, and so many pixels
-     * lower; or hides it. */
+    /* Puts a label beside its point, `down` pixels lower, or hides it. It is to the left if the caller asks, or if a mark has
+     * room only there. */
     function hangOne(view, each, point, left, down) {
         const spot = point.clone().project(view.rig.camera);
         const inside = Math.abs(spot.x) < 1 && Math.abs(spot.y) < 1 && spot.z < 1;
@@ -104,7 +105,7 @@
         }
     }
 
-    /* Draws the measured distance; no ends, no line. */
+    /* Draws the measured distance; without ends it draws no line. */
     function rule(view, ends, text) {
         view.ends = ends && ends.map((end) => new THREE.Vector3(...end).multiplyScalar(M));
         view.ruler.visible = !!view.ends;

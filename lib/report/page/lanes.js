@@ -1,4 +1,4 @@
-/* Bars over time, a lane a row, on the plots' time axis: drawn on a canvas, only what is in the window. */
+/* Bars over time, a lane in each row, on the plots' time axis. They are drawn on a canvas, and only those in the window. */
 (function (W) {
     'use strict';
 
@@ -12,7 +12,7 @@
     const width = (chart) => Math.max(chart.canvas.clientWidth - left() - RIGHT, 10);
     const spot = (chart, t) => left() + width(chart) * (t - W.clock.window[0]) / (W.clock.window[1] - W.clock.window[0]);
 
-    /* Times for the axis: 1, 2 or 5 times a power of ten apart. */
+    /* Times for the axis, 1, 2 or 5 times a power of ten apart. */
     function steps(from, to, count) {
         const raw = (to - from) / count;
         const power = Math.pow(10, Math.floor(Math.log10(raw)));
@@ -37,7 +37,7 @@
         pen.textAlign = 'left';
     }
 
-    /* As much of a text as there is room for. */
+    /* Draws as much of a text as there is room for. */
     function drawText(pen, text, x, y, room) {
         if (room < 14) {
             return;
@@ -67,7 +67,7 @@
         }
     }
 
-    /* How many bars come before the first that is not `before`; they are in order and do not overlap. */
+    /* The number of bars before the first that is not `before`; bars are in order and do not overlap. */
     function countBefore(bars, before) {
         let low = 0;
         let high = bars.length;
@@ -86,7 +86,7 @@
     const first = (bars, t) => countBefore(bars, (bar) => bar.to < t);
     const after = (bars, t) => countBefore(bars, (bar) => bar.from <= t);
 
-    /* What bars that are too dense to be seen take of each column's time: as high as their share, one colour on the other. */
+    /* Draws bars that are too dense as shares of each column's time: the height is the share, and the colours are stacked. */
     function drawShares(chart, pen, bars, y) {
         W.bands.shares(bars, W.clock.window, width(chart)).forEach((column, i) => {
             let bottom = y + ROW - 4;
@@ -112,7 +112,7 @@
         }
     }
 
-    /* A level from 0 to 1, filled. */
+    /* Draws a level from 0 to 1, filled. */
     function drawCurve(chart, pen, lane, y) {
         const bottom = y + ROW - 4;
         const rows = W.reduce.rows([lane.curve], W.clock.window, width(chart));
@@ -190,8 +190,8 @@
         const chart = { group, canvas: W.element('canvas', { class: 'lanes', role: 'img',
             'aria-label': `${group.title} over time: ${names}; in figures in the tables below` }),
         cursor: W.element('div', { class: 'cursor' }),
-        banded: W.element('p', { class: 'note banded', hidden: true }, 'As high as their share of the time, where bars lie too '
-            + 'close to be seen one by one.') };
+        banded: W.element('p', { class: 'note banded', hidden: true }, 'A bar is as high as its share of the time, where bars '
+            + 'lie too close to be seen one by one.') };
         charts.push(chart);
         listen(chart);
         new ResizeObserver(() => draw(chart)).observe(chart.canvas);

@@ -1,13 +1,13 @@
-/* Light that shows depth: a sky, a sun with soft shadows, and a ground that takes them. Shadows are drawn anew only when
- * something moved, not when the camera does. */
+/* Light that shows depth: a sky, a sun with soft shadows, and a ground that receives them. Shadows are drawn again only when
+ * something moves, not when the camera does. */
 (function (W) {
     'use strict';
 
     const THREE = window.THREE;
-    const MAP = 1024; /* texels of the shadow's map along a side */
+    const MAP = 1024; /* texels along a side of the shadow's map */
     const SUN = [-0.55, -0.75, 1.5];
-    /* Where the map is read beside a point, in texels: three.js reads it at one place, or at seventeen, which takes software GL
-     * as long as all else together. */
+    /* Offsets, in texels, at which the map is read beside a point. three.js itself reads at one place or at seventeen; in
+     * software GL seventeen take as long as everything else together. */
     const TAPS = [[0, 0], [0.9, 0.4], [-0.4, 0.9], [-0.9, -0.4], [0.4, -0.9]];
     const HARD = 'shadow = texture2DCompare( shadowMap, shadowCoord.xy, shadowCoord.z );';
 
@@ -31,7 +31,7 @@
         return made;
     }
 
-    /* Takes shadows and nothing else. */
+    /* The ground receives shadows and nothing else. */
     function ground(middle, reach, z) {
         const made = new THREE.Mesh(new THREE.PlaneBufferGeometry(4 * reach, 4 * reach),
             new THREE.ShadowMaterial({ opacity: 0.2, depthWrite: false }));
@@ -40,7 +40,7 @@
         return made;
     }
 
-    /* Into a scene whose corners are those of all that is in it. */
+    /* Adds the light to a scene whose corners enclose all that is in it. */
     function add(view) {
         const box = new THREE.Box3().setFromPoints(view.corners);
         const middle = box.getCenter(new THREE.Vector3());
@@ -54,7 +54,7 @@
         view.scene.add(new THREE.HemisphereLight(0xffffff, 0x7b838c, 0.62), shining, shining.target, view.ground);
     }
 
-    /* What is not clear casts shadows; all but the ground's take them. */
+    /* Parts that are not transparent cast shadows; all parts receive them. */
     function mark(scene) {
         scene.traverse((child) => {
             if (child.userData.part) {
@@ -64,7 +64,7 @@
         });
     }
 
-    /* On or off: without them the sun shines through everything. */
+    /* Switches shadows on or off; without them the sun shines through everything. */
     function set(view, on) {
         view.sun.castShadow = on;
         view.ground.visible = on;

@@ -1,5 +1,5 @@
-/* A link to what is shown: time, window of the plots, view, what is hidden and the plane that cuts stand behind the page's
- * address, and are there again when such an address is opened. What does not belong there is passed over. */
+/* A link to what is shown. Time, window of the plots, view, hidden parts and the cutting plane stand at the end of the page's
+ * address; opening such an address restores them. Anything else there is ignored. */
 (function (W) {
     'use strict';
 
@@ -8,19 +8,19 @@
 
     const digits = (values, count) => values.map((value) => Number(value.toFixed(count))).join(',');
 
-    /* So many numbers with commas between them, or null. */
+    /* Returns `count` numbers with commas between them, or null. */
     function numbers(text, count) {
         const found = text ? text.split(',').map((each) => (each.trim() === '' ? NaN : Number(each))) : [];
         return found.length === count && found.every(isFinite) ? found : null;
     }
 
-    /* The camera where a hand has moved it, in metres: where it is, then where it looks. */
+    /* The camera where a hand has moved it, in metres: its place, then the point that it looks at. */
     function eye() {
         const rig = W.stage.view && W.stage.view.rig;
         return rig && rig.moved ? rig.camera.position.toArray().concat(rig.controls.target.toArray()) : null;
     }
 
-    /* What stands behind the address. */
+    /* The text at the end of the address. */
     link.text = function () {
         const parts = [['t', digits([W.clock.now], 6)]];
         const [from, to] = W.clock.window;
@@ -78,14 +78,14 @@
         }
     }
 
-    /* Into the address, and to the clipboard where the browser lets it. */
+    /* Writes it into the address, and into the clipboard where the browser allows it. */
     link.take = function () {
         location.hash = link.text();
         const copied = navigator.clipboard ? navigator.clipboard.writeText(location.href) : Promise.reject();
         copied.then(() => W.say('link copied'), () => W.say('the link stands in the address'));
     };
 
-    /* The picture of the cell as it is seen, as a file. */
+    /* Saves the picture of the cell as it is seen in a file. */
     link.picture = function () {
         const name = `${W.shown.title.replace(/^.*\//, '').replace(/[^\w.-]+/g, '_')}_${W.clock.now.toFixed(3)}s.png`;
         W.element('a', { href: W.stage.view.still(), download: name }).click();

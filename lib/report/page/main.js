@@ -1,4 +1,4 @@
-/* Puts the page together: what is seen first comes first, the rest when there is time. */
+/* Puts the page together: the parts that are seen first come first, the rest follows when there is time. */
 (function (W) {
     'use strict';
 
@@ -32,7 +32,7 @@
         W.reproduce.start(doc, host('tables'));
     }
 
-    /* After the first picture. */
+    /* Builds the rest, after the first picture. */
     function rest(doc) {
         part(host('plots'), () => plots(doc));
         part(host('tables'), () => tables(doc));

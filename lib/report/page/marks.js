@@ -1,11 +1,11 @@
-/* Hits, near misses and the like, where they happened: small always, large and named while the time is near. */
+/* Marks hits, near misses and the like where they happen. A mark is always small, and it is large and named near its time. */
 (function (W) {
     'use strict';
 
     const NEAR_S = 0.4;
     const colourName = (mark) => W.events.colour(mark.kind);
 
-    /* Those with a place, in order of time. */
+    /* The marks that have a place, in order of time. */
     const placed = (doc) => doc.marks.filter((mark) => Array.isArray(mark.at)).sort((a, b) => a.t - b.t);
 
     const isNear = (mark, t) => Math.abs(mark.t - t) <= NEAR_S;

@@ -1,4 +1,4 @@
-/* The measuring tool: two frames, picked from lists or in the picture, and how the second lies as seen from the first. */
+/* The measuring tool: two frames, picked from lists or in the picture, and the pose of the second as seen from the first. */
 (function (W) {
     'use strict';
 
@@ -42,7 +42,7 @@
         ['angle', 'angle', '\u00b0', 4], ['turn', 'whole turn', '\u00b0', 4]];
     const HINTS = { angle: 'between the two z axes', turn: 'of the second frame against the first, about whichever axis' };
 
-    /* What is measured at a time: null unless both frames are there. */
+    /* The measurement at a time; null unless both frames exist then. */
     measure.at = function (t) {
         const [first, second] = measure.selects.map((each) => measure.frames.get(each.value));
         const poses = [first, second].map((frame) => frame && frame.at(t));
@@ -60,7 +60,7 @@
         }
     }
 
-    /* Picking in the picture on or off; the line is drawn while it is on. */
+    /* Turns picking in the picture on or off; the line is drawn while it is on. */
     measure.arm = function (on) {
         measure.armed = on;
         measure.next = 0;
@@ -77,7 +77,7 @@
         }
     };
 
-    /* A station stands for the slot of it that is nearest to what was hit. */
+    /* A station stands for its slot nearest to the point that was hit. */
     function frameOf(hit) {
         const { names } = measure.doc;
         if (hit.kind === 'wafer' || hit.kind === 'gripper') {
@@ -90,7 +90,7 @@
         return nearest && `${stationName(measure.doc, nearest)}/${nearest.slot}`;
     }
 
-    /* The nearest that is not chosen already: of a wafer on a gripper either can be picked. */
+    /* Takes the nearest frame that is not chosen already: of a wafer on a gripper either can be picked. */
     function clicked(event) {
         if (!measure.armed || measure.dragged) {
             return;

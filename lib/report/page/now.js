@@ -1,5 +1,5 @@
-/* The state at the shown time: each gripper's valve, vacuum and sensor, what it holds, and how it stands to its nearest
- * wafer against the limits. */
+/* The state at the shown time: each gripper's valve, vacuum and sensor, the wafer that it holds, and its pose against its
+ * nearest wafer, with the limits. */
 (function (W) {
     'use strict';
 
@@ -16,7 +16,7 @@
         return typeof found === 'number' ? judged(key, found, doc.limits[name], decimals) : { text: W.DASH };
     };
 
-    /* With a tick or a cross where there is a limit. */
+    /* Shows a tick or a cross if there is a limit. */
     function judged(key, found, limit, decimals) {
         const planar = key === 'n1_proj_n2';
         const size = planar ? found : Math.abs(found);
@@ -26,7 +26,7 @@
             kind: known && within ? 'within' : '' };
     }
 
-    /* A front face that points down is worth a word. */
+    /* Says so if a front face points down. */
     function faced(doc, name, t) {
         const pose = W.tracks.wafer(doc.tracks, doc.names.wafers.indexOf(name), t);
         return pose && pose.q[0] ** 2 + pose.q[1] ** 2 > 0.5 ? `${name}, face down` : name;
@@ -61,7 +61,7 @@
     const some = (tracks) => tracks.some((track) => track && track.t && track.t.length > 0);
     const near = (tracks) => tracks.some((track) => track && some(Object.values(track)));
 
-    /* The table's rows: names and what they show; those that the document has nothing for are left out. */
+    /* The table's rows: names and values; rows without data in the document are left out. */
     function rows(doc) {
         const { tracks } = doc;
         return [['holds', 'holds', holds, true],
@@ -85,7 +85,7 @@
     const head = (name, i) => W.element('th', { scope: 'col' },
         W.element('i', { class: 'dot', style: `background: var(--s${i % 6})` }), name);
 
-    /* Two grippers a table, for there is little room. */
+    /* A table shows two grippers, because there is little room. */
     function table(doc, from) {
         const grippers = doc.names.grippers.slice(from, from + 2).map((name, i) => [name, from + i]);
         return W.element('div', { class: 'card' }, W.element('table', { class: 'states' },

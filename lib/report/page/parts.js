@@ -1,12 +1,12 @@
-/* Parts of the cell by groups, hidden and shown by a list: the robot, stations, wafers, obstacles, and each of them. What is
- * hidden is a set of keys: "stations" for all of a group, "stations.2" for the second. */
+/* A list hides and shows parts of the cell by groups: the robot, stations, wafers, obstacles, and each of them. The hidden
+ * parts are a set of keys: "stations" for all of a group, "stations.2" for the second. */
 (function (W) {
     'use strict';
 
     const GROUPS = [['robot', 'Robot'], ['stations', 'Stations'], ['wafers', 'Wafers'], ['obstacles', 'Obstacles']];
     const parts = { groups: [], hidden: new Set(), of: {}, boxes: {} };
 
-    /* Which group a node is of; a chuck's gripper is a station's. */
+    /* The group of a node; a chuck's gripper belongs to its station. */
     function groupOf(doc, { kind, index }) {
         const chuck = kind === 'gripper' && (doc.tracks.machine.grippers[index] || { axis: null }).axis !== null;
         const groups = { base: 'robot', link: 'robot', gripper: chuck ? 'stations' : 'robot', station: 'stations',
@@ -21,7 +21,7 @@
         });
     }
 
-    /* The robot's column and links are one. */
+    /* The robot's column and links are one member. */
     const memberName = (node) => (node.kind === 'base' || node.kind === 'link' ? 'arm' : node.name.replace(/^station /, ''));
 
     function collect(doc, roots) {
@@ -42,12 +42,12 @@
         return groups.filter((group) => group.members.length > 0);
     }
 
-    /* Of a node, by its kind and index. */
+    /* True if a node, given by its kind and index, is hidden. */
     parts.isHidden = (kind, index) => (parts.of[W.gltf.key(kind, index)] || []).some((key) => parts.hidden.has(key));
 
     const known = (key) => parts.groups.some((group) => group.key === key || group.members.some((member) => member.key === key));
 
-    /* Hides just these; what is not known is passed over. */
+    /* Hides just these; unknown keys are ignored. */
     parts.set = function (keys) {
         parts.hidden = new Set(keys.filter(known));
         Object.entries(parts.boxes).forEach(([key, each]) => { each.checked = !parts.hidden.has(key); });
@@ -73,7 +73,7 @@
             ...group.members.map((member) => box(member.key, member.text)));
     }
 
-    /* The list; `changed` is called when something is hidden or shown. */
+    /* Makes the list; `changed` is called when something is hidden or shown. */
     parts.make = function (doc, roots, changed) {
         parts.groups = collect(doc, roots);
         parts.changed = changed;

@@ -1,11 +1,11 @@
-/* Curves over time by dygraphs, on one time axis: zooming one zooms all, a click takes the time there. Panels are made
- * one after the other when the page has time, and brought up to date when they are seen. */
+/* Curves over time by dygraphs, on one time axis: zooming one zooms all, and a click takes the time there. Panels are made one
+ * after the other when the page has time, and they are updated when they are seen. */
 (function (W) {
     'use strict';
 
     const plots = { panels: [], seen: null, doc: null };
 
-    /* The width left of the plots for numbers and names. */
+    /* The width left of the plots, for numbers and names. */
     plots.gutter = () => (document.body.clientWidth < 560 ? 70 : 92);
 
     const area = (panel) => panel.graph.getArea();
@@ -14,7 +14,7 @@
     const timeTick = (t, granularity, how, graph) => W.tick(t, extent(graph.xAxisRange())) + '\u00a0s';
     const valueTick = (value, granularity, how, graph) => W.tick(value, extent(graph.yAxisRange()));
 
-    /* From the lowest to the highest value in each column. */
+    /* Fills from the lowest to the highest value in each column. */
     function drawBand(pen, graph, band, colour) {
         pen.fillStyle = colour;
         pen.globalAlpha = 0.28;
@@ -44,7 +44,7 @@
         };
     }
 
-    /* The allowed side of each limit is tinted, the limit drawn. */
+    /* Tints the allowed side of each limit, and draws the limit. */
     function drawLimits(panel, pen, { x, y, w, h }, graph) {
         panel.limits.forEach((limit) => {
             const at = W.clamp(graph.toDomYCoord(limit.value), y, y + h);
@@ -61,15 +61,15 @@
         });
     }
 
-    /* Nothing smaller than this share of a value is shown as a difference: ticks keep ten digits at most. */
+    /* Differences smaller than this share of a value are not shown: ticks keep ten digits at most. */
     const LEAST_SHARE = 1e-8;
 
-    /* The middle of values that differ by less than can be told has air around it. */
+    /* Gives air around the middle of values that differ too little to be told apart. */
     function airOf(low, high) {
         return Math.max((high - low || 1) * 0.06, LEAST_SHARE * Math.max(Math.abs(low), Math.abs(high)));
     }
 
-    /* Values with the limit in sight, and some air. */
+    /* The range of values, with the limit in sight and some air. */
     function valueRange(panel) {
         let [low, high] = panel.zero ? [0, 0] : [Infinity, -Infinity];
         const take = (v) => {
@@ -125,7 +125,7 @@
         }, looks(panel));
     }
 
-    /* The reader zoomed or moved this one: all the others follow. */
+    /* The reader zoomed or moved this plot, and all the others follow. */
     function zoomed(panel) {
         const [from, to] = panel.graph.xAxisRange();
         const [low, high] = W.clock.window;
@@ -190,7 +190,7 @@
         follow(panel);
     }
 
-    /* The cursor's line, shared with the bars: where the time is within the window, and nowhere beyond. */
+    /* Places the cursor's line, which the bars share: at the time if it is within the window, and nowhere otherwise. */
     plots.place = function (cursor, left, width) {
         const [from, to] = W.clock.window;
         const inside = W.clock.now >= from && W.clock.now <= to;
@@ -225,14 +225,14 @@
         });
     }
 
-    /* A group's section: its panels' frames, or why there are none. */
+    /* A group's section: its panels' frames, or the reason why there are none. */
     plots.section = function (group) {
         const body = group.panels.length > 0 ? group.panels.map(frame) : [W.why(group.why)];
         plots.panels.push(...group.panels);
         return W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
     };
 
-    /* All panels are made in the page's spare time, one at a time; `all` makes them at once. */
+    /* Makes all panels in the page's spare time, one at a time; `all` makes them at once. */
     plots.fill = function (all) {
         const due = plots.panels.filter((panel) => !panel.graph);
         due.slice(0, all ? due.length : 1).forEach(draw);
@@ -241,7 +241,7 @@
         }
     };
 
-    /* For paper: everything is seen. */
+    /* Shows every panel, for paper. */
     plots.showAll = function () {
         plots.fill(true);
         plots.panels.forEach((panel) => {

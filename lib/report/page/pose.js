@@ -31,7 +31,7 @@
         return q.map((x) => x / size);
     }
 
-    /* base_from_b of base_from_a and a_from_b. */
+    /* Computes base_from_b from base_from_a and a_from_b. */
     function compose(a, b) {
         return { r: add(a.r, rotate(a.q, b.r)), q: multiply(a.q, b.q) };
     }
@@ -41,7 +41,7 @@
         return { r: rotate(q, a.r.map((x) => -x)), q };
     }
 
-    /* The shorter way round; the angle by a tangent, for a cosine says little of small ones. */
+    /* Turns the shorter way round; the angle comes from a tangent, because the cosine of a small angle says little. */
     function slerp(a, b, share) {
         const sign = dot(a, b) + a[3] * b[3] < 0 ? -1 : 1;
         let apart = 0;
@@ -63,7 +63,7 @@
 
     const axis = (q, i) => rotate(q, [0, 1, 2].map((k) => (k === i ? 1 : 0)));
 
-    /* The second frame as seen from the first: mm and degrees. `angle` is between the two z axes, `turn` the whole
+    /* The second frame as seen from the first, in mm and degrees. `angle` is between the two z axes, `turn` the whole
      * rotation. */
     function measure(first, second) {
         const apart = subtract(second.r, first.r);

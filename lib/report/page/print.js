@@ -1,4 +1,4 @@
-/* On paper: light colours, every plot drawn, and a still of the cell in the place of the moving one. */
+/* The page on paper: light colours, every plot drawn, and a still picture of the cell in place of the moving one. */
 (function (W) {
     'use strict';
 

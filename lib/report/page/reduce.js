@@ -1,14 +1,14 @@
-/* Curves made as short as the screen is wide: of the points within a pixel the lowest and the highest stay, and cubics get
- * a point every few pixels. Done when the shown window changes, never while time passes. */
+/* Reduces curves to the screen's width: of the points within a pixel the lowest and the highest stay, and cubics get a point
+ * every few pixels. This happens when the shown window changes, never while time passes. */
 (function (W) {
     'use strict';
 
-    const PIXELS = 3; /* from point to point of a cubic */
-    const PARTS = 64; /* of one cubic, at most */
-    const LEAST = 50; /* points of a comb */
+    const PIXELS = 3; /* pixels from point to point of a cubic */
+    const PARTS = 64; /* parts of one cubic, at most */
+    const LEAST = 50; /* points of a comb, at least */
 
-    /* The points of one curve within a window, and one beyond it on either side: [times, values], of a comb its means, and its
-     * band as well. */
+    /* The points of one curve within a window, and one beyond it on either side: [times, values]. A comb gives its means, and
+     * its band as well. */
     function curve(from, window, columns) {
         const first = Math.max(W.tracks.index(from.t, window[0]), 0);
         const last = Math.min(W.tracks.index(from.t, window[1]) + 1, from.t.length - 1);
@@ -21,7 +21,8 @@
             : all(from, first, last, (window[1] - window[0]) * PIXELS / columns);
     }
 
-    /* How many parts a cubic is drawn in: two at least, for slopes are often greatest half-way; one where it rests. */
+    /* The number of parts a cubic is drawn in. There are at least two, because slopes are often greatest half-way; there is one
+     * where it rests. */
     function parts(from, i, last, apart) {
         if (!from.smooth || i === last || from.read(i, 0) === null || from.read(i + 1, 0) === null) {
             return 1;
@@ -30,7 +31,7 @@
         return rests ? 1 : W.clamp(Math.ceil((from.t[i + 1] - from.t[i]) / apart), 2, PARTS);
     }
 
-    /* All points, those of cubics at most so far apart. */
+    /* All points; those of cubics are at most `apart` from each other. */
     function all(from, first, last, apart) {
         const t = [];
         const v = [];
@@ -65,10 +66,10 @@
         return [t, v];
     }
 
-    /* All values that a curve takes, nearly: what it ranges over. */
+    /* Nearly all values that a curve takes; they give its range. */
     const range = (from) => all(from, 0, from.t.length - 1, Infinity)[1];
 
-    /* Rows for dygraphs: the times of all curves, null where a curve has no point, NaN where it has a gap. `bands` is given the
+    /* Rows for dygraphs: the times of all curves, null where a curve has no point, NaN where it has a gap. `bands` receives the
      * band of each curve that is a comb. */
     function rows(curves, window, columns, bands) {
         const shown = curves.map((each) => curve(each, window, columns));

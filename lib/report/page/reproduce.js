@@ -1,8 +1,8 @@
-/* What it takes to have the same run again: the command, the parameters, the version, the hash of the last state. */
+/* Shows how to repeat the run: the command, the parameters, the version, the hash of the last state. */
 (function (W) {
     'use strict';
 
-    /* By the clipboard, or, where a page may not use it, by a selection. */
+    /* Copies by the clipboard, or by a selection if a page may not use the clipboard. */
     function copy(text) {
         const area = W.element('textarea', { class: 'aside', 'aria-hidden': 'true' });
         const select = () => {
@@ -21,7 +21,7 @@
         return commandOf(doc.reproduce, 'copy');
     }
 
-    /* A command to read and to copy. */
+    /* Shows a command to read and to copy. */
     function commandOf(text, id) {
         const button = W.element('button', { type: 'button', id, click() {
             copy(text).then((copied) => {

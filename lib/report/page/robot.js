@@ -1,4 +1,5 @@
-/* Where grippers and the arm's links are: their own poses where the document has them, else what follows from the axes. */
+/* The poses of grippers and of the arm's links: the document's own poses if it has them, otherwise poses computed from the
+ * axes. */
 (function (W) {
     'use strict';
 
@@ -23,13 +24,13 @@
         return angle === null ? null : { r: fixed.r, q: W.pose.multiply(fixed.q, about(angle)) };
     }
 
-    /* base_from_gripper, or null where nothing tells. */
+    /* base_from_gripper, or null if nothing gives it. */
     function gripper(tracks, i, at) {
         const fixed = mount(tracks, i);
         return W.tracks.pose(tracks.grippers[i], at) || (fixed && ofAxes(tracks, fixed, at));
     }
 
-    /* base_from_effector, by the first gripper on the arm. */
+    /* base_from_effector, from the first gripper on the arm. */
     function effector(tracks, arm, at) {
         const i = tracks.machine.grippers.findIndex((fixed) => fixed.axis === null && (fixed.arm || 0) === arm.number
             && (fixed.robot || 0) === arm.robot);
@@ -37,7 +38,7 @@
         return found && W.pose.compose(found, W.pose.inverse(mount(tracks, i)));
     }
 
-    /* A level body, its x along (x, y); along that of `other` where it has no length. */
+    /* A level body with its x along (x, y), or along that of `other` if (x, y) has no length. */
     function level(r, x, y, other) {
         return { r, q: Math.hypot(x, y) > 1e-9 ? about(Math.atan2(y, x)) : other.q };
     }
@@ -45,13 +46,13 @@
     const tilted = (angle, i) => [0, 1, 2].map((k) => (k === i ? Math.sin(angle / 2) : 0)).concat(Math.cos(angle / 2));
     const STILL = { r: [0, 0, 0], q: [0, 0, 0, 1] };
 
-    /* A value of the arm's robot; null: it has no such axis. */
+    /* A value of the arm's robot; null if it has no such axis. */
     function value(tracks, { chain, first }, name, at) {
         const i = chain ? chain.axes.indexOf(name) : -1;
         return i < 0 ? null : axis(tracks, first + i, at);
     }
 
-    /* The column's foot and lift, and the plane in which the arm is (motion/chain.h). Base's plane is the usual robot's. */
+    /* The column's foot and lift, and the plane of the arm (motion/chain.h). A usual robot's plane is base's. */
     function column(tracks, arm, at) {
         const of = (name) => value(tracks, arm, name, at) || 0;
         if (!arm.chain) {
@@ -63,7 +64,7 @@
         return { foot, lift, plane: W.pose.compose(lift, { r: [0, 0, 0], q: tilt }) };
     }
 
-    /* From the blade as it is turned over to the blade face up, which the hand is in line with. */
+    /* From the blade as it is turned over to the blade with its face up; the hand is in line with the latter. */
     function unflipped(tracks, arm, at) {
         const angle = value(tracks, arm, 'flip', at);
         if (angle === null) {
@@ -81,7 +82,7 @@
         return { upper, forearm, right: elbow === null ? lengths.right_handed : elbow > 0 };
     }
 
-    /* As collision/arm.h says: the column, its lift, the upper arm, the forearm, the hand. */
+    /* The bodies of collision/arm.h: the column, its lift, the upper arm, the forearm, the hand. */
     function bodies(tracks, arm, at) {
         const there = effector(tracks, arm, at);
         if (!there) {
@@ -102,7 +103,7 @@
         return [foot, lift || { r: shoulder, q: about(0) }, ...links.map((body) => W.pose.compose(plane, body))];
     }
 
-    /* base_from_door, or null where nothing tells. */
+    /* base_from_door, or null if nothing gives it. */
     function door(tracks, i, at) {
         const { way, axis: moving } = tracks.machine.doors[i];
         const open = axis(tracks, moving, at);
@@ -111,7 +112,7 @@
 
     const BODIES = 5;
 
-    /* Link i is this body; of one arm the column comes last. */
+    /* The body of link i; with one arm the column comes last. */
     function link(tracks, i, at) {
         const { arms, bodies: numbers } = tracks.machine;
         const number = numbers.length > 0 ? numbers[i] : (i + 1) % BODIES;

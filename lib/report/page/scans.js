@@ -1,5 +1,5 @@
-/* What edge sensors saw: rho over theta with the fitted circle, the residuals on a scale of their own, and the estimate in
- * words; one scan at a time. */
+/* Shows edge scans, one at a time: rho over theta with the fitted circle, the residuals on a scale of their own, and the
+ * estimate in words. */
 (function (W) {
     'use strict';
 
@@ -14,7 +14,7 @@
         return along + Math.sqrt(circle.radius * circle.radius - aside * aside);
     }
 
-    /* The samples in the order of their directions. Where the rim is not seen there is a gap, for nulls break a line. */
+    /* The samples in the order of their directions. A null where the rim is not seen breaks the line and leaves a gap. */
     function samples(scan) {
         return scan.theta
             .map((theta, i) => ({ theta, rho: scan.rho[i], residual: scan.residual[i], counts: scan.counts[i] === 1 }))
@@ -29,7 +29,7 @@
     const residualRows = (scan) => samples(scan).map(({ theta, residual, counts }) => [theta * RAD, counts ? um(residual) : null,
         counts ? null : um(residual)]);
 
-    /* The residuals that count fill the scale; a notch's would flatten them. */
+    /* The residuals that count fill the scale; those at a notch would flatten them. */
     function residualRange(rows) {
         const most = rows.reduce((high, row) => Math.max(high, Math.abs(row[1] || 0)), 0);
         return most > 0 ? [-1.25 * most, 1.25 * most] : [-1, 1];
@@ -184,7 +184,7 @@
         W.theme.on(() => scans.graphs.forEach((graph, i) => graph.updateOptions(looks(KINDS[i]))));
     };
 
-    /* For paper: as wide as the page. */
+    /* Makes the plots as wide as the page, for paper. */
     scans.resize = () => scans.graphs.forEach((graph) => graph.resize());
 
     W.scans = scans;

@@ -1,11 +1,12 @@
-/* The cell in three dimensions, by three.js: the document's scene, moved to the shown time. Metres here, z up. */
+/* The cell in three dimensions, by three.js: the document's scene, moved to the shown time. Lengths here are metres, and z is
+ * up. */
 (function (W) {
     'use strict';
 
     const THREE = window.THREE;
     const M = 0.001;
 
-    /* glTF has y up; this undoes it, so that everything below is in the cell's base. */
+    /* glTF has y up; this undoes it, so that everything below it is in the cell's base. */
     function world(doc, roots, named) {
         const group = new THREE.Group();
         group.rotation.x = Math.PI / 2;
@@ -14,7 +15,7 @@
         return group;
     }
 
-    /* What moves hangs from the base itself, whatever it hung from in the file. */
+    /* Parts that move hang from the base itself, whatever they hang from in the file. */
     function movers(doc, scene, named) {
         const found = [];
         const take = (kind, i, name) => {
@@ -50,7 +51,7 @@
         object.quaternion.fromArray(q);
     }
 
-    /* Every mesh and every edge of an object in one colour. */
+    /* Gives every mesh and every edge of an object one colour. */
     function dye(object, colour) {
         object.traverse((child) => {
             if (child.userData.part) {
@@ -64,13 +65,13 @@
         return state && typeof state.holder === 'number' ? state.holder : -1;
     }
 
-    /* A held one is paler than who holds it, so that the blade shows on it. */
+    /* A held wafer is paler than its holder, so that the blade shows on it. */
     function waferColour(holder) {
         const colour = new THREE.Color(holder < 0 ? W.theme.colour('wafer') : W.theme.series(holder));
         return holder < 0 ? colour : colour.lerp(new THREE.Color(W.theme.colour('stage')), 0.42);
     }
 
-    /* The floor, in squares of 200 mm. */
+    /* Draws the floor, in squares of 200 mm. */
     function addFloor(view) {
         const far = Math.max(...view.corners.map((corner) => Math.max(Math.abs(corner.x), Math.abs(corner.y))));
         const count = 4 * Math.ceil(far / 0.2);
@@ -83,7 +84,7 @@
         view.scene.add(made);
     }
 
-    /* A triad for each gripper, wafer and station, and for base. */
+    /* Draws a triad for each gripper, wafer and station, and for base. */
     function addTriads(doc, scene, moving) {
         const triads = [];
         const add = (parent, size) => {
@@ -99,7 +100,7 @@
         return triads;
     }
 
-    /* Null where there is no WebGL: asked for here, for three.js complains aloud. The picture is kept for paper. */
+    /* Returns null without WebGL; it asks here, because three.js would print an error. The picture is kept for paper. */
     function renderer() {
         const canvas = W.element('canvas');
         const wanted = { antialias: true, alpha: false, preserveDrawingBuffer: true };
@@ -112,7 +113,7 @@
         return made;
     }
 
-    /* Null where there is no WebGL or no scene. */
+    /* Returns null without WebGL or without a scene. */
     function make(host, doc, roots) {
         const gl = roots && renderer();
         if (!gl) {
@@ -182,7 +183,7 @@
         W.light.stale(view);
     }
 
-    /* What stands still is hidden here, what moves with its pose. */
+    /* Hides parts that stand still; parts that move are hidden with their pose. */
     function hide(view) {
         Object.values(view.named).forEach((object) => {
             object.visible = !W.parts.isHidden(object.userData.node.kind, object.userData.node.index);
@@ -190,7 +191,7 @@
         pose(view, view.at);
     }
 
-    /* Shows only what lies on one side of a plane; null: all. */
+    /* Shows only what lies on one side of a plane; null shows all. */
     function cut(view, plane) {
         const normal = new THREE.Vector3().setComponent(plane ? plane.axis : 0, plane ? plane.keep : 1);
         const planes = plane ? [new THREE.Plane(normal, -plane.keep * plane.at * M)] : [];
@@ -209,7 +210,7 @@
         return { low: min.toArray().map((x) => x / M), high: max.toArray().map((x) => x / M) };
     }
 
-    /* Only where it is seen: each point is a pose. */
+    /* Computes trails only if they are seen, because each point is a pose. */
     function layTrails(view) {
         view.trails.forEach(({ i, path }) => {
             path.visible = !!view.options.trail && !W.parts.isHidden('gripper', i);
@@ -219,7 +220,7 @@
         });
     }
 
-    /* Colours after a change of theme or of what is shown. */
+    /* Sets the colours after a change of the theme or of the shown parts. */
     function paint(view) {
         const colour = W.theme.colour;
         view.scene.background = new THREE.Color(colour('stage'));
@@ -252,7 +253,7 @@
         view.rig.resize(width, height);
     }
 
-    /* Once a frame, and only when something changed. */
+    /* Draws at most once a frame, and only when something has changed. */
     function draw(view) {
         if (!view.due) {
             view.due = true;
@@ -271,12 +272,12 @@
 
     const isSeen = (object) => object === null || (object.visible && isSeen(object.parent));
 
-    /* What a mesh belongs to: the nearest node above it that is of a kind. */
+    /* The part that a mesh belongs to: the nearest node above it that has a kind. */
     function owner(object) {
         return !object || object.userData.node ? object : owner(object.parent);
     }
 
-    /* What lies under the pointer, the nearest first: [{ kind, i, at }], at in mm of base. */
+    /* The things under the pointer, the nearest first: [{ kind, i, at }], at in mm of base. */
     function pick(view, event) {
         const area = view.canvas.getBoundingClientRect();
         const spot = new THREE.Vector2((event.clientX - area.left) / area.width * 2 - 1,

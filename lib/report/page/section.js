@@ -1,14 +1,14 @@
-/* A plane that cuts the cell: which way it looks, where it is, and which side is kept. */
+/* A plane that cuts the cell: its direction, its place, and the side that is kept. */
 (function (W) {
     'use strict';
 
     const AXES = ['x', 'y', 'z'];
     const section = { on: false, axis: 0, at: null, keep: -1, box: null };
 
-    /* In the middle of the cell to begin with. */
+    /* The plane begins in the middle of the cell. */
     const middle = () => Math.round((section.box.low[section.axis] + section.box.high[section.axis]) / 2);
 
-    /* { axis, at (mm of base), keep: -1 what is below, 1 what is above }, or null. */
+    /* Returns { axis, at (mm of base), keep: -1 for below, 1 for above }, or null. */
     section.plane = () => (section.on ? { axis: section.axis, at: section.at, keep: section.keep } : null);
 
     /* True if a point of base, mm, is cut away. */
@@ -38,7 +38,7 @@
         show();
     }
 
-    /* As it stands in a link: x,350,-1. */
+    /* The text in a link, such as x,350,-1. */
     section.text = () => (section.on ? [AXES[section.axis], section.at, section.keep].join(',') : '');
 
     section.restore = function (text) {
@@ -58,7 +58,7 @@
         return [made, W.element('label', {}, made, AXES[i])];
     }
 
-    /* Its controls, for a cell between `low` and `high`, mm of base; `changed` is called when the plane is moved. */
+    /* The controls, for a cell between `low` and `high`, mm of base; `changed` is called when the plane moves. */
     section.make = function (box, changed) {
         const radios = AXES.map((_, i) => radio(i));
         Object.assign(section, { box, changed, choice: radios.map(([made]) => made), output: W.element('output', {}) });

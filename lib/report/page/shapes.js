@@ -1,4 +1,4 @@
-/* The scene's nodes as objects of three.js, and the small objects that are ours: triads and marks. */
+/* The scene's nodes as objects of three.js, and the small objects that we add: triads and marks. */
 (function (W) {
     'use strict';
 
@@ -18,7 +18,7 @@
         return part;
     }
 
-    /* Where a plane cuts a closed body one looks at its back: in one colour, hatched, that is the cut. */
+    /* A plane that cuts a closed body shows its back sides; they are drawn in one colour, hatched, as the cut. */
     const CUT = { colour: { value: new THREE.Color(0x888888) }, shown: { value: 0 } };
     const HATCH = `
         if (cutShown > 0.5 && !gl_FrontFacing) {
@@ -43,7 +43,7 @@
         return made;
     }
 
-    /* A part with its edges, as drawings have them. */
+    /* Draws a part with its edges, as technical drawings do. */
     function solid(part) {
         const { geometry: flat, edges } = geometry(part);
         const group = new THREE.Group();
@@ -65,7 +65,7 @@
         object.scale.fromArray(node.s);
     }
 
-    /* The whole tree; `named` collects objects by what their nodes are. */
+    /* Makes the whole tree; `named` collects objects by their nodes' keys. */
     function tree(node, named) {
         const group = new THREE.Group();
         place(group, node);
@@ -78,7 +78,7 @@
         return group;
     }
 
-    /* Three bars along a frame's axes, `size` in metres. */
+    /* Draws three bars along a frame's axes, `size` in metres. */
     function triad(size) {
         const group = new THREE.Group();
         AXES.forEach((axis, i) => {
@@ -92,14 +92,14 @@
         return group;
     }
 
-    /* Something to see at a place where something happened, through whatever is before it. */
+    /* A mark where something happened; it shows through everything in front of it. */
     function mark(size) {
         const shape = new THREE.OctahedronBufferGeometry(size);
         const look = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
         return new THREE.Mesh(shape, look);
     }
 
-    /* A line between two points that are set later. */
+    /* A line between two points, which are set later. */
     function line() {
         const made = new THREE.BufferGeometry();
         made.setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3));
@@ -110,7 +110,7 @@
         return object;
     }
 
-    /* A path of up to `most` points, with dots, through whatever is before it. */
+    /* A path of up to `most` points, with dots; it shows through everything in front of it. */
     function path(most) {
         const buffer = () => {
             const made = new THREE.BufferGeometry();
@@ -139,7 +139,7 @@
         object.geometry.setDrawRange(0, points.length);
     }
 
-    /* Shows points { r (mm), age (0 to 1), dot }: the older, the nearer to the ground's colour. */
+    /* Shows points { r (mm), age (0 to 1), dot }: an older point is nearer to the ground's colour. */
     function lay(made, points, colour, ground) {
         const [from, to] = [new THREE.Color(colour), new THREE.Color(ground)];
         const colourOf = (point) => from.clone().lerp(to, 0.85 * point.age);

@@ -1,4 +1,4 @@
-/* The picture of the cell with its buttons and its legend: three.js where it can be, drawings where not. */
+/* The picture of the cell with its buttons and its legend: by three.js if possible, by drawings otherwise. */
 (function (W) {
     'use strict';
 
@@ -17,7 +17,7 @@
         return made;
     }
 
-    /* A view by its name; the gripper's again rides along with the next one. */
+    /* Shows a view by its name; choosing the gripper's view again rides along with the next gripper. */
     stage.show = function (name) {
         const doc = stage.doc;
         const count = doc.names.grippers.length;
@@ -41,7 +41,7 @@
 
     stage.toggle = (name) => stage.choose(name, !stage.options[name]);
 
-    /* The list of parts, opened and closed; the focus goes along. */
+    /* Opens and closes the list of parts; the focus follows. */
     stage.list = function () {
         stage.parts.hidden = !stage.parts.hidden;
         stage.buttons.parts.setAttribute('aria-pressed', !stage.parts.hidden);
@@ -56,7 +56,7 @@
         }
     };
 
-    /* What is hidden, and where the cell is cut, as the view is told. */
+    /* Tells the view which parts are hidden, and where the cell is cut. */
     function changed() {
         stage.view.hide();
         if (stage.buttons.section) {
@@ -78,7 +78,7 @@
     const item = (colour, text, shape) => W.element('span', { class: 'item' },
         W.element('i', { class: 'dot ' + (shape || ''), style: `background: var(--${colour})` }), text);
 
-    /* What the colours mean. */
+    /* The legend of the colours. */
     function legend() {
         const doc = stage.doc;
         const holders = doc.names.grippers.map((name, i) => item(`s${i % 6}`, `${name}, and what it holds`));

@@ -1,5 +1,5 @@
-/* The page of a study: how often all goes well, where the wafers end up, which error costs most, and the worst trials, each
- * with the command that plays it again. */
+/* The page of a study: how often all goes well, the places where the wafers end up, and the error that costs most. It also
+ * lists the worst trials, each with the command that plays it again. */
 (function (W) {
     'use strict';
 
@@ -79,8 +79,8 @@
             why ? W.element('p', { class: 'failure' }, why) : '',
             W.reproduce.commandOf(`${doc.command} --trial ${trial}`, 'replay'),
             terms(ends(doc, trial)),
-            drawn.length > 0 ? W.element('h3', {}, 'What it drew (mm, degrees, slices)') : '',
-            known ? terms(drawn) : W.why('What was drawn is told of the worst trials, and by --csv.'));
+            drawn.length > 0 ? W.element('h3', {}, 'Drawn errors (mm, degrees, slices)') : '',
+            known ? terms(drawn) : W.why('Drawn errors are shown for the worst trials, and --csv writes all of them.'));
         document.querySelectorAll('.chosen, .picked').forEach((each) => each.classList.remove('chosen', 'picked'));
         document.querySelectorAll(`[data-trial="${trial}"]`).forEach((each) => each.classList.add(
             each.tagName === 'TR' ? 'picked' : 'chosen'));
@@ -98,11 +98,11 @@
         const happened = events.map((each) => () => W.tables.row([each.kind, num(String(each.trials)), num(percent(each.rate)),
             range(each), num(String(each.total))], each.complaint ? 'bad' : ''));
         host().append(
-            W.tables.section('expectations', 'What was expected, and how often it came out so',
+            W.tables.section('expectations', 'Expectations, and how often they were met',
                 ['line', 'expected', 'seen', 'met', 'rate of those', '95 % sure'], met, 'The script states no expectations.'),
             W.tables.section('errors', 'Commands that failed', ['line', 'command', 'error', 'trials', 'rate', '95 % sure'],
                 failed, 'No command failed in any trial.'),
-            W.tables.section('events', 'What happened in the cell: a complaint, in red, makes its trial fail',
+            W.tables.section('events', 'Events in the cell: a complaint, in red, makes its trial fail',
                 ['event', 'trials', 'rate', '95 % sure', 'all in all'], happened, 'Nothing happened in any trial.'));
     }
 

@@ -1,10 +1,21 @@
-/* The head of the page: what ran, whether it came out as expected, and its figures at a glance. */
+/* The head of the page: what ran, whether it ended as expected, and its main figures. */
 (function (W) {
     'use strict';
 
     const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
 
+    /* A session has no script that would catch an error: those that hosts and operators were told are counted. */
+    function ofSession(doc) {
+        const count = doc.commands.length, failed = doc.commands.filter((command) => command.error).length;
+        const text = failed === 0 ? '\u2713 no command failed'
+            : failed === count ? '\u2717 no command succeeded' : `${failed} of ${counted(count, 'command', 'commands')} failed`;
+        return W.element('span', { class: `verdict ${failed === 0 ? 'good' : failed === count ? 'bad' : 'warn'}` }, text);
+    }
+
     function verdict(doc) {
+        if (doc.source === 'session' && doc.run.ok && doc.commands.length > 0) {
+            return ofSession(doc);
+        }
         if (typeof doc.run.ok !== 'boolean') {
             return W.element('span', { class: 'verdict' }, doc.run.nothing_moved ? 'nothing moved' : 'no verdict');
         }
@@ -12,7 +23,7 @@
             doc.run.ok ? '\u2713 passed' : '\u2717 failed');
     }
 
-    /* The first three of a list, told, and how many there are besides. */
+    /* The first three of a list in words, and the number of the others. */
     function firsts(list, tell, one, many) {
         const others = list.length > 3 ? [counted(list.length - 3, one, many)] : [];
         return list.slice(0, 3).map(tell).concat(others).join('; ');
@@ -20,14 +31,14 @@
 
     const fault = (text) => W.element('p', { class: 'failure' }, text);
 
-    /* What was expected and did not come about. */
+    /* The expectations that were not met. */
     function unmet(doc) {
         const missing = doc.expectations.filter((each) => !each.ok);
         return missing.length === 0 ? [] : [fault(`The script expected what did not come about: ${firsts(missing,
             (each) => `${each.text} (line ${each.line})`, 'other', 'others')}.`)];
     }
 
-    /* Events that the cell complains about count, expected or not. */
+    /* The cell's complaints; they count whether expected or not. */
     function complaints(doc) {
         const bad = doc.events.filter((event) => W.events.isComplaint(event.kind));
         const all = doc.expectations.length > 0 && doc.expectations.every((each) => each.ok) && !doc.run.failure;
@@ -36,7 +47,7 @@
             W.seconds(event.t)}`, 'other complaint', 'other complaints')}${though}.`)];
     }
 
-    /* By what the cell was off, if it was on purpose. */
+    /* The displacements of the cell, if it was displaced on purpose. */
     function displacements(doc) {
         const given = doc.run.errors || [], of = doc.run.trial;
         if (of) {
@@ -45,7 +56,7 @@
         return given.length === 0 ? [] : [W.why(`The cell was off, as --error asked for: ${given.join(', ')}.`)];
     }
 
-    /* Why a run failed: what ended it, what it did not do, and what went wrong in the cell. */
+    /* The reasons why a run failed: what ended it, what it did not do, and what went wrong in the cell. */
     function reasons(doc) {
         if (doc.run.ok !== false) {
             return doc.run.failure ? [fault(doc.run.failure)] : [];
@@ -80,8 +91,15 @@
             ? 'warn' : '');
     }
 
+    /* A steady cycle counts first; what the run is with its start and its end stands below it. */
     function throughput(doc) {
-        const found = doc.run.throughput;
+        const found = doc.run.throughput, steady = doc.run.steady_cycle;
+        if (steady && steady.found && steady.wafers_per_hour) {
+            const all = found && !found.reason ? `; ${W.number(found.wafers_per_hour, 1)} in all` : '';
+            const wafers = counted(steady.wafers, 'wafer', 'wafers'), time = W.seconds(steady.end_s - steady.begin_s);
+            return tile('wafers per hour', W.number(steady.wafers_per_hour, 1),
+                `${wafers} in ${time}, the first steady cycle${all}`);
+        }
         if (!found || !(found.reason || found.wafers > 0)) {
             return null;
         }
@@ -90,7 +108,7 @@
                 `${counted(found.wafers, 'wafer', 'wafers')} in ${W.seconds(found.seconds)}`);
     }
 
-    /* Of a log: what a replay says of it. */
+    /* The result of a replay, if the run is a log. */
     function recording(doc) {
         const found = doc.run.log;
         return !found || typeof found.verdict !== 'string' ? null : tile('the log, replayed', found.verdict,

@@ -1,10 +1,10 @@
-/* The tables: where wafers lie, expectations, commands, events, how the time was spent, and what reproduces the run. */
+/* The tables: where wafers lie, expectations, commands, events, how the time was spent, and how to reproduce the run. */
 (function (W) {
     'use strict';
 
     const SHOWN = 400;
 
-    /* A button in a table that takes the time somewhere. */
+    /* A button in a table that moves the time. */
     function goTo(t) {
         return W.element('button', { type: 'button', class: 'time', title: 'Show this time', click() {
             W.clock.seek(t);
@@ -21,7 +21,7 @@
     /* Right-aligned text. */
     const num = (text) => ({ numeric: text });
 
-    /* A section with a table; rows beyond the first few hundred wait for a button. */
+    /* A section with a table; rows after the first few hundred wait for a button. */
     function section(id, title, heads, rows, reason) {
         const made = W.element('section', { class: 'group', id }, W.element('h2', {}, title));
         if (rows.length === 0) {
@@ -58,7 +58,7 @@
     function expectations(doc) {
         const rows = doc.expectations.map((each) => () => row([num(String(each.line)), each.text,
             each.ok ? '\u2713 came out so' : '\u2717 did not'], each.ok ? 'good' : 'bad'));
-        return section('expectations', 'What was expected, and what came out', ['line', 'expected', 'came out'], rows,
+        return section('expectations', 'Expectations, and their outcome', ['line', 'expected', 'came out'], rows,
             'The script states no expectations.');
     }
 
@@ -70,7 +70,7 @@
             'The document holds no commands: a log of moves alone has none.');
     }
 
-    /* What else an event tells: how close, against what. */
+    /* Further values of an event: how close, and against what. */
     function particulars(event) {
         const found = [];
         if (typeof event.value === 'number') {
@@ -103,6 +103,19 @@
                 style: `width: ${100 * whole.split[key] / whole.sum}%; background: var(--${colour})` })]);
     }
 
+    /* The figure in bold, and the words behind it: that of the steady cycle first, if there is one. */
+    function figureOf(found, steady) {
+        const counting = (found.counting || []).join(', ');
+        const whole = found.reason ? ['No wafers per hour', `: ${found.reason}.`]
+            : [`${W.number(found.wafers_per_hour, 1)} wafers per hour`,
+                `: ${found.wafers} in ${W.seconds(found.seconds)}; a wafer counts when put into ${counting}.`];
+        if (!steady || !steady.found || !steady.wafers_per_hour) {
+            return whole;
+        }
+        return [`${W.number(steady.wafers_per_hour, 1)} wafers per hour`, `: ${steady.wafers} in ${
+            W.seconds(steady.end_s - steady.begin_s)}, the first steady cycle. In all: ${whole.join('')}`];
+    }
+
     function throughput(doc) {
         const split = doc.run.split;
         const sum = split ? SHARES.reduce((all, [key]) => all + (split[key] || 0), 0) : 0;
@@ -111,10 +124,7 @@
             'The document does not hold what the time went into.');
         const found = doc.run.throughput;
         if (found && (found.reason || found.wafers > 0)) {
-            const counting = (found.counting || []).join(', ');
-            const figure = found.reason ? ['No wafers per hour', `: ${found.reason}.`]
-                : [`${W.number(found.wafers_per_hour, 1)} wafers per hour`,
-                    `: ${found.wafers} in ${W.seconds(found.seconds)}; a wafer counts when put into ${counting}.`];
+            const figure = figureOf(found, doc.run.steady_cycle);
             made.insertBefore(W.element('p', {}, W.element('b', {}, figure[0]), figure[1]), made.children[1] || null);
         }
         return made;

@@ -1,4 +1,4 @@
-/* Light and dark: the system's choice until the switch is used. Colours are read from the style sheet. */
+/* Light and dark: the system's choice holds until the switch is used. Colours come from the style sheet. */
 (function (W) {
     'use strict';
 
@@ -16,7 +16,7 @@
         return colours[name];
     }
 
-    /* Of a series, a gripper, ...: six, then from the start. */
+    /* The colour of a series, a gripper, ...: there are six, then they repeat. */
     const series = (i) => colour('s' + (i % 6));
 
     function show(name) {

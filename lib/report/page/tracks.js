@@ -1,4 +1,4 @@
-/* Tracks: what changed, as points over time. Every look-up is a binary search; nothing is done for each point. */
+/* Tracks: changes as points over time. Every look-up is a binary search; no work is done for each point. */
 (function (W) {
     'use strict';
 
@@ -17,7 +17,7 @@
         return low - 1;
     }
 
-    /* The same in a list of objects with a `t`. */
+    /* The last such point of a list of objects with a `t`. */
     function indexOf(list, at) {
         let low = 0;
         let high = list.length;
@@ -32,7 +32,7 @@
         return low - 1;
     }
 
-    /* Between which two points `at` lies, and how far along: 0 at a point and outside of the track. */
+    /* The two points that `at` lies between, and the share of the way: 0 at a point and outside of the track. */
     function span(times, at) {
         const found = index(times, at);
         const from = Math.max(found, 0);
@@ -41,7 +41,7 @@
         return { from, to, share: last ? 0 : (at - times[from]) / (times[to] - times[from]) };
     }
 
-    /* On straight lines between values; null values are gaps. */
+    /* Reads straight lines between values; null values are gaps. */
     function linear(times, values, at) {
         if (!times || times.length === 0) {
             return null;
@@ -55,7 +55,8 @@
         return a + share * (b - a);
     }
 
-    /* A curve between its points i and i + 1, `share` of the way, or its slope: null in a gap, as it was after the last point. */
+    /* A curve between its points i and i + 1, `share` of the way, or its slope. It is null in a gap, and after the last point
+     * it stays as it was. */
     function cubic({ t, v, slope: slopes }, i, share, slope) {
         const a = v[i];
         const b = v[i + 1];
@@ -77,7 +78,7 @@
             : a + share * (first + share * (second + share * third));
     }
 
-    /* What a curve is at a time; before its first point it is not. */
+    /* The value of a curve at a time; null before its first point. */
     function curve(from, at, slope) {
         if (!from || !from.t || from.t.length === 0 || at < from.t[0]) {
             return null;
@@ -93,12 +94,12 @@
 
     const slice = (values, i, size) => values.slice(size * i, size * i + size);
 
-    /* Rounded quaternions are a little longer or shorter than 1. */
+    /* Normalizes a quaternion; rounding makes it a little longer or shorter than 1. */
     function point(track, i) {
         return { r: slice(track.r, i, 3), q: W.pose.unit(slice(track.q, i, 4)) };
     }
 
-    /* The pose on a track of poses; null for one without points and before the first of them. */
+    /* The pose on a track of poses; null for a track without points and before its first point. */
     function pose(track, at) {
         if (!track || !track.t || track.t.length === 0 || at < track.t[0]) {
             return null;
@@ -107,7 +108,7 @@
         return share === 0 ? point(track, from) : W.pose.between(point(track, from), point(track, to), share);
     }
 
-    /* Who holds a wafer from when on: { t, holder, r, q }; null for none. */
+    /* The holder of a wafer, from when on: { t, holder, r, q }; null for none. */
     function hold(states, at) {
         return states && states.length > 0 ? states[Math.max(indexOf(states, at), 0)] : null;
     }

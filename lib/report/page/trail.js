@@ -1,19 +1,19 @@
-/* The paths of the robot's grippers over the last seconds: a line, and a dot each tenth of a second, so that dots far apart
- * tell of speed. */
+/* The paths of the robot's grippers over the last seconds: a line, and a dot for each tenth of a second. Dots far apart mean a
+ * high speed. */
 (function (W) {
     'use strict';
 
     const SECONDS = 3;
     const STEP = 0.02;
-    const EACH = 5; /* so many steps from dot to dot */
+    const EACH = 5; /* steps from dot to dot */
 
     const riders = (doc) => doc.names.grippers.map((_, i) => i).filter((i) => {
         const mount = doc.tracks.machine.grippers[i];
         return mount && mount.axis === null;
     });
 
-    /* Where a gripper was, the latest first, mm of base: [{ r, age: 0 to 1, dot }]. Steps stand on a grid of time, so that dots
-     * stay where they are while time passes. */
+    /* The places where a gripper was, the latest first, mm of base: [{ r, age: 0 to 1, dot }]. The steps lie on a grid of time,
+     * so that dots stay in place while time passes. */
     function points(doc, i, t) {
         const made = [];
         const add = (at, dot) => {

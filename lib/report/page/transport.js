@@ -34,7 +34,7 @@
         return made;
     }
 
-    /* One stroke a pixel at most, the gravest on top. */
+    /* Draws at most one stroke per pixel, the most serious event on top. */
     function ticks() {
         const canvas = transport.ticks;
         const width = canvas.clientWidth;

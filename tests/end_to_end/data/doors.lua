@@ -1,4 +1,4 @@
--- What doors and flippers do, case by case: params.case names one.
+-- Doors and flippers, case by case: params.case names one.
 local cases = {}
 
 local function fails(name, word, ...)
@@ -7,7 +7,7 @@ local function fails(name, word, ...)
   expect(found == name, ("%s: %s"):format(name, found))
 end
 
--- A shut door is told ahead of all that goes through it; READY stays before it, and LINE and MOVE are looked at.
+-- A shut door is reported before any motion through it; READY stays before it, and LINE and MOVE are checked.
 function cases.shut()
   fails("DOOR_SHUT", get, "LL", 1)
   fails("DOOR_SHUT", put, "LL", 1)
@@ -86,7 +86,7 @@ function cases.faults()
   fails("BAD_ARGUMENT", fault, { kind = "door_slow", door = "DOOR", value = -1 })
 end
 
--- Two flips bring a wafer back to the bit; it is taken face down, and what stops a flip is told by number.
+-- Two flips bring a wafer back to the bit; it is taken face down, and each reason that stops a flip has a number.
 function cases.flips()
   fails("FLIP_NOT_CLAMPED", flip, "FLIPPER")
   get("A", 1)

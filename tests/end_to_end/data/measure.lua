@@ -1,4 +1,4 @@
--- measure, distance and angle against closed forms, and what they refuse.
+-- measure, distance and angle against closed forms, and their refusals.
 cell "measure_layout.lua"
 
 local function near(found, wanted, text)
@@ -25,7 +25,7 @@ local sine, cosine = math.sin(math.rad(3)), math.cos(math.rad(3))
 measured("A", "B", { 650 * math.sqrt(2), -650, 650, 0, 3, whole })
 measured("B", "A", { 650 * math.sqrt(2), -650 * cosine, -650, -650 * sine, 3, whole })
 
--- Of equal names a slot's or a station's comes first; without such a slot it is the wafer's.
+-- If names are equal, a slot or a station comes first; without such a slot it is the wafer.
 near(distance("A/3", "A/1"), 20, "the slot A/3")
 near(distance("B", "B/1"), 0, "the station B")
 measured("B/3", "A/4", { 2, 0, 2, 0, 0, 0 })
@@ -42,7 +42,7 @@ measured("P", "PA", { 0, 0, 0, 0, 0, 90 })
 local dx, dy, dz, tilt = offset("Wafer", "P", 1)
 measured("P", "Wafer", { math.sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, tilt, 90 })
 
--- Where the gripper is, not where motion control has it.
+-- The true place of the gripper, not the one that motion control assumes.
 local stood = measure("base", "EE")
 local fault_number = fault { kind = "axis_stopped", gripper = "EE" }
 line { dx = -20, speed = 100 }

@@ -1,5 +1,5 @@
--- Catches what fails and goes another way: half of the trials are not commanded as the run without errors is. Or, with
--- params.by, decides by what it measures.
+-- Catches failures and takes another way: half of the trials have other commands than the run without errors. Or, with
+-- params.by, decides by its measurements.
 cell "study_cell.lua"
 
 -- By a measured number, or by a distance of frames, which recorded decisions cannot have.

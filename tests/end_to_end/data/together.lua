@@ -1,4 +1,4 @@
--- What moves at a station, and whose the station is, case by case: params.case names one.
+-- Motions at a station, and its owner, case by case: params.case names one.
 local cases = {}
 
 local function fails(name, word, ...)
@@ -15,7 +15,7 @@ local function is_near(text, ...)
   end
 end
 
--- Lifted by pins a wafer is in its slot still, as far above it as the pins are up, and comes down where it was.
+-- A wafer that pins lift is still in its slot, above it by the pins' height, and comes down at its old place.
 function cases.pins()
   cell "together_layout.lua"
   get("A", 1)

@@ -39,6 +39,7 @@ local function ask(number, line)
       message.command_line = line
       link:publish("WAFERHAND_REQUEST", message:encode())
       sent = os.time()
+      io.stderr:write("asked\n")
     end
     link:timedhandle(0.2)
   end

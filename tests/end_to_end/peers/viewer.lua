@@ -7,7 +7,7 @@
 --   lcm-gen -l lcm_types/*.lcm --lpath TYPES
 --   LUA_PATH="TYPES/?.lua;TYPES/?/init.lua;;" lua5.2 viewer.lua URL
 --
--- Needs Lua 5.2 with Debian's liblcm-lua.
+-- On standard error it says when it is listening. Needs Lua 5.2 with Debian's liblcm-lua.
 
 unpack = unpack or table.unpack -- the generated code is for Lua 5.1
 
@@ -37,6 +37,7 @@ link:subscribe("DRAKE_VIEWER_DRAW", function(_, data)
   print(("DRAW %d ms: %s"):format(message.timestamp, table.concat(places, ", ")))
 end)
 
+io.stderr:write("listening\n")
 while true do
   link:handle()
 end

@@ -1,6 +1,7 @@
-/* dollar_host ADDRESS PORT: a tool's host with nothing but sockets. It plays the paper's transfer run as `$`-comma telegrams
- * with sums and sequence numbers: waits for each acknowledgement and completion, answers that with ACKN, and prints how many
- * telegrams there were and the longest time to an acknowledgement. Ends with 1 at the first answer that is not good. */
+/* dollar_host ADDRESS PORT: a tool's host that uses only sockets. It plays the paper's transfer run
+ * as `$`-comma telegrams with sums and sequence numbers. It waits for each acknowledgement and
+ * completion, answers that with ACKN, and prints the number of telegrams and the longest time to an
+ * acknowledgement. It ends with 1 at the first answer that is not good. */
 #include <arpa/inet.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,7 +46,7 @@ static void say(unsigned sequence, const char *text) {
     }
 }
 
-/* The next frame without its end, sum and end looked at. */
+/* The next frame without its end, after a check of its sum and end. */
 static void hear(char frame[300]) {
     char *end = NULL;
     while (!(end = memchr(rest, '\r', waiting))) {
@@ -65,7 +66,8 @@ static void hear(char frame[300]) {
     }
 }
 
-/* The next frame that begins so. Events, and what else a host does not know, are passed over. */
+/* The next frame that begins with this text. Events, and other frames that a host does not know,
+ * are skipped. */
 static void hear_from(const char *start, char frame[300]) {
     do {
         hear(frame);

@@ -1,5 +1,5 @@
-/* A hash of many gaps, state, axis and place of random pairs, near, touching and overlapping: two builds must print the
- * same. Poses are drawn with libm, so two machines need not. */
+/* A hash of many gaps, with state, axis and place, of random pairs, near, touching and overlapping:
+ * two builds must print the same. Poses are drawn with libm, so two machines may differ. */
 #include "collision/gap.h"
 #include "math/hash.h"
 #include "support/convex.h"
@@ -20,7 +20,7 @@ int main(void) {
         wh_gap_t gap;
         wh_gap_measure(&a, &here, &b, &there, 1e9, none, &gap);
         if (gap.state == WH_GAP_CLEAR && i % 3 != 0) {
-            /* To where they touch, or a little into each other. */
+            /* Moved until they touch, or a little into each other. */
             const wh_vec3_t way = wh_vec3_scale(gap.gap + (i % 3 - 1) * 0.0015, &gap.axis);
             there.r = wh_vec3_subtract(&there.r, &way);
             wh_gap_measure(&a, &here, &b, &there, 1e9, none, &gap);

@@ -1,7 +1,8 @@
-/* garbage URL COUNT SEED: sends COUNT datagrams that are no messages on all channels that the two processes hear: random
- * bytes, and real messages that it has overheard, cut short, with flipped bits, with wrong fingerprints, with huge counts,
- * with NaN, or on the wrong channel; among them fragments whose places make no sense, and channels whose names have no
- * end, which liblcm 1.3.1 does not survive. Prints how many of each. */
+/* garbage URL COUNT SEED: sends COUNT datagrams that are no messages on all channels that the two
+ * processes receive. They are random bytes, and real messages that it has overheard: cut short,
+ * with flipped bits, wrong fingerprints, huge counts, NaN, or on the wrong channel. Some are
+ * fragments with impossible places, and channels whose names have no end, which liblcm 1.3.1 does
+ * not survive. It prints how many of each kind it sent. */
 #include <arpa/inet.h>
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@
 
 #define CHANNELS 6
 #define KINDS 7
-/* After so many of those the two that go around liblcm, which would not send them. */
+/* After this number of others come the two kinds that bypass liblcm, which would not send them. */
 #define RAW_EVERY 64
 
 static const char *const channels[CHANNELS] = {WH_CHANNEL_COMMAND, WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
@@ -38,7 +39,7 @@ static uint32_t below(size_t n) {
 
 static void overhear(void *user, const void *data, size_t size) {
     const size_t channel = (size_t)((const char *const *)user - channels);
-    /* Our own garbage comes back, too: only what has the fingerprint is a message. */
+    /* Our own garbage comes back, too: only a datagram with the fingerprint is a message. */
     if (size >= 8 && overheard[channel].size == 0) {
         memcpy(overheard[channel].bytes, data, size);
         overheard[channel].size = size;
@@ -59,7 +60,7 @@ static void flip_bits(uint8_t *bytes, size_t size) {
     }
 }
 
-/* Somewhere a number that is none, at a place where a double may be. */
+/* An invalid number somewhere, at a place at which a double may stand. */
 static void put_nan(uint8_t *bytes, size_t size) {
     static const uint8_t nan_bytes[8] = {0x7f, 0xf8};
     if (size > 120) {
@@ -67,7 +68,7 @@ static void put_nan(uint8_t *bytes, size_t size) {
     }
 }
 
-/* A huge or negative number where a count or a length may be. */
+/* A huge or negative number at a place at which a count or a length may stand. */
 static void put_count(uint8_t *bytes, size_t size) {
     static const uint8_t counts[][4] = {
         {0x7f, 0xff, 0xff, 0xff}, {0xff, 0xff, 0xff, 0xff}, {0, 1, 0, 0}, {0, 0, 1, 1}};
@@ -128,7 +129,7 @@ static size_t make_fragment(uint8_t *datagram, uint32_t part, uint32_t offset) {
     return (size_t)(end - datagram) + 1000;
 }
 
-/* A channel's name up to the datagram's end, at times a known one. */
+/* A channel's name up to the datagram's end, sometimes a known one. */
 static size_t make_endless_name(uint8_t *datagram) {
     const char *channel = channels[below(CHANNELS)];
     uint8_t *end = put_big_endian(put_big_endian(datagram, 0x4c433032, 4), below(1000), 4);

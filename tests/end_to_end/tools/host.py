@@ -1,24 +1,43 @@
 #!/usr/bin/env python3
-# host.py DIALECT ADDRESS [--pace S]: a tool's host, with nothing but sockets and ptys. It plays the paper's transfer run in
-# the frames of one of lua/dialects, sends again what is not acknowledged, and ends with 0 if each command went well.
-# host.py alarms DIALECT ADDRESS NAME=CODE...: lets each of these alarms come to a command, and ends with 0 if each was the answer.
-# host.py ends DIALECT ADDRESS COMMAND...: commands of that dialect one after another, and how each has ended: ok, or its code.
-# host.py flood ADDRESS END FRAME BYTES: sends so many bytes, of which one in eight is wrong, and prints the last answer.
-# host.py lines ADDRESS END LINE...: sends lines and prints each answer. `!LINE` is sent without waiting for one, `?` waits for
-# one, `~S` for so many seconds; `##` at a line's end is its sum.
-# host.py hours ADDRESS OTHER HOURS PROCESS: carries a wafer to and fro for so many simulated hours by lines of the prompt, while clients come
-# and go at OTHER, and prints how many commands that took, and the process's kB after a third of the time and at its end.
+# host.py DIALECT ADDRESS [SECONDS]: a tool's host that uses only sockets and ptys. It plays the paper's transfer run in the
+# frames of one of lua/dialects, sends a frame again if it is not acknowledged within SECONDS (`dollar`), and ends with 0 if
+# each command went well.
+# host.py alarms DIALECT ADDRESS NAME=CODE...: makes a command answer with each of these alarms, and ends with 0 if each was the
+# answer.
+# host.py ends DIALECT ADDRESS COMMAND...: sends commands of that dialect one after another, and prints how each has ended: ok,
+# or its code.
+# host.py flood ADDRESS END FRAME BYTES ANSWER: sends BYTES bytes, one in eight of them wrong, and prints the last answer, which
+# must be ANSWER.
+# host.py lines ADDRESS END LINE...: sends lines and prints each answer. `!LINE` is sent without waiting for an answer, `?`
+# waits for one, `~S` waits S seconds, `@FILE PATTERN` waits until a line of the file has the pattern; `##` at a line's end is
+# its sum.
+# host.py hours ADDRESS OTHER HOURS PROCESS: carries a wafer to and fro for HOURS simulated hours by lines of the prompt, while
+# clients come and go at OTHER. It prints how many commands that took, and the process's kB after a third of the time and at its
+# end.
+# host.py python TEXT ARGUMENT...: a client of the test's own.
+# host.py session: one process for all of the above (tools/hosts.sh). It reads requests on standard input, each as its number of
+# words and the words, and answers with the output and the exit status; a NUL follows each of these texts.
+import contextlib
+import io
 import os
+import random
+import re
+import select
 import socket
 import sys
+import threading
 import time
+import traceback
 
 
 class Line:
     """A connection, read frame by frame."""
 
+    opened = []
+
     def __init__(self, address, end):
         self.end, self.rest = end, b""
+        Line.opened.append(self)
         if "/" in address:
             self.fd = os.open(address, os.O_RDWR | os.O_NOCTTY)
             self.socket = None
@@ -26,6 +45,12 @@ class Line:
             host, port = address.rsplit(":", 1)
             self.socket = socket.create_connection((host, int(port)))
             self.fd = self.socket.fileno()
+
+    def close(self):
+        if self.socket:
+            self.socket.close()
+        else:
+            os.close(self.fd)
 
     def send(self, frame):
         while frame:
@@ -47,7 +72,6 @@ class Line:
 
 
 def wait_for(fd, seconds):
-    import select
     return bool(select.select([fd], [], [], seconds)[0])
 
 
@@ -104,8 +128,9 @@ def is_whole(frame):
 class Dollar:
     """Sends again until it is acknowledged, waits for the completion, and acknowledges that."""
 
-    def __init__(self, address):
-        self.line, self.sequence, self.waiting = Line(address, b"\r"), 0, []
+    def __init__(self, address, patience=0.5):
+        self.line, self.sequence, self.waiting, self.patience = Line(address, b"\r"), 0, [], patience
+        self.completed = 0
 
     def take(self, seconds=60.0):
         frame = self.waiting.pop(0) if self.waiting else self.line.take(seconds)
@@ -113,9 +138,10 @@ class Dollar:
 
     def ask(self, text):
         self.sequence = self.sequence % 99 + 1
-        for _ in range(20):
+        given_up = time.monotonic() + 60
+        while time.monotonic() < given_up:
             self.line.send(telegram(self.sequence, text))
-            limit = time.monotonic() + 0.5
+            limit = time.monotonic() + self.patience
             kept = []
             while time.monotonic() < limit:
                 frame = self.take(max(0.0, limit - time.monotonic()))
@@ -138,32 +164,34 @@ class Dollar:
         return self.complete(self.sequence)
 
     def acknowledge(self):
-        self.line.send(telegram(0, b"ACKN"))
+        self.line.send(telegram(self.completed, b"ACKN"))
 
     def complete(self, sequence):
         """The completion; if it is lost, the status tells that it has ended."""
         while True:
-            frame = self.take(1.0)
+            frame = self.take(2 * self.patience)
             if frame and frame.startswith(b"!,1,%02d," % sequence):
+                self.completed = sequence
                 self.acknowledge()
                 return frame
             if frame is None:
                 status = self.ask(b"RSTS").split(b",")
                 if status[5] == b"0":
+                    self.completed = sequence
                     self.acknowledge()
                     return b"!,1,%02d,0,%s," % (sequence, status[6])
 
 
-def play_dollar(address):
+def play_dollar(address, patience="0.5"):
     names = {"get": b"MTRS,G", "put": b"MTRS,P"}
-    host = Dollar(address)
+    host = Dollar(address, float(patience))
     for word, station, slot in TRANSFER:
         answer = host.act(b"%s,%s,%d" % (names[word], station.encode(), slot))
         if answer.split(b",")[4] != b"0000":
             fail(answer)
 
 
-# What a command is in each dialect, and what a host hears of its end: its code.
+# The words of each command in each dialect, and the code that a host gets at its end.
 COMMANDS = {
     "prompt": {"get": "GET A 1", "put": "PUT A 1", "align": "ALIGN P", "continue": "CONTINUE", "home": "HOME", "recover": "RECOVER",
                "alarm": "ALARM %s", "valve": "VALVE EE 1", "holder": 'HOLDER "Wafer 1"', "restore": "RESTORE X", "undo": "UNDO",
@@ -183,7 +211,7 @@ COMMANDS = {
               "get_flipper": "GETW(FLIPPER,1)", "put_flipper": "PUTW(FLIPPER,1)"},
 }
 
-# Which command an alarm comes to, but for GET.
+# The command to which an alarm comes, if it is not GET.
 COMES_TO = {
     "NO_WAFER_ON_GRIPPER": "put", "WAFER_LOST": "put", "WAFER_LOST_ON_WAY": "put", "WAFER_ALREADY_THERE": "put",
     "WRONG_FACE": "put", "UNGRIP_TIMEOUT": "put",
@@ -274,13 +302,11 @@ def show_alarms(name, address, alarms):
     print("%d alarms" % len(alarms))
 
 
-def flood(address, end, frame, count):
+def flood(address, end, frame, count, wanted):
     """So many bytes of frames of which one in eight is wrong, while all that comes is read; then one good frame."""
-    import random
-    import threading
     end = end.encode().decode("unicode_escape").encode()
-    draw, line = random.Random(20), Line(address, end)
-    heard = threading.Thread(target=drain, args=(line,))
+    draw, line, sent = random.Random(20), Line(address, end), threading.Event()
+    heard = threading.Thread(target=drain, args=(line, sent, re.compile(end + wanted.encode() + end + rb"\Z")))
     heard.start()
     good = with_sum(frame).encode() + end
     while count > 0:
@@ -290,12 +316,21 @@ def flood(address, end, frame, count):
         line.send(bytes(some))
         count -= len(some)
     line.send(end + b"".join([good] * 3))
+    sent.set()
     heard.join()
     print(line.rest[line.rest.rfind(end, 0, -len(end)) + len(end):].rstrip(end).decode())
 
 
-def drain(line):
-    while wait_for(line.fd, 2.0):
+def drain(line, sent, wanted):
+    """Until the last answer is the wanted one, a pattern, and nothing else comes; in vain for at most 20 s."""
+    quiet = 0
+    while quiet < 100:
+        if not wait_for(line.fd, 0.2):
+            quiet += 1
+            if sent.is_set() and wanted.search(line.rest[-2000:]):
+                return
+            continue
+        quiet = 0
         some = os.read(line.fd, 65536)
         if not some:
             sys.exit("host.py: the controller hung up")
@@ -308,6 +343,17 @@ def with_sum(text):
     return text[:-2] + "%02X" % (sum(text[text.find("$") + 1:-2].encode()) % 256)
 
 
+def until_said(path, pattern):
+    limit = time.monotonic() + 60
+    while True:
+        with open(path, encoding="utf-8") as file:
+            if re.search(pattern, file.read(), re.M):
+                return
+        if time.monotonic() > limit:
+            sys.exit("host.py: %s does not say %s" % (path, pattern))
+        time.sleep(0.01)
+
+
 def exchange(address, end, texts):
     end = end.encode().decode("unicode_escape").encode()
     line = Line(address, end)
@@ -315,6 +361,8 @@ def exchange(address, end, texts):
         text = with_sum(text)
         if text.startswith("~"):
             time.sleep(float(text[1:]))
+        elif text.startswith("@"):
+            until_said(*text[1:].split(" ", 1))
         elif text == "?":
             print((line.take() or b"nothing").decode())
         elif text.startswith("!"):
@@ -337,7 +385,8 @@ def visit(address):
         answer = line.take()
         if answer is None or not answer.startswith(expected):
             fail(answer)
-    line.socket.close()
+    line.close()
+    Line.opened.remove(line)
 
 
 def command(line, text, expected=b"OK "):
@@ -367,15 +416,65 @@ def hours(address, other, wanted, process):
     print("%d commands, %.1f hours, %d kB, %d kB" % (count, simulated / 3600, first, resident(process)))
 
 
-if sys.argv[1] == "flood":
-    flood(sys.argv[2], sys.argv[3], sys.argv[4], int(sys.argv[5]))
-elif sys.argv[1] == "alarms":
-    show_alarms(sys.argv[2], sys.argv[3], sys.argv[4:])
-elif sys.argv[1] == "ends":
-    show_ends(sys.argv[2], sys.argv[3], sys.argv[4:])
-elif sys.argv[1] == "hours":
-    hours(*sys.argv[2:6])
-elif sys.argv[1] == "lines":
-    exchange(sys.argv[2], sys.argv[3], sys.argv[4:])
+def run(words):
+    mode, rest = words[0], words[1:]
+    if mode == "flood":
+        flood(*rest[:3], int(rest[3]), rest[4])
+    elif mode == "alarms":
+        show_alarms(rest[0], rest[1], rest[2:])
+    elif mode == "ends":
+        show_ends(rest[0], rest[1], rest[2:])
+    elif mode == "hours":
+        hours(*rest)
+    elif mode == "lines":
+        exchange(rest[0], rest[1], rest[2:])
+    elif mode == "python":
+        sys.argv = ["test", *rest[1:]]
+        exec(compile(rest[0], "test", "exec"), {"__name__": "test"})
+    else:
+        {"prompt": play_prompt, "words": play_words, "dollar": play_dollar, "verbs": play_verbs}[mode](*rest)
+
+
+def one_request(words):
+    """What it prints, and its exit status; its connections are closed, as a process's are."""
+    said, status = io.StringIO(), 0
+    with contextlib.redirect_stdout(said):
+        try:
+            run(words)
+        except SystemExit as end:
+            print(end.code)
+            status = 1
+        except Exception:  # what a process of its own would end with
+            print(traceback.format_exc())
+            status = 1
+    for line in Line.opened:
+        line.close()
+    Line.opened.clear()
+    return said.getvalue(), status
+
+
+def session():
+    reader = open(0, "rb", buffering=0)
+    rest = b""
+
+    def texts():
+        nonlocal rest
+        while True:
+            while b"\0" not in rest:
+                some = reader.read(65536)
+                if not some:
+                    return
+                rest += some
+            text, rest = rest.split(b"\0", 1)
+            yield text.decode()
+
+    words = texts()
+    for count in words:
+        said, status = one_request([next(words) for _ in range(int(count))])
+        os.write(1, b"%s\0%d\0" % (said.encode(), status))
+
+
+if sys.argv[1] == "session":
+    session()
 else:
-    {"prompt": play_prompt, "words": play_words, "dollar": play_dollar, "verbs": play_verbs}[sys.argv[1]](sys.argv[2])
+    run(sys.argv[1:])

@@ -1,6 +1,6 @@
-/* Plays what `waferhand run --segments` wrote, with the library alone, as a firmware test would: as C99 to C23, and C++11 to
- * C++23. PLAYED is the file, RUN its run; ALSO and ALSO_RUN are a second one. A file's hash is that of double; float has its
- * own. */
+/* Plays the output of `waferhand run --segments` with the library alone, as a firmware test would:
+ * as C99 to C23, and C++11 to C++23. PLAYED is the file, RUN its run; ALSO and ALSO_RUN are a
+ * second one. A file's hash is for double; float has its own. */
 #include <stdio.h>
 
 #include PLAYED

@@ -2,11 +2,11 @@
  *
  * Each line of the dialogue is one of
  *   send TEXT     with \t \n \e \\ and \xNN
- *   expect TEXT   waits until it was printed after what was expected before; at most 20 s
+ *   expect TEXT   waits until it was printed after the text of the last expect; at most 20 s
  *   pause MS
  *   signal NUMBER
  *   exit STATUS   waits until the program has ended; the terminal must be as it was
- * Prints all that the program prints. Exit: 0 if all came as expected. */
+ * Prints the program's whole output. Exit: 0 if everything came as expected. */
 #include <poll.h>
 #include <pty.h>
 #include <stdbool.h>
@@ -31,7 +31,7 @@ static void fail(const char *what, const char *text) {
     exit(1);
 }
 
-/* Takes what comes within so many ms; false when nothing did or the program closed its terminal. */
+/* Reads the output of the next ms; false if there was none or the program closed its terminal. */
 static bool listen_for(int milliseconds) {
     struct pollfd polled = {terminal, POLLIN, 0};
     if (poll(&polled, 1, milliseconds) <= 0) {
@@ -144,7 +144,7 @@ int main(int argc, char **argv) {
         execvp(argv[1], argv + 1);
         _exit(127);
     }
-    /* The other end stays open here: its state can be looked at when the program has ended. */
+    /* The other end stays open here: its state can be checked when the program has ended. */
     while (fgets(line, sizeof line, stdin)) {
         perform(line);
     }

@@ -1,5 +1,7 @@
-/* relay URL-A URL-B SEED: carries messages between motion control on A and the simulator on B, and is bad at it: of a
- * hundred datagrams it loses 30, doubles 10, and delivers 10 late, by up to 20 ms and so out of order. Ends with SIGTERM. */
+/* relay URL-A URL-B SEED [SLICE PROCESS]: carries messages between motion control on A and the
+ * simulator on B, but badly. It loses 30 of a hundred datagrams, doubles 10, and delivers 10 late,
+ * by up to 20 ms and so out of order. With a slice it loses nothing, but kills the process instead
+ * of passing on the state of that slice. SIGTERM ends it. */
 #include <inttypes.h>
 #include <poll.h>
 #include <signal.h>
@@ -32,7 +34,10 @@ typedef struct {
 static volatile sig_atomic_t stopped;
 static uint64_t random_state;
 static held_t held[HELD];
-static uint64_t counts[4]; /* carried, lost, doubled, late */
+static int64_t next_due_us = INT64_MAX; /* the next due time of the held ones */
+static uint64_t counts[4];              /* carried, lost, doubled, late */
+static int64_t last_slice;              /* 0: no slice is the last */
+static pid_t process;
 
 static void stop(int signal_number) {
     (void)signal_number;
@@ -58,6 +63,7 @@ static void hold(const route_t *route, const void *data, size_t size) {
             held[i].to = route->to;
             held[i].channel = route->channel;
             held[i].size = size;
+            next_due_us = held[i].due_us < next_due_us ? held[i].due_us : next_due_us;
             return;
         }
     }
@@ -65,18 +71,48 @@ static void hold(const route_t *route, const void *data, size_t size) {
 
 static void release_due(void) {
     const int64_t now = wh_node_clock_us();
+    if (now < next_due_us) {
+        return;
+    }
+    next_due_us = INT64_MAX;
     for (size_t i = 0; i < HELD; ++i) {
         if (held[i].data && held[i].due_us <= now) {
             (void)wh_node_publish(held[i].to, held[i].channel, held[i].data, held[i].size);
             free(held[i].data);
             held[i].data = NULL;
+        } else if (held[i].data && held[i].due_us < next_due_us) {
+            next_due_us = held[i].due_us;
         }
     }
+}
+
+/* The value is big-endian, behind the type's number and the time. */
+static int64_t slice_of(const uint8_t *state) {
+    uint64_t slice = 0;
+    for (size_t i = 16; i < 24; ++i) {
+        slice = slice << 8 | state[i];
+    }
+    return (int64_t)slice;
+}
+
+/* It happens once: the next simulator continues from there. */
+static void carry_until_slice(const route_t *route, const void *data, size_t size) {
+    if (process > 0 && strcmp(route->channel, WH_CHANNEL_STATE) == 0 && size >= 24 &&
+        slice_of(data) >= last_slice) {
+        (void)kill(process, SIGKILL);
+        process = 0;
+        return;
+    }
+    (void)wh_node_publish(route->to, route->channel, data, size);
 }
 
 static void carry(void *user, const void *data, size_t size) {
     const route_t *route = user;
     ++counts[0];
+    if (last_slice > 0) {
+        carry_until_slice(route, data, size);
+        return;
+    }
     if (below(100) < LOST) {
         ++counts[1];
         return;
@@ -104,17 +140,24 @@ static bool connect(wh_node_t *from, wh_node_t *to, const char *const channels[]
     return true;
 }
 
+/* SEED [SLICE PROCESS] */
+static void take_numbers(int argc, char **argv) {
+    random_state = strtoull(argv[3], NULL, 0);
+    last_slice = argc > 4 ? strtoll(argv[4], NULL, 10) : 0;
+    process = argc > 4 ? (pid_t)strtol(argv[5], NULL, 10) : 0;
+}
+
 int main(int argc, char **argv) {
     static const char *const to_simulator[] = {WH_CHANNEL_COMMAND, WH_CHANNEL_RESTORE, WH_CHANNEL_MCS, NULL};
     static const char *const to_control[] = {WH_CHANNEL_STATE, WH_CHANNEL_PROXIMITY, WH_CHANNEL_CELL, NULL};
     static route_t routes[2][4];
     wh_node_t a;
     wh_node_t b;
-    if (argc != 4 || !wh_node_open(&a, argv[1], NULL) || !wh_node_open(&b, argv[2], NULL)) {
-        fprintf(stderr, "usage: relay URL-A URL-B SEED\n");
+    if ((argc != 4 && argc != 6) || !wh_node_open(&a, argv[1], NULL) || !wh_node_open(&b, argv[2], NULL)) {
+        fprintf(stderr, "usage: relay URL-A URL-B SEED [SLICE PROCESS]\n");
         return 2;
     }
-    random_state = strtoull(argv[3], NULL, 0);
+    take_numbers(argc, argv);
     signal(SIGTERM, stop);
     signal(SIGINT, stop);
     if (!connect(&a, &b, to_simulator, routes[0]) || !connect(&b, &a, to_control, routes[1])) {
@@ -123,7 +166,7 @@ int main(int argc, char **argv) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(&a), .events = POLLIN},
                              {.fd = wh_node_descriptor(&b), .events = POLLIN}};
     while (!stopped) {
-        (void)poll(ready, 2, 1);
+        (void)poll(ready, 2, next_due_us == INT64_MAX ? 20 : 1);
         (void)wh_node_drain(&a, 16);
         (void)wh_node_drain(&b, 16);
         release_due();

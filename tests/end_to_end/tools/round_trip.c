@@ -1,6 +1,8 @@
-/* round_trip URL answer SIZE: answers every datagram on PING with one of SIZE bytes on PONG, until SIGTERM.
- * round_trip URL ask SIZE COUNT: sends COUNT datagrams of SIZE bytes, each after the last one's answer, and prints the us
- * that a round trip took on average. LCM alone, for comparison with a slice in lockstep. */
+/* round_trip URL answer SIZE: answers every datagram on PING with one of SIZE bytes on PONG, until
+ * SIGTERM.
+ * round_trip URL ask SIZE COUNT: sends COUNT datagrams of SIZE bytes, each after the last one's
+ * answer, and prints the mean us of a round trip. LCM alone, for comparison with a slice in
+ * lockstep. */
 #include <lcm/lcm.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* A wafer's rim, what a sensor sees of it, and the circle that this tells, from the answers that are known. */
+/* A wafer's rim, a sensor's samples of it, and the circle found from them, compared with known answers. */
 #include "support/heap.h"
 
 #include "align/align.h"
@@ -97,6 +97,10 @@ static void what_is_no_scan_is_refused(void **state) {
     points[9].radius = (double)NAN;
     assert_int_equal(wh_circle_fit(&scan, rays, &circle), WH_STATUS_BAD_SCAN);
     scan = scan_of(&sensor);
+    points[9].sight = (wh_sight_t)99;
+    assert_int_equal(wh_circle_fit(&scan, rays, &circle), WH_STATUS_BAD_SCAN);
+    scan = scan_of(&sensor);
+    assert_int_equal(wh_circle_fit(&scan, (wh_rim_ray_t *)(void *)&points[8], &circle), WH_STATUS_OVERLAP);
     points[9].angle = points[7].angle;
     assert_int_equal(wh_circle_fit(&scan, rays, &circle), WH_STATUS_BAD_SCAN);
     scan = scan_of(&sensor);
@@ -111,7 +115,7 @@ static void what_is_no_scan_is_refused(void **state) {
     assert_true(circle.x == 7);
 }
 
-/* The verdict on a whole turn of `rim`, were it as `nominal`. */
+/* The verdict on a whole turn of `rim`, evaluated as if it were `nominal`. */
 static wh_align_result_t verdict_on(const wh_sensor_t *sensor, const wh_rim_t *rim, const wh_rim_t *nominal,
                                     const wh_align_limits_t *limits) {
     const wh_rim_scan_t scan = scan_of_rim(sensor, rim);
@@ -166,7 +170,7 @@ static void a_chip_is_told_from_a_notch_by_a_sharp_scan_alone(void **state) {
     assert_true(fabs(result.turn - 0.7) < 5e-5);
     sensor.noise = 0.02;
     assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_STATUS_NOTCH_NOT_SURE);
-    /* One that is narrower than a notch never was one. */
+    /* A dent narrower than a notch never was a notch. */
     rim.chips[0] = (wh_chip_t){2, 1.5, 1.4};
     assert_int_equal(verdict_on(&sensor, &rim, &nominal, &limits).verdict, WH_OK);
 }
@@ -189,7 +193,7 @@ static void a_notch_is_sure_only_if_its_bottom_agrees(void **state) {
 
 enum { OF_REFERENCE = 360 };
 
-/* Four scans of a known wafer, and room for one more: two places, the chuck turning either way. */
+/* Four scans of a known wafer, and room for one more: two places, with the chuck turning both ways. */
 static void scan_reference(const wh_sensor_t *sensor, wh_calibration_scan_t scans[4]) {
     const wh_rim_t rim = wh_rim_nominal(150);
     for (size_t k = 0; k < 4; ++k) {
@@ -253,6 +257,30 @@ static void two_notches_are_told_from_one(void **state) {
     assert_int_equal(result.mark, WH_ALIGN_MARK_NONE);
 }
 
+/* The message has what a notch was judged by, and what it lacked. */
+static void what_was_most_like_a_notch_is_told(void **state) {
+    (void)state;
+    const wh_align_limits_t limits = wh_align_limits_default();
+    const wh_rim_t nominal = wh_rim_nominal(150);
+    const wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_align_result_t result = verdict_on(&sensor, &nominal, &nominal, &limits);
+    assert_true(result.notch_seen.depth == result.notch.depth && result.notch_seen.off == 0);
+    assert_true(fabs(result.notch_seen.depth_least - 0.85) < 1e-12 &&
+                fabs(result.notch_seen.depth_most - 1.4) < 1e-12);
+    assert_true(result.notch_seen.flanks[0] >= WH_NOTCH_FLANK_LEAST &&
+                result.notch_seen.flanks[1] >= WH_NOTCH_FLANK_LEAST);
+    wh_rim_t rim = nominal;
+    rim.notch.depth = 0.83;
+    result = verdict_on(&sensor, &rim, &nominal, &limits);
+    assert_int_equal(result.verdict, WH_STATUS_NOTCH_NOT_SURE);
+    assert_true(fabs(result.notch_seen.depth - 0.83) < 0.02 && result.notch_seen.narrow_at > 0);
+    assert_true(result.notch_seen.width < result.notch_seen.width_least);
+    rim.notch.depth = 0.6; /* no dent that could be one: its depth is told all the same */
+    result = verdict_on(&sensor, &rim, &nominal, &limits);
+    assert_int_equal(result.verdict, WH_STATUS_NO_NOTCH);
+    assert_true(fabs(result.notch_seen.depth - 0.6) < 0.1 && result.notch_seen.flanks[0] == 0);
+}
+
 static void flats_are_told_by_their_lengths(void **state) {
     (void)state;
     const wh_align_limits_t limits = wh_align_limits_default();
@@ -306,7 +334,8 @@ static void bad_numbers_change_nothing(void **state) {
     assert_true(result.turn == 7);
 }
 
-/* The mean of what sees the rim, without what light makes of it; and what does not see it if most do not. */
+/* The mean of the pixels that see the rim, without errors from light; and the pixels that do not
+ * see it, if these are the most. */
 static void turns_are_merged(void **state) {
     (void)state;
     const wh_rim_point_t of_turns[5] = {{1, 150.01, WH_SIGHT_RIM},
@@ -339,6 +368,7 @@ int main(void) {
         cmocka_unit_test(a_notch_is_sure_only_if_its_bottom_agrees),
         cmocka_unit_test(a_sensor_is_calibrated_by_a_known_wafer),
         cmocka_unit_test(two_notches_are_told_from_one),
+        cmocka_unit_test(what_was_most_like_a_notch_is_told),
         cmocka_unit_test(flats_are_told_by_their_lengths),
         cmocka_unit_test(bad_numbers_change_nothing),
     };

@@ -1,4 +1,4 @@
-/* The prompt looks after another descriptor while it waits: as LCM's is. */
+/* The prompt watches another descriptor while it waits, such as LCM's. */
 #include "support/support.h"
 
 #include <errno.h>
@@ -47,7 +47,7 @@ static void put(int fd, const char *text) {
     assert_int_equal(write(fd, text, strlen(text)), strlen(text));
 }
 
-/* A request from elsewhere: executed; the third one ends the prompt by a signal. */
+/* A request from elsewhere is executed; the third one ends the prompt by a signal. */
 static void take_request(void *user) {
     char byte;
     assert_ptr_equal(user, &calls);
@@ -99,7 +99,7 @@ static void leave_at_the_third_look(void *user) {
     }
 }
 
-/* Nothing comes: the watch is looked after all the same, every 100 ms. */
+/* Even if nothing comes, the watch is called every 100 ms. */
 static void the_watch_is_called_in_silence(void **state) {
     const wh_prompt_watch_t watch = {other[0], leave_at_the_third_look, count_stop, NULL};
     struct timespec begin, end;
@@ -125,7 +125,7 @@ static void take_signal(void *user) {
     }
 }
 
-/* Who has blocked a signal for a signalfd gets it there, also when it comes before the wait. */
+/* If a signal is blocked for a signalfd, it arrives there, also if it comes before the wait. */
 static void a_signal_descriptor_wakes_it(void **state) {
     sigset_t mask;
     (void)state;
@@ -139,12 +139,13 @@ static void a_signal_descriptor_wakes_it(void **state) {
     assert_int_equal(wh_prompt_run(prompt), 0);
     assert_int_equal(calls, 1);
     close(signal_descriptor);
-    wh_prompt_close(prompt); /* which brings back the mask from before it */
+    wh_prompt_close(prompt); /* this restores the mask from before it */
     prompt = NULL;
     sigprocmask(SIG_UNBLOCK, &mask, NULL);
 }
 
-/* Without one the prompt takes it, also when it comes before the wait; then all is as it was. */
+/* Without a signalfd the prompt takes the signal, also if it comes before the wait; then the mask
+ * is as before. */
 static void signal_before_the_wait(void **state) {
     struct sigaction action;
     (void)state;
@@ -165,7 +166,7 @@ static void take_long_request(void *user) {
     }
 }
 
-/* A signal stops a watch's command, too, and is then the prompt's. The watch is told. */
+/* A signal also stops a watch's command, and then belongs to the prompt. The watch is told about it. */
 static void signal_during_a_request(void **state) {
     const wh_prompt_watch_t watch = {other[0], take_long_request, count_stop, NULL};
     const struct itimerspec soon = {{0, 0}, {0, 100000000}};
@@ -178,14 +179,14 @@ static void signal_during_a_request(void **state) {
     assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
     assert_int_equal(wh_prompt_run(prompt), 1);
     assert_memory_equal(answer, "ERROR 52 STOPPED", 16);
-    assert_int_equal(stops, 1); /* so that what else waits is not begun */
+    assert_int_equal(stops, 1); /* so that no other waiting work begins */
     timer_delete(timer);
 }
 
 /* -------------------------------------------------------------------------------------------------- history */
 
-/* The prompt's history file: where it is, what is taken from it, how it is kept short and private. And how any file of
- * the program replaces the one before it. */
+/* The prompt's history file: its place, the lines that are read from it, and how it is kept short
+ * and private. The test also checks how a file of the program replaces an older one. */
 
 static char folder[WH_TEST_PATH];
 static char path[WH_TEST_PATH + 50];

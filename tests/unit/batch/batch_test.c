@@ -1,4 +1,4 @@
-/* A batch's memory, what it refuses, and its questions on a few wafers whose answers are plain to see. */
+/* A batch's memory, its refusals, and its answers for a few wafers, for which they are easy to see. */
 #include "batch/batch.h"
 #include "support/pose.h"
 
@@ -30,7 +30,7 @@ static void sizes_are_whole_blocks(void **state) {
     assert_int_equal(WH_BATCH_WORDS(33), 2);
 }
 
-/* The layout that the header shows; what no wafer fills is infinite. */
+/* The layout that the header shows; entries without a wafer are infinite. */
 static void numbers_stand_where_the_header_says(void **state) {
     (void)state;
     for (size_t w = 0; w < 40; ++w) {
@@ -62,7 +62,7 @@ static void numbers_stand_where_the_header_says(void **state) {
     assert_near(numbers[96], 0, 0);
 }
 
-/* Where every lane is left to the check, those beyond the last wafer are not. */
+/* If every lane is left to the check, the lanes beyond the last wafer are not. */
 static void wafers_beyond_the_last_are_not_asked(void **state) {
     (void)state;
     wh_batch_t batch = stack(9);
@@ -77,7 +77,7 @@ static void wafers_beyond_the_last_are_not_asked(void **state) {
     assert_int_equal(bits, 1U << 8);
 }
 
-/* Of a wafer that is left to the check, and of its sphere, the numbers are NaN until it is moved. */
+/* If a wafer is left to the check, its numbers and those of its sphere are NaN until it is moved. */
 static void what_cannot_be_sieved_is_left_to_the_check(void **state) {
     (void)state;
     wh_batch_t batch = stack(WAFERS);
@@ -198,7 +198,7 @@ static void each_gripper_finds_its_wafer(void **state) {
     }
 }
 
-/* Beyond the first 1,024 wafers, whose spheres are far away. */
+/* Beyond the first 1,024 wafers, which have spheres far away. */
 static void each_of_many_is_found(void **state) {
     static wh_pose_t many[MANY];
     static float room[WH_BATCH_NUMBERS(MANY) + 63];
@@ -220,7 +220,8 @@ static void each_of_many_is_found(void **state) {
     }
 }
 
-/* Of the nearest two, at either side of the gripper, the lower index; a list that is too short is cut. */
+/* Two wafers are nearest, one at either side of the gripper: the lower index counts. A list that is
+ * too short is cut. */
 static void best_is_the_nearest_then_the_first(void **state) {
     (void)state;
     wh_batch_t batch = stack(WAFERS);

@@ -1,5 +1,5 @@
-/* The sieve of a batch holds back what is farther than its reach, one number farther, and nothing else: lane by lane, block by
- * block, in each code that the processor has. */
+/* The sieve of a batch holds back wafers farther than its reach, even by one number, and nothing
+ * else: lane by lane, block by block, in each code path that the processor has. */
 #include "batch/batch_internal.h"
 #include "support/pose.h"
 
@@ -32,7 +32,7 @@ static float *normal(size_t block, size_t lane, size_t axis) {
     return &normals[block * BLOCK + axis * LANES + lane];
 }
 
-/* Asks over the first `count` blocks; nothing is written beyond them. */
+/* Asks about the first `count` blocks; nothing is written beyond them. */
 static uint32_t ask(size_t count) {
     const wh_batch_tile_t tile = {spheres, origins, normals, count};
     for (size_t b = 0; b <= BLOCKS; ++b) {
@@ -86,7 +86,7 @@ static void wafers_pass_up_to_the_limits(void **state) {
     run_each(try_limits_of_wafers);
 }
 
-/* Along each axis in turn, and across it not at all. */
+/* Along each axis in turn, and not across it. */
 static void try_normals(void) {
     for (size_t axis = 0; axis < 3; ++axis) {
         begin();
@@ -109,7 +109,8 @@ static void planes_lie_along_the_normals(void **state) {
     run_each(try_normals);
 }
 
-/* A sphere that just reaches the sieve's, and one that just does not; of the latter no wafer is looked at. */
+/* A sphere that just reaches the sieve's sphere, and one that just does not; no wafer of the second
+ * is looked at. */
 static void try_spheres(void) {
     begin();
     for (size_t b = 0; b < BLOCKS; ++b) {
@@ -145,7 +146,7 @@ static void no_more_blocks_are_asked_than_there_are(void **state) {
     run_each(try_counts);
 }
 
-/* What would be held back passes when any of the numbers that say so is none. */
+/* A wafer that would be held back passes if one of the numbers that decide is NaN. */
 static void try_nan(void) {
     for (size_t axis = 0; axis < 3; ++axis) {
         begin();
@@ -168,7 +169,7 @@ static void nan_holds_nothing_back(void **state) {
     run_each(try_nan);
 }
 
-/* What a wafer's lane must be; 2 so near to a limit that rounding decides. */
+/* The expected verdict on a wafer's lane; 2: so near to a limit that rounding decides. */
 static int expected(size_t block, size_t lane) {
     const double centre[] = {(double)sieve.x, (double)sieve.y, (double)sieve.z};
     double squares = 0;

@@ -1,4 +1,4 @@
-/* What the cell says of a release. */
+/* The cell's report of a release. */
 #include "support/station.h"
 
 enum { WAFERS = 3, GRIPPERS = 2, EVENTS = GRIPPERS * WH_EVENTS_PER_GRIPPER };
@@ -11,7 +11,7 @@ typedef struct {
     wh_event_list_t list;
 } scene_t;
 
-/* Wafer 0 was just let go of by gripper 0 there; the others lie far away, free. */
+/* Gripper 0 has just released wafer 0 there; the others lie far away, free. */
 static void let_go(scene_t *scene, const wh_pose_t *base_from_wafer) {
     memset(scene, 0, sizeof *scene);
     for (int w = 0; w < WAFERS; ++w) {
@@ -64,7 +64,7 @@ static void only_releases_are_judged(void **state) {
         scene.events[0].kind = others[i];
         assert_int_equal(judge(&scene), 0);
     }
-    /* What stands beyond the list's end is none of its events. */
+    /* Entries beyond the list's end are none of its events. */
     scene.events[1] = scene.events[0];
     scene.events[1].kind = WH_EVENT_RELEASED;
     assert_int_equal(judge(&scene), 0);
@@ -109,7 +109,7 @@ static void a_station_below_bases_origin_supports_too(void **state) {
     expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 12);
 }
 
-/* Of the slots below a wafer the nearest counts, wherever its station stands in the list. */
+/* Among the slots below a wafer the nearest counts, wherever its station stands in the list. */
 static void the_nearest_slot_below_supports(void **state) {
     (void)state;
     for (size_t lower = 0; lower < 2; ++lower) {
@@ -123,7 +123,7 @@ static void the_nearest_slot_below_supports(void **state) {
     }
 }
 
-/* A wafer that leans is in no slot, and yet over the one below its centre. */
+/* A tilted wafer is in no slot, and yet is over the slot below its centre. */
 static void a_leaning_wafer_is_above_what_is_below(void **state) {
     (void)state;
     static const double heights[][2] = {{0, 0}, {0.5, 0.5}, {-0.5, 899.5}, {-0.25, -0.25}, {4, 4}};
@@ -134,13 +134,13 @@ static void a_leaning_wafer_is_above_what_is_below(void **state) {
         let_go(&scene, &wafer);
         assert_int_equal(judge(&scene), 1);
         expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, heights[i][1]);
-        /* It is for the tilt that it lies in none, unless it is too far from any. */
+        /* It lies in none because of its tilt, unless it is too far from all of them. */
         const bool is_near = heights[i][1] < 5;
         assert_near(scene.events[1].value, is_near ? WH_PI / 6 : 0, 1e-5);
     }
 }
 
-/* Neither a station nor a wafer beyond the count is there. */
+/* Entries of stations and wafers beyond the count are ignored. */
 static void what_is_beyond_a_count_is_not_there(void **state) {
     (void)state;
     scene_t scene;
@@ -157,7 +157,7 @@ static void what_is_beyond_a_count_is_not_there(void **state) {
     expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 120);
 }
 
-/* Each release has its own. */
+/* Each release has its own report. */
 static void two_releases_are_judged_in_turn(void **state) {
     (void)state;
     scene_t scene;
@@ -175,7 +175,7 @@ static void two_releases_are_judged_in_turn(void **state) {
     assert_int_equal(scene.events[3].kind, WH_EVENT_SLOT_OCCUPIED);
     assert_int_equal(scene.events[3].gripper, 1);
     assert_int_equal(scene.events[3].other, 2);
-    /* The other way round, with the lower index as the one that lay there. */
+    /* The roles are exchanged: the wafer with the lower index lay there. */
     scene.events[0].wafer = 2;
     scene.wafers[0].base_from_wafer = slot;
     scene.wafers[1].base_from_wafer = wh_test_at(300, 300, 30);
@@ -210,7 +210,7 @@ static void a_neighbours_slot_is_not_this_one(void **state) {
     assert_int_equal(judge(&scene), 0);
 }
 
-/* What the chuck holds lies there; what a blade carries over the chuck passes. */
+/* The wafer that the chuck holds lies there; the wafer that a blade carries over the chuck passes. */
 static void a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) {
     (void)state;
     scene_t scene;
@@ -225,7 +225,7 @@ static void a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) {
     scene.wafers[2].holder = WH_NONE;
     scene.list.count = 1;
     assert_int_equal(judge(&scene), 1);
-    /* In a plain slot nothing holds what lies there. */
+    /* In a plain slot nothing holds a wafer. */
     const wh_pose_t plain = wh_station_slot(&stations[0], 2);
     scene.wafers[0].base_from_wafer = scene.wafers[2].base_from_wafer = plain;
     scene.wafers[2].holder = 0;
@@ -242,7 +242,7 @@ static void limits_of_placing(void **state) {
     cell.askew = WH_REAL(0.01);
     const wh_pose_t centred = wh_test_at(703, 4, 900);
     let_go(&scene, &centred);
-    assert_int_equal(judge(&scene), 0); /* at the limit is within it */
+    assert_int_equal(judge(&scene), 0); /* at the limit counts as within it */
     const wh_pose_t aside = wh_test_at(703, 4.01, 900);
     let_go(&scene, &aside);
     assert_int_equal(judge(&scene), 1);
@@ -263,7 +263,7 @@ static void limits_of_placing(void **state) {
     cell.off_centre = cell.askew = 0;
 }
 
-/* Over its slot, but higher than what it may fall. */
+/* Over its slot, but higher than the allowed fall. */
 static void a_wafer_let_go_in_the_air(void **state) {
     (void)state;
     scene_t scene;
@@ -300,7 +300,7 @@ static void a_full_list_takes_no_more(void **state) {
 
 /* ------------------------------------------------------------------------------------------------------ settling */
 
-/* Lets go there and settles; returns how many events that made. */
+/* Releases it there, and it settles; returns the number of events. */
 static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
     let_go(scene, base_from_wafer);
     cell.settle = true;
@@ -323,7 +323,8 @@ static void a_wafer_comes_to_lie_on_its_slot(void **state) {
     assert_near(place.dx, 3, 4096 * WH_TEST_ROUNDING);
     assert_near(place.dy, -2, 4096 * WH_TEST_ROUNDING);
     assert_near(place.dz, 0, 4096 * WH_TEST_ROUNDING);
-    /* The smallest turn: of the angle between the normals, so nothing is left of the tilt, and x stays where it was to within it. */
+    /* The turn is the smallest, by the angle between the normals: no tilt is left, and x stays
+     * within this angle. */
     const wh_vec3_t n = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, 2);
     const wh_vec3_t up = wh_mat3_column(&base_from_slot.R, 2);
     assert_near(wh_vec3_dot(&n, &up), 1, 64 * WH_TEST_ROUNDING);
@@ -360,7 +361,8 @@ static void what_does_not_settle(void **state) {
     assert_int_equal(scene.list.count, 1);
 }
 
-/* With settling and without: what was let down a little too far has stayed on its ledges, and nothing is said. */
+/* With settling and without: a wafer that was released a little too low has stayed on its ledges,
+ * and nothing is reported. */
 static void a_support_stops_what_was_let_go_below_it(void **state) {
     (void)state;
     scene_t scene;
@@ -377,8 +379,8 @@ static void a_support_stops_what_was_let_go_below_it(void **state) {
     }
 }
 
-/* Each release of a list, and none that stands beyond its end. */
-/* Of a wafer that is turned over, whose front face is at this pose. */
+/* Each release of a list is judged, and none beyond its end. */
+/* Releases a wafer that is turned over; its front face is at this pose. */
 static wh_pose_t face_down(const wh_pose_t *base_from_front) {
     wh_pose_t wafer;
     wh_face_frame(base_from_front, WH_REAL(0.775), WH_FACE_FRONT, &wafer);
@@ -446,7 +448,7 @@ static void each_release_settles_in_turn(void **state) {
     cell.settle = false;
 }
 
-/* It comes to lie even where nothing more can be said; and what a gripper holds stays in its hand. */
+/* The wafer settles even if there is no room for another report. A wafer that a gripper holds stays there. */
 static void settling_without_room_or_while_held(void **state) {
     (void)state;
     scene_t scene;

@@ -52,7 +52,7 @@ static void tilt_is_between_the_normals(void **state) {
     assert_near(place.tilt, 1.5 * WH_TEST_PI / 180, 16 * WH_TEST_ROUNDING);
 }
 
-/* Half a pitch up is in neither of two slots; the next number below is in the lower one. */
+/* Half a pitch up the pose is in neither of two slots; the next number below is in the lower one. */
 static void the_limit_of_height_is_strict(void **state) {
     (void)state;
     const wh_real_t middle = 905;
@@ -191,11 +191,11 @@ static void a_cell_needs_the_stations_that_it_counts(void **state) {
     assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_STATUS_NULL_ARGUMENT);
     cell.count = 0;
     assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
-    memset(&cell.tolerance, 0, sizeof cell.tolerance); /* by which nothing is judged then */
+    memset(&cell.tolerance, 0, sizeof cell.tolerance); /* then this tolerance judges nothing */
     assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
 }
 
-/* The largest numbers that a cell may have neither trap nor are taken for near. */
+/* The largest numbers that a cell may have neither trap nor count as near. */
 static void huge_cells_are_cells(void **state) {
     (void)state;
     const double far = (double)WH_TEST_LARGEST;

@@ -1,4 +1,4 @@
-/* Convex shapes: what is one, its farthest points, its ball and its box. */
+/* Convex shapes: which shapes are valid, their farthest points, their ball and their box. */
 #include "collision/convex.h"
 
 #include "support/convex.h"
@@ -100,7 +100,7 @@ static wh_vec3_t independent(const wh_convex_t *shape, const wh_pose_t *pose, co
 
 static void the_farthest_point_is_found(void **state) {
     (void)state;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 / WH_TEST_SHARE; ++i) {
         const wh_convex_t shape = wh_test_random_shape((wh_convex_kind_t)(i % 4), points);
         const wh_pose_t pose = wh_test_random_pose(1000);
         const wh_vec3_t direction = wh_test_direction();
@@ -113,7 +113,8 @@ static void the_farthest_point_is_found(void **state) {
     }
 }
 
-/* Across a face or an edge the middle of it; for no direction at all a point of the shape. */
+/* At right angles to a face or an edge it is the middle of it; for a zero direction it is a point
+ * of the shape. */
 static void ties_have_their_middle(void **state) {
     (void)state;
     static const struct {
@@ -145,8 +146,8 @@ static double farthest_part(const wh_vec3_t *v) {
     return fmax(fmax((double)v->x, (double)v->y), (double)v->z);
 }
 
-/* The distance of the farthest of many points from the body's origin; each must be within the box. The farther a point is
- * out, the closer the next direction is to it. */
+/* The distance of the farthest of many points from the body's origin; each must be within the box.
+ * The farther out a point is, the closer the next direction is to it. */
 static double farthest_within(const wh_convex_t *shape, const wh_vec3_t *low, const wh_vec3_t *high) {
     double farthest = 0;
     wh_vec3_t towards = {1, 0, 0};
@@ -163,11 +164,12 @@ static double farthest_within(const wh_convex_t *shape, const wh_vec3_t *low, co
     return farthest;
 }
 
-/* Random points of a shape come close to the ball, and are within ball and box; the box ends where the shape does. */
+/* Random points of a shape come close to the ball, and are within ball and box; the box ends at the
+ * shape's ends. */
 static void ball_and_box_fit(void **state) {
     (void)state;
     const wh_vec3_t ends[6] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < 400 / WH_TEST_SHARE; ++i) {
         wh_convex_t shape = wh_test_random_shape((wh_convex_kind_t)(i % 4), points);
         shape.body_from_shape = wh_test_random_pose(i % 8 < 4 ? 200 : 0);
         const double radius = (double)wh_convex_radius(&shape);

@@ -1,4 +1,5 @@
-/* The gap of simple pairs, whose answer is known by hand; what is no pose; what a spent budget gives; the heap. */
+/* The gap of simple pairs with answers known by hand; invalid poses; the result of a spent budget;
+ * the heap. */
 #include "collision/gap.h"
 
 #include "collision/gap_internal.h"
@@ -28,7 +29,7 @@ static void balls_are_as_far_as_their_centres(void **state) {
     assert_near(gap.gap, 2, 1e-12);
     assert_near(gap.axis.x, 0.6, 1e-12);
     assert_near(gap.axis.y, 0.8, 1e-12);
-    /* Nearest are the points 1 mm and 3 mm along it. */
+    /* The nearest points are 1 mm and 3 mm along it. */
     assert_near(gap.at.x, 10 + 2 * 0.6, 1e-9);
     assert_near(gap.at.y, 20 + 2 * 0.8, 1e-9);
     assert_near(gap.at.z, 30, 1e-9);
@@ -71,10 +72,10 @@ static bool is_in_box(const wh_vec3_t *point, const wh_convex_t *box, const wh_p
            fabs(p.z) <= box->half.z + slack;
 }
 
-/* Boxes that share a point deep in both hit, and where they do is in both. */
+/* Boxes with a common point deep in both hit; the reported place is in both. */
 static void where_boxes_hit_is_in_both(void **state) {
     (void)state;
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < 5000 / WH_TEST_SHARE; ++i) {
         wh_convex_t boxes[2];
         wh_pose_t poses[2];
         for (size_t k = 0; k < 2; ++k) {
@@ -109,7 +110,7 @@ static void bodies_at_the_same_place_hit(void **state) {
     }
 }
 
-/* The larger of two widths apart along an axis, with its sign. */
+/* The larger of two distances along an axis, with its sign. */
 static void along_an_axis_it_is_the_difference_of_ends(void **state) {
     (void)state;
     const wh_convex_t wafer = wh_test_wafer();
@@ -124,7 +125,7 @@ static void along_an_axis_it_is_the_difference_of_ends(void **state) {
 
 /* ------------------------------------------------------------------------------------------ guess and budget */
 
-/* A guess that proves enough is taken as it is, though another axis would prove more. */
+/* A guess whose proof is enough is accepted, though another axis would prove more. */
 static void a_guess_that_is_enough_ends_it(void **state) {
     (void)state;
     const wh_convex_t ball = wh_test_shape(WH_CONVEX_CAPSULE, 1, 0, 0);
@@ -137,7 +138,7 @@ static void a_guess_that_is_enough_ends_it(void **state) {
     assert_near(gap.axis.x, 1, 0);
     wh_gap_measure(&ball, &here, &ball, &there, 28, wh_vec3(5, 0, 0), &gap);
     assert_near(gap.gap, 48, 1e-12);
-    /* Nothing is clear that may be touching, however little is enough. */
+    /* Shapes that may touch are never clear, however small a gap is enough. */
     const wh_pose_t near = wh_test_at(2.0009, 0, 0);
     wh_gap_measure(&ball, &here, &ball, &near, 0, wh_vec3(5, 0, 0), &gap);
     assert_int_equal(gap.state, WH_GAP_TOUCHING);
@@ -160,7 +161,7 @@ static wh_gap_state_t within(double z, int steps, int supports) {
     return gap.state;
 }
 
-/* However little may be spent, no answer is wrong; with too little there is none. */
+/* However small the budget is, no answer is wrong; if it is too small, there is no answer. */
 static void a_spent_budget_is_undecided(void **state) {
     (void)state;
     assert_int_equal(within(0.5, 500, 2000), WH_GAP_HIT);
@@ -180,7 +181,8 @@ static void a_spent_budget_is_undecided(void **state) {
     assert_true(undecided > 10 && undecided < 1000);
 }
 
-/* A gap that is not known to be tight for want of steps is clear all the same, with what is proven of it. */
+/* If the steps do not suffice to make a gap tight, it is still clear, and the proved part of it is
+ * returned. */
 static void what_is_proven_is_never_too_much(void **state) {
     (void)state;
     const wh_convex_t wafer = wh_test_wafer();

@@ -1,12 +1,12 @@
-/* The smallest gaps over time: what is in a bin, and that nothing else depends on it. */
+/* The smallest gaps over time: the contents of a bin, and that no other result depends on the bins. */
 #include "support/support.h"
 
 #include "collision/world.h"
 
-/* A blade comes down to a wall 12 mm below its lower side, 0.01 mm a slice, and goes up again. */
+/* A blade descends to a wall 12 mm below its lower side, 0.01 mm per slice, and rises again. */
 enum { PARTS = 2 };
 
-/* Slices of the first bins. */
+/* The slices in each of the first bins. */
 enum { BIN = 20 };
 
 static wh_part_t parts[PARTS];
@@ -29,7 +29,7 @@ static wh_pose_t at_height(double z) {
     return pose;
 }
 
-/* What the world sees with the blade there. */
+/* The world's result with the blade there. */
 static wh_world_input_t blade_at(wh_pose_t pose) {
     static const wh_arm_t arm = {.link = 300};
     static wh_pose_t links[WH_ARM_BODIES];
@@ -96,7 +96,7 @@ static void bins_hold_their_smallest_gaps(void **state) {
     }
 }
 
-/* Slice 1003 is the run's smallest gap, and within a bin. */
+/* Slice 1003 has the run's smallest gap, and is within a bin. */
 static void smallest_gap_is_in_its_bin(void **state) {
     (void)state;
     step_to(1002);
@@ -131,7 +131,7 @@ static void full_bins_become_half_as_many(void **state) {
     assert_int_equal(curves->slices, 4 * BIN);
 }
 
-/* What stands counts from the end of the first bin on: one that then only leaves was never nearer. */
+/* A body at rest counts from the end of the first bin on: one that then only moves away was never nearer. */
 static void a_late_start_is_no_blind_spot(void **state) {
     (void)state;
     while (table.slice < 25) {
@@ -148,7 +148,7 @@ static void a_late_start_is_no_blind_spot(void **state) {
     assert_int_equal(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].slice, BIN);
 }
 
-/* A run that ends within a bin has that part of it, too. */
+/* A run that ends within a bin has that part of the bin, too. */
 static void the_last_bin_may_be_shorter(void **state) {
     (void)state;
     wh_curves_t curves;
@@ -182,14 +182,15 @@ static void lost_slices_leave_no_gap(void **state) {
 
 enum { CYCLE = 1280, CYCLES = 40 };
 
-/* Down to 2.5 mm for one slice, at 7 mm for some, and else above what is near, but for one cycle to 3 mm. */
+/* Down to 2.5 mm for one slice, at 7 mm for some; otherwise above the limit for near, except for
+ * one cycle to 3 mm. */
 static double height_of_cycle(uint64_t slice) {
     const uint64_t in_cycle = slice % CYCLE;
     return in_cycle == 333 ? 2.5 : in_cycle > 900 && in_cycle < 990 ? 7 : 30;
 }
 
-/* Cycles that begin with a bin have the same smallest gaps, however long bins are by then: the first one of
- * the run counts no more than the others. */
+/* Cycles that begin with a bin have the same smallest gaps, however long bins have become: the
+ * run's first cycle counts no more than the others. */
 static void cycles_that_are_alike_look_alike(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);

@@ -28,8 +28,8 @@ static wh_part_t box_part(wh_part_kind_t kind, int owner, double x, double y, do
     return part;
 }
 
-/* A thin wall at x = 1000; ledges of station 0's slots 1 and 2, left and right, their upper sides in the slots' planes;
- * then a blade 160 x 150 x 3, a hand, a forearm, and the chuck of station 2. */
+/* A thin wall at x = 1000; ledges of station 0's slots 1 and 2, left and right, their upper sides
+ * in the slots' planes; then a blade 160 x 150 x 3, a hand, a forearm, and the chuck of station 2. */
 static void describe(void) {
     parts[0] = box_part(WH_PART_FIXED, WH_NONE, 1000, 0, 900, wh_vec3(WH_REAL(0.02), 2000, 2000));
     for (int slot = 1; slot <= 2; ++slot) {
@@ -53,7 +53,8 @@ static void describe(void) {
     config.wafer.body_from_shape = wh_test_at(0, 0, WH_REAL(0.3875));
 }
 
-/* The effector stands at (400, 0, 897) looking along x; wafer 0 lies in slot 1, the others out of the way. */
+/* The effector stands at (400, 0, 897) and points along x; wafer 0 lies in slot 1, the others out
+ * of the way. */
 static int open_world(void **state) {
     set_up(state);
     describe();
@@ -70,7 +71,7 @@ static int open_world(void **state) {
     return 0;
 }
 
-/* What the table's last step left. */
+/* The result of the table's last step. */
 static wh_world_input_t seen(void) {
     wh_arm_place(&arm, &effector, links);
     const wh_world_input_t input = {table.slice, table.storage.wafers, table.storage.grippers, links,
@@ -78,7 +79,7 @@ static wh_world_input_t seen(void) {
     return input;
 }
 
-/* After the scene is as a test wants it. */
+/* Call this once the scene is as a test wants it. */
 static void begin(void) {
     grippers[0].base_from_gripper = inputs[0].base_from_gripper;
     grippers[1].base_from_gripper = inputs[1].base_from_gripper;
@@ -95,7 +96,7 @@ static int close_world(void **state) {
     return 0;
 }
 
-/* The effector goes there with this valve; returns how many events the world had. */
+/* Moves the effector there with this valve; returns how many events the world had. */
 static size_t go(double x, double y, double z, int valve) {
     wh_event_t steps[2 * WH_EVENTS_PER_GRIPPER];
     wh_event_list_t picks = {steps, 2 * WH_EVENTS_PER_GRIPPER, 0};
@@ -130,7 +131,7 @@ static void nothing_tunnels_through_a_thin_wall(void **state) {
     assert_int_equal(events[0].slice, 2);
     assert_near(events[0].at.x, 1000, 400);
     assert_true(least(WH_CLEARANCE_BLADE_OTHER)->gap <= 0 || least(WH_CLEARANCE_ARM_OTHER)->gap <= 0);
-    assert_int_equal(go(400, 0, 950, WH_VALVE_CLOSED), 0); /* the first hit is the run's */
+    assert_int_equal(go(400, 0, 950, WH_VALVE_CLOSED), 0); /* the first hit counts for the run */
 }
 
 static void a_blade_that_scrapes_a_wafer_is_named(void **state) {
@@ -160,7 +161,7 @@ static void a_blade_takes_its_wafer_without_a_hit(void **state) {
     assert_near(least(WH_CLEARANCE_WAFER_LEDGE)->gap, 3, 1e-3);
 }
 
-/* It lies on its ledges, though not in the middle of its slot. */
+/* It lies on its ledges, but not in the middle of its slot. */
 static void a_wafer_aside_is_taken_without_a_hit(void **state) {
     (void)state;
     wafers[0].base_from_wafer = wh_test_at(712, -9, 900);
@@ -230,7 +231,7 @@ static void a_wafer_that_was_put_elsewhere_is_there(void **state) {
     assert_int_equal(events[0].wafer, 1);
 }
 
-/* What is known of two held wafers is of no use for the next one, to which the blade went empty. */
+/* Earlier results for two held wafers do not help for the next one, to which the blade went empty. */
 static void the_next_wafer_hits_one_on_another_gripper(void **state) {
     (void)state;
     inputs[1] = (wh_gripper_input_t){wh_test_at(300, 600, 950), WH_VALVE_OPEN};
@@ -260,7 +261,7 @@ static void the_next_wafer_hits_one_on_another_gripper(void **state) {
 
 static void links_of_the_arm_are_neighbours(void **state) {
     (void)state;
-    begin(); /* hand and forearm cut each other as they are described, blade and hand touch */
+    begin(); /* hand and forearm overlap as described, blade and hand touch */
     for (int step = 0; step < 20; ++step) {
         assert_int_equal(go(400 + 5 * step, 10 * step, 960, WH_VALVE_CLOSED), 0);
     }
@@ -356,7 +357,7 @@ static void all_that_touches_before_a_run_is_found(void **state) {
     const wh_world_input_t input = seen();
     assert_int_equal(wh_world_check_rest(world, &input, found, 4), 0);
     free(memory);
-    wafers[0].base_from_wafer.r.z = 900 + 9.5; /* lies in slot 2, and so do its ledges' rules */
+    wafers[0].base_from_wafer.r.z = 900 + 9.5; /* it lies in slot 2, so that slot's ledge rules apply */
     begin();
     assert_int_equal(wh_world_check_rest(world, &input, found, 4), 0);
     free(memory);
@@ -386,7 +387,7 @@ static void bad_descriptions_are_refused(void **state) {
     assert_int_equal(wh_world_validate(&config, &part), WH_STATUS_OUT_OF_RANGE);
     assert_int_equal(part, FIXED);
     parts[FIXED].owner = 0;
-    parts[FIXED + 1].kind = WH_PART_FIXED; /* behind one that hangs */
+    parts[FIXED + 1].kind = WH_PART_FIXED; /* it stands behind a hanging part */
     assert_int_equal(wh_world_validate(&config, &part), WH_STATUS_OUT_OF_RANGE);
     parts[FIXED + 1].kind = WH_PART_WAFER;
     assert_int_equal(wh_world_validate(&config, &part), WH_STATUS_OUT_OF_RANGE);
@@ -404,7 +405,7 @@ static void bad_descriptions_are_refused(void **state) {
 
 /* -------------------------------------------------------------------------------------------- robots' links */
 
-/* On a rail that leads aside, with a column that tilts. */
+/* On a rail that leads sideways, with a column that tilts. */
 static wh_chain_t chain_of(wh_chain_kind_t kind) {
     wh_chain_t chain = {.kind = kind, .is_placed = true, .has_rail = true, .has_tilt = true};
     for (size_t axis = 0; axis < WH_CHAIN_AXES; ++axis) {
@@ -427,7 +428,7 @@ static void assert_way(const wh_pose_t *from, double along, const wh_pose_t *to)
     assert_true(wh_vec3_norm(&off) < 1e-9);
 }
 
-/* The elbow is as far aside of the way from shoulder to wrist, in the arm's own plane, as this says. */
+/* This is the distance of the elbow from the line between shoulder and wrist, in the arm's own plane. */
 static double aside(const wh_pose_t bodies[]) {
     const wh_vec3_t out = wh_vec3_subtract(&bodies[WH_ARM_HAND].r, &bodies[WH_ARM_UPPER].r);
     const wh_vec3_t elbow = wh_vec3_subtract(&bodies[WH_ARM_FOREARM].r, &bodies[WH_ARM_UPPER].r);
@@ -477,7 +478,7 @@ static void links_of_every_kind_hang_together(void **state) {
     }
 }
 
-/* A second robot beside the first: its hand may not touch what the first one's hand may. */
+/* A second robot beside the first: its hand must not touch what the first robot's hand must not touch. */
 static void parts_of_two_robots_are_judged(void **state) {
     (void)state;
     static const wh_world_arm_t arms[] = {{0, WH_ARM_BASE}, {1, WH_ARM_BASE}, {1, WH_ARM_UPPER}};
@@ -512,7 +513,8 @@ static void parts_of_two_robots_are_judged(void **state) {
     assert_false(wh_world_belong_together(&config, &blade, &other_hand));
 }
 
-/* At one wrist both hands are on one axis, and each blade passes the other hand; the blades themselves are judged. */
+/* At one wrist both hands are on one axis, and each blade passes the other hand. Only the blades
+ * themselves are checked. */
 static void hands_at_one_wrist_belong_together(void **state) {
     (void)state;
     static const wh_world_arm_t arms[] = {{0, WH_ARM_BASE}, {0, WH_ARM_HAND}};
@@ -549,8 +551,8 @@ static void arms_beyond_the_room_are_refused(void **state) {
     assert_int_equal(wh_world_validate(&config, NULL), WH_STATUS_BAD_CAPACITY);
 }
 
-/* In place of the chuck a door hangs in its frame, the wall, and goes down from above: through that, and then
- * onto wafer 0 or beside it. */
+/* Instead of the chuck, a door hangs in its frame, the wall. It moves down from above: through the
+ * wall, and then onto wafer 0 or beside it. */
 static void lower_door(double x, size_t *hits, double *z) {
     free(memory);
     parts[FIXED + 3] = box_part(WH_PART_DOOR, 0, 0, 0, 0, wh_vec3(20, 100, 100));

@@ -1,4 +1,5 @@
-/* Frames, limits and robots from measurements with known answers; what they do not tell; tables that are refused. */
+/* Frames, limits and robots from measurements with known answers; values that the measurements do
+ * not give; tables that are refused. */
 #include "support/support.h"
 
 #include <unistd.h>
@@ -40,7 +41,7 @@ static void residuals_are_of_the_points_that_count(void **state) {
     }
     wh_frame_estimate_t frame;
     assert_int_equal(wh_frame_estimate(points, 9, &frame), WH_OK);
-    /* Symmetric about the middle: the plane is lifted by the mean, and nothing turns. */
+    /* The errors are symmetric about the middle: the plane rises by their mean, and nothing turns. */
     const double mean = (0.9 - 4 * 0.3 + 4 * 0.2) / 9;
     assert_int_equal(frame.set_aside, 0);
     assert_near(frame.base_from_station.r.z, 7 + mean, 1e-9);
@@ -49,7 +50,7 @@ static void residuals_are_of_the_points_that_count(void **state) {
     assert_near(frame.rms, sqrt((0.81 + 4 * 0.09 + 4 * 0.04) / 9 - mean * mean), 1e-9);
 }
 
-/* Of six points, which are 0.02 mm off, one is 20 mm off, in each place in turn. */
+/* Among six points with errors of 0.02 mm, one is 20 mm off, in each place in turn. */
 static void a_point_that_contradicts_the_others_is_set_aside(void **state) {
     (void)state;
     static const double off[6][3] = {{0.02, 0, -0.01}, {-0.02, 0.01, 0}, {0.01, -0.02, 0.02},
@@ -87,7 +88,7 @@ static void frames_that_points_do_not_tell_are_refused(void **state) {
     assert_int_equal(wh_frame_estimate(points, 3, &frame), WH_STATUS_NOT_DETERMINED);
     assert_non_null(strstr(frame.reason, "on a line"));
     assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
-    points[3].touched.y = -50; /* x and y of the four are mirrored now, or z is */
+    points[3].touched.y = -50; /* now x and y of the four are mirrored, or z is */
     assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
     assert_near(frame.rpy[0], 3.141592653589793, 1e-9);
     points[3].touched.y = 500;
@@ -114,6 +115,34 @@ static void make_moves(const wh_limits_t *limits, double travel, double delay) {
         const double error = (double)((i * 7) % 13 - 6) / 6 * 1.6e-3;
         moves[i] = (wh_timed_move_t){distance, profile.duration + delay + error, false};
     }
+}
+
+/* The value that the reason offers for a layout gives the times of the fit, as every larger one does; the
+ * bound does not. */
+static void an_acceleration_that_is_never_reached_may_be_written_down(void **state) {
+    (void)state;
+    const wh_limits_t limits = {400, 1500, 4000};
+    wh_limits_estimate_t found;
+    make_moves(&limits, 420, 0);
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_OK);
+    assert_false(found.values[WH_LIMIT_ACCELERATION].is_determined);
+    const char *from = strstr(found.reason, "any from ");
+    assert_non_null(from);
+    wh_limits_t offered = {found.values[WH_LIMIT_SPEED].value, strtod(from + strlen("any from "), NULL),
+                           found.values[WH_LIMIT_JERK].value};
+    double squares = 0;
+    for (int i = 0; i < 200; ++i) {
+        wh_profile_t profile;
+        wh_profile_t larger;
+        wh_limits_t more = offered;
+        more.acceleration *= 10;
+        assert_int_equal(wh_profile_plan(&profile, moves[i].distance, &offered), WH_OK);
+        assert_int_equal(wh_profile_plan(&larger, moves[i].distance, &more), WH_OK);
+        assert_near(profile.duration, larger.duration, 1e-6);
+        squares += (profile.duration - moves[i].seconds) * (profile.duration - moves[i].seconds);
+    }
+    assert_true(sqrt(squares / 200) <= 1.02 * found.rms);
+    assert_true(offered.acceleration > found.at_least[WH_LIMIT_ACCELERATION]);
 }
 
 static void limits_are_found_and_pauses_are_set_aside(void **state) {
@@ -175,11 +204,11 @@ static void limits_that_times_do_not_tell_are_refused(void **state) {
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
     moves[0].seconds = (double)NAN;
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
-    for (int i = 0; i < 200; ++i) { /* all of one length: one number is told, of three */
+    for (int i = 0; i < 200; ++i) { /* all have one length: they give one of the three numbers */
         moves[i] = (wh_timed_move_t){50, 0.4 + 1e-3 * (i % 3), false};
     }
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_NOT_DETERMINED);
-    for (int i = 0; i < 200; ++i) { /* the longer, the quicker */
+    for (int i = 0; i < 200; ++i) { /* longer moves are quicker */
         moves[i] = (wh_timed_move_t){1 + i, 3 - 0.01 * i, false};
     }
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_NO_FIT);
@@ -192,13 +221,14 @@ static void limits_that_times_do_not_tell_are_refused(void **state) {
 
 static wh_touch_t touches[WH_GEOMETRY_MOST_TOUCHES + 1];
 
-/* A level robot at (800, -300), 90 degrees round, whose r is told 2 short and z 10 high, with a tool 20 ahead and 30 to the
- * left of its wrist: touches by turns of quarters, so that sines are 0 and 1. */
+/* A level robot at (800, -300), turned by 90 degrees. Its r reads 2 too little and its z 10 too
+ * much; its tool is 20 ahead and 30 to the left of its wrist. It touches at quarter turns, so that
+ * sines are 0 and 1. */
 static void make_touches(size_t count) {
     static const double s[4] = {0, 1, 0, -1};
     for (size_t i = 0; i < count; ++i) {
         const size_t arm = i % 4;
-        const size_t wrist = (arm + i / 4) % 4; /* yaw turned by quarters from arm */
+        const size_t wrist = (arm + i / 4) % 4; /* yaw in quarter turns from the arm */
         const double r = 400 + 50 * (double)(i % 5);
         const double z = 900 + 7 * (double)(i % 3);
         const double ahead = s[(wrist + 1) % 4];
@@ -261,14 +291,14 @@ static void robots_that_touches_do_not_tell_say_what_is_missing(void **state) {
                                       "heading, in 4 touches or more");
     assert_false(found.values[WH_GEOMETRY_ZERO + WH_AXIS_R].is_determined);
     assert_near(found.values[WH_GEOMETRY_TOOL_Y].value, 30, 1e-6);
-    touches[3].axes[WH_AXIS_YAW] = 90 * DEG; /* but for one: it alone tells */
+    touches[3].axes[WH_AXIS_YAW] = 90 * DEG; /* except this one: it alone gives the value */
     const double arm = touches[3].axes[WH_AXIS_THETA] + 90 * DEG;
     const double r = touches[3].axes[WH_AXIS_R] + 2 - 30;
     touches[3].touched.x = 800 + r * cos(arm) - 20 * sin(arm);
     touches[3].touched.y = -300 + r * sin(arm) + 20 * cos(arm);
     assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_OK);
     assert_non_null(strstr(found.reason, "zero_r, tool_x: touches like number 4, which alone tells it"));
-    for (size_t i = 0; i < 24; ++i) { /* the same touch over and over */
+    for (size_t i = 0; i < 24; ++i) { /* the same touch again and again */
         touches[i] = touches[0];
     }
     assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NOT_DETERMINED);
@@ -307,7 +337,7 @@ static void robots_are_refused_by_number(void **state) {
     assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_STATUS_NO_FIT);
     assert_non_null(strstr(found.reason, "heading"));
     make_touches(24);
-    for (size_t i = 0; i < 24; ++i) { /* heights where the sides should be */
+    for (size_t i = 0; i < 24; ++i) { /* heights in the place of the sides */
         const double z = touches[i].touched.z;
         touches[i].touched.z = touches[i].touched.y;
         touches[i].touched.y = z;
@@ -457,6 +487,7 @@ int main(void) {
         cmocka_unit_test(residuals_are_of_the_points_that_count),
         cmocka_unit_test(a_point_that_contradicts_the_others_is_set_aside),
         cmocka_unit_test(frames_that_points_do_not_tell_are_refused),
+        cmocka_unit_test(an_acceleration_that_is_never_reached_may_be_written_down),
         cmocka_unit_test(limits_are_found_and_pauses_are_set_aside),
         cmocka_unit_test(short_moves_tell_no_speed_and_say_so),
         cmocka_unit_test(a_delay_is_refused_unless_it_is_asked_for),

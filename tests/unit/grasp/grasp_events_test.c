@@ -1,4 +1,4 @@
-/* Near misses and contests: when they are reported, when they are not, and with which values. */
+/* Near misses and contests: when they are reported and when not, and with which values. */
 #include "support/grasp.h"
 
 /* Gripper 0 comes to 2 mm, 1 mm, 3 mm below wafer 0 in slices 1 to 3. */
@@ -50,7 +50,7 @@ static void closing_is_a_near_miss(void **state) {
     expect_near_miss_of_slice_2(&cell);
     cell_move(&cell, 0, 0, 0, -3, CLOSED);
     cell_expect_nothing(&cell);
-    /* Opened again in the neighbourhood: the next approach, with values of its own. */
+    /* It opens again in the neighbourhood: this is the next approach, with values of its own. */
     cell_move(&cell, 0, 0, 0, -3, OPEN);
     cell_move(&cell, 0, 0, 0, -3, CLOSED);
     const wh_event_t *e = cell_expect(&cell, WH_EVENT_NEAR_MISS, 0, 0, WH_NONE);
@@ -223,7 +223,8 @@ static void a_contest_ends_when_the_wafer_goes(void **state) {
     expect_contest_of_slice_2(&cell, 1);
 }
 
-/* Released out of the contestant's reach: it gets nothing, and hears so. */
+/* The wafer is released outside the contestant's reach: the contestant does not get it, and this is
+ * reported. */
 static void a_contest_ends_with_a_release_elsewhere(void **state) {
     (void)state;
     cell_t cell;
@@ -241,7 +242,8 @@ static void a_contest_that_ends_in_a_hand_over_is_none(void **state) {
     contest(&cell);
     cell_move(&cell, 1, 0, 0, 0, CLOSED);
     cell_expect(&cell, WH_EVENT_HANDED_OVER, 0, 0, 1);
-    /* Nor for a third gripper that was ready on it as well: it contests the new holder from now on. */
+    /* Nor does it end for a third gripper that was also ready on it: that one contests the new
+     * holder from now on. */
     contest(&cell);
     cell_move(&cell, 2, 0, 0, 0, OPEN);
     cell_move(&cell, 1, 0, 0, 0, CLOSED);
@@ -265,7 +267,7 @@ static void a_contest_ends_with_another_pick(void **state) {
     cell_expect_held(&cell, 1, 0);
 }
 
-/* Two grippers hold a wafer each within a third one's reach, and pass each other in height. */
+/* Two grippers each hold a wafer within a third one's reach, and pass each other in height. */
 static void a_contest_lasts_while_another_comes_nearer(void **state) {
     (void)state;
     cell_t cell;
@@ -295,7 +297,7 @@ static void a_contest_lasts_while_another_comes_nearer(void **state) {
     assert_int_equal(cell.gripper[0].contest.holder, 2);
 }
 
-/* An open, empty gripper on a wafer taken in this very slice by a lower one contests it at once. */
+/* An open, empty gripper on a wafer that a lower gripper takes in this very slice contests it at once. */
 static void the_second_of_two_contests(void **state) {
     (void)state;
     cell_t cell;
@@ -327,7 +329,8 @@ static void events_have_names(void **state) {
                                         "slipped",
                                         "vacuum_lost",
                                         "fault_armed",
-                                        "fault_cleared"};
+                                        "fault_cleared",
+                                        "pushed_through"};
     assert_int_equal(sizeof names / sizeof names[0], WH_EVENT_KINDS);
     for (int kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         assert_string_equal(wh_event_name((wh_event_kind_t)kind), names[kind]);

@@ -1,11 +1,11 @@
-/* The core never asks for memory: malloc and its kin are replaced by ones that count, for the whole program.
- */
+/* The core never asks for memory: functions that count replace malloc and its kin in the whole
+ * program. */
 #include "support/grasp.h"
 #include "support/heap.h"
 
 #if defined(WH_TEST_COUNTS_HEAP)
 
-/* One of everything, through each branch that a run can take. */
+/* One example of everything, through each branch that a run can take. */
 static void exercise(wh_check_t check) {
     static cell_t cell;
     wh_grasp_config_t config = wh_grasp_config_default();

@@ -1,8 +1,9 @@
-/* Setting a table up, placing wafers by hand: what is taken, what is refused, and what is forgotten. */
+/* Setting a table up and placing wafers by hand: which inputs are accepted, which are refused, and
+ * what the table forgets. */
 #include "grasp/restore.h"
 #include "support/grasp.h"
 
-/* A cell in the middle of things. */
+/* A cell in the middle of a run. */
 static void begin_busy(cell_t *cell) {
     cell_begin_default(cell);
     cell_move(cell, 0, 0, 0, -0.25, OPEN);
@@ -23,7 +24,7 @@ static void spoil_storage(wh_grasp_storage_t *storage, int what) {
     }
 }
 
-/* What init must refuse, one thing at a time. */
+/* Inputs that init must refuse, one at a time. */
 static wh_status_t init_with(cell_t *cell, int what) {
     wh_grasp_config_t config = wh_grasp_config_default();
     wh_grasp_storage_t storage = {cell->wafer, CELL_WAFERS, cell->gripper, CELL_GRIPPERS, NULL, 0};
@@ -68,7 +69,7 @@ static void init_refuses(void **state) {
     assert_memory_equal(&cell, &before, sizeof cell);
 }
 
-/* Up to INT32_MAX of each: refused for the first wafer's pose, and not for the count. */
+/* Up to INT32_MAX of each: it is refused for the first wafer's pose, and not for the count. */
 static void init_takes_the_greatest_counts(void **state) {
     (void)state;
     cell_t cell;
@@ -94,8 +95,9 @@ static void init_takes_the_greatest_counts(void **state) {
     assert_int_equal(wh_grasp_init(&cell.table, &config, &most[3]), WH_OK);
 }
 
-/* A library without swept checking or without the index says so, and the table stays as it was. So does a table that such a
- * library never set up, when it should be restored. */
+/* A library without swept checking or without the index reports this, and the table stays
+ * unchanged. A table that such a library cannot have set up is refused, too, when it is to be
+ * restored. */
 static void what_is_not_built_is_refused(void **state) {
     (void)state;
     cell_t cell;
@@ -127,7 +129,7 @@ static void what_is_not_built_is_refused(void **state) {
                      WH_INDEX_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
 }
 
-/* The ends of the ranges are in them. */
+/* The ends of the ranges are valid. */
 static void init_takes_the_ranges_ends(void **state) {
     (void)state;
     cell_t cell;
@@ -153,7 +155,7 @@ static void one_of_nothing_is_refused(void **state) {
     }
 }
 
-/* A table that was used begins anew: nobody holds, nothing is counted, grippers stand at base's origin. */
+/* A used table begins anew: nothing is held, nothing is counted, grippers stand at base's origin. */
 static void init_begins_anew(void **state) {
     (void)state;
     cell_t cell;
@@ -197,7 +199,7 @@ static void placing_moves_a_free_wafer(void **state) {
     assert_int_equal(cell.table.slice, 0);
 }
 
-/* Whoever follows the wafer that is placed, and nobody else, has lost it. */
+/* A gripper that follows the placed wafer has lost it; no other gripper has. */
 static void placing_is_forgotten_by_whom_it_concerns(void **state) {
     (void)state;
     cell_t cell;
@@ -211,7 +213,7 @@ static void placing_is_forgotten_by_whom_it_concerns(void **state) {
     assert_int_equal(cell.gripper[2].approach.wafer, WH_NONE);
 }
 
-/* What stands beside the arrays is not looked at: a free wafer there is neither taken nor let go of. */
+/* Entries beside the arrays are not read: a free wafer there is neither taken nor released. */
 static void play_beside_neighbours(wh_check_t check) {
     wh_wafer_t wafers[3];
     wh_gripper_t grippers[3];

@@ -1,9 +1,9 @@
-/* Never a surprise: what is wrong is refused, and the state is what it was, byte for byte. */
+/* Wrong input is refused, and the state stays unchanged, byte for byte. */
 #include "support/grasp.h"
 
 #include "grasp/restore.h"
 
-/* A cell in the middle of things: a wafer held, an approach and a contest under way. */
+/* A cell in the middle of a run: a wafer held, an approach and a contest under way. */
 static void begin_busy(cell_t *cell) {
     cell_begin_default(cell);
     cell_move(cell, 0, 0, 0, -0.25, OPEN);
@@ -14,7 +14,7 @@ static void begin_busy(cell_t *cell) {
     cell_set(cell, 0, 0, 0, 30, CLOSED);
 }
 
-/* Nothing but the count of refusals, and perhaps the event list, differs. */
+/* Only the count of refusals differs, and perhaps the event list. */
 static void expect_unchanged(const cell_t *cell, const cell_t *before, uint64_t refusals) {
     cell_t expected;
     memcpy(&expected, before, sizeof expected);
@@ -39,11 +39,11 @@ static void refused_for_input(cell_t *cell, const cell_t *before, int gripper, w
     assert_int_equal(e->status, status);
     assert_int_equal(e->slice, before->table.slice + 1);
     assert_int_equal(e->measured_slice, before->table.slice + 1);
-    /* And without a list. */
+    /* Now without a list. */
     memcpy(cell, before, sizeof *cell);
 }
 
-/* The table points into its own cell, so a copy restored in place is the same table. */
+/* The table points into its own cell, so a copy that is restored in place is the same table. */
 static void each_number_of_a_pose_is_looked_at(void **state) {
     (void)state;
     const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY), WH_REAL(-INFINITY)};
@@ -77,7 +77,7 @@ static void rotations_and_valves_are_looked_at(void **state) {
             refused_for_input(&cell, &before, g, WH_STATUS_BAD_VALVE);
         }
     }
-    /* Of two that are wrong the first is named. */
+    /* If two are wrong, the first one is named. */
     cell.input[2].valve = 9;
     cell.input[1].base_from_gripper.r.x = WH_REAL(NAN);
     refused_for_input(&cell, &before, 1, WH_STATUS_NOT_FINITE);
@@ -87,8 +87,8 @@ static void rotations_and_valves_are_looked_at(void **state) {
     expect_unchanged(&cell, &before, 1);
 }
 
-/* One of the 24 rotations that lay a cube onto itself: each row and column has one entry of 1 or -1, so that any two entries
- * are the same in some of them. */
+/* One of the 24 rotations that map a cube onto itself: each row and column has one entry of 1 or
+ * -1, so any two entries are equal in some of them. */
 static wh_mat3_t cube_rotation(int number) {
     const int first = number / 8;
     const int second = (first + 1 + number / 4 % 2) % 3;
@@ -100,7 +100,7 @@ static wh_mat3_t cube_rotation(int number) {
     return (wh_mat3_t){{{e1.x, e2.x, e3.x}, {e1.y, e2.y, e3.y}, {e1.z, e2.z, e3.z}}};
 }
 
-/* An entry that differs from the last slice's is seen, whatever the others and the place are. */
+/* An entry that differs from the last slice's is detected, whatever the others and the place are. */
 static void each_entry_of_a_rotation_is_looked_at(void **state) {
     (void)state;
     for (int number = 0; number < 24 * 3; ++number) {
@@ -119,7 +119,8 @@ static void each_entry_of_a_rotation_is_looked_at(void **state) {
     }
 }
 
-/* Nor does an entry pass for being another number of the pose, or one that stands beside it in memory. */
+/* An entry does not pass either because it equals another number of the pose, or a number beside it
+ * in memory. */
 static void no_entry_is_taken_for_another(void **state) {
     (void)state;
     for (int run = 0; run < 8; ++run) {
@@ -185,7 +186,7 @@ static void a_list_is_large_enough_or_null(void **state) {
     assert_int_equal(wh_grasp_step(&cell.table, cell.input, NULL), WH_OK);
 }
 
-/* With and without a list the state goes the same way. */
+/* With and without a list the state changes in the same way. */
 static void a_list_changes_nothing(void **state) {
     (void)state;
     cell_t with;
@@ -244,7 +245,7 @@ static void questions_are_checked(void **state) {
     assert_int_equal(wh_grasp_wafer(&cell.table, 0, NULL, NULL), WH_OK);
 }
 
-/* No byte of the table changes, and no array that it seems to have is looked at. */
+/* No byte of the table changes, and none of its supposed arrays is read. */
 static void expect_not_initialised(wh_grasp_t *table) {
     const wh_gripper_input_t input = {wh_pose_identity(), OPEN};
     const wh_pose_t pose = wh_test_at(7, 7, 7);
@@ -309,13 +310,13 @@ static void empty_tables_work(void **state) {
     const wh_gripper_input_t input = {wh_pose_identity(), OPEN};
     assert_int_equal(wh_grasp_init(&table, &config, &no_wafers), WH_OK);
     assert_int_equal(wh_grasp_step(&table, &input, NULL), WH_OK);
-    /* One of something is not none. */
+    /* A count of one instead of none. */
     assert_int_equal(wh_grasp_step(&table, NULL, NULL), WH_STATUS_NULL_ARGUMENT);
     list.capacity = 1;
     assert_int_equal(wh_grasp_step(&table, &input, &list), WH_STATUS_NULL_ARGUMENT);
 }
 
-/* The largest numbers there are neither trap nor are taken for near. */
+/* The largest numbers neither trap nor count as near. */
 static void huge_numbers_are_far_away(void **state) {
     (void)state;
 #if defined(WH_FLOAT)

@@ -1,4 +1,5 @@
-/* The grasp table's step: who takes what, what stays where it is, and that poses keep their bits. */
+/* The grasp table's step: which gripper takes which wafer, which wafers stay in place, and that
+ * poses keep their bits. */
 #include "support/grasp.h"
 
 static void same_bits(const wh_pose_t *a, const wh_pose_t *b) {
@@ -41,7 +42,7 @@ static void a_pick_moves_nothing(void **state) {
         assert_near(e->measured.dr_proj_z, 0.3, 1e4 * WH_TEST_ROUNDING);
         assert_int_equal(e->measured_slice, 1);
         assert_true(e->measured.ready);
-        /* Standing still, it stays: to rounding, and from then on to the bit. */
+        /* If it stands still, the pose stays: within rounding at first, then to the bit. */
         cell_step(&cell);
         assert_near(wh_test_difference_r(&cell.wafer[2].base_from_wafer, &base_from_wafer), 0,
                     1e4 * WH_TEST_ROUNDING);
@@ -51,7 +52,7 @@ static void a_pick_moves_nothing(void **state) {
     }
 }
 
-/* What stands before the wafers in memory, here one that looks free, is no wafer. */
+/* An entry before the wafers in memory, here one that looks free, is no wafer. */
 static void closing_empty_handed_lets_go_of_nothing(void **state) {
     (void)state;
     wh_grasp_t table;
@@ -73,7 +74,7 @@ static void closing_empty_handed_lets_go_of_nothing(void **state) {
     assert_int_equal(table.counters.released, 0);
 }
 
-/* What stands behind the grippers and inputs, here one that could take a wafer, does nothing. */
+/* An entry behind the grippers and inputs, here one that could take a wafer, has no effect. */
 static void there_are_no_more_grippers_than_that(void **state) {
     (void)state;
     cell_t cell;
@@ -128,7 +129,7 @@ static void a_gripper_takes_again_only_in_the_next_slice(void **state) {
     assert_near(cell.gripper[0].gripper_from_wafer.r.z, 0.125, 0);
 }
 
-/* A passes to B in the slice in which A closes, whichever of the two has the lower index. */
+/* A passes the wafer to B in the slice in which A closes, whichever of the two has the lower index. */
 static void hands_over_in_one_step(int from, int to) {
     cell_t cell;
     cell_begin_default(&cell);
@@ -139,7 +140,7 @@ static void hands_over_in_one_step(int from, int to) {
     const wh_event_t *e = cell_expect(&cell, WH_EVENT_HANDED_OVER, 0, to, from);
     cell_expect_held(&cell, 0, to);
     cell_expect_held(&cell, WH_NONE, from);
-    /* It first goes where `from` carries it in this slice; there `to` takes it. */
+    /* First `from` carries it to this place in this slice; there `to` takes it. */
     assert_near(cell.wafer[0].base_from_wafer.r.z, -0.125, 0);
     assert_near(e->measured.dr_proj_z, 0, 0);
     assert_int_equal(cell.wafer[0].released_by, WH_NONE);
@@ -148,7 +149,7 @@ static void hands_over_in_one_step(int from, int to) {
     assert_int_equal(cell.table.counters.picked, 1);
 }
 
-/* As above, but B is open beforehand: a contest that ends in a hand-over, and is not reported. */
+/* The case above, but B is open beforehand: the contest ends in a hand-over, and is not reported. */
 static void hands_over_to_one_that_waits(int from, int to) {
     cell_t cell;
     cell_begin_default(&cell);
@@ -173,7 +174,7 @@ static void hand_overs_go_both_ways(void **state) {
     hands_over_to_one_that_waits(2, 0);
 }
 
-/* Two grippers swap their wafers at one place in one slice? No: a closed valve takes nothing. */
+/* Two grippers cannot swap their wafers at one place in one slice: a closed valve takes nothing. */
 static void two_hand_overs_need_an_open_valve(void **state) {
     (void)state;
     cell_t cell;
@@ -226,13 +227,13 @@ static void one_gripper_holds_one_wafer(void **state) {
     cell_move(&cell, 0, 0, 0, -0.25, OPEN);
     cell_expect_nothing(&cell);
     cell_expect_held(&cell, 1, WH_NONE);
-    /* Its wafer set down, another gripper at the same place takes the nearer of the two. */
+    /* After it has put its wafer down, another gripper at the same place takes the nearer of the two. */
     cell_set(&cell, 0, 0, 0, -0.25, CLOSED);
     cell_move(&cell, 1, 0, 0, 0.125, OPEN);
     cell_expect_held(&cell, 0, 1);
 }
 
-/* Release, carry, pick: the pose at which a wafer is taken over is the one it is carried to in this slice. */
+/* Release, carry, pick: a wafer is taken over at the pose to which it is carried in this slice. */
 static void the_order_is_release_carry_pick(void **state) {
     (void)state;
     cell_t cell;
@@ -248,7 +249,7 @@ static void the_order_is_release_carry_pick(void **state) {
     cell_expect(&cell, WH_EVENT_PICKED, 0, 0, WH_NONE);
 }
 
-/* An independent look: n1 on n2, and no rotation does it with a smaller angle than theirs. */
+/* An independent check: n1 on n2, and no rotation achieves it with a smaller angle than theirs. */
 static void a_seated_wafer_lies_on_the_pads(void **state) {
     (void)state;
     wh_grasp_config_t config = wh_grasp_config_default();
@@ -278,15 +279,15 @@ static void a_seated_wafer_lies_on_the_pads(void **state) {
         const wh_mat3_t turn = wh_mat3_multiply_back(&before.R, &after->R);
         const double signals = (double)turn.m[0][0] + (double)turn.m[1][1] + (double)turn.m[2][2];
         assert_near((signals - 1) / 2, e->measured.n1_proj_n2, 64 * WH_TEST_ROUNDING);
-        /* In the gripper's plane the centre stays where it was. */
+        /* In the gripper's plane the centre keeps its place. */
         const wh_pose_t unseated = wh_pose_relative(&cell.input[0].base_from_gripper, &before);
         assert_near(g->r.x, unseated.r.x, 0);
         assert_near(g->r.y, unseated.r.y, 0);
     }
 }
 
-/* A gripper's rotation worn to the limit carries a wafer to a pose that the library still accepts, whatever
- * the direction in which the errors meet. */
+/* The errors of a gripper's rotation are at the limit. It carries a wafer to a pose that the
+ * library still accepts, whatever direction the errors have. */
 /* The largest entry of |R^T R - I|. */
 static double wear(const wh_mat3_t *R) {
     const wh_mat3_t square = wh_mat3_multiply_back(R, R);
@@ -315,7 +316,7 @@ static void worn_rotations_do_not_add_up(void **state) {
         cell.input[0].valve = OPEN;
         cell_step(&cell);
         cell_expect_held(&cell, 0, 0);
-        /* One step of mending squares the wear; a seated wafer has had two. */
+        /* One step of mending squares the error; a seated wafer has had two. */
         const double square = pow(6 * (double)WH_ROTATION_TOLERANCE, 2);
         assert_near(wear(&cell.gripper[0].gripper_from_wafer.R), 0,
                     (config.seat ? 0 : square) + 64 * WH_TEST_ROUNDING);
@@ -337,7 +338,7 @@ static void equal_histories_have_equal_hashes(void **state) {
     assert_true(wh_grasp_hash(&a.table) != wh_grasp_hash(&b.table));
     cell_move(&b, 0, 0, 0, -0.25, OPEN);
     assert_true(wh_grasp_hash(&a.table) == wh_grasp_hash(&b.table));
-    /* Counters are left out; one bit of one number is not. */
+    /* Counters are left out of the hash; a single bit of a number is not. */
     a.table.counters.refused = 77;
     assert_true(wh_grasp_hash(&a.table) == wh_grasp_hash(&b.table));
     a.wafer[3].base_from_wafer.r.y = -a.wafer[3].base_from_wafer.r.y;
@@ -358,7 +359,8 @@ static void begin_busy(cell_t *cell) {
     assert_int_equal(cell->gripper[2].approach.wafer, 2);
 }
 
-/* Writes `value` over a good index of a busy table: it is no longer consistent, and with the old one it is again. */
+/* Writes `value` over a good index of a busy table: the table is no longer consistent, and with the
+ * old value it is again. */
 static void breaks(cell_t *cell, int32_t *index, int32_t value) {
     const int32_t good = *index;
     assert_true(wh_grasp_is_consistent(&cell->table));

@@ -1,5 +1,5 @@
-/* Which slices are taken for uneventful: those in which no gripper looks for wafers though one is open and empty. That such a
- * slice changes no result is shown by tests/property/horizon_random.c. */
+/* The slices that count as uneventful: in them no gripper looks for wafers, though one is open and
+ * empty. tests/property/horizon_random.c shows that such a slice changes no result. */
 #include "grasp/horizon_internal.h"
 #include "grasp/restore.h"
 #include "support/grasp.h"
@@ -24,8 +24,8 @@ static void begin(fixture_t *fixture, wh_check_t check) {
         wh_horizon_is_clear_at(&fixture->cell.table, 1, &fixture->cell.gripper[1].base_from_gripper.r));
 }
 
-/* Whether gripper 1 takes no look in the next slice, not even whether it is within its horizon: what a slice notes is over at
- * its end, and such a slice takes no note. */
+/* True if gripper 1 does not look in the next slice, not even whether it is within its horizon. A
+ * slice's note is void at the slice's end, and such a slice writes no note. */
 static bool looks_at_nothing(fixture_t *fixture) {
     wh_grasp_t *table = &fixture->cell.table;
     const uint64_t slice = table->slice;
@@ -77,7 +77,7 @@ static void the_horizon_is_a_ball(void **state) {
     }
 }
 
-/* The way of a slice counts only where it is checked, and only if the gripper was open all along. */
+/* The way of a slice counts only if it is checked, and only if the gripper was open all the time. */
 static void outside_at_the_begin(void **state) {
     (void)state;
     for (int i = 0; i < 4; ++i) {
@@ -91,7 +91,7 @@ static void outside_at_the_begin(void **state) {
     }
 }
 
-/* A closed gripper looks at nothing, wherever it is. */
+/* A closed gripper looks for nothing, wherever it is. */
 static void closed_grippers_may_be_anywhere(void **state) {
     (void)state;
     fixture_t fixture;
@@ -102,25 +102,25 @@ static void closed_grippers_may_be_anywhere(void **state) {
     cell_expect_held(&fixture.cell, 0, WH_NONE);
 }
 
-/* What another gripper does that may have to be told, before and after gripper 1 in their order. */
+/* Actions of another gripper that may have to be reported, before and after gripper 1 in their order. */
 static void others_may_have_something_to_tell(void **state) {
     (void)state;
     for (int g = 0; g <= 2; g += 2) {
         fixture_t fixture;
-        /* Outside of its horizon. */
+        /* It is outside its horizon. */
         begin(&fixture, WH_CHECK_SAMPLED);
         cell_set(&fixture.cell, g, 1000 * g, 9000, -500, OPEN);
         assert_false(looks_at_nothing(&fixture));
-        /* Holding a wafer, while another looks. */
+        /* It holds a wafer, while another looks. */
         begin(&fixture, WH_CHECK_SAMPLED);
         cell_move(&fixture.cell, g, 1000 * g, 0, -0.25, OPEN);
         cell_expect_held(&fixture.cell, g, g);
         assert_false(looks_at_nothing(&fixture));
-        /* Letting go of it. */
+        /* It releases the wafer. */
         cell_set(&fixture.cell, g, 1000 * g, 0, -0.25, CLOSED);
         assert_false(looks_at_nothing(&fixture));
         cell_expect_held(&fixture.cell, g, WH_NONE);
-        /* Following one: within its horizon, of the tolerance. */
+        /* It follows a wafer: within its horizon, from the tolerance. */
         begin(&fixture, WH_CHECK_SAMPLED);
         cell_move(&fixture.cell, g, 1000 * g, 0, -4, OPEN);
         cell_move(&fixture.cell, g, 1000 * g, 0, -4, OPEN);
@@ -135,7 +135,7 @@ static void others_may_have_something_to_tell(void **state) {
     }
 }
 
-/* What the pick has found out, that no wafer matters, the watch does not look for again: nothing is searched. */
+/* The pick has found that no wafer matters; the watch does not look again, and nothing is searched. */
 static void one_look_is_enough(void **state) {
     (void)state;
     for (int check = WH_CHECK_SAMPLED; check <= WH_CHECK_SWEPT; ++check) {
@@ -160,8 +160,8 @@ static void without_buckets_every_slice_is_looked_at(void **state) {
     cell_expect_held(&cell, 1, 1);
 }
 
-/* A table taken up elsewhere says that gripper 1 contests wafer 0, which nobody holds, and the gripper is far away from all
- * wafers, and finds that out: it hears of the end of its contest all the same. */
+/* According to a restored table gripper 1 contests wafer 0, which nothing holds. The gripper is far
+ * away from all wafers, and finds that out. All the same, the end of its contest is reported. */
 static void a_contest_ends_though_nothing_rests_near(void **state) {
     (void)state;
     fixture_t fixture;

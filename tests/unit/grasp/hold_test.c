@@ -1,5 +1,5 @@
-/* Holding: Coulomb's law against its formula, and its verdict at the limit; the edge grip's path against the forms of its
- * header. */
+/* Holding: Coulomb's law compared with its formula, and its verdict at the limit; the edge grip's
+ * path compared with the forms of its header. */
 #include "support/pose.h"
 
 #include "grasp/edge.h"
@@ -83,7 +83,7 @@ static void the_limit_on_the_level(void **state) {
     }
 }
 
-/* Pads tilted by the angle of friction: there it begins to slide by itself. */
+/* Pads tilted by the angle of friction: at this angle it begins to slide by itself. */
 static void a_tilted_gripper_at_rest(void **state) {
     (void)state;
     const wh_vec3_t rest = {0, 0, 0};
@@ -105,7 +105,7 @@ static void down_faster_than_gravity_and_vacuum(void **state) {
     }
 }
 
-/* What is asked for and what carries are the same number. */
+/* The required and the available force are the same number. */
 static void at_the_limit_it_holds(void **state) {
     (void)state;
     pads.friction = 1;
@@ -117,7 +117,8 @@ static void at_the_limit_it_holds(void **state) {
     assert_false(hold.slips);
 }
 
-/* Nothing presses the wafer on the pads: friction carries nothing. A little less, and the wafer is torn off. */
+/* Nothing presses the wafer on the pads: friction carries nothing. A little less force, and the
+ * wafer is torn off. */
 static void without_pressure_friction_carries_nothing(void **state) {
     (void)state;
     pads.force = pads.gravity = 0;
@@ -156,7 +157,7 @@ static void the_formula_in_any_frame(void **state) {
     }
 }
 
-/* A run along x of constant acceleration, for so many slices; returns how many slips began. */
+/* A run along x with constant acceleration, for the given number of slices; returns how many slips began. */
 static int run(double acceleration, int slices) {
     int begun = 0;
     for (int n = 0; n < slices; ++n) {
@@ -169,7 +170,7 @@ static int run(double acceleration, int slices) {
     return begun;
 }
 
-/* In float the second difference of positions has fewer digits than that. */
+/* In float the second difference of positions has fewer digits. */
 static void a_run_of_constant_acceleration(void **state) {
     (void)state;
     const double margin = 1e6 * WH_TEST_ROUNDING > 1e-9 ? 0.2 : 1e-9;
@@ -190,7 +191,7 @@ static void the_first_two_slices_are_not_judged(void **state) {
     assert_true(carry.slips);
 }
 
-/* Along each axis of base a centre that goes 0, 1, 4 mm in quarters of a second gains 2 mm: 32 mm/s^2. */
+/* Along each axis of base a centre at 0, 1 and 4 mm in quarters of a second gains 2 mm: 32 mm/s^2. */
 static void acceleration_along_each_axis(void **state) {
     (void)state;
     static const wh_vec3_t along[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -233,7 +234,8 @@ static void without_a_wafer_nothing_is_known(void **state) {
     assert_true(hold.asked == 0 && hold.carried == 0 && !hold.slips);
 }
 
-/* A gripper that goes from one end of the numbers to the other, or as far as leaves none. */
+/* A gripper that moves from one end of the range of numbers to the other, or so far that no number
+ * is left. */
 static void a_motion_beyond_all_numbers_slips(void **state) {
     (void)state;
     const wh_pads_t rubber = {WH_REAL(0.3), 10, WH_REAL(0.13), WH_REAL(9.81)};
@@ -326,7 +328,7 @@ static void a_rest_over_the_notch_sinks_in(void **state) {
     assert_near(shift_with_notch_at(30 + 0.8), 0, 1e-9);
 }
 
-/* The pin's distance from points along both flanks, to the corners. */
+/* The pin's distance from points along both flanks, up to the corners. */
 static double nearest_of_outline(const wh_edge_wafer_t *wafer, double x, double y) {
     const double h = wafer->opening / 2;
     const double apex = wafer->radius - wafer->depth - wafer->bottom * (1 / sin(h) - 1);
@@ -388,8 +390,8 @@ static void a_notch_at_the_plunger_moves_the_plunger_alone(void **state) {
     }
 }
 
-/* From retracted to the end in steps of the plunger: the wafer moves with it, never ahead of what pushes it, through the
- * phases in their order, and begins where it lay. */
+/* From retracted to the end in steps of the plunger: the wafer moves with it, and never runs ahead.
+ * It passes through the phases in their order, and begins at its old place. */
 static void on_its_path_the_wafer_never_jumps(void **state) {
     (void)state;
     int seen = 0;
@@ -437,7 +439,7 @@ static void beyond_the_clearance_a_wafer_jams(void **state) {
     assert_true(place.phase == WH_EDGE_JAMMED && place.window == WH_EDGE_GRIPPED && !place.held);
 }
 
-/* Its rim is behind the open plunger, which goes nowhere. */
+/* Its rim is behind the open plunger, which does not move. */
 static void a_wafer_over_the_open_plunger_jams_there(void **state) {
     (void)state;
     const wh_edge_t edge = wh_edge_default(150);

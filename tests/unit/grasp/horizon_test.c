@@ -1,5 +1,6 @@
-/* How far a gripper's horizon reaches, to the number: what is taken off for rounding, what a word cannot hold, and that it
- * ends before any wafer matters. That horizons change no result is shown by tests/property/horizon_random.c. */
+/* The reach of a gripper's horizon, to the number: the margin for rounding, values that a word
+ * cannot hold, and that it ends before any wafer matters. tests/property/horizon_random.c shows
+ * that horizons change no result. */
 #include "grasp/grasp_internal.h"
 #include "grasp/horizon_internal.h"
 #include "support/grasp.h"
@@ -18,7 +19,7 @@ typedef struct {
     uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
 } fixture_t;
 
-/* Gripper G is the one that is asked about. */
+/* The tests ask about gripper G. */
 enum { G = 1 };
 
 static void begin(fixture_t *fixture, double projz, double projxy) {
@@ -77,8 +78,8 @@ static void words_are_each_grippers_own(void **state) {
     assert_memory_equal(next, others, sizeof others);
 }
 
-/* A table without buckets has no horizon. It notes if no wafer was near in this step, so that a step looks at all of them
- * once: they lie 1000 mm apart along x. */
+/* A table without buckets has no horizon. It notes if no wafer was near in this step, so that a
+ * step looks at all of them once: they lie 1000 mm apart along x. */
 static void without_buckets_it_is_noted_that_nothing_is_near(void **state) {
     (void)state;
     static const struct {
@@ -97,7 +98,7 @@ static void without_buckets_it_is_noted_that_nothing_is_near(void **state) {
     }
 }
 
-/* It is of one step, and of a gripper that watches no wafer. */
+/* It holds for one step, and for a gripper that watches no wafer. */
 static void the_note_is_over_with_the_step(void **state) {
     (void)state;
     cell_t cell;
@@ -170,8 +171,8 @@ static void measuring_begins_with_the_margin(void **state) {
     assert_true(horizon.limits.projz == WH_REAL(0.5) && horizon.limits.projxy == WH_REAL(0.25));
 }
 
-/* Within 4 mm along the wafer's axis and 60 mm across: the wafer's place, the gap before, that after, and whether the wafer
- * is not ready. */
+/* Within 4 mm along the wafer's axis and 60 mm across: the wafer's place, the gap before and after,
+ * and whether the wafer is not ready. */
 static void gaps_are_measured_from_the_neighbourhood(void **state) {
     (void)state;
     static const double cases[][6] = {{0, 0, 10, 100, 6, 1},        {0, 0, -10, 100, 6, 1},
@@ -186,7 +187,7 @@ static void gaps_are_measured_from_the_neighbourhood(void **state) {
                                       {60.5, 0, 3.5, 0, 0, 1},      {0, 0, (double)NAN, 9, 0, 0},
                                       {(double)NAN, 0, 0, 9, 0, 0}, {0, (double)INFINITY, 0, 9, 0, 0},
                                       {0, 0, 1e30, 100, 100, 1}};
-    /* Base's axes and the wafer's: the same, and turned into each other. */
+    /* Base's axes and the wafer's: equal, and turned into each other. */
     static const wh_mat3_t turns[] = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
                                       {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}}};
     for (size_t i = 0; i < 2 * (sizeof cases / sizeof cases[0]); ++i) {
@@ -202,7 +203,7 @@ static void gaps_are_measured_from_the_neighbourhood(void **state) {
     }
 }
 
-/* The least gap for which so many units are kept, by bisection. */
+/* The least gap for which this number of units is kept, by bisection. */
 static wh_real_t least_gap(fixture_t *fixture, const wh_vec3_t *place, uint32_t units, wh_real_t enough) {
     wh_real_t low = 0;
     wh_real_t high = enough;
@@ -214,7 +215,8 @@ static wh_real_t least_gap(fixture_t *fixture, const wh_vec3_t *place, uint32_t 
     return high;
 }
 
-/* Taken off are 2 units, 16 roundings of all numbers that are added up, and what the tolerance of rotations may stretch. */
+/* The margin is 2 units, plus 16 roundings of all numbers in the sum, plus the most that the
+ * tolerance of rotations may stretch. */
 static void what_is_taken_off(void **state) {
     (void)state;
     static const double places[][5] = {{0, 0, 0, 4, 60},     {3e7, -3e7, 3e7, 4, 60}, {-3e7, 1, 2, 4, 60},
@@ -255,7 +257,7 @@ static void distances_fit_their_word(void **state) {
     }
 }
 
-/* A place rounded to units may be 1.73 of them away: one unit does not hold it for sure, two do. */
+/* A place that is rounded to units may be 1.73 of them away: one unit does not hold it for sure, two do. */
 static void short_ones_do_not_hold(void **state) {
     (void)state;
     const wh_vec3_t place = vector(0, 0, 0);
@@ -270,20 +272,20 @@ static void short_ones_do_not_hold(void **state) {
     assert_int_equal(words(&fixture)[3], 4 * 1 + WH_HORIZON_OF_TOLERANCE);
     store(&fixture, &place, 4.5 / 64);
     assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_OF_TOLERANCE);
-    /* It is of use as long as that goes on. */
+    /* It is of use as long as this goes on. */
     assert_true(covers(&fixture, 0, 0, 0));
     fixture.cell.gripper[G].approach.wafer = WH_NONE;
     assert_false(covers(&fixture, 0, 0, 0));
 }
 
-/* (3, 4, 5), but for one axis. */
+/* (3, 4, 5), except for one axis. */
 static wh_vec3_t along(size_t axis, double value) {
     double at[3] = {3, 4, 5};
     at[axis] = value;
     return vector(at[0], at[1], at[2]);
 }
 
-/* 33 km from base's origin along any axis; a little nearer there is one. */
+/* There is none 33 km from base's origin along any axis; a little nearer there is one. */
 static void far_away_there_is_none(void **state) {
     (void)state;
     static const double fars[] = {33554430, 33554434, 1e9, 1e30, (double)INFINITY, (double)NAN};
@@ -302,7 +304,7 @@ static void far_away_there_is_none(void **state) {
     }
 }
 
-/* Places of either sign, up to the largest that float's numbers hold to 2 mm, in all three words. */
+/* Places of either sign, up to the largest for which float has a resolution of 2 mm, in all three words. */
 static void places_are_kept_as_signed_units(void **state) {
     (void)state;
     static const double places[] = {0, 16, -16, 4096.5, -4096.5, 16777216, -16777216};
@@ -336,7 +338,7 @@ static void places_are_kept_as_signed_units(void **state) {
     assert_int_equal(words(&fixture)[2], UINT32_MAX);
 }
 
-/* Every |R^T R - I| just within the tolerance, and the columns longer for it. */
+/* Every |R^T R - I| is just within the tolerance, and the columns are longer by it. */
 static wh_mat3_t stretched(void) {
     const wh_mat3_t R = wh_test_random_turn(WH_TEST_PI);
     wh_mat3_t stretch = wh_mat3_identity();
@@ -367,7 +369,7 @@ static wh_vec3_t last_covered(const fixture_t *fixture, const wh_vec3_t *from, c
     return place;
 }
 
-/* Whether a table without buckets, which looks at all wafers, finds one at this place. */
+/* True if a table without buckets, which looks at all wafers, finds one at this place. */
 static bool matters(const wh_pose_t *base_from_wafer, const wh_vec3_t *place) {
     cell_t cell;
     wh_grasp_config_t config = wh_grasp_config_default();
@@ -381,11 +383,12 @@ static bool matters(const wh_pose_t *base_from_wafer, const wh_vec3_t *place) {
     return cell.gripper[G].wafer == 0 || cell.gripper[G].approach.wafer == 0;
 }
 
-/* However far away a gripper looked, and it then comes straight along the wafer's axis or across: it is no longer within
- * its horizon where a table that looks at all wafers finds this one. */
+/* A gripper has looked from any distance, and then comes straight along the wafer's axis or across
+ * it. It is no longer within its horizon at the place where a table that looks at all wafers finds
+ * this one. */
 static void it_ends_before_a_wafer_matters(void **state) {
     (void)state;
-    for (int run = 0; run < 2000; ++run) {
+    for (int run = 0; run < 2000 / WH_TEST_SHARE; ++run) {
         fixture_t fixture;
         begin(&fixture, 4, 60);
         const double reach = run % 4 == 0 ? 1e7 : 1e4;

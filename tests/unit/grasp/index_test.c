@@ -1,5 +1,5 @@
-/* The index over wafers and the horizons of grippers, in the caller's buckets: what they are told and what they save. That
- * they change no result is shown by tests/property/horizon_random.c. */
+/* The index over wafers and the horizons of grippers, in the caller's buckets: their contents, and
+ * the work that they save. tests/property/horizon_random.c shows that they change no result. */
 #include "grasp/restore.h"
 #include "support/index.h"
 
@@ -21,7 +21,7 @@ static void buckets_are_counted(void **state) {
     assert_int_equal(wh_grasp_buckets(SIZE_MAX, SIZE_MAX), 0);
 }
 
-/* No table can have buckets for that many, however many are handed in. */
+/* No table can have buckets for so many wafers, however many are passed in. */
 static void too_many_wafers_have_no_index(void **state) {
     (void)state;
     static uint32_t bucket;
@@ -45,7 +45,7 @@ static void units_are_whole(void **state) {
     assert_int_equal(wh_index_whole(WH_REAL(NAN)), -WH_INDEX_FAR);
 }
 
-/* Only what is around the gripper is looked at; all wafers where their number is no less work. */
+/* Only the surroundings of the gripper are searched, or all wafers if their number means no more work. */
 static void search_finds_what_is_around(void **state) {
     (void)state;
     indexed_t indexed;
@@ -67,7 +67,7 @@ static void search_finds_what_is_around(void **state) {
     assert_null(near.listed);
 }
 
-/* As far as the next neighbourhood, and less than 0.1 mm short of it. */
+/* The horizon reaches to the next neighbourhood, and less than 0.1 mm short of it. */
 static void horizon_ends_before_a_neighbourhood(void **state) {
     (void)state;
     indexed_t indexed;
@@ -80,7 +80,8 @@ static void horizon_ends_before_a_neighbourhood(void **state) {
     assert_false(covers(&indexed, 3000, 2000, -4.5));
 }
 
-/* Where nothing is around: many times the way of a slice, up to half of the neighbourhood; little after a jump. */
+/* If nothing is near: many times the way of a slice, up to half of the neighbourhood; only a little
+ * after a jump. */
 static void horizon_goes_with_the_pace(void **state) {
     (void)state;
     static const double cases[][3] = {
@@ -101,7 +102,7 @@ static void horizon_goes_with_the_pace(void **state) {
     assert_false(covers(&indexed, 3500, 2500, 16));
 }
 
-/* After all have looked for a wafer to take, each watches what is around itself. */
+/* After all grippers have looked for a wafer to take, each watches its own surroundings. */
 static void each_gripper_watches_its_own(void **state) {
     (void)state;
     static const int wafers[CELL_GRIPPERS] = {19, 42, 7};
@@ -139,7 +140,8 @@ static void released_wafers_are_found(void **state) {
     cell_expect_held(&indexed.cell, 13, 0);
 }
 
-/* In the neighbourhood it is followed, and the tolerance is what counts; that horizon is of no use afterwards. */
+/* In the neighbourhood the wafer is followed, and the tolerance counts; the earlier horizon is void
+ * afterwards. */
 static void horizon_is_of_the_tolerance_while_it_follows(void **state) {
     (void)state;
     indexed_t indexed;
@@ -169,7 +171,7 @@ static void horizon_ends_when_a_wafer_moves(void **state) {
     assert_int_equal(near.count, 0);
 }
 
-/* What was kept here for another state is of no use: neither cells nor horizons. */
+/* Data kept here for another state are void: neither cells nor horizons are used. */
 static void restoring_begins_anew(void **state) {
     (void)state;
     indexed_t indexed;
@@ -235,7 +237,7 @@ static uint32_t *node(indexed_t *indexed, size_t w) {
     return indexed->buckets + 8 + 4 * CELL_GRIPPERS + 2 * (MANY + w);
 }
 
-/* Each list goes round and round: a search finds too many, and looks at all instead. */
+/* Each list is circular: a search finds too many, and looks at all instead. */
 static void endless_lists_end(void **state) {
     (void)state;
     indexed_t indexed;
@@ -259,12 +261,12 @@ static void endless_lists_end(void **state) {
     cell_place(&indexed.cell, 5, 3100, 2000, 0);
 }
 
-/* Any words whatever: every call comes back, and who holds what stays sound. */
+/* Any words at all: every call returns, and the relation of holders and wafers stays sound. */
 static void any_words_are_survived(void **state) {
     (void)state;
     indexed_t indexed;
     indexed_begin_default(&indexed);
-    for (int round = 0; round < 3000; ++round) {
+    for (int round = 0; round < 3000 / WH_TEST_SHARE; ++round) {
         const uint32_t mask = UINT32_MAX >> wh_test_below(32);
         for (size_t i = 0; i < sizeof indexed.buckets / sizeof indexed.buckets[0]; ++i) {
             indexed.buckets[i] = (uint32_t)wh_test_random() & mask;
@@ -285,10 +287,10 @@ static void any_words_are_survived(void **state) {
 
 /* ---------------------------------------------------------------------------------------------------- cells */
 
-/* How the index is laid out in the caller's buckets: extents, cells, lists, and which cells a search looks at. What it is good
- * for is in index_test.c. */
+/* The layout of the index in the caller's buckets: extents, cells, lists, and the cells that a
+ * search looks at. index_test.c tests its use. */
 
-/* What the first three words have to be for wafers that all lie like this, by their definition. */
+/* The definition of the first three words, for wafers that all lie like this. */
 static void expect_extents(const indexed_t *indexed, const wh_mat3_t *R, double projz, double projxy) {
     for (size_t axis = 0; axis < 3; ++axis) {
         const double row[3] = {(double)R->m[axis][0], (double)R->m[axis][1], (double)R->m[axis][2]};
@@ -322,7 +324,7 @@ static void extents_are_those_of_the_neighbourhood(void **state) {
     }
 }
 
-/* The widest along each axis counts, wherever it stands among them, and stays when it is gone. */
+/* The widest along each axis counts, wherever it stands among them, and still counts when it is gone. */
 static void the_widest_counts(void **state) {
     (void)state;
     const wh_mat3_t level = wh_mat3_identity();
@@ -351,10 +353,11 @@ static void the_widest_counts(void **state) {
     }
 }
 
-/* The shortest power of two from 16 mm on that is twice the extent and an eighth of the whole neighbourhood. */
+/* The shortest power of two, from 16 mm on, that is at least twice the extent and an eighth of the
+ * whole neighbourhood. */
 static void cells_are_as_long_as_needed(void **state) {
     (void)state;
-    /* Among them one whose extent is 8192 units, and one an eighth of which is. */
+    /* Among them one has an extent of 8192 units, and for another an eighth is as much. */
     static const double sizes[] = {1e-9, 0.5,     3.99, 7.9,     8.1,  20,     127.988,
                                    256,  1023.94, 1e3,  262.5e3, 70e3, 262143, 1e6};
     for (size_t i = 0; i < 14 * 14; ++i) {
@@ -394,7 +397,8 @@ static void limits_are_the_larger_ones(void **state) {
     }
 }
 
-/* Each wafer stands in one list, that of its key's head, and nothing else stands in any. Returns the longest list. */
+/* Each wafer stands in one list, that of its key's head; the lists contain nothing else. Returns
+ * the longest list. */
 static size_t expect_lists(const indexed_t *indexed) {
     const uint32_t *heads = indexed->buckets + 8 + 4 * CELL_GRIPPERS;
     const uint32_t *nodes = heads + 2 * MANY;
@@ -429,7 +433,7 @@ static void lists_hold_every_wafer_once(void **state) {
         wh_index_build(&indexed.cell.table);
         (void)expect_lists(&indexed);
         assert_int_equal(indexed.buckets[WH_INDEX_FOUND], UINT32_MAX);
-        for (int run = 0; run < 500; ++run) {
+        for (int run = 0; run < 500 / WH_TEST_SHARE; ++run) {
             const double reach = run % 3 ? 100 : 1e5;
             const double x = wh_test_uniform(-reach, reach);
             const double y = wh_test_uniform(-reach, reach);
@@ -474,8 +478,8 @@ static double place_of(int64_t unit) {
     return (double)unit / 64;
 }
 
-/* Looks at all that is less than a unit from this box: between two places that are the neighbourhood, the margin and two
- * units inside of it. */
+/* Looks at all wafers less than a unit from this box. The box lies between two places at the
+ * distance of the neighbourhood, the margin and two units. */
 static wh_found_t look_at(indexed_t *indexed, const units_t *units, uint32_t margin, bool back) {
     double from[3];
     double to[3];
@@ -499,7 +503,7 @@ static bool is_listed(const wh_found_t *near, uint32_t wafer) {
     return false;
 }
 
-/* The wafer at the box's first or last place along each axis is found; one unit outside of it it is not. */
+/* The wafer is found at the box's first or last place along each axis; one unit outside it is not. */
 static void expect_found_inside(indexed_t *indexed, const units_t *units, uint32_t margin) {
     for (size_t corner = 0; corner < 8; ++corner) {
         for (size_t outside = 0; outside < 8; ++outside) {
@@ -518,7 +522,7 @@ static void expect_found_inside(indexed_t *indexed, const units_t *units, uint32
     cell_place(&indexed->cell, 5, 9e5, 9e5, 9e5);
 }
 
-/* So many cells along each axis, on both sides of base's origin or on one. */
+/* This number of cells along each axis, on both sides of base's origin or on one. */
 static units_t units_of(const indexed_t *indexed, const int64_t count[3]) {
     static const int64_t first[] = {-3, -20, -3};
     units_t units;
@@ -530,7 +534,7 @@ static units_t units_of(const indexed_t *indexed, const int64_t count[3]) {
     return units;
 }
 
-/* As many cells as there are wafers are looked at, one more is not. */
+/* It looks at as many cells as there are wafers, and not at one more. */
 static void cells_are_counted(void **state) {
     (void)state;
     static const int64_t counts[][3] = {
@@ -577,7 +581,8 @@ static void begin_upright(indexed_t *indexed, size_t thin) {
     }
 }
 
-/* A gripper at the edge of a wafer's neighbourhood finds it, on either side, whichever axis the wafer's is along. */
+/* A gripper at the edge of a wafer's neighbourhood finds it, on either side, for each direction of
+ * the wafer's axis. */
 static void each_axis_has_cells_of_its_own(void **state) {
     (void)state;
     for (size_t i = 0; i < 3 * 2000; ++i) {
@@ -601,7 +606,7 @@ static void each_axis_has_cells_of_its_own(void **state) {
     }
 }
 
-/* In 64 bits: what the library takes modulo 2^32. */
+/* In 64 bits: the library computes this modulo 2^32. */
 static uint32_t key_of(uint64_t x, uint64_t y, uint64_t z) {
     const uint64_t word = UINT64_C(1) << 32;
     const uint64_t sum = (x * 2654435761U + (y * 2246822519U % word) + z * 3266489917U) % word;
@@ -609,14 +614,14 @@ static uint32_t key_of(uint64_t x, uint64_t y, uint64_t z) {
     return (uint32_t)(product ^ product / 8192);
 }
 
-/* The keys are the same on every machine and from one version to the next, so that speeds can be compared. */
+/* The keys are the same on every machine and in every version, so that speeds can be compared. */
 static void keys_stay_the_same(void **state) {
     (void)state;
     assert_int_equal(key_of(0, 0, 0), 0);
     for (size_t thin = 0; thin < 3; ++thin) {
         indexed_t indexed;
         begin_upright(&indexed, thin);
-        for (int run = 0; run < 1000; ++run) {
+        for (int run = 0; run < 1000 / WH_TEST_SHARE; ++run) {
             wh_pose_t pose = indexed.wafer[5].base_from_wafer;
             uint64_t cell[3];
             wh_real_t r[3];
@@ -633,7 +638,7 @@ static void keys_stay_the_same(void **state) {
     }
 }
 
-/* What one gripper found is not what another finds. */
+/* A wafer found for one gripper is not a result for another. */
 static void what_was_found_is_the_same_grippers(void **state) {
     (void)state;
     indexed_t indexed;
@@ -655,7 +660,7 @@ static void what_was_found_is_the_same_grippers(void **state) {
     assert_int_equal(indexed.buckets[WH_INDEX_FOUND], 2);
     near = wh_index_again(table, 0, &here.r, &here.r);
     assert_int_equal(near.listed[0], 19);
-    /* A search that looks at all is kept as well. */
+    /* A search that looks at all wafers is kept as well. */
     near = indexed_look(&indexed, 3000, 2000, 0, 1e6);
     assert_null(near.listed);
     near = wh_index_again(table, 0, &here.r, &here.r);
@@ -664,7 +669,7 @@ static void what_was_found_is_the_same_grippers(void **state) {
     wh_index_build(table);
     near = wh_index_again(table, 0, &here.r, &here.r);
     assert_int_equal(near.count, 1);
-    /* The wafers of one cell: as many as there are are listed. */
+    /* The wafers of one cell: all of them are listed. */
     for (size_t w = 0; w < MANY; ++w) {
         cell_place(&indexed.cell, w, 3000, 2000, 0);
     }
@@ -691,7 +696,7 @@ static void boxes_end_with_the_range(void **state) {
         assert_non_null(near.listed);
         assert_int_equal(near.count, 1);
         assert_int_equal(near.listed[0], 5);
-        /* From there to base's origin: that is along more cells than there are wafers. */
+        /* From there to base's origin: this way has more cells than there are wafers. */
         near = wh_index_near(&indexed.cell.table, 0, &at.r, &indexed.wafer[0].base_from_wafer.r, 0);
         assert_null(near.listed);
     }

@@ -8,7 +8,7 @@
 
 static const unsigned every_reason = WH_FAILED_PROJZ | WH_FAILED_PROJXY | WH_FAILED_PLANAR;
 
-/* Measures valid arguments, and sees that the verdict alone is the same. */
+/* Measures valid arguments, and checks that the function with the verdict alone agrees. */
 static wh_proximity_t measure(const wh_pose_t *wafer, const wh_pose_t *gripper,
                               const wh_tolerance_t *tolerance) {
     wh_proximity_t p;
@@ -18,7 +18,8 @@ static wh_proximity_t measure(const wh_pose_t *wafer, const wh_pose_t *gripper,
     return p;
 }
 
-/* A wafer at identity's rotation, a gripper at base's origin whose n2 has this cosine to n1, exactly. */
+/* A wafer with the identity as rotation, and a gripper at base's origin whose n2 has exactly this
+ * cosine to n1. */
 static wh_proximity_t at(wh_real_t x, wh_real_t y, wh_real_t z, wh_real_t cosine,
                          const wh_tolerance_t *tolerance) {
     const wh_pose_t wafer = {wh_mat3_identity(), {x, y, z}};
@@ -98,7 +99,7 @@ static void projections_are_onto_the_wafer(void **state) {
     assert_int_equal(measure(&flipped, &origin, &wide).failed, WH_FAILED_PLANAR);
 }
 
-/* The formulas once more, written out, on the same operations. */
+/* The formulas once more, written out with the same operations. */
 static bool literal(const wh_pose_t *w, const wh_pose_t *g, const wh_tolerance_t *t) {
     const wh_real_t dx = w->r.x - g->r.x;
     const wh_real_t dy = w->r.y - g->r.y;
@@ -165,7 +166,7 @@ static void nan_is_never_ready(void **state) {
     }
 }
 
-/* How the gripper is turned about its own axis does not matter, whichever of its numbers are zero. */
+/* The gripper's turn about its own axis has no effect, whichever of its numbers are zero. */
 static void quarter_turns_are_all_the_same(void **state) {
     (void)state;
     static const wh_real_t cosines[] = {1, 0, -1, 0};
@@ -219,7 +220,8 @@ static void values_beyond_all_numbers_are_refused(void **state) {
     }
 }
 
-/* As far away as two bodies can be told apart, and where both are as far as numbers go. */
+/* At the largest distance at which two bodies can be told apart, and with both at the ends of the
+ * range of numbers. */
 static void far_values_are_numbers(void **state) {
     (void)state;
     const wh_tolerance_t paper = wh_tolerance_paper();
@@ -287,10 +289,10 @@ static void presets_have_names(void **state) {
     assert_memory_equal(&got, &want[WH_TOLERANCE_PRESETS - 1], sizeof got);
 }
 
-/* Against the rim itself, walked around in small steps. */
+/* Compared with the rim itself, in small steps around it. */
 static void rim_gap_is_the_farthest_point_of_the_rim(void **state) {
     (void)state;
-    for (int run = 0; run < 200; ++run) {
+    for (int run = 0; run < 200 / WH_TEST_SHARE; ++run) {
         const wh_mat3_t tip = wh_test_random_turn(0.2);
         const wh_pose_t gripper = wh_test_random_pose(10);
         const wh_pose_t above = {tip, {1, -2, WH_REAL(wh_test_uniform(-0.5, 0.5))}};
@@ -353,7 +355,8 @@ static void the_face_that_looks_at_the_gripper_is_asked(void **state) {
     assert_memory_equal(&p.dr, &plain.dr, offsetof(wh_proximity_t, ready));
 }
 
-/* Random pairs against the rule's words, in a frame that is built otherwise: by a product of poses. */
+/* Random pairs compared with the rule's text, in a frame that is built in another way: by a product
+ * of poses. */
 static void the_fronts_frame_is_a_product_of_poses(void **state) {
     (void)state;
     const wh_tolerance_t t = wh_tolerance_paper();
@@ -395,7 +398,7 @@ static void on_edge_a_wafer_shows_its_back(void **state) {
     assert_int_equal(wh_face_towards(&wafer, &gripper), WH_FACE_BACK);
 }
 
-/* Where no layout speaks of faces, wafers have no thickness. */
+/* If a layout has no faces, wafers have no thickness. */
 static void without_a_thickness_a_wafer_shows_its_back(void **state) {
     (void)state;
     const wh_pose_t gripper = wh_pose_identity();
@@ -434,10 +437,10 @@ static void measuring_a_face_refuses_what_it_cannot_judge(void **state) {
     assert_int_equal(wh_face_measure(&wafer, 100, &gripper, &t, &face, &p), WH_OK);
 }
 
-/* (dx, dy) goes to (dx, -dy), a notch at a to -a, and twice is nothing. */
+/* (dx, dy) becomes (dx, -dy), and a notch at a becomes -a; twice changes nothing. */
 static void turned_over_twice_a_wafer_is_where_it_was(void **state) {
     (void)state;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 / WH_TEST_SHARE; ++i) {
         const wh_pose_t axis = wh_test_random_pose(1000);
         wh_pose_t start = wh_test_random_pose(150);
         start.r = wh_vec3_add(&start.r, &axis.r);
@@ -459,7 +462,8 @@ static void turned_over_twice_a_wafer_is_where_it_was(void **state) {
     }
 }
 
-/* Turned over about a level axis, a wafer that lay with its back on a plane below shows its front to what is below. */
+/* A wafer lies with its back on a plane below. Turned over about a level axis, it shows its front
+ * to that plane. */
 static void a_flip_changes_the_face_and_moves_the_contact_plane(void **state) {
     (void)state;
     const wh_pose_t slot = wh_pose_identity();

@@ -1,4 +1,4 @@
-/* A grasp table taken up elsewhere: it goes on with the same bits, and what cannot be a table's state is refused. */
+/* A restored grasp table continues with the same bits; data that cannot be a table's state are refused. */
 #include "support/grasp.h"
 
 #include "grasp/restore.h"
@@ -62,7 +62,7 @@ static void a_restored_table_goes_on_with_the_same_bits(void **state) {
     assert_true(copy.table.counters.handed_over > 0 && copy.table.counters.near_misses > 0);
 }
 
-/* At any slice of a run, again and again over what the table was in before. */
+/* At any slice of a run, again and again over the table's earlier state. */
 static void every_state_of_a_run_is_restored(void **state) {
     (void)state;
     for (int i = 0; i < 500; ++i) {
@@ -86,7 +86,7 @@ static void counters_go_on_and_releases_are_forgotten(void **state) {
     assert_int_equal(copy.wafer[1].released_by, WH_NONE);
 }
 
-/* What does not matter may be anything. */
+/* Fields without effect may have any value. */
 static void only_what_counts_is_looked_at(void **state) {
     (void)state;
     saved.gripper[1].gripper_from_wafer.r.x = (wh_real_t)NAN; /* it holds none */
@@ -131,7 +131,7 @@ static void nothing_is_restored_from_nothing(void **state) {
     assert_int_equal(wh_grasp_restore(&table, 12, copy.wafer, NULL), WH_OK);
 }
 
-/* Indices beside the range, and within it where they contradict each other. */
+/* Indices outside the range, and indices within it that contradict each other. */
 static void indices_must_agree(void **state) {
     (void)state;
     static const int32_t outside[] = {-2, INT32_MIN, CELL_WAFERS, INT32_MAX};
@@ -220,7 +220,7 @@ static void each_measured_value_is_looked_at(void **state) {
     assert_int_equal(restore(&saved), WH_OK);
 }
 
-/* Puts wafer 0 where gripper 0 carries it. */
+/* Puts wafer 0 at the place to which gripper 0 carries it. */
 static void carry_saved(void) {
     saved.wafer[0].base_from_wafer =
         wh_pose_compose(&saved.gripper[0].base_from_gripper, &saved.gripper[0].gripper_from_wafer);
@@ -253,7 +253,8 @@ static void a_held_wafer_is_where_its_gripper_carries_it(void **state) {
     }
 }
 
-/* Grippers and wafers turned anyhow, by rotations that only just are some: what a table is in may be restored. */
+/* Grippers and wafers with any rotation, just within the tolerance: such a state of a table can be
+ * restored. */
 static void every_carried_wafer_is_restored(void **state) {
     (void)state;
     for (int i = 0; i < 3000; ++i) {
@@ -293,7 +294,8 @@ static void slices_have_an_end(void **state) {
     assert_true(copy.table.slice == (uint64_t)INT64_MAX + 1);
 }
 
-/* Farther from its gripper than a check lets any be taken, a wafer could be carried to where no number is. */
+/* If it were farther from its gripper than any check takes one, a wafer could be carried out of the
+ * range of numbers. */
 static void a_held_wafer_is_within_reach(void **state) {
     (void)state;
     wh_vec3_t *const r = &saved.gripper[0].gripper_from_wafer.r;

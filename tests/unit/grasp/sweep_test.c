@@ -1,10 +1,11 @@
-/* Swept checking: fast passes, several wafers, and what happens at a slice's two ends. On its edges: a pick at the very end, a
- * pass that only touches, a gripper that stands still, and two limits met at one instant. */
+/* Swept checking: fast passes, several wafers, and the two ends of a slice. Its edge cases: a pick
+ * at the very end, a pass that only touches, a gripper that stands still, and two limits met at one
+ * instant. */
 #include "support/grasp.h"
 
 #include "grasp/sweep_internal.h"
 
-/* 1e-6 mm, or what float leaves of it. */
+/* 1e-6 mm, or the resolution of float. */
 #if defined(WH_FLOAT)
 #define SAME_PLACE 1e-3
 #else
@@ -17,7 +18,7 @@ static void begin(cell_t *cell, wh_check_t check) {
     cell_begin(cell, &config);
 }
 
-/* Up past wafer 0 at 500 mm/s from 5 mm below, to 5 mm above it. */
+/* Up past wafer 0 at 500 mm/s, from 5 mm below to 5 mm above it. */
 static void rise(cell_t *cell, wh_check_t check, int slices) {
     begin(cell, check);
     cell_move(cell, 0, 7, -3, -5, OPEN);
@@ -58,7 +59,7 @@ static void sampled_misses_and_says_so(void **state) {
     const wh_event_t *e = cell_expect(&cell, WH_EVENT_NEAR_MISS, 0, 0, WH_NONE);
     assert_near(e->measured.dr_proj_z, 4, 0);
     assert_int_equal(e->measured.failed, WH_FAILED_PROJZ);
-    /* A wider neighbourhood sees the pass whose slices are both 5 mm away. */
+    /* A wider neighbourhood sees the pass, though both of its slices are 5 mm away. */
     wh_grasp_config_t config = wh_grasp_config_default();
     config.near_projz = 6;
     cell_begin(&cell, &config);
@@ -92,12 +93,12 @@ static void a_turn_picks_at_the_planar_limit(void **state) {
     const wh_event_t *e = cell_expect(&cell, WH_EVENT_PICKED, 0, 0, WH_NONE);
     assert_near(e->measured.n1_proj_n2, 0.99, 1e-5);
     assert_true(e->measured.ready);
-    /* Held at that angle, it turns with the gripper. */
+    /* A wafer held at that angle turns with the gripper. */
     assert_near(cell.gripper[0].gripper_from_wafer.R.m[2][2], 0.99, 1e-5);
     assert_near(cell.wafer[0].base_from_wafer.R.m[2][2], cos(0.3 + acos(0.99)), 1e-4);
 }
 
-/* n2 goes round a tilted axis: first away from n1, past its farthest point, and then within the limit. */
+/* n2 turns about a tilted axis: first away from n1, past its farthest point, and then within the limit. */
 static void a_turn_may_lead_away_before_it_leads_in(void **state) {
     (void)state;
     cell_t cell;
@@ -133,7 +134,8 @@ static void the_first_wafer_on_the_way_is_taken(void **state) {
     cell_expect(&cell, WH_EVENT_PICKED, 1, 0, WH_NONE);
 }
 
-/* Both are entered sideways at the same instant: then the nearer in z, and of equal ones the lower index. */
+/* Both are entered sideways at the same instant: the nearer in z counts, and among equal ones the
+ * lower index. */
 static void ties_go_to_the_nearer_then_the_lower(void **state) {
     (void)state;
     cell_t cell;
@@ -156,16 +158,17 @@ static void both_ends_must_be_open(void **state) {
     cell_expect_nothing(&cell);
     cell_move(&cell, 0, 0, 0, -5, CLOSED);
     cell_expect_nothing(&cell);
-    /* The first step has no earlier pose, whatever the gripper's struct says. */
+    /* The first step has no earlier pose, whatever the gripper's struct contains. */
     begin(&cell, WH_CHECK_SWEPT);
     cell_move(&cell, 0, 0, 0, 5, OPEN);
     cell_expect_nothing(&cell);
-    /* A gripper that held a wafer at the slice's beginning is not empty: it releases and takes nothing. */
+    /* A gripper that held a wafer at the slice's beginning is not empty: it releases the wafer and
+     * takes nothing. */
     cell_move(&cell, 0, 0, 0, 0.25, OPEN);
     cell_expect_held(&cell, 0, 0);
 }
 
-/* The literal check at the end takes what lies between 0.998 and 1 times the limit. */
+/* The literal check at the end takes a wafer between 0.998 and 1 times the limit. */
 static void the_end_is_checked_by_the_formulas(void **state) {
     (void)state;
     cell_t cell;
@@ -181,7 +184,7 @@ static void the_end_is_checked_by_the_formulas(void **state) {
     cell_expect_held(&cell, 0, WH_NONE);
 }
 
-/* Gripper 1 lets go in this slice: where it was during the slice is nobody's business. */
+/* Gripper 1 releases in this slice: its place during the slice does not matter. */
 static void a_released_wafer_is_checked_at_the_end_only(void **state) {
     (void)state;
     cell_t cell;
@@ -232,8 +235,8 @@ static void a_pass_beside_is_a_near_miss_at_its_closest(void **state) {
     cell_expect_nothing(&cell);
 }
 
-/* Between 0.998 and 1 times the limit a pass takes nothing, and its near miss names the limit that it failed.
- */
+/* Between 0.998 and 1 times the limit a pass takes nothing, and its near miss names the limit that
+ * it failed. */
 static void a_graze_is_told_why(void **state) {
     (void)state;
     cell_t cell;
@@ -246,7 +249,8 @@ static void a_graze_is_told_why(void **state) {
     assert_near(e->measured.margin_projz, -0.0005, SAME_PLACE);
 }
 
-/* What is closest at the slice's end has that pose's bits, not those of a sum that comes near it. */
+/* The closest pose, if it is at the slice's end, has that pose's bits, not those of a sum that
+ * comes near it. */
 static void the_end_is_the_pose_that_was_given(void **state) {
     (void)state;
     for (int run = 0; run < 100; ++run) {
@@ -313,7 +317,8 @@ static void a_seated_wafer_is_drawn_down_at_the_end(void **state) {
     assert_near(cell.wafer[0].base_from_wafer.r.z, -0.499, 1e-6);
 }
 
-/* Along a tangent, from where it touches the circle: both limits are strict, so nothing ever comes within. */
+/* Along a tangent, from the point where it touches the circle: both limits are strict, so nothing
+ * ever comes within. */
 static void a_tangent_is_outside(void **state) {
     (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -330,7 +335,7 @@ static void a_tangent_is_outside(void **state) {
     }
 }
 
-/* Whoever does not move has come closest by where it is. */
+/* A gripper that does not move is closest at its place. */
 static void standing_still_is_measured_where_it_stands(void **state) {
     (void)state;
     cell_t cell;
@@ -348,7 +353,7 @@ static void standing_still_is_measured_where_it_stands(void **state) {
     assert_int_equal(approach->slice, 2);
 }
 
-/* A way on which the gripper, tilted beyond the limit at first, becomes almost level. */
+/* A way on which the gripper is tilted beyond the limit at first, and becomes almost level. */
 static void draw(wh_pose_t *from, wh_pose_t *to) {
     const double tilt = wh_test_uniform(0.15, 0.3);
     const double x = wh_test_uniform(-1, 1);
@@ -358,8 +363,8 @@ static void draw(wh_pose_t *from, wh_pose_t *to) {
                        wh_test_uniform(-9, 9), wh_test_uniform(-9, 9), 0);
 }
 
-/* The gripper turns into the planar limit just when it rises into the window: whichever of the two instants is the later
- * one by rounding, the wafer is taken there. */
+/* The gripper turns into the planar limit just when it rises into the window. The wafer is taken at
+ * the instant that rounding makes the later one. */
 static void two_limits_at_one_instant_lose_nothing(void **state) {
     (void)state;
     const wh_tolerance_t tolerance = wh_tolerance_paper();

@@ -1,5 +1,5 @@
-/* Vacuum under a gripper: command, level and sensor, each by its own rule. And pads without any: what they take and leave
- * where. */
+/* Vacuum under a gripper: command, level and sensor, each by its own rule. Pads without vacuum:
+ * which wafers they take, and where they leave them. */
 #include "support/pose.h"
 
 #include "grasp/face.h"
@@ -9,7 +9,7 @@
 enum { OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
 
 #define DT WH_REAL(0.001)
-/* How closely a thousand slices follow a formula. */
+/* The tolerance with which a thousand slices follow a formula. */
 #define CLOSELY (1e4 * WH_TEST_ROUNDING)
 
 static wh_vacuum_config_t config;
@@ -24,7 +24,8 @@ static int set_up(void **state) {
     return 0;
 }
 
-/* One slice; returns what the valve does. A wafer is on the pads before and after as long as the valve acts open. */
+/* One slice; returns the valve's action. A wafer is on the pads before and after, as long as the
+ * valve acts as open. */
 static int32_t slice(int32_t command, bool wafer) {
     const int32_t valve = wh_vacuum_before(&config, &upset, command, wafer, DT, &vacuum);
     (void)wh_vacuum_after(&config, &upset, wafer && valve == OPEN, DT, &vacuum);
@@ -124,7 +125,7 @@ static void nothing_held_is_let_go_at_once(void **state) {
     }
     assert_int_equal(slice(CLOSED, false), CLOSED);
     assert_true(vacuum.level > config.release);
-    /* And a wafer that has no vacuum yet, too. */
+    /* A wafer that has no vacuum yet behaves in the same way. */
     vacuum = wh_vacuum_start();
     slice(OPEN, true);
     assert_int_equal(slice(CLOSED, true), CLOSED);
@@ -164,7 +165,7 @@ static void a_loss_is_told_once(void **state) {
     assert_true(vacuum.level == upset.full);
 }
 
-/* Neither a wafer that is gone nor a valve that closes is a loss. */
+/* Neither a wafer that is gone nor a closing valve is a loss. */
 static void what_is_no_loss(void **state) {
     (void)state;
     config = wh_vacuum_ideal();
@@ -196,7 +197,7 @@ static void a_slow_pump_is_slower_only(void **state) {
 
 static void any_slice_keeps_the_level_within_its_range(void **state) {
     (void)state;
-    for (int run = 0; run < 20000; ++run) {
+    for (int run = 0; run < 20000 / WH_TEST_SHARE; ++run) {
         config.build = (wh_real_t)wh_test_decades(1e-9, 3600);
         config.vent = (wh_real_t)wh_test_decades(1e-9, 3600);
         upset.full = (wh_real_t)wh_test_uniform(0, 1);
@@ -224,7 +225,7 @@ static wh_passive_t passive;
 static wh_passive_wafer_t lying;
 static wh_pose_t pads;
 
-/* A wafer on a support at base's origin, pads 1 mm below. */
+/* A wafer on a support at base's origin, with pads 1 mm below. */
 static int set_up_passive(void **state) {
     (void)state;
     passive.tolerance = wh_tolerance_paper();
@@ -236,7 +237,7 @@ static int set_up_passive(void **state) {
     return 0;
 }
 
-/* The pads go on to (x, 0, z); what happens is this. */
+/* The pads move on to (x, 0, z); returns the event. */
 static void pads_to(double x, double z, wh_passive_change_t expected) {
     const wh_pose_t support = wh_pose_identity();
     const wh_pose_t begin = pads;
@@ -268,7 +269,8 @@ static void lifted_off_its_support_a_wafer_is_carried_until_a_support_takes_it_o
     expect_wafer_at(30, 0);
 }
 
-/* Sampled, the wafer comes up where it lies; swept, it goes with the pads from the instant on, and is left at the instant. */
+/* Sampled, the wafer is lifted from its place. Swept, it moves with the pads from the instant of
+ * contact, and is left at the instant of contact. */
 static void swept_the_instant_counts(void **state) {
     if (!WH_SWEEP_BUILT) {
         skip();
@@ -305,7 +307,7 @@ static void what_passes_beside_or_from_above_takes_nothing(void **state) {
     assert_near(lying.base_from_wafer.r.z, -3, 1e3 * WH_TEST_ROUNDING);
 }
 
-/* A wafer that lies face down is lifted by its front; its frame, in its back, is its thickness higher. */
+/* A wafer that lies face down is lifted by its front; its frame, in its back, is higher by its thickness. */
 static void a_wafer_face_down_is_lifted_by_its_front(void **state) {
     (void)state;
     const wh_pose_t support = wh_pose_identity();
@@ -320,8 +322,8 @@ static void a_wafer_face_down_is_lifted_by_its_front(void **state) {
     }
 }
 
-/* Random moves of tilted pads, swept: never both carried and supported, on the pads' plane or on the support's, and where it
- * is taken or left it is as the rule's words say at an instant between. */
+/* Random moves of tilted pads, swept: a wafer is never both carried and supported, and is on the
+ * pads' plane or on the support's. It is taken or left at an instant that obeys the rule's text. */
 static void a_random_walk_keeps_the_wafer_on_one_plane(void **state) {
     const wh_pose_t support = wh_pose_identity();
     int changes[3] = {0, 0, 0};
@@ -382,7 +384,7 @@ static void pads_move_over(const wh_pose_t *support, double height) {
 
 static void pads_that_stop_within_rounding_of_a_support_miss_neither_wafer_nor_support(void **state) {
     set_up_passive(state);
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 / WH_TEST_SHARE; ++i) {
         const wh_pose_t support = wh_test_random_pose(1000);
         const double rounding = wh_test_uniform(-1, 1) * (double)WH_TEST_ROUNDING;
         passive.check = i % 2 == 0 || !WH_SWEEP_BUILT ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT;

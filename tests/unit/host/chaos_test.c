@@ -1,4 +1,4 @@
-/* What becomes of frames and bytes is drawn by name; the pace of a line is its baud. */
+/* The fate of frames and bytes is drawn by name; a line's baud rate sets its pace. */
 #include "host/chaos.h"
 #include "host/pace.h"
 #include "support/support.h"
@@ -39,7 +39,7 @@ static void fates(void **state) {
     assert_int_equal(most, 1000);
 }
 
-/* Each of the names gives other draws, and the order of drawing none. */
+/* Each of the names gives other draws, but the order of drawing does not. */
 static void names(void **state) {
     (void)state;
     const wh_chaos_t other = {.seed = 8, .drop = 0.1, .twice = 0.2, .delay_us = 1000, .late_ack_us = 500};
@@ -72,14 +72,14 @@ static void bytes(void **state) {
     for (size_t i = 0; i < size; ++i) {
         wrong += came[i] != 'a';
     }
-    /* As many are lost as come twice, in the mean; half of those that are garbled are other bytes. */
+    /* On average as many are lost as come twice; half of the garbled ones have other bytes. */
     assert_near((double)size, WH_FRAMING_LINE, 5 * sqrt(WH_FRAMING_LINE * 0.125));
     assert_near((double)wrong, WH_FRAMING_LINE * 0.125, 5 * sqrt(WH_FRAMING_LINE * 0.125));
     assert_int_equal(wh_chaos_garble(&chaos, at(0, true, 1), 0, sent, sizeof sent, again), size);
     assert_memory_equal(came, again, size);
     (void)wh_chaos_garble(&chaos, at(0, true, 1), 1, sent, sizeof sent, again);
     assert_memory_not_equal(came, again, 1000);
-    /* A frame cut short meets the same fate as far as it goes. */
+    /* A frame that is cut short meets the same fate, as far as it goes. */
     const size_t part = wh_chaos_garble(&chaos, at(0, true, 1), 0, sent, 1000, again);
     assert_memory_equal(came, again, part);
     assert_in_range(wh_chaos_garble(&all, at(0, true, 1), 0, sent, sizeof sent, came), 1, WH_CHAOS_BYTES);
@@ -114,7 +114,7 @@ static void baud(void **state) {
         assert_int_equal(through, (size_t)((now - 5000) * 96 / 100000));
     }
     assert_in_range(through, 960 * 3600 - 20, 960 * 3600);
-    /* A line that was idle begins with what comes then: a byte takes 1041.7 us. */
+    /* An idle line begins with the next byte that comes: a byte takes 1041.7 us. */
     pace = (wh_pace_t){.baud = 9600};
     assert_int_equal(wh_pace_take(&pace, 0, 1000000), 0);
     assert_int_equal(wh_pace_take(&pace, 2, 2000000), 0);

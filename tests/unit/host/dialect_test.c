@@ -1,4 +1,4 @@
-/* Dialects: whatever is wrong with one, the message is one line that names the file and can be shown. */
+/* Dialects: every error in one gives a message of one line that names the file and is printable. */
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@
 static wh_sandbox_t *sandbox;
 static const wh_layout_t *layout;
 static wh_dialect_t dialect;
-static char path[40]; /* of a file in memory */
+static char path[40]; /* the path of a file in memory */
 static int file;
 
 static int load_layout(void **state) {
@@ -41,7 +41,7 @@ static bool open_text(const char *text) {
     return wh_dialect_open(&dialect, path);
 }
 
-/* One line, of which all can be shown, that begins with the file's name and has this in it. */
+/* One printable line that begins with the file's name and contains this text. */
 static void assert_message(const char *expected) {
     assert_memory_equal(dialect.message, path, strlen(path));
     assert_non_null(strstr(dialect.message, expected));
@@ -78,7 +78,7 @@ static void a_name_that_fills_the_message(void **state) {
     wh_dialect_close(&dialect);
 }
 
-/* Of a limit that is spent, in the file and in its functions. */
+/* A limit is spent in the file, and in its functions. */
 static void limits_that_are_spent(void **state) {
     (void)state;
     wh_request_t request;

@@ -1,8 +1,8 @@
-/* Frames as of the trade, and each kind of bad frame as such. */
+/* Frames as the industry uses them, and each kind of bad frame. */
 #include "host/framing.h"
 #include "support/support.h"
 
-/* "$" to CR with a sum of two hex digits behind a comma. */
+/* "$" to CR, with a sum of two hex digits behind a comma. */
 static wh_framing_t dollar(void) {
     wh_framing_t framing = wh_framing_default();
     framing.starts[0] = (wh_framing_mark_t){"$", 1};
@@ -22,7 +22,7 @@ static wh_framing_t dollar(void) {
 static wh_framer_t framer;
 static char heard[4000];
 
-/* Adds "kind:bytes;" to what was heard; of a good frame its body. */
+/* Adds "kind:bytes;" to the output; for a good frame its body. */
 static void note(const wh_frame_t *frame) {
     const size_t at = strlen(heard);
     (void)snprintf(heard + at, sizeof heard - at, "%s:%.*s;", wh_frame_kind_name(frame->kind),
@@ -122,7 +122,7 @@ static void too_long(void **state) {
     char line[200];
     wh_frame_t frame;
     begin(&framing);
-    /* 64 bytes are whole, 65 are not, and what follows is passed over. */
+    /* 64 bytes are whole, 65 are not, and the bytes behind are skipped. */
     memset(line, 'a', sizeof line);
     line[0] = '$';
     (void)snprintf(line + 60, sizeof line - 60, ",%02X\r",

@@ -1,4 +1,5 @@
-/* What a port stands for: found by its name in a layout, with its grippers, and when two are in each other's way. */
+/* The mechanism behind a port: it is found by its name in a layout, with its grippers, and the test
+ * checks when two exclude each other. */
 #include "host/mechanism.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-/* A port's clients over TCP and pty: late, gone, again, second, stalling, deaf, and with more than the ring takes. */
+/* A port's clients over TCP and pty: late, gone, back again, a second one, stalling, deaf, and with
+ * more bytes than the ring takes; and the host of a transcript in their place. */
 #include "host/port.h"
 #include "support/support.h"
 
@@ -21,7 +22,7 @@ static int connect_to_port(void) {
     return fd;
 }
 
-/* Serves until something happens, at most a second. */
+/* Serves until something happens, for at most a second. */
 static unsigned serve(void) {
     unsigned told = 0;
     for (int i = 0; i < 1000 && told == 0; ++i) {
@@ -38,7 +39,7 @@ static void assert_idle(void) {
     }
 }
 
-/* Serves until so many bytes are there, and takes them. */
+/* Serves until this number of bytes is there, and takes them. */
 static void assert_input(const char *expected) {
     char bytes[200] = "";
     for (int i = 0; i < 1000 && port.input.count < strlen(expected); ++i) {
@@ -75,7 +76,7 @@ static void rings(void **state) {
     uint64_t put = 0;
     uint64_t taken = 0;
     assert_null(wh_ring_front(&ring, &size));
-    for (int round = 0; round < 20000; ++round) {
+    for (int round = 0; round < 20000 / WH_TEST_SHARE; ++round) {
         const size_t count = wh_test_below(round % 50 == 0 ? WH_RING_BYTES : 3000);
         for (size_t i = 0; i < count; ++i) {
             bytes[i] = (uint8_t)((put + i) * 31 >> 3);
@@ -131,7 +132,7 @@ static void dialogue(void **state) {
     wh_port_close(&port);
 }
 
-/* One who has sent its last byte still hears the answer, until another one comes or it is gone. */
+/* A client that has sent its last byte still gets the answer, until another client comes or it is gone. */
 static void half_closed(void **state) {
     (void)state;
     assert_true(wh_port_open_tcp(&port, "127.0.0.1:0", WH_PORT_REFUSE, problem));
@@ -150,7 +151,7 @@ static void half_closed(void **state) {
     assert_int_equal(read(client, &byte, 1), 0);
     assert_int_equal(close(client), 0);
     assert_int_equal(port.counters.taken, 0);
-    /* A reset after the end is seen too, and told no second time. */
+    /* A reset after the end is detected too, and not reported a second time. */
     assert_int_equal(shutdown(next, SHUT_WR), 0);
     assert_int_equal(serve(), WH_PORT_WENT);
     const struct linger reset = {.l_onoff = 1};
@@ -161,13 +162,37 @@ static void half_closed(void **state) {
     wh_port_close(&port);
 }
 
+/* `printf ... | nc -N` wants the end only once its bytes were taken and it was answered. */
+static void who_sends_no_more_sees_the_end(void **state) {
+    (void)state;
+    assert_true(wh_port_open_tcp(&port, "127.0.0.1:0", WH_PORT_REFUSE, problem));
+    const int client = connect_to_port();
+    assert_int_equal(serve(), WH_PORT_CAME);
+    wh_port_end_done(&port);
+    assert_true(wh_port_is_heard(&port));
+    send_text(client, "STATUS\n");
+    assert_int_equal(shutdown(client, SHUT_WR), 0);
+    assert_int_equal(serve(), WH_PORT_WENT);
+    wh_port_end_done(&port);
+    assert_true(wh_port_is_heard(&port));
+    assert_input("STATUS\n");
+    assert_int_equal(wh_port_send(&port, "idle\n", 5), 0);
+    wh_port_end_done(&port);
+    assert_false(wh_port_is_heard(&port));
+    assert_hears(client, "idle\n");
+    char byte = 0;
+    assert_int_equal(read(client, &byte, 1), 0);
+    assert_int_equal(close(client), 0);
+    wh_port_close(&port);
+}
+
 static void second_client(void **state) {
     (void)state;
     char byte = 0;
     assert_true(wh_port_open_tcp(&port, "0", WH_PORT_REFUSE, problem));
     int first = connect_to_port();
     assert_int_equal(serve(), WH_PORT_CAME);
-    /* One that hung up just before is no first one. */
+    /* A client that hung up just before is not the first one. */
     assert_int_equal(close(first), 0);
     first = connect_to_port();
     assert_int_equal(serve(), WH_PORT_WENT | WH_PORT_CAME);
@@ -191,7 +216,7 @@ static void second_client(void **state) {
     send_text(second, "B");
     assert_int_equal(serve(), WH_PORT_WENT | WH_PORT_TAKEN);
     assert_int_equal(read(first, &byte, 1), 0);
-    /* Not before what the first one said was read. What is sent meanwhile is for nobody. */
+    /* Not before the first client's bytes are read. Bytes sent in the meantime reach nobody. */
     assert_idle();
     assert_int_equal(wh_port_send(&port, "a", 1), 0);
     assert_true(wh_port_asks(&port));
@@ -205,7 +230,7 @@ static void second_client(void **state) {
     wh_port_close(&port);
 }
 
-/* A megabyte that nobody takes off: the ring holds 64 kB, the rest waits in the system or with the client. */
+/* A megabyte that nobody reads: the ring holds 64 kB, the rest waits in the system or with the client. */
 static void full_input(void **state) {
     (void)state;
     static char bytes[1 << 20];
@@ -235,7 +260,7 @@ static void full_input(void **state) {
     wh_port_close(&port);
 }
 
-/* One who reads nothing is closed when its ring is full; the port goes on. */
+/* A client that reads nothing is closed when its ring is full; the port goes on. */
 static void deaf_client(void **state) {
     (void)state;
     static char bytes[4096];
@@ -254,7 +279,7 @@ static void deaf_client(void **state) {
     assert_int_equal(serve(), WH_PORT_CAME);
     assert_int_equal(wh_port_send(&port, "ok", 2), 0);
     assert_hears(next, "ok");
-    /* One who resets the connection is gone, and no signal comes. */
+    /* A client that resets the connection is gone, and no signal comes. */
     const struct linger reset = {.l_onoff = 1};
     assert_int_equal(setsockopt(next, SOL_SOCKET, SO_LINGER, &reset, sizeof reset), 0);
     assert_int_equal(close(next), 0);
@@ -334,7 +359,8 @@ static void pty_dialogue(void **state) {
         assert_int_equal(serve(), WH_PORT_WENT);
         assert_idle();
     }
-    /* One who comes and goes between two looks has left something to read; and what nobody read is gone. */
+    /* If a client comes and goes between two looks, its bytes can be read; answers that nobody read
+     * are gone. */
     int client = open(link_path, O_RDWR | O_NOCTTY | O_CLOEXEC);
     send_text(client, "B\n");
     assert_int_equal(close(client), 0);
@@ -348,7 +374,8 @@ static void pty_dialogue(void **state) {
     assert_int_equal(close(client), 0);
 }
 
-/* A pty is closed by being made anew: whoever had it open reads no more, and the link leads to another one. */
+/* A pty is closed by making it anew: a client that had it open reads no more, and the link leads to
+ * the new one. */
 static void pty_deaf(void **state) {
     (void)state;
     static char bytes[4096];
@@ -382,12 +409,57 @@ static void pty_places(void **state) {
     memset(longest, 'x', WH_PORT_PATH);
     assert_false(wh_port_open_pty(&second, longest, problem));
     assert_non_null(strstr(problem, "File name too long"));
-    /* Another one's file in the link's place stays. */
+    /* Another program's file in the link's place stays. */
     assert_int_equal(unlink(link_path), 0);
     assert_int_equal(symlink("/dev/null", link_path), 0);
     wh_port_close(&port);
     assert_int_equal(access(link_path, F_OK), 0);
     assert_int_equal(unlink(link_path), 0);
+    /* A link that a killed server has left is no one's; a link to nowhere else stays. */
+    assert_int_equal(symlink("/dev/pts/nobody", link_path), 0);
+    assert_true(wh_port_open_pty(&second, link_path, problem));
+    assert_int_equal(access(link_path, F_OK), 0);
+    wh_port_close(&second);
+    assert_int_equal(symlink("/nowhere/else", link_path), 0);
+    assert_false(wh_port_open_pty(&second, link_path, problem));
+    assert_string_equal(problem, expected);
+    assert_int_equal(unlink(link_path), 0);
+}
+
+/* Entries come in their order among all ports, at their slices, and behind the answers before them. */
+static void transcript_is_a_port(void **state) {
+    (void)state;
+    static const char text[] = "waferhand transcript 1\n\n0 0.000000 + a\n3 0.003000 > b \"GET\\n\"\n"
+                               "5 0.005000 < b \"OK\\n\"\n5 0.005000 ? a\n6 0.006000 - a\n7 0.007000 ! a\n";
+    static wh_transcript_t transcript;
+    static wh_port_t other;
+    assert_true(wh_transcript_parse(&transcript, "a.txt", text, sizeof text - 1));
+    wh_port_open_transcript(&port, &transcript, "a");
+    wh_port_open_transcript(&other, &transcript, "b");
+    assert_true(port.tells_all);
+    assert_int_equal(wh_port_serve(&other), 0);
+    assert_int_equal(wh_port_serve(&port), WH_PORT_TOLD | WH_PORT_CAME);
+    other.slice = 2;
+    assert_int_equal(wh_port_serve(&other), 0);
+    other.slice = port.slice = 9;
+    assert_int_equal(wh_port_serve(&port), 0);
+    assert_int_equal(wh_port_serve(&other), WH_PORT_TOLD | WH_PORT_FRAME);
+    assert_memory_equal(other.entry->bytes, "GET\n", 4);
+    assert_int_equal(wh_port_send(&other, "OK\n", 3), 0);
+    assert_int_equal(wh_port_serve(&port), 0); /* the answer is not compared yet */
+    const wh_transcript_entry_t heard = {5, 5000, WH_TRANSCRIPT_HEARD, "b", (const uint8_t *)"OK\n", 3, 0};
+    assert_true(wh_transcript_compare(&transcript, &heard));
+    assert_int_equal(wh_port_serve(&port), WH_PORT_TOLD | WH_PORT_ELAPSED);
+    assert_int_equal(wh_port_serve(&port), WH_PORT_TOLD | WH_PORT_WENT);
+    assert_false(wh_transcript_is_over(&transcript, 6));
+    assert_string_equal(transcript.message, "a.txt:8: slice 7 is not reached: the run ends at slice 6");
+    assert_int_equal(wh_port_serve(&port), WH_PORT_TOLD | WH_PORT_ENDED);
+    assert_int_equal(wh_port_serve(&port) | wh_port_serve(&other), 0);
+    assert_true(wh_transcript_is_over(&transcript, 9));
+    struct pollfd polls[WH_PORT_POLLS];
+    assert_int_equal(wh_port_polls(&port, polls), 0);
+    wh_port_close(&port);
+    wh_transcript_close(&transcript);
 }
 
 int main(void) {
@@ -395,6 +467,7 @@ int main(void) {
         cmocka_unit_test(rings),
         cmocka_unit_test(dialogue),
         cmocka_unit_test(half_closed),
+        cmocka_unit_test(who_sends_no_more_sees_the_end),
         cmocka_unit_test(second_client),
         cmocka_unit_test(full_input),
         cmocka_unit_test(deaf_client),
@@ -402,6 +475,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(pty_dialogue, open_pty, close_pty),
         cmocka_unit_test_setup_teardown(pty_deaf, open_pty, close_pty),
         cmocka_unit_test_setup_teardown(pty_places, open_pty, close_pty),
+        cmocka_unit_test(transcript_is_a_port),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Transcripts: what is written is read, what is not understood is refused, and the first difference is told. */
+/* Transcripts: written ones are read back, lines that are not understood are refused, and the first
+ * difference is reported. */
 #include "host/transcript.h"
 #include "support/support.h"
 
@@ -150,7 +151,7 @@ static void write_all(FILE *file, const uint8_t bytes[WH_TRANSCRIPT_BYTES], bool
     assert_int_equal(fclose(file), 0);
 }
 
-/* Every byte there is comes back, and entries in any number, in either form. */
+/* Every possible byte comes back, and so do entries in any number, in either form. */
 static void check_round_trip(bool is_json) {
     char path[WH_TEST_PATH];
     uint8_t bytes[WH_TRANSCRIPT_BYTES];
@@ -268,6 +269,24 @@ static void differences(void **state) {
     wh_transcript_close(&transcript);
 }
 
+/* A server that was killed has left all that was said, and no end: that is what is told. */
+static void a_transcript_that_is_cut(void **state) {
+    (void)state;
+    for (int ended = 0; ended < 2; ++ended) {
+        char text[200];
+        (void)snprintf(text, sizeof text, FIRST "0 0.000000 > r \"A\"\n1 0.001000 < r \"b\"\n%s",
+                       ended ? "1 0.001000 ! r\n" : "");
+        assert_true(parse(text));
+        while (wh_transcript_next(&transcript, 1)) {
+        }
+        assert_true(hears(1, "r", "b"));
+        assert_false(hears(2, "r", "c"));
+        assert_true((strstr(transcript.message, "(expected nothing: the transcript is cut") != NULL) ==
+                    !ended);
+        wh_transcript_close(&transcript);
+    }
+}
+
 /* A difference far behind the beginning of a frame is shown, not cut off. */
 static void a_difference_far_behind(void **state) {
     (void)state;
@@ -285,7 +304,7 @@ static void a_difference_far_behind(void **state) {
     wh_transcript_close(&transcript);
 }
 
-/* What is behind an entry = waits for it, and it is compared. */
+/* Entries behind an entry = wait for it, and it is compared. */
 static void clock_set_back(void **state) {
     (void)state;
     assert_true(parse(FIRST "9 0.009000 > r \"A\"\n2 0.002000 = r\n3 0.003000 ~ r \"B\"\n3 0.003000 ! r\n"));
@@ -306,10 +325,15 @@ static void clock_set_back(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(json_refusals), cmocka_unit_test(clock_set_back),
-        cmocka_unit_test(refusals),      cmocka_unit_test(round_trip),
-        cmocka_unit_test(written_lines), cmocka_unit_test(hosts_side),
-        cmocka_unit_test(differences),   cmocka_unit_test(a_difference_far_behind),
+        cmocka_unit_test(json_refusals),
+        cmocka_unit_test(clock_set_back),
+        cmocka_unit_test(refusals),
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(written_lines),
+        cmocka_unit_test(hosts_side),
+        cmocka_unit_test(differences),
+        cmocka_unit_test(a_transcript_that_is_cut),
+        cmocka_unit_test(a_difference_far_behind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The prompt's answers taken apart, names as they are typed, and the words that dialects speak. */
+/* The prompt's answers taken apart, names as an operator types them, and the words that dialects use. */
 #include "host/values.h"
 
 #include <lauxlib.h>

@@ -1,4 +1,5 @@
-/* Links of several robots and arms: their parts by name, where they stand, and what of them may touch. */
+/* Links of several robots and arms: their parts by name, their places, and the pairs of them that
+ * may touch. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -70,7 +71,7 @@ static void each_robot_has_its_own_lengths(void **state) {
     assert_true(wh_layout_arm_lengths(layout, 2)->right_handed);
 }
 
-/* The axes of a robot's own: theta and so on are those of the machine from `first` on. */
+/* The axes of one robot: theta and so on are those of the machine from `first` on. */
 static size_t first_of(const wh_layout_t *layout, size_t robot) {
     size_t first;
     (void)wh_machine_carrier(&layout->machine, robot, &first);
@@ -83,8 +84,8 @@ static void assert_at(const wh_pose_t *pose, double x, double y, double z) {
     assert_near(pose->r.z, z, 1e-9);
 }
 
-/* By hand: at home theta and yaw are 0, R is 300 and Z 900; the wrist is 250 behind the end-effector, and the elbow where
- * both links reach. */
+/* Computed by hand: at home theta and yaw are 0, R is 300 and Z 900. The wrist is 250 behind the
+ * end-effector, and the elbow where both links reach. */
 static void links_stand_on_their_robots(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(THREE);
@@ -102,7 +103,7 @@ static void links_stand_on_their_robots(void **state) {
     const double link = 0.53 * 650;
     assert_at(&vac[WH_ARM_FOREARM], 675, sqrt(link * link - 25 * 25), 900);
     const wh_pose_t *second = &links.bodies[4 * WH_ARM_BODIES];
-    assert_at(&second[WH_ARM_HAND], 600, 0, 910); /* 10 higher, but for its links */
+    assert_at(&second[WH_ARM_HAND], 600, 0, 910); /* 10 higher, except for its links */
     assert_at(&second[WH_ARM_FOREARM], 625, -sqrt(link * link - 25 * 25), 900);
     const wh_pose_t *scara = &links.bodies[1 * WH_ARM_BODIES];
     assert_at(&scara[WH_ARM_FOREARM], 600 + 450, 2000, 900);
@@ -110,7 +111,8 @@ static void links_stand_on_their_robots(void **state) {
     assert_at(shared, scara[WH_ARM_FOREARM].r.x, scara[WH_ARM_FOREARM].r.y, scara[WH_ARM_FOREARM].r.z);
 }
 
-/* Following grippers gives the very poses of the axes; where nothing moves nothing is computed, to the same end. */
+/* Followed from slice to slice, grippers have the very poses of the axes. If nothing moves nothing
+ * is computed, with the same result. */
 static void links_follow_the_grippers(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(THREE);
@@ -131,7 +133,7 @@ static void links_follow_the_grippers(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- contacts */
 
-/* What is hit first while one axis of one robot goes up to `to`, the others as they are. */
+/* The first hit while one axis of one robot moves up to `to` and the others rest. */
 static const wh_event_t *first_hit(const wh_layout_t *layout, wh_real_t axes[], size_t axis, double to) {
     static wh_event_t event;
     wh_event_list_t list = {&event, 1, 0};
@@ -180,7 +182,7 @@ static void robots_hit_each_other(void **state) {
     wh_machine_home(&layout->machine, axes);
     const size_t atm = first_of(layout, 0);
     axes[atm + WH_AXIS_R] = 500;
-    /* Its rail brings it along to the other robot's second blade, which is 10 higher. */
+    /* Its rail carries it along to the other robot's second blade, which is 10 higher. */
     expect_hit(layout, first_hit(layout, axes, atm + WH_ROBOT_AXES, 1000), "A palm", "VAC hand 2");
 }
 
@@ -211,7 +213,7 @@ static void arms_one_above_the_other_touch(void **state) {
     assert_non_null(first_hit(layout, axes, WH_AXIS_R, 890));
 }
 
-/* As many robots, axes and grippers as there may be. */
+/* The largest numbers of robots, axes and grippers. */
 static void eight_robots_fill_the_machine(void **state) {
     (void)state;
     const wh_layout_t *layout =

@@ -1,5 +1,5 @@
-/* What is wrong with a cell before anything moves: the room around a blade against figures worked out by hand, and what is
- * said of cells that do not work. */
+/* Errors of a cell that show before anything moves: the room around a blade compared with figures
+ * worked out by hand, and the findings for cells that do not work. */
 #include "layout/feasibility.h"
 
 #include "math/trig.h"
@@ -21,7 +21,7 @@ static void look_at(const char *fields) {
     assert_true(check.has_parts);
 }
 
-/* The first finding of a kind that says this; fails if there is none. */
+/* The first finding of a kind with this text; fails if there is none. */
 static const wh_finding_t *expect_finding(wh_finding_kind_t kind, const char *text) {
     for (size_t i = 0; i < check.count; ++i) {
         if (check.findings[i].kind == kind && strstr(check.findings[i].text, text)) {
@@ -43,7 +43,7 @@ static size_t count_findings(wh_finding_kind_t kind) {
     return count;
 }
 
-/* How many findings there are, and how many of them are no warnings. */
+/* The number of findings, and how many of them are no warnings. */
 static void expect_findings(size_t count, size_t wrong) {
     assert_int_equal(check.count, count);
     assert_int_equal(check.wrong, wrong);
@@ -76,7 +76,8 @@ static void look_at_slots(const slots_t *s, int count, const char *more) {
     look_at(fields);
 }
 
-/* The wafer is 0.775 thick. Checked at slices, it is taken up to a step of 0.02 mm nearer than eps_projz. */
+/* The wafer is 0.775 thick. With checks at slices it is taken up to a step of 0.02 mm nearer than
+ * eps_projz. */
 static void room_between_level_slots(void **state) {
     (void)state;
     for (int i = 0; i < 20; ++i) {
@@ -100,7 +101,8 @@ static void room_between_level_slots(void **state) {
     }
 }
 
-/* Nothing is held in front of a single slot, as that would be the wafer itself: a finger's inner corner is nearest. */
+/* In front of a single slot the gripper holds nothing, as that would be the wafer itself: a
+ * finger's inner corner is nearest. */
 static void room_at_a_single_slot(void **state) {
     (void)state;
     const slots_t s = {.pitch = 10, .stroke = 6, .offset = 2, .retract = 300, .blade = 3, .ledge = 0.5};
@@ -112,7 +114,7 @@ static void room_at_a_single_slot(void **state) {
     expect_findings(0, 0);
 }
 
-/* Turned and moved it is the same room; a chuck has a radius of 40. */
+/* Turned and moved it has the same room; a chuck has a radius of 40. */
 static void room_at_a_prealigner(void **state) {
     (void)state;
     look_at(
@@ -162,14 +164,14 @@ static void a_blade_that_does_not_fit(void **state) {
         "A: entering 3 mm below a slot, the blade touches the wafer below; pitch 10 mm, blade 6.3 mm");
     assert_int_equal(check.entries[0].below, 0);
     expect_findings(1, 1);
-    /* As high as a wafer and its ledges are: lifted by 5.6 it touches those above. */
+    /* The height of a wafer and its ledges counts: lifted by 5.6 it touches those above. */
     s = (slots_t){.pitch = 10, .stroke = 9, .offset = 8.4, .retract = 310, .blade = 3, .ledge = 0.5};
     look_at_slots(&s, 2, "");
     expect_finding(WH_FINDING_ENTRY,
                    "A: a GET lifts its wafer against the ledges or the wafer above: `offset` 8.4 mm, "
                    "pitch 10 mm, ledges 0.5 mm, wafer 0.775 mm, tilt 0 deg");
     assert_int_equal(check.entries[0].lifted, 0);
-    /* Tilted by a degree, the finger's outer edge, 75 mm aside, comes 1.3 mm nearer to what lies there. */
+    /* Tilted by a degree, the finger's outer edge, 75 mm aside, comes 1.3 mm nearer to the parts there. */
     look_at(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, rpy = { 1, 0, 0 }, slots = 2, stroke = 1.2, "
                      "offset = 0.2 } }");
     expect_finding(WH_FINDING_ENTRY, "the wafer in it; it is tilted by 1 deg, upright it would have 1 mm");
@@ -195,7 +197,8 @@ static void a_way_in_that_is_too_short(void **state) {
     expect_findings(1, 0);
 }
 
-/* The walls begin 158 mm before a slot's middle. A held wafer's rim is 150 mm nearer to it than the blade is. */
+/* The walls begin 158 mm before a slot's middle. A held wafer's rim is 150 mm nearer to it than the
+ * blade is. */
 static void a_way_in_that_begins_in_a_foup(void **state) {
     (void)state;
     static const char cell[] =
@@ -227,7 +230,7 @@ static void stations_whose_wafers_touch(void **state) {
     assert_int_equal(finding->other, 1);
     assert_int_equal(finding->slot, 1);
     assert_int_equal(count_findings(WH_FINDING_SPACE), 1);
-    /* In the same places, on ledges that touch only; and with B's wafers in A's ledges. */
+    /* In the same places, on ledges that only touch; and with B's wafers in A's ledges. */
     look_at(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 3, retract = 310 }, "
                      "B = { at = { 700, 0, 900 }, rpy = { 0, 0, 20 }, slots = 3, retract = 310 } }");
     expect_finding(WH_FINDING_SPACE,
@@ -236,7 +239,7 @@ static void stations_whose_wafers_touch(void **state) {
                      "B = { at = { 700, 0, 899.5 }, rpy = { 0, 0, 20 }, slots = 3, retract = 310 } }");
     expect_finding(WH_FINDING_SPACE, "a wafer in A slot 1 touches one in B slot 1; so do 8 more pairs");
     assert_int_equal(count_findings(WH_FINDING_SPACE), 1);
-    /* Where nobody goes no wafer counts, but the ledges do. */
+    /* In a station that no gripper serves, wafers do not count, but the ledges do. */
     look_at(GRIPPERS
             "stations = { A = { at = { 700, 0, 900 }, slots = 3, retract = 310 }, "
             "B = { at = { 700, 0, 900.5 }, rpy = { 0, 0, 20 }, slots = 3, retract = 310, taught = false } }");
@@ -244,7 +247,8 @@ static void stations_whose_wafers_touch(void **state) {
     assert_int_equal(count_findings(WH_FINDING_SPACE), 1);
 }
 
-/* In the middle between the slots of the other no wafer touches, but the blade, from 3 to 6 mm below, does. */
+/* In the middle between the other station's slots no wafer touches, but the blade, from 3 to 6 mm
+ * below, does. */
 static void stations_whose_wafers_stand_between_one_anothers(void **state) {
     (void)state;
     look_at(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 3, retract = 310 }, "
@@ -254,6 +258,18 @@ static void stations_whose_wafers_stand_between_one_anothers(void **state) {
     assert_int_equal(finding->station, 0);
     assert_int_equal(finding->other, 1);
     assert_int_equal(count_findings(WH_FINDING_SPACE), 1);
+}
+
+/* Two arms of one heading: their hands clear each other, but their links are at one height. */
+static void two_arms_on_one_side(void **state) {
+    (void)state;
+    look_at("robot = { kind = 'TRZ', arms = { {}, { heading = 0, height = 60 } } }, "
+            "grippers = { { name = 'LOW' }, { name = 'UP', arm = 2 } }, "
+            "stations = { A = { at = { 700, 0, 900 }, slots = 3, retract = 310 } }");
+    (void)expect_finding(
+        WH_FINDING_CONTACT,
+        "forearm and forearm 2 touch before anything moves: `height` lifts a hand, the links of "
+        "both arms are at one height, unless a `urdf` has them");
 }
 
 static void what_touches_before_anything_moves(void **state) {
@@ -268,7 +284,7 @@ static void what_touches_before_anything_moves(void **state) {
     assert_string_equal(wh_layout_part_name(layout, finding->parts[1]), "pole");
     assert_int_equal(finding->station, WH_NONE);
     assert_int_equal(check.entries[0].wafers, 1);
-    /* The wafers of all slots would; that one of them does is known already. */
+    /* The wafers of all slots would touch; one that does is known already. */
     assert_int_equal(count_findings(WH_FINDING_SPACE), 0);
     look_at(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 3, retract = 310 } }, "
                      "obstacles = { { name = 'pole', at = { 850, 0, 900 }, box = { 4, 20, 200 } } }");
@@ -290,7 +306,8 @@ static void what_a_wafer_would_touch_of_the_robot_at_home(void **state) {
     assert_int_equal(finding->other, WH_NONE);
 }
 
-/* Two blades, one 12 mm above the other: with EE in slot 1 a wafer on UP lies 12 mm above, beside that of slot 2. */
+/* Two blades, one 12 mm above the other: with EE in slot 1 a wafer on UP lies 12 mm above, beside
+ * the wafer of slot 2. */
 static void a_second_blade_in_the_way(void **state) {
     (void)state;
     look_at("grippers = { { name = 'EE' }, { name = 'UP', on = 'robot', at = { 0, 0, 12 } } }, "
@@ -302,7 +319,8 @@ static void a_second_blade_in_the_way(void **state) {
     look_at("grippers = { { name = 'EE' }, { name = 'UP', on = 'robot', at = { 0, 0, 40 } } }, "
             "stations = { A = { at = { 700, 0, 900 }, slots = 2, retract = 310 } }");
     expect_findings(0, 0);
-    /* 6.6 mm above it the other blade stays below 9.6 as it goes up 3; the wafer on it does not stay below 10. */
+    /* 6.6 mm above it the other blade stays below 9.6 as it moves up 3; the wafer on it does not
+     * stay below 10. */
     look_at("grippers = { { name = 'EE' }, { name = 'UP', on = 'robot', at = { 0, 0, 6.6 } } }, shapes = { "
             "blade = { thickness = 1 } }, "
             "stations = { A = { at = { 700, 0, 900 }, slots = 2, retract = 310 } }");
@@ -312,7 +330,7 @@ static void a_second_blade_in_the_way(void **state) {
             "blade = { thickness = 1 } }, "
             "stations = { A = { at = { 700, 0, 900 }, slots = 2, retract = 310 } }");
     expect_findings(0, 0);
-    /* Its own wafer goes into the blade above it. */
+    /* Its own wafer runs into the blade above it. */
     look_at("grippers = { { name = 'EE' }, { name = 'UP', on = 'robot', at = { 0, 0, 3.5 } } }, "
             "stations = { A = { at = { 700, 0, 900 }, slots = 1, retract = 310 } }");
     expect_finding(WH_FINDING_BLADES,
@@ -339,7 +357,7 @@ static void what_is_tilted_too_far(void **state) {
                    "W is tilted by 9 deg (limit 8.11 deg): the level blade does not take it");
 }
 
-/* As many as are named, and some more. */
+/* All that are named, and some more. */
 static void many_wafers_that_are_tilted_too_far(void **state) {
     (void)state;
     for (int count = 19; count <= 23; ++count) {
@@ -401,7 +419,7 @@ static void a_release_below_the_support(void **state) {
 
 static void links_that_do_not_reach(void **state) {
     (void)state;
-    /* The wrist is 450 mm from theta's axis in both slots, and 140 mm at the begin of the way. */
+    /* The wrist is 450 mm from theta's axis in both slots, and 140 mm at the beginning of the way. */
     look_at(GRIPPERS "stations = { A = { at = { 700, 0, 900 }, slots = 2, retract = 310 } }, shapes = { arm "
                      "= { link = 200 } }");
     const wh_finding_t *finding =
@@ -450,17 +468,17 @@ static void edge_sensors_that_cannot_know_a_notch(void **state) {
         "at = { -600, 0, 950 }, rpy = { 0, 0, 180 }, retract = 310, sensor = { samples = %d, length = %g } } "
         "}";
     char fields[400];
-    (void)snprintf(fields, sizeof fields, cell, 2356, 2.0);
+    (void)snprintf(fields, sizeof fields, cell, 3040, 2.0);
     look_at(fields);
     expect_findings(2, 0);
     expect_finding(WH_FINDING_SIGHT,
-                   "P: `sensor.samples` of 2356 are 0.4 mm apart on a wafer's rim: ALIGN is sure of a notch "
-                   "with 0.4 mm or less, 2357 samples, and without one of the centre alone");
+                   "P: `sensor.samples` of 3040 are 0.31 mm apart on a wafer's rim: ALIGN is sure of a notch "
+                   "with 0.31 mm or less, 3041 samples, and without one of the centre alone");
     assert_int_equal(expect_finding(WH_FINDING_SIGHT, "P: `sensor.length` of 2 mm ends 1 mm inside of a "
                                                       "wafer's rim, where its notch of 1 mm ends or goes on")
                          ->station,
                      0);
-    (void)snprintf(fields, sizeof fields, cell, 2357, 2.1);
+    (void)snprintf(fields, sizeof fields, cell, 3041, 2.1);
     look_at(fields);
     expect_findings(0, 0);
 }
@@ -474,6 +492,7 @@ int main(void) {
         cmocka_unit_test_teardown(a_blade_that_does_not_fit, free_check),
         cmocka_unit_test_teardown(a_way_in_that_is_too_short, free_check),
         cmocka_unit_test_teardown(a_way_in_that_begins_in_a_foup, free_check),
+        cmocka_unit_test_teardown(two_arms_on_one_side, free_check),
         cmocka_unit_test_teardown(stations_whose_wafers_touch, free_check),
         cmocka_unit_test_teardown(stations_whose_wafers_stand_between_one_anothers, free_check),
         cmocka_unit_test_teardown(what_touches_before_anything_moves, free_check),

@@ -1,4 +1,5 @@
-/* Errors that are given by name: each arrives where a trial draws it, whatever the trial, and what is wrong is refused. */
+/* Errors that are given by name: each has the place in the trial that a drawn error has, in every
+ * trial, and wrong ones are refused. */
 #include "layout/given.h"
 
 #include "support/layout.h"
@@ -66,7 +67,7 @@ static void expect_displacement(const wh_displacement_t *found, const double wan
     }
 }
 
-/* Name by name, all different; the last one that names an error counts. */
+/* Name by name, all different; if a name comes twice, the last one counts. */
 static void each_error_arrives_where_it_is_drawn(void **state) {
     (void)state;
     static const char *const texts[] = {"A.x=9",
@@ -125,7 +126,8 @@ static void each_error_arrives_where_it_is_drawn(void **state) {
     }
 }
 
-/* Of several robots each may have been taught a station by itself; the station stands as it should. */
+/* With several robots, each may have been taught a station by itself; the station stands at its
+ * nominal place. */
 static void one_of_several_robots_was_taught_beside(void **state) {
     (void)state;
     static const char *const texts[] = {"S.A.x=1", "S.V.x.z=-2", "S.V.x.y=0.5", "T.yaw=3", "T.A.z=4"};

@@ -1,6 +1,6 @@
-/* The lists of fields are what the reader of layouts reads: each field of each table is tried where it may
- * stand, with a value of no type, and left out; the reader must name it, and expect the type that the list
- * has. `waferhand definitions` prints these lists. */
+/* The lists of fields agree with the reader of layouts. Each field of each table is tried in its
+ * place, with a value of no type, and left out; the reader must name it, and expect the type in the
+ * list. `waferhand definitions` prints these lists. */
 #include "support/layout.h"
 
 #include "layout/layout_fields.h"
@@ -26,7 +26,7 @@ static const char base[] =
     "} },"
     " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, "
     "   chips = { { at = 90, width = 1, depth = 0.5 } } } }, { name = 'W2', station = 'B', slot = 1 } },"
-    " shapes = { blade = {}, arm = {}, ledge = {}, foup = {}, chuck = {} },"
+    " mapping = {}, shapes = { blade = {}, arm = {}, ledge = {}, foup = {}, chuck = {} },"
     " obstacles = { { at = { 0, 0, -500 }, box = { 1, 1, 1 } },"
     "   { at = { 0, 0, -600 }, cylinder = { radius = 1, height = 1 } },"
     "   { at = { 0, 0, -700 }, capsule = { radius = 1, height = 1 } } },"
@@ -65,7 +65,7 @@ static bool is_read(const char *statement) {
     return wh_sandbox_call(L, 1, 1, &result);
 }
 
-/* What was expected of the field at a path, as the refusal of this statement says; in `result`. */
+/* The expected type of the field at a path, from the refusal of this statement; in `result`. */
 static const char *find_expected(const char *statement, const char *path) {
     char begin[300];
     (void)snprintf(begin, sizeof begin, "cell.lua: %s: ", path);
@@ -88,7 +88,7 @@ static const wh_layout_class_t *find_class(const char *name, size_t length) {
     return class;
 }
 
-/* Each "word" of the type is in the text, and there are as many in both unless there may be more. */
+/* Each "word" of the type is in the text, and both have the same number unless there may be more. */
 static void expect_choices(const char *type, const char *expected, bool may_be_more) {
     size_t given = 0, known = 0;
     for (const char *at = type; (at = strchr(at, '"')) != NULL;) {
@@ -133,8 +133,8 @@ static void join(char path[PATH_BYTES], const char *before, const char *name) {
     (void)snprintf(path, PATH_BYTES, "%.150s%s%.140s", before, before[0] ? "." : "", name);
 }
 
-/* The obstacle that a shape's field belongs to, the station that has a sensor, the chuck that has a stage, and
- * the pins; the others have their own. */
+/* The obstacle of a shape's field, the station with a sensor, the chuck with a stage, and the pins;
+ * other fields have their own. */
 static const char *mend_path(const char *path, const char *field) {
     static const char *const mended[][3] = {{"stations.A", "sensor", "stations.P"},
                                             {"grippers[1]", "stage", "grippers[2]"},
@@ -157,7 +157,7 @@ static const char *mend_path(const char *path, const char *field) {
     return path;
 }
 
-/* What a field of wafers and obstacles needs: an edge grip takes no wafers with flats. */
+/* Needs of a field of wafers and obstacles: an edge grip takes no wafers with flats. */
 static const char *prepare_body(const char *path) {
     if (strncmp(path, "wafers[1].rim.flats", strlen("wafers[1].rim.flats")) == 0) {
         return "cell.grippers[4].grip, cell.faults = nil cell.wafers[1].rim.flats = { { at = 0, length = 50 "
@@ -197,7 +197,16 @@ static const char *prepare_urdf(const char *path) {
     return NULL;
 }
 
-/* What a field needs that the base's robot does not have. */
+/* A station that is given by axes: of a robot that has all but `r`, or of the base's. */
+static const char *prepare_axes(const char *path) {
+    return strcmp(path, "stations.A.axes.r") == 0
+               ? "cell.stations.A.at = nil cell.stations.A.axes = { theta = 0, r = 700, z = 900, yaw = 0 } "
+               : "cell.stations.A.at = nil cell.robot = { kind = 'SCARA', links = { 450, 450 }, rail = {}, "
+                 "tilt = {} } cell.stations.A.axes = { theta = 0, forearm = 90, z = 900, yaw = 0, rail = 0, "
+                 "tilt_x = 0, tilt_y = 0 } ";
+}
+
+/* Needs of a field that the base's robot does not meet. */
 static const char *prepare(const char *path) {
     static const char scara[] = "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { kind "
                                 "= 'SCARA', links = { 450, 450 }, theta = {}, z = {},"
@@ -212,6 +221,9 @@ static const char *prepare(const char *path) {
     const char *const of_file = prepare_urdf(path);
     if (of_file) {
         return of_file;
+    }
+    if (strncmp(path, "stations.A.axes", strlen("stations.A.axes")) == 0) {
+        return prepare_axes(path);
     }
     if (strcmp(path, "stations.A.via[1].forearm") == 0) {
         return "cell.stations.A.beams, cell.stations.A.block, cell.stations.A.via[1].r = nil "
@@ -252,12 +264,13 @@ static void try_field(const char *in, const wh_reader_field_t *field) {
     (void)snprintf(statement, sizeof statement, "%scell.%s = print", before, path);
     expect_type(field, find_expected(statement, path));
     (void)snprintf(statement, sizeof statement, "%scell.%s = nil", before, path);
-    /* Without it something else may be missed that names it. One of an obstacle's shapes must be there, a SCARA's
-     * links, and the tools of a URDF. */
-    const bool is_shape =
-        (strncmp(path, "obstacles", 9) == 0 || strncmp(path, "doors", 5) == 0 ||
-         strcmp(field->name, "links") == 0 || strncmp(path, "robot.tool", strlen("robot.tool")) == 0) &&
-        !field->required;
+    /* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a
+     * SCARA its links, a URDF its tools, and a station `at` or the axes that its arm has. */
+    const bool is_shape = (strncmp(path, "obstacles", 9) == 0 || strncmp(path, "doors", 5) == 0 ||
+                           strcmp(field->name, "links") == 0 || strncmp(path, "stations.A.axes.", 16) == 0 ||
+                           (strncmp(path, "stations.", 9) == 0 && strcmp(field->name, "at") == 0) ||
+                           strncmp(path, "robot.tool", strlen("robot.tool")) == 0) &&
+                          !field->required;
     (void)snprintf(missed, sizeof missed, "cell.lua: %s: nothing ", path);
     const bool is_missed = !is_read(statement) && strncmp(result.message, missed, strlen(missed)) == 0;
     if (!is_shape && is_missed != field->required) {
@@ -302,7 +315,7 @@ static void try_tables(const char *path, const char *type) {
     }
 }
 
-/* What goes with several robots, which the base has not: layout_test.c tries it. */
+/* Fields of several robots, which the base does not have: layout_test.c tries them. */
 static bool is_of_several(const wh_reader_field_t *field) {
     return strcmp(field->name, "robots") == 0 || strcmp(field->name, "by") == 0 ||
            strcmp(field->type, "table<string, waferhand.arm>") == 0;

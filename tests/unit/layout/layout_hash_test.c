@@ -1,10 +1,11 @@
-/* The messages as LCM sees them: told apart by their fingerprints, and small enough for one datagram. */
+/* The messages from LCM's side: their fingerprints tell them apart, and they are small enough for
+ * one datagram. */
 #include "support/support.h"
 
 #include <waferhand_messages.h>
 
-/* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
- * LCM sends longer messages in fragments, which get lost one by one. */
+/* The part of an LCM message that one UDP datagram carries: the longest datagram less LCM's header
+ * and the channel's name. LCM sends longer messages in fragments, which get lost one by one. */
 enum {
     DATAGRAM = 65499,
     WAFERS = 256,
@@ -22,7 +23,7 @@ typedef struct {
     int64_t fingerprint;
 } message_t;
 
-/* LCM's fingerprint leaves out a message's name: two with the same members would be taken for each other. */
+/* LCM's fingerprint leaves out a message's name: two with the same members would look the same. */
 static void fingerprints_differ(void **state) {
     (void)state;
 #define MESSAGE(name) {#name, __waferhand_##name##_get_hash()},
@@ -64,8 +65,8 @@ static void largest_state_fits(void **state) {
             .waiting_count = LATCHES, .latch_count = LATCHES, .waiting = latches, .latches = latches}};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
-    /* Computed by hand: a header of 122, doors of 8, a check of 8, beams of 41, wafers of 101, grippers of 515, events of 157, slots of
-     * faults of 328, samples of 4 and latches of 24 bytes. */
+    /* Computed by hand: a header of 122, doors of 8, a check of 8, beams of 41, wafers of 101,
+     * grippers of 515, events of 157, slots of faults of 328, samples of 4 and latches of 24 bytes. */
     assert_int_equal(size, 171 + DOORS * 8 + SAMPLES * 4 + 2 * LATCHES * 24 + WAFERS * 101 + GRIPPERS * 515 +
                                EVENTS * 157 + FAULTS * 328);
     assert_true(size <= DATAGRAM);

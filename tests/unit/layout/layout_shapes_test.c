@@ -1,9 +1,8 @@
-/* A layout's parts for the collision check: defaults by wafer size, obstacles, and what is refused. */
+/* A layout's parts for the collision check: defaults by wafer size, obstacles, and refusals. */
 #include <unistd.h>
 
 #include "support/layout.h"
 #include "support/parts.h"
-#include "support/random.h"
 
 #include "layout/layout.h"
 #include "layout/links.h"
@@ -16,7 +15,8 @@
 #define STATIONS "stations = { " FOUP PREALIGNER "}, "
 #define CELL GRIPPERS STATIONS
 
-/* A box from x0 to x1 and so on, of a part that hangs on nothing and is not turned, or in its body's frame. */
+/* A box from x0 to x1 and so on, in its body's frame, or of a part that is mounted on nothing and
+ * is not turned. */
 static void expect_box(const wh_layout_t *layout, const char *name, double x0, double x1, double y0,
                        double y1, double z0, double z1) {
     const wh_convex_t *convex = &part(layout, name)->convex;
@@ -83,7 +83,7 @@ static void a_foup_has_its_shell(void **state) {
     expect_box(layout, "F floor", 602, 923, -163, 163, 870, 875);
     expect_box(layout, "F load port", 602, 973, -173, 173, 0, 870);
     assert_int_equal(part(layout, "F roof")->owner, 0);
-    /* Too low for a load port below it. */
+    /* The station is too low for a load port below it. */
     const wh_layout_t *low =
         read_sound(GRIPPERS "stations = { F = { kind = 'foup', at = { 760, 0, 49 } }, " PREALIGNER "}");
     assert_int_equal(find(low, "F load port"), WH_NONE);
@@ -105,11 +105,7 @@ static void a_robot_has_its_shapes(void **state) {
     assert_int_equal(find(low, "EE neck"), WH_NONE);
 }
 
-static double random_in(uint64_t *random, double low, double high) {
-    return low + (high - low) * (double)(wh_test_splitmix(random) >> 11) * 0x1p-53;
-}
-
-/* How far a point, in the gripper's frame, is outside of a box or a cylinder along its worst axis. */
+/* The distance of a point, in the gripper's frame, outside a box or a cylinder along its worst axis. */
 static double outside(const wh_convex_t *convex, wh_vec3_t point) {
     const wh_vec3_t dr = wh_vec3_subtract(&point, &convex->body_from_shape.r);
     const wh_vec3_t at = wh_mat3_transform_back(&convex->body_from_shape.R, &dr);
@@ -120,15 +116,16 @@ static double outside(const wh_convex_t *convex, wh_vec3_t point) {
     return fmax(fmax(fabs(at.x) - convex->half.x, fabs(at.y) - convex->half.y), along);
 }
 
-/* Wherever a blade is on the end-effector, what moves is in the world: nothing hangs in the air. */
+/* Wherever a blade is on the end-effector, its moving parts are in the world, and none is without a
+ * carrier. */
 static void a_blade_is_joined_to_the_wrist(void **state) {
     (void)state;
-    uint64_t random = 20261122;
-    for (int i = 0; i < 300; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(6, 300, 0.2);
+    while (wh_round(&rounds)) {
         char text[700];
-        const double x = random_in(&random, -400, 400), y = random_in(&random, -400, 400);
-        const double z = random_in(&random, -120, 60), yaw = random_in(&random, -180, 180);
-        const double reach = i % 3 == 0 ? 0 : random_in(&random, 0, 300);
+        const double x = wh_test_uniform(-400, 400), y = wh_test_uniform(-400, 400);
+        const double z = wh_test_uniform(-120, 60), yaw = wh_test_uniform(-180, 180);
+        const double reach = rounds.number % 3 == 0 ? 0 : wh_test_uniform(0, 300);
         (void)snprintf(
             text, sizeof text,
             "shapes = { arm = { reach = %.17g } }, grippers = { { name = 'EE', at = { %.17g, %.17g, "
@@ -161,7 +158,8 @@ static void names_and_order(void **state) {
                         "obstacles = { { box = { 1, 1, 1 }, at = { 0, 0, 0 }, on = 'hand' }, "
                         "{ box = { 1, 1, 1 }, at = { 0, 0, 0 } } }");
     const int32_t count = (int32_t)layout->world.part_count;
-    /* 50 ledges, 5 walls, a load port, a body and an obstacle; then 5 of the robot, 5 of grippers and one more. */
+    /* 50 ledges, 5 walls, a load port, a body and an obstacle; then 5 of the robot, 5 of grippers
+     * and one more. */
     assert_int_equal(count, 58 + 11);
     assert_int_equal(find(layout, "obstacle 2"), 57);
     assert_int_equal(find(layout, "obstacle 1"), count - 1);
@@ -344,7 +342,17 @@ static void too_many(void **state) {
 
 /* --------------------------------------------------------------------------------------------------- the transit */
 
-/* How far what hangs on gripper `g` is from theta's axis, by support points in all directions. */
+enum { WAYS = 720 };
+static wh_vec3_t ways[WAYS];
+
+static int open_sandbox_and_ways(void **state) {
+    for (int k = 0; k < WAYS; ++k) {
+        ways[k] = wh_vec3(wh_cos(k * WH_PI / (WAYS / 2)), wh_sin(k * WH_PI / (WAYS / 2)), 0);
+    }
+    return open_sandbox(state);
+}
+
+/* The distance of the parts on gripper `g` from theta's axis, by support points in all directions. */
 static double outermost(const wh_layout_t *layout, size_t g, double R, double yaw, double flip) {
     wh_pose_t effector = {wh_mat3_about_z(yaw), {R, 0, 0}};
     wh_chain_turn_over(&effector.R, flip);
@@ -360,10 +368,9 @@ static double outermost(const wh_layout_t *layout, size_t g, double R, double ya
         }
         const wh_convex_t *convex = is_wafer ? &layout->world.wafer : &hung->convex;
         const wh_pose_t base_from_shape = wh_pose_compose(&gripper, &convex->body_from_shape);
-        for (int k = 0; k < 720; ++k) {
-            const wh_vec3_t way = wh_vec3(wh_cos(k * WH_PI / 360), wh_sin(k * WH_PI / 360), 0);
-            const wh_vec3_t point = wh_convex_support(convex, &base_from_shape, way);
-            most = fmax(most, wh_vec3_dot(&point, &way));
+        for (int k = 0; k<WAYS; k += WH_TEST_SHARE> 1 ? 8 : 1) {
+            const wh_vec3_t point = wh_convex_support(convex, &base_from_shape, ways[k]);
+            most = fmax(most, wh_vec3_dot(&point, &ways[k]));
         }
     }
     return most;
@@ -381,7 +388,7 @@ static double outermost_while_turning(const wh_layout_t *layout, double R, doubl
     return most;
 }
 
-/* Up to the reach the circle is kept, and not much beyond it. */
+/* Up to the reach the circle is kept, and not far beyond it. */
 static void a_circle_is_kept(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -389,9 +396,10 @@ static void a_circle_is_kept(void **state) {
         "rpy = { 0, 0, 25 } } }, stations = { " FOUP "}, "
         "obstacles = { { name = 'camera', on = 'EE', box = { 40, 20, 30 }, at = { -210, 60, 10 } } }, ");
     assert_near(layout->robots[0].transit, 600, 0);
-    for (int i = 0; i < 40; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(4, 40, 0.3);
+    while (wh_round(&rounds)) {
         const double from = wh_test_uniform(-5, 5);
-        const double to = i % 4 == 0 ? from : from + wh_test_uniform(-7, 7);
+        const double to = rounds.number % 4 == 0 ? from : from + wh_test_uniform(-7, 7);
         const wh_real_t begin[WH_ROBOT_AXES] = {0, 0, 0, from}, end[WH_ROBOT_AXES] = {1, 0, 0, to};
         const double reach = wh_transit_reach(layout, 0, 0, begin, end);
         assert_true(reach > 300);
@@ -403,23 +411,25 @@ static void a_circle_is_kept(void **state) {
     }
 }
 
-/* A blade that turns over, or is turned over; the flip is in the contact plane. */
+/* A blade that turns over, or is turned over; the flip's axis is in the contact plane. */
 static void a_circle_is_kept_by_a_flip(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         "robot = { transit = 600, flip = {}, rail = {} }, grippers = { { name = 'EE', at = { -30, 20, -12 }, "
         "rpy = { 0, 0, 25 } } }, stations = { " FOUP "}, "
         "obstacles = { { name = 'camera', on = 'EE', box = { 40, 20, 30 }, at = { -210, 60, 40 } } }, ");
-    for (int i = 0; i < 30; ++i) {
+    wh_rounds_t rounds = WH_ROUNDS(2, 30, 0.5);
+    while (wh_round(&rounds)) {
+        const bool is_turned = rounds.number % 2 != 0;
         wh_real_t begin[WH_CARRIER_AXES] = {0, 300, 900, wh_test_uniform(-3, 3), 0, 0};
         wh_real_t end[WH_CARRIER_AXES] = {1, 300, 900, wh_test_uniform(-3, 3), 50, 0};
         begin[5] = wh_test_uniform(0, WH_PI);
-        end[5] = i % 2 == 0 ? begin[5] : wh_test_uniform(0, WH_PI);
+        end[5] = !is_turned ? begin[5] : wh_test_uniform(0, WH_PI);
         const double reach = wh_transit_reach(layout, 0, 0, begin, end);
         double most = 0;
         double beyond = 0;
         for (int k = 0; k <= 40; ++k) {
-            for (int l = 0; l <= (i % 2 == 0 ? 0 : 40); ++l) {
+            for (int l = 0; l <= (is_turned ? 40 : 0); ++l) {
                 const double yaw = begin[3] + (end[3] - begin[3]) * k / 40;
                 const double flip = begin[5] + (end[5] - begin[5]) * l / 40;
                 most = fmax(most, outermost(layout, 0, reach, yaw, flip));
@@ -427,11 +437,11 @@ static void a_circle_is_kept_by_a_flip(void **state) {
             }
         }
         assert_true(reach > 300 && most <= 600 + 1e-6);
-        assert_true(i % 2 != 0 || beyond > 600);
+        assert_true(is_turned || beyond > 600);
     }
 }
 
-/* Each of two arms has a reach of its own, by what is on it. */
+/* Each of two arms has a reach of its own, which depends on the parts on it. */
 static void a_circle_is_kept_by_two_arms(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -486,5 +496,5 @@ int main(void) {
         cmocka_unit_test(a_circle_is_kept_by_two_arms),
         cmocka_unit_test(the_circle_is_read),
     };
-    return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
+    return cmocka_run_group_tests(tests, open_sandbox_and_ways, close_sandbox);
 }

@@ -1,4 +1,4 @@
-/* Layouts: every field's default and unit, what is refused and how that is said. */
+/* Layouts: every field's default and unit, and the refusals with their texts. */
 #include "support/layout.h"
 
 #include "layout/axes.h"
@@ -37,7 +37,7 @@ static void the_default_robot(void **state) {
     assert_int_equal(machine->axis_count, WH_ROBOT_AXES);
     assert_int_equal(machine->gripper_count, 1);
     assert_int_equal(machine->mounts[0].axis, WH_NONE);
-    /* Written out they make no other robot. */
+    /* If they are written out, they make the same robot. */
     assert_null(machine->carrier);
     machine =
         &read_sound(GRIPPERS STATIONS "robot = { kind = 'TRZY', at = { 0, 0, 0 }, heading = 0 }")->machine;
@@ -172,7 +172,8 @@ static void every_field_of_a_station_is_read(void **state) {
     assert_int_equal(wh_layout_find_gripper(layout, "PA"), 1);
 }
 
-/* One that says nothing of its place, or that it has none, is the end-effector: its layout's hash is as ever. */
+/* A gripper without a place, or with the statement that it has none, is the end-effector: its
+ * layout's hash is unchanged. */
 static void what_a_station_asks_of_a_command_is_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -215,7 +216,7 @@ static void assert_counting(const char *stations, const char *wanted) {
     assert_string_equal(counting, wanted);
 }
 
-/* FOUPs, else several slots, else one, of the stations that do not say it; never a chuck unless it says so. */
+/* For stations that do not say it: FOUPs, else several slots, else one slot; a chuck only if it says so. */
 static void stations_count_where_wafers_end_up_unless_they_say_it(void **state) {
     (void)state;
 #define AT "at = { 700, 0, 900 }"
@@ -334,7 +335,7 @@ static void an_edge_sensor_and_the_rims_that_it_sees_are_read(void **state) {
     assert_memory_equal(&layout->believed[0], &believed, sizeof believed);
 }
 
-/* Wafers of 150 mm have a flat, at the notch's direction; without depth there is no mark at all. */
+/* Wafers of 150 mm have a flat in the notch's direction; without depth there is no mark at all. */
 static void the_usual_rim_is_that_of_the_layouts_wafer(void **state) {
     (void)state;
     const wh_layout_t *layout =
@@ -651,7 +652,8 @@ static void what_is_wrong_with_their_shapes_is_named(void **state) {
     expect_all_refused(rows, sizeof rows / sizeof rows[0]);
 }
 
-/* Who serves a station: the only one in `by`, the effector's robot, or the only one that comes there. */
+/* The robot that serves a station: the only one in `by`, the effector's robot, or the only one that
+ * comes there. */
 static void the_layout_says_who_serves_a_station(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -720,7 +722,7 @@ static void what_is_wrong_with_sensors_and_rims_is_named(void **state) {
     expect_all_refused(rows, sizeof rows / sizeof rows[0]);
 }
 
-/* Of several unknown fields the same one is named in every run, whatever Lua's order. */
+/* If several fields are unknown, the same one is named in every run, whatever Lua's order. */
 static void the_first_unknown_field_by_name_is_reported(void **state) {
     (void)state;
     expect_refused(GRIPPERS STATIONS "zeta = 1, beta = 2, omega = 3, kappa = 4", "cell.lua: beta: 2");
@@ -765,7 +767,7 @@ static void assert_within_widths(const wh_rim_t *rim, const wh_rim_t *own, size_
     assert_true(w != 1 || is_near(rim->chips[0].width, 4 * rim->chips[0].depth, 0.01));
 }
 
-/* Every trial's rim is one, within the widths; what a wafer has not is not drawn. */
+/* Every trial's rim is valid, within the widths; marks that a wafer does not have are not drawn. */
 static void every_rim_that_is_drawn_is_one(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(RIMS WIDTHS);

@@ -1,5 +1,5 @@
-/* Robots whose links come from a URDF: their parts, the agreement with the robots' kinematics, and what is
- * refused. */
+/* Robots with links from a URDF: their parts, the agreement with the robots' kinematics, and the
+ * refusals. */
 #include <math.h>
 #include <stdarg.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@
 #define STATIONS "stations = { " FOUP PREALIGNER "}, "
 #define CELL GRIPPERS STATIONS
 
-/* liburdfdom keeps the links of a file in which they go round: each holds the next one. */
+/* If a file's links form a loop, liburdfdom keeps them: each holds the next one. */
 const char *__lsan_default_suppressions(void);
 
 const char *__lsan_default_suppressions(void) {
@@ -30,7 +30,7 @@ const char *__lsan_default_suppressions(void) {
 
 /* ------------------------------------------------------------------------------------------------ one robot */
 
-/* Writes a text to a new file, whose path is returned; the caller unlinks it. */
+/* Writes a text to a new file and returns its path; the caller unlinks it. */
 static char *write_file(char path[WH_TEST_PATH], const char *name, const char *text) {
     const int descriptor = mkstemp(wh_test_path(path, name));
     assert_true(descriptor >= 0);
@@ -39,7 +39,7 @@ static char *write_file(char path[WH_TEST_PATH], const char *name, const char *t
     return path;
 }
 
-/* All lengths in m, with the digits that bring back their bits. */
+/* All lengths in m, with enough digits to restore their bits. */
 static void describe_link(char *text, size_t size, const wh_layout_t *layout, int32_t body) {
     static const char *const names[WH_ARM_BODIES] = {"foot", "lift", "upper", "fore", "hand"};
     size_t length = strlen(text);
@@ -111,7 +111,7 @@ static void expect_same_parts(const wh_layout_t *a, const wh_layout_t *b) {
     }
 }
 
-/* A cell's world while its robot goes about. */
+/* A cell's world while its robot moves. */
 typedef struct {
     const wh_layout_t *layout;
     wh_world_t *world;
@@ -155,7 +155,7 @@ static void expect_same_end(const going_t going[2]) {
     }
 }
 
-/* Both robots do the same; returns the events that both had. */
+/* Both robots do the same; returns the events of both. */
 static size_t expect_same_run(const wh_layout_t *a, const wh_layout_t *b, uint64_t slices) {
     going_t going[2] = {{.layout = a}, {.layout = b}};
     double axes[WH_AXES];
@@ -181,7 +181,7 @@ static size_t expect_same_run(const wh_layout_t *a, const wh_layout_t *b, uint64
     return going[0].list.count;
 }
 
-/* Part for part the usual arm's shapes: all bits of what comes near to what are the usual arm's. */
+/* Part for part the usual arm's shapes: all bits of the gaps are the usual arm's. */
 static void a_urdf_of_the_usual_arm_is_the_usual_arm(void **state) {
     (void)state;
     static const char *const robots[][2] = {
@@ -246,7 +246,7 @@ static void a_urdf_of_the_usual_arm_is_the_usual_arm(void **state) {
     "<joint name='flange' type='fixed'><parent link='hand'/><child link='ee'/><origin xyz='0.25 0 0'/>"      \
     "</joint><link name='ee'/></robot>"
 
-/* A box of 412 by 70 by 44 mm that is dented in its middle. */
+/* A box of 412 by 70 by 44 mm with a dent in its middle. */
 static const char dented[] = "solid s\n"
 #define FACET(a, b, c)                                                                                       \
     "facet normal 0 0 0 outer loop vertex " a " vertex " b " vertex " c " endloop endfacet\n"
@@ -263,7 +263,7 @@ static void replace(char *text, size_t size, const char *from, const char *to) {
     (void)snprintf(at, size - (size_t)(at - text), "%s%s", to, rest);
 }
 
-/* FOLDING with one text in place of another one, and a box in that of a MESH that is left, in a file. */
+/* Writes FOLDING to a file, with one text replaced by another, and a box instead of a MESH that is left. */
 static void write_folding(char path[WH_TEST_PATH], const char *from, const char *to) {
     static char text[16384];
     (void)snprintf(text, sizeof text, "%s", FOLDING);
@@ -327,7 +327,7 @@ static void a_mesh_becomes_its_hull(void **state) {
     assert_true(strstr(layout->part_names[find(layout, "upper")], "hull") == NULL);
 }
 
-/* In FOLDING `to` stands in place of `from`, and the robot has `more`. */
+/* In FOLDING `to` replaces `from`, and the robot has `more`. */
 static const struct {
     const char *from, *to, *more, *message;
 } urdf_cases[] = {
@@ -377,7 +377,12 @@ static const struct {
     {"<child link='ee'/>", "<child link='hand'/>", DRIVEN, "(expected"},
     {"<parent link='foot'/>", "<parent link='fore'/>", DRIVEN, "(expected a URDF file: "},
     {"<link name='ee'/>", "<link name='ee'/><link name='ee'/>", DRIVEN, "(expected a URDF file: "},
-    {"</robot>", "", DRIVEN, "(expected a URDF file: "},
+    {"</robot>", "", DRIVEN, ": at its end: Error reading Element value. (expected XML)"},
+    {"</robot>", "</robt>", DRIVEN, ": Error reading end tag. (expected XML)"},
+    {"<link name='ee'/>", "<link name='ee'></lnk>", DRIVEN, ": line "},
+    {"<link name='ee'/>", "<xacro:include filename='ee.xacro'/>", DRIVEN,
+     ": it is written for xacro (expected what `xacro FILE` makes of it)"},
+    {"<link name='ee'/>", "<link name='${prefix}ee'/>", DRIVEN, ": it is written for xacro"},
     {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 0 3.141592653589793'", DRIVEN, "mm and 180 degrees off: at ("},
     {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 1 0'", DRIVEN, "it is 0 mm and 57.2957795 degrees off: at ("},
     {"xyz='0.25 0 0'", "xyz='0.25 0 0' rpy='0 0 2e-9'", DRIVEN, " it is 0 mm and 1.14591"},
@@ -403,7 +408,7 @@ static void bad_urdfs(void **state) {
     expect_refused("robot = { tool = 'ee' }, " CELL, "robot.tool: \"ee\" (expected nothing without urdf)");
 }
 
-/* What stands in place of a text of FOLDING, and what the message says of it. */
+/* The replacement of a text of FOLDING, and the message about it. */
 static const struct {
     const char *from, *to, *error;
 } unreadable[] = {
@@ -430,7 +435,7 @@ static const struct {
      "component [a] to a double"},
 };
 
-/* A shape that cannot be read takes no other ones with it, and nothing comes in its place. */
+/* A shape that cannot be read does not affect others, and nothing replaces it. */
 static void what_cannot_be_read_refuses_the_file(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof unreadable / sizeof unreadable[0]; ++i) {
@@ -447,7 +452,7 @@ static void what_cannot_be_read_refuses_the_file(void **state) {
     }
 }
 
-/* liburdfdom reads these as if what it does not take were not there. */
+/* liburdfdom reads these as if the rejected parts were not there. */
 static void what_it_passes_over_refuses_the_file(void **state) {
     (void)state;
     static const char *const over[][3] = {
@@ -473,7 +478,7 @@ static void what_it_passes_over_refuses_the_file(void **state) {
     }
 }
 
-/* How a link is painted counts for nothing, and % is a letter like any other. */
+/* The paint of a link has no effect, and % is a letter like any other. */
 static void paint_and_percents_are_read(void **state) {
     (void)state;
     static const char *const paints[] = {"<material name='no such'/>",
@@ -517,7 +522,7 @@ static void put_joint(char *text, size_t size, const char *name, const char *par
         name, slides ? "prismatic" : "continuous", parent, child, x / 1000, axis);
 }
 
-/* Where each link's shape is in its link's frame, mm. */
+/* The place of each link's shape in its link's frame, mm. */
 static const double middles[WH_ARM_BODIES][3] = {
     {20, -15, 100}, {5, 10, -260}, {150, -7, -137}, {160, 9, -87}, {-12, 4, -30}};
 static const char *const link_names[WH_ARM_BODIES] = {"foot", "lift", "upper", "fore", "hand"};
@@ -598,7 +603,7 @@ static const wh_layout_t *read_placed(void) {
     return layout;
 }
 
-/* A robot's axis by its name among the machine's; 0 where it has none. */
+/* A robot's axis by its name among the machine's axes; 0 if it has none. */
 static double axis(const wh_layout_t *layout, const double axes[], const char *robot, const char *name) {
     for (size_t i = 0; i < wh_machine_robot_axes(&layout->machine); ++i) {
         size_t own;
@@ -679,8 +684,8 @@ static void configure(const wh_layout_t *layout, double axes[]) {
     }
 }
 
-/* A SCARA with a flip, an arm that one motor folds, both on a rail, and a usual arm: elsewhere, turned, each
- * with a file of its own. */
+/* A SCARA with a flip, an arm that one motor folds, both on a rail, and a usual arm: in other
+ * places, turned, each with a file of its own. */
 static void each_robot_has_its_links_where_its_urdf_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_placed();
@@ -734,7 +739,7 @@ static void a_urdf_of_one_of_two_is_the_usual_cell(void **state) {
     }
 }
 
-/* How far a ball's middle is from a box of half these sizes, in the box's frame. */
+/* The distance of a ball's middle from a box of half these sizes, in the box's frame. */
 static double distance_to_box(const wh_vec3_t *from, const double least[3], const double most[3]) {
     const double at[3] = {from->x, from->y, from->z};
     double squares = 0;
@@ -745,7 +750,7 @@ static double distance_to_box(const wh_vec3_t *from, const double least[3], cons
     return sqrt(squares);
 }
 
-/* Of the usual blade of 300 mm: two fingers, palm and neck. */
+/* The usual blade of 300 mm: two fingers, palm and neck. */
 static double distance_to_blade(const wh_vec3_t *from) {
     static const double boxes[][2][3] = {{{-55, 50, -3}, {100, 75, 0}},
                                          {{-55, -75, -3}, {100, -50, 0}},
@@ -777,7 +782,7 @@ static size_t meets(const wh_layout_t *layout, const double from[], double to_r,
     return SIZE_MAX;
 }
 
-/* The slice at which the world finds B's forearm at A's blade; SIZE_MAX: it does not. */
+/* The slice at which the world finds a contact of B's forearm with A's blade; SIZE_MAX: it does not. */
 static size_t hits(const wh_layout_t *layout, const double from[], double to_r, size_t slices) {
     going_t going = {.layout = layout};
     double axes[WH_AXES];
@@ -800,7 +805,7 @@ static size_t hits(const wh_layout_t *layout, const double from[], double to_r, 
     return found;
 }
 
-/* A beside B, whose forearm is a ball of 30 mm and has all of its shapes. */
+/* A beside B; B's forearm is a ball of 30 mm and has all of its shapes. */
 static const wh_layout_t *read_ball(void) {
     static const double links[2] = {340, 340};
     static char text[8192];
@@ -830,8 +835,8 @@ static const wh_layout_t *read_ball(void) {
     return layout;
 }
 
-/* A's blade comes out to B's forearm: found when a plain distance says so. The world tells a run's first
- * contact, and there is no other one. */
+/* A's blade moves out to B's forearm: the contact is found when a plain distance shows it. The
+ * world reports a run's first contact, and there is no other one. */
 static void a_link_of_one_robot_meets_the_blade_of_another(void **state) {
     (void)state;
     enum { SLICES = 300 };
@@ -854,7 +859,7 @@ static void a_link_of_one_robot_meets_the_blade_of_another(void **state) {
         const place_t ball = go(elbow, 200, 10, -87.5, 0);
         const size_t should = meets(layout, from, 900, &ball, 30, SLICES);
         const size_t is = hits(layout, from, 900, SLICES);
-        if (should == 0) { /* they begin in each other */
+        if (should == 0) { /* they overlap from the beginning */
             continue;
         }
         if (should == SIZE_MAX || is == SIZE_MAX) {
@@ -874,7 +879,7 @@ typedef struct {
     double link, reach;
     double theta[2], r[2], yaw[2];
     bool right_handed;
-    double more; /* by which the first link is longer, mm */
+    double more; /* the extra length of the first link, mm */
 } limited_t;
 
 static const char *write_limited(const limited_t *arm, const char *joint, double least, double most,
@@ -927,7 +932,7 @@ static double limited_value(const limited_t *arm, size_t joint, double theta, do
     return values[joint];
 }
 
-/* The extremes of a joint's value, rad, by a fine grid, its edge at the links' reach with it. */
+/* The extremes of a joint's value, rad, by a fine grid that includes its edge at the links' reach. */
 static void limited_extremes(const limited_t *arm, size_t joint, double extremes[2]) {
     enum { STEPS = 4000 };
     const double degree = acos(-1) / 180;
@@ -951,7 +956,7 @@ static void limited_extremes(const limited_t *arm, size_t joint, double extremes
     }
 }
 
-/* Limits beyond the extremes by so many degrees are kept, those that are nearer by as much are not. */
+/* Limits this many degrees beyond the extremes are kept; limits nearer by as much are not. */
 static void expect_limits(const limited_t *arm, size_t joint, double by) {
     static const char *const names[3] = {"j1", "j2", "j3"};
     const double nearer = by * acos(-1) / 180;
@@ -975,7 +980,7 @@ static void expect_limits(const limited_t *arm, size_t joint, double by) {
     }
 }
 
-/* The shoulder goes on with theta, beyond half a turn: 84 degrees before it, at R = 300. */
+/* The shoulder follows theta, beyond half a turn: 84 degrees before it, at R = 300. */
 static void full_turns_count_in_limits(void **state) {
     (void)state;
     const double degree = acos(-1) / 180;
@@ -1019,7 +1024,7 @@ static void limits_are_kept_where_the_links_just_reach(void **state) {
     }
 }
 
-/* What the agreement allows is not taken for a link that moves otherwise. */
+/* Differences that the agreement allows do not count as a link that moves otherwise. */
 static void rounding_of_a_length_is_no_other_motion(void **state) {
     (void)state;
     char path[WH_TEST_PATH];
@@ -1079,7 +1084,7 @@ static void two_arms_have_their_links_where_their_urdf_says(void **state) {
     assert_int_equal(part(layout, "A forearm 2 hull")->owner, WH_ARM_BODIES + WH_ARM_FOREARM);
 }
 
-/* The second shape of a link beside a link that is called as such a shape would be. */
+/* The second shape of a link, beside another link with the name that such a shape would get. */
 static void parts_of_a_urdf_have_names_of_their_own(void **state) {
     (void)state;
     static const char second[] =
@@ -1097,7 +1102,7 @@ static void parts_of_a_urdf_have_names_of_their_own(void **state) {
     assert_near(part(layout, "fore 2")->convex.half.x, 10, 0);
 }
 
-/* The fields of robot A; B has none unless they say so. */
+/* The fields of robot A; B has no fields unless they say so. */
 static const char *const wrong_robots[][2] = {
     {"urdf = 'no_such.urdf'",
      "cell.lua: robots.A.urdf: \"no_such.urdf\" (expected a URDF file: no_such.urdf: No such file"},

@@ -1,4 +1,5 @@
-/* Outlines of parts: what of a shape is seen from above and from the side, and labels that make room for each other. */
+/* Outlines of parts: the contour of a shape from above and from the side, and labels that make room
+ * for each other. */
 #include "support/support.h"
 
 #include <string.h>
@@ -21,7 +22,7 @@ static void draw(wh_projection_t view, const wh_convex_t *convex, const wh_pose_
     wh_outline_draw(&outline, view, convex, pose);
 }
 
-/* Twice the area, positive one way round: of a hull every corner turns the same way. */
+/* Twice the area, positive for one direction: every corner of a hull turns the same way. */
 static double area(void) {
     double twice = 0;
     for (size_t i = 0; i < outline.count; ++i) {
@@ -65,7 +66,7 @@ static void boxes(void **state) {
     draw(WH_VIEW_SIDE, &box, &level);
     expect_bounds(90, 110, -330, -270);
     assert_near(area(), 20 * 60, 1e-9);
-    /* Stood on a corner it shows six. */
+    /* A cube that stands on a corner shows six. */
     const wh_pose_t tumbled = at(0, 0, 0, 30, 40, 50);
     draw(WH_VIEW_TOP, &box, &tumbled);
     assert_int_equal(outline.count, 6);
@@ -109,7 +110,7 @@ static void meshes(void **state) {
     assert_true(area() >= 4.0 * 5 / 2);
 }
 
-/* What is written for text, of at most so many bytes. */
+/* The text that is written, with at most this number of bytes. */
 static void expect_text(const char *text, const char *wanted) {
     char written[128] = "";
     FILE *out = fmemopen(written, sizeof written, "w");
@@ -146,7 +147,7 @@ static void labels_make_room(void **state) {
 
 /* ----------------------------------------------------------------------------------------------------- inks */
 
-/* The table of inks against the page's style sheet, and against itself. */
+/* The table of inks compared with the page's style sheet, and with itself. */
 
 static const char *style_sheet(void) {
     for (size_t i = 0; i < wh_embedded_page_count; ++i) {
@@ -196,7 +197,7 @@ static void the_pages_style_sheet_has_the_same_colours(void **state) {
     assert_shown("stage", wh_ink_stage);
 }
 
-/* As IEC 61966-2-1 has it. */
+/* The formula of IEC 61966-2-1. */
 static double linear_of(uint32_t part) {
     const double share = (double)(part & 0xffU) / 255;
     return share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4);

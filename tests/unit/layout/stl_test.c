@@ -15,7 +15,7 @@ static char message[200];
 static wh_vec3_t *points;
 static size_t count;
 
-/* A tetrahedron of edge 10, with the last corner where it is wanted. */
+/* A tetrahedron of edge 10, with the last corner at a given place. */
 static const char tetrahedron[] = "solid thing of\tmany words\r\n"
                                   "facet normal 0 0 -1\n outer loop\n"
                                   "  vertex 0 0 0\n  vertex 0 10 0\n  vertex 10 0 0\n"
@@ -171,7 +171,7 @@ static void a_file_is_read(void **state) {
     assert_string_equal(message, "/: it is no regular file");
 }
 
-/* A pipe that nobody writes into would be waited for, and a device has no end. */
+/* The reader would wait for a pipe without a writer, and a device has no end. */
 static void pipes_and_devices_are_not_read(void **state) {
     (void)state;
     char pipe[WH_TEST_PATH];
@@ -216,7 +216,7 @@ static void bad_words_are_named(void **state) {
            "each)");
 }
 
-/* Cut off anywhere it is refused, but for the name at its end. */
+/* A file that is cut off is refused, except within the name at its end. */
 static void a_cut_text_is_refused(void **state) {
     (void)state;
     text(tetrahedron);
@@ -252,7 +252,7 @@ static void numbers_out_of_range_are_named(void **state) {
     static char large[80 + 4 + 50 * (WH_STL_FACETS + 1)];
     memcpy(large, bytes, length);
     assert_false(wh_stl_parse("x", large, sizeof large, 1, &points, &count, message, sizeof message));
-    assert_string_equal(message, "x: more than 16384 facets");
+    assert_string_equal(message, "x: more than 1000000 facets");
 }
 
 static void what_is_no_convex_body_is_refused(void **state) {

@@ -1,6 +1,7 @@
-/* A step of the simulator allocates nothing: from the command's bytes to the bytes of the state and of the proximity values.
- * An update of outputs.txt never asks for memory, whatever it finds. malloc and its kin are replaced by ones that count. What
- * liblcm takes to receive a datagram is its own and not in this. */
+/* A step of the simulator allocates nothing: from the command's bytes to the bytes of the state and
+ * of the proximity values. An update of outputs.txt never asks for memory, whatever it finds.
+ * Functions that count replace malloc and its kin. Memory that liblcm takes to receive a datagram
+ * is its own and not counted. */
 #include "support/heap.h"
 #include "support/outputs.h"
 #include "support/server.h"
@@ -56,7 +57,7 @@ static void a_step_allocates_nothing(void **state) {
 
 #if defined(WH_TEST_COUNTS_HEAP)
 
-/* Updates now and once what is there has settled; only this is counted. */
+/* Updates now and once the file has settled; only this is counted. */
 static unsigned long calls_while_updating(outputs_fixture_t *f) {
     const unsigned long before = calls;
     (void)wh_outputs_update(&f->reader, f->now_us);

@@ -1,5 +1,5 @@
-/* Requests to motion control: who waits, who is turned away, and STOP, which waits for nobody. Control, simulation and
- * whoever asks are in one process, on memq. */
+/* Requests to motion control: which clients wait, which are refused, and STOP, which waits for
+ * nobody. Control, simulation and the clients are in one process, on memq. */
 #include "support/support.h"
 
 #include <inttypes.h>
@@ -12,7 +12,7 @@ static wh_node_t node;
 static wh_mcs_process_t control;
 static wh_sim_process_t simulation;
 static wh_session_t session;
-static wh_sandbox_t *sandbox; /* of the simulator's own layout */
+static wh_sandbox_t *sandbox; /* the sandbox of the simulator's own layout */
 static const wh_layout_t *simulated;
 static char answer[WH_SESSION_ANSWER_BYTES];
 
@@ -24,20 +24,20 @@ static struct {
     int64_t seq;
 } plan;
 
-/* What was answered, by the requests' numbers; and what a listener hears of commands. */
+/* The answers, by the requests' numbers; and the events of commands that a listener gets. */
 static struct {
     int32_t error[64];
     int count[64];
     int64_t run[64];
-    char text[WH_LINK_DATAGRAM]; /* of the last one */
+    char text[WH_LINK_DATAGRAM]; /* the text of the last one */
     int begins, ends, overs;
-    int answers_at_end; /* when the run was over */
+    int answers_at_end; /* the answers when the run was over */
 } heard;
 
-/* The last proximity values that were told. */
+/* The last proximity values that were published. */
 static waferhand_proximity proximity;
 
-/* Where the command of each slice has the axes. */
+/* The positions to which the command of each slice moves the axes. */
 static double sent[10000][WH_ROBOT_AXES];
 
 static void publish(waferhand_request message, const char *line) {
@@ -55,7 +55,7 @@ static void publish_request(int64_t seq, const char *line) {
     publish(message, line);
 }
 
-/* What the simulator takes for the running command in the slice before the last. */
+/* The simulator's running command in the slice before the last. */
 static char running[WH_LINK_LINE];
 
 /* Motion control's own link, and the requests before the slice in which they are due. */
@@ -161,7 +161,7 @@ static wh_status_t execute(const char *line) {
     return wh_session_execute(&session, line, answer, sizeof answer);
 }
 
-/* As the program does between the prompt's lines. */
+/* The state of the program between the prompt's lines. */
 static void execute_requests(void) {
     char line[WH_LINK_LINE];
     (void)wh_node_drain(&node, 1000);
@@ -259,7 +259,7 @@ static void a_number_is_taken_before_its_answer(void **state) {
     assert_int_equal(heard.error[6], WH_OK);
 }
 
-/* Refused, and told which run or layout, a number, is the one here. */
+/* Refused, and the answer names the run or the layout (a number) that is active here. */
 static void assert_meant_for_another(waferhand_request request, const char *error, const char *what,
                                      uint64_t here) {
     char expected[200];
@@ -301,7 +301,7 @@ static void one_too_many_is_turned_away(void **state) {
     assert_heard(WH_CONTROL_REQUESTS + 1, WH_STATUS_BUSY);
 }
 
-/* It ends what runs and what waits; then the arm must be recovered, by whomever. */
+/* It ends the running command and the waiting ones; then the arm must be recovered, by any client. */
 static void stop_goes_past_the_queue(void **state) {
     (void)state;
     plan.at = 700;
@@ -310,7 +310,7 @@ static void stop_goes_past_the_queue(void **state) {
     plan.lines[1] = "MOVE z=1000";
     plan.lines[2] = " stop ";
     assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
-    assert_in_range(session.mcs.track.slice, 700, 710);
+    assert_in_range(wh_session_slice(&session), 700, 710);
     execute_requests();
     assert_heard(1, WH_STATUS_STOPPED);
     assert_heard(2, WH_STATUS_STOPPED);
@@ -321,7 +321,7 @@ static void stop_goes_past_the_queue(void **state) {
     assert_int_equal(execute("GET A 1"), WH_OK);
 }
 
-/* It ends the command that has the mechanism, and not what waits. */
+/* It ends the command that has the mechanism, and not the waiting ones. */
 static void stop_of_a_mechanism_is_of_that_alone(void **state) {
     (void)state;
     plan.at = 700;
@@ -344,10 +344,10 @@ static void stop_of_the_robot_ends_its_command(void **state) {
     plan.count = 1;
     plan.lines[0] = "STOP Robot";
     assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
-    assert_in_range(session.mcs.track.slice, 700, 710);
+    assert_in_range(wh_session_slice(&session), 700, 710);
 }
 
-/* All that came together: the command has not begun when the STOP is read. */
+/* All came together: the command has not begun when the STOP is read. */
 static void stop_is_no_later_than_what_waits(void **state) {
     (void)state;
     publish_request(1, "GET A 1");
@@ -357,7 +357,7 @@ static void stop_is_no_later_than_what_waits(void **state) {
     assert_heard(1, WH_STATUS_STOPPED);
     assert_heard(2, WH_STATUS_STOPPED);
     assert_heard(3, WH_OK);
-    assert_int_equal(session.mcs.track.slice, 0);
+    assert_int_equal(wh_session_slice(&session), 0);
     publish_request(4, "GET A 1");
     execute_requests();
     assert_heard(4, WH_OK); /* nothing was cut short */
@@ -395,7 +395,7 @@ static void status_and_version_are_answered_while_a_command_runs(void **state) {
     assert_string_equal(heard.text, "OK version=" WH_VERSION);
 }
 
-/* Its answer is of the moment, and makes no other answer forgotten. */
+/* Its answer describes the moment, and does not remove any other answer. */
 static void status_is_answered_anew_each_time(void **state) {
     (void)state;
     publish_request(1, "GET A 1");
@@ -455,9 +455,9 @@ static void what_waits_for_a_run_is_not_executed_in_the_next_one(void **state) {
     assert_heard(3, WH_STATUS_UNKNOWN_RUN);
     assert_heard(4, WH_STATUS_UNKNOWN_RUN);
     assert_heard(5, WH_OK);
-    assert_int_equal(session.mcs.track.slice, 100);
+    assert_int_equal(wh_session_slice(&session), 100);
     assert_true(session.mcs.track.axes[WH_AXIS_THETA] == 0);
-    /* It was not executed: for the run of today it may be. */
+    /* It was not executed, so it may be executed in the current run. */
     publish_for(control.client.identity.run, 3, "MOVE theta=4");
     execute_requests();
     assert_int_equal(heard.count[3], 2);
@@ -484,18 +484,18 @@ static void what_was_answered_before_a_reset_is_answered_again_after_it(void **s
     assert_int_equal(heard.count[3], 3);
     for (int seq = 1; seq <= 3; ++seq) {
         assert_int_equal(heard.error[seq], WH_OK);
-        assert_true(heard.run[seq] == (seq < 3 ? run : next)); /* as it was answered */
+        assert_true(heard.run[seq] == (seq < 3 ? run : next)); /* with the run in which it was answered */
     }
     assert_true(control.client.identity.run == next);
-    assert_int_equal(session.mcs.track.slice, 0);
-    /* As if it had been executed in the run of today: no. */
+    assert_int_equal(wh_session_slice(&session), 0);
+    /* Treated as if it had been executed in the current run: refused. */
     publish_for(next, 1, "GET A 1");
     execute_requests();
     assert_int_equal(heard.error[1], WH_STATUS_NUMBER_TAKEN);
-    assert_int_equal(session.mcs.track.slice, 0);
+    assert_int_equal(wh_session_slice(&session), 0);
 }
 
-/* Who asks is answered by number, maybe again and again; commands begin and end without one. */
+/* A client is answered by number, perhaps again and again; commands begin and end without a number. */
 static void a_listener_can_count_commands(void **state) {
     (void)state;
     publish_request(1, "GET A 1");
@@ -523,7 +523,7 @@ static double told(const char *name) {
     return at ? strtod(at + strlen(name), NULL) : (double)NAN;
 }
 
-/* Of all slices that were asked about in a GET, at this rate. */
+/* The number of slices in a GET for which values were asked at this rate. */
 static void assert_status_tells_one_slice(double rate, int64_t first_seq, int64_t step) {
     int64_t seq = first_seq;
     control.client.options.rate = rate;
@@ -553,7 +553,7 @@ static void status_tells_one_slice_while_a_command_runs(void **state) {
     assert_status_tells_one_slice(100, 45, 480);
 }
 
-/* Where the axes have been sent, nobody has seen them. */
+/* The axes were commanded to move, but no state has shown them. */
 static void status_tells_no_slice_that_no_state_came_for(void **state) {
     (void)state;
     simulation.server.identity.layout_hash ^= 1;
@@ -596,7 +596,7 @@ static void count_warnings(void *user, const char *line) {
     warnings += strstr(line, "two motion controls are at this URL") ? 1 : 0;
 }
 
-/* Each has a socket of its own. What one publishes comes back to it. */
+/* Each has a socket of its own. Its own messages come back to it. */
 static void another_motion_control_is_noticed_and_one_before_is_not(void **state) {
     (void)state;
     uint8_t encoded[200];
@@ -624,7 +624,7 @@ static void the_proximity_values_of_the_last_slice_are_told_at_rest(void **state
         simulation.last_proximity_us -= WH_SIMULATION_PROXIMITY_US; /* so much later */
         wh_sim_process_tick(&simulation);
         (void)wh_node_drain(&node, 1000);
-        assert_int_equal(proximity.seq, session.mcs.track.slice);
+        assert_int_equal(proximity.seq, wh_session_slice(&session));
         const int64_t told_us = simulation.last_proximity_us;
         wh_sim_process_tick(&simulation);
         assert_true(simulation.last_proximity_us == told_us); /* once */
@@ -661,10 +661,10 @@ static void a_script_takes_no_requests_but_stop(void **state) {
     publish_request(4, "STOP");
     (void)wh_node_drain(&node, 1000);
     assert_heard(4, WH_OK);
-    const int64_t slice = session.mcs.track.slice;
+    const int64_t slice = wh_session_slice(&session);
     assert_int_equal(execute("MOVE z=1000"), WH_STATUS_STOPPED);
     assert_non_null(strstr(answer, "; by a request"));
-    assert_int_equal(session.mcs.track.slice, slice);
+    assert_int_equal(wh_session_slice(&session), slice);
     assert_int_equal(execute("MOVE z=1000"), WH_OK);
 }
 
@@ -704,7 +704,7 @@ static void requests_that_wait_when_all_ends_are_told_so(void **state) {
                         "begun");
 }
 
-/* The run's layout may be gone by then: nothing of a state may be held against it. */
+/* The run's layout may be gone by then, so nothing of a state may be compared with it. */
 static void a_second_answer_that_comes_when_all_ends_is_not_taken(void **state) {
     (void)state;
     assert_int_equal(execute("GET A 1"), WH_OK);
@@ -716,7 +716,7 @@ static void a_second_answer_that_comes_when_all_ends_is_not_taken(void **state) 
     assert_int_equal(control.client.counters.answers, before.answers);
 }
 
-/* A script may compute for long behind its last command, and hears nothing meanwhile. */
+/* A script may compute for a long time after its last command, and receives nothing in the meantime. */
 static void what_came_after_the_last_command_is_answered_at_the_end(void **state) {
     (void)state;
     const waferhand_request elsewhere = {.seq = 3, .run = 4711};
@@ -736,7 +736,7 @@ static void what_came_after_the_last_command_is_answered_at_the_end(void **state
     assert_int_equal(heard.answers_at_end, 4);
 }
 
-/* As a signal asks for: what waits, and what has come but was not looked at yet. */
+/* A signal ends these: the waiting request, and one that has arrived but has not been read yet. */
 static void requests_that_wait_are_stopped_with_those_that_have_come(void **state) {
     (void)state;
     publish_request(1, "GET A 1");
@@ -746,10 +746,10 @@ static void requests_that_wait_are_stopped_with_those_that_have_come(void **stat
     execute_requests();
     assert_heard(1, WH_STATUS_STOPPED);
     assert_heard(2, WH_STATUS_STOPPED);
-    assert_int_equal(session.mcs.track.slice, 0);
+    assert_int_equal(wh_session_slice(&session), 0);
 }
 
-/* It has heard nothing of a command since it began, but motion control is there. */
+/* It has received nothing about a command since it began, but motion control is there. */
 static void a_simulator_that_was_given_its_state_back_does_not_call_motion_control_silent(void **state) {
     (void)state;
     assert_int_equal(execute("WAIT 0.1"), WH_OK);

@@ -1,5 +1,6 @@
-/* A run over messages ends with the bits of a run by calls: client and simulation in one process, on memq. Events come
- * with the verdicts that they had. Blocks of slices give back every bit, and no byte of theirs is trusted. */
+/* A run over messages ends with the bits of a run by calls: client and simulation are in one
+ * process, on memq. Events arrive with their verdicts. Blocks of slices give back every bit, and
+ * none of their bytes is trusted. */
 #include "support/support.h"
 
 #include "link/protocol_client.h"
@@ -19,7 +20,7 @@ static wh_link_t *connect(void *user, wh_mcs_t *mcs) {
     return &client.link;
 }
 
-/* What sees the messages of a run go by; null: nobody. */
+/* The observer of the messages of a run; null: nobody. */
 static void *watched;
 static wh_node_handler_t on_passing_command, on_passing_state;
 
@@ -90,7 +91,7 @@ static wh_event_t send_near_miss(double height, double limit) {
     return got.events[0];
 }
 
-/* Of a swept one 0.998 of the limit counts, also where the message has come. */
+/* For a swept one 0.998 of the limit counts, also after the transfer of the message. */
 static void a_near_miss_keeps_its_verdict(void **state) {
     (void)state;
     const double swept = wh_tolerance_paper().projz * WH_SWEEP_INSIDE;
@@ -105,7 +106,7 @@ static void a_near_miss_keeps_its_verdict(void **state) {
 static wh_slices_t collected, decoded;
 static uint8_t block[WH_SLICES_BYTES];
 
-/* What was handed to a block. */
+/* The data that were put into a block. */
 typedef struct {
     waferhand_command command;
     int32_t told[WH_GRIPPERS];
@@ -120,7 +121,7 @@ static double real_of(uint64_t bits) {
     return value;
 }
 
-/* Any bits: now and then no number, an infinity, a zero of either sign, one next to nothing. */
+/* Any bits: now and then NaN, an infinity, a zero of either sign, or a tiny number. */
 static double odd_real(void) {
     static const uint64_t odd[] = {0,
                                    UINT64_C(0x8000000000000000),
@@ -134,7 +135,7 @@ static double odd_real(void) {
     return bits % 4 == 0 ? real_of(odd[bits >> 8 & 7]) : real_of(wh_test_random());
 }
 
-/* A zero with changing signs, or anything; now and then something odd, else smooth. */
+/* A zero with changing signs, or any number; now and then an odd value, otherwise smooth. */
 static double rough_number(uint64_t kind, size_t i) {
     if (kind == 4) {
         return i % 50 == 0 ? odd_real() : 1.0 / (1.0 + (double)i * 1e-3);
@@ -145,7 +146,7 @@ static double rough_number(uint64_t kind, size_t i) {
     return odd_real();
 }
 
-/* A number of slice i: each kind is one that a column may have. */
+/* A number of slice i, of one of the kinds that a column may have. */
 static double number(uint64_t kind, size_t i) {
     const double t = (double)i * 1e-3;
     switch (kind % 8) {
@@ -186,7 +187,8 @@ static waferhand_command make_command(const uint64_t kinds[WH_SLICES_COLUMNS], s
     return command;
 }
 
-/* Fills `given` and `collected` with so many slices whose columns are of random kinds, below `most`. */
+/* Fills `given` and `collected` with this number of slices whose columns are of random kinds, below
+ * `most`. */
 static void collect(size_t count, uint64_t most) {
     uint64_t kinds[WH_SLICES_COLUMNS];
     for (size_t c = 0; c < WH_SLICES_COLUMNS; ++c) {
@@ -217,7 +219,7 @@ static void assert_given(const slice_t *slice, size_t i) {
     assert_true(hash == slice->hash);
 }
 
-/* Encodes and decodes all that was collected; returns how many messages that took. */
+/* Encodes and decodes all collected slices; returns how many messages that took. */
 static size_t assert_all_come_back(void) {
     size_t messages = 0;
     for (size_t from = 0, at = 0; from < collected.count; at = from, ++messages) {
@@ -241,7 +243,7 @@ static void a_block_gives_back_every_bit(void **state) {
         collect(1 + (size_t)(bits % WH_SLICES_MOST), round % 2 == 0 ? 8 : 6);
         split += assert_all_come_back() > 1 ? 1 : 0;
     }
-    /* Some of them were too many bits for one message. */
+    /* Some of them had too many bits for one message. */
     assert_true(split > 0);
 }
 
@@ -299,7 +301,8 @@ static void a_block_takes_no_slice_that_it_could_not_give_back(void **state) {
     assert_left_out(make_command(kinds, WH_SLICES_MOST), 0);
 }
 
-/* Each bit flipped, each length cut; then with a check that is right again, so that the decoder itself must see to it. */
+/* Each bit flipped, each length cut. Then the check is corrected, so that the decoder itself must
+ * detect the error. */
 static void a_damaged_block_is_refused(void **state) {
     static uint8_t damaged[WH_SLICES_BYTES];
     (void)state;
@@ -308,7 +311,7 @@ static void a_damaged_block_is_refused(void **state) {
     size_t from = 0;
     const size_t size = wh_slices_encode(&collected, &from, block);
     assert_true(wh_slices_decode(block, size, &decoded));
-    for (size_t bit = 0; bit < 8 * size; ++bit) {
+    for (size_t bit = 0; bit < 8 * size; bit += WH_TEST_SHARE) {
         memcpy(damaged, block, size);
         damaged[bit / 8] ^= (uint8_t)(1U << bit % 8);
         assert_false(wh_slices_decode(damaged, size, &decoded));
@@ -322,7 +325,8 @@ static void a_damaged_block_is_refused(void **state) {
         wh_link_seal(damaged, length);
         assert_false(wh_slices_decode(damaged, length, &decoded));
     }
-    /* The last slice's number, which stands behind fingerprint and utime, as far below the first one's as can be. */
+    /* The last slice's number, which stands behind fingerprint and utime, as far below the first
+     * one's as is possible. */
     memcpy(damaged, block, size);
     memset(damaged + 16, 0, 8);
     damaged[16] = 0x80;
@@ -332,7 +336,7 @@ static void a_damaged_block_is_refused(void **state) {
     assert_false(wh_slices_decode(block, size, &decoded));
 }
 
-/* Collects what goes by; a slice that does not fit is passed over. */
+/* Collects the passing slices; a slice that does not fit is skipped. */
 typedef struct {
     waferhand_command command;
     int64_t seq;
@@ -363,7 +367,7 @@ static void on_passing_state(void *user, const void *data, size_t size) {
         slice.told[g] = message.grippers[g].valve_told;
     }
     (void)waferhand_state_decode_cleanup(&message);
-    /* A busy machine has commands repeated. */
+    /* On a busy machine commands are repeated. */
     if (message.seq == passing->seq) {
         return;
     }
@@ -386,7 +390,7 @@ static void the_examples_fit_blocks(void **state) {
         "lua/examples/05_leak.lua",        "lua/examples/06_cross_slotted.lua",
         "lua/examples/08_corrections.lua", "lua/examples/12_three_foups.lua"};
     (void)state;
-    for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; ++i) {
+    for (size_t i = 0; i<sizeof scripts / sizeof scripts[0]; i += WH_TEST_SHARE> 1 ? 4 : 1) {
         passing_t passing = {0};
         collected.count = 0;
         watched = &passing;
@@ -395,7 +399,7 @@ static void the_examples_fit_blocks(void **state) {
         flush_passing(&passing);
         print_message("%s: %zu slices, %zu left out, %.1f bytes each\n", scripts[i], passing.slices,
                       passing.left_out, (double)passing.bytes / (double)passing.slices);
-        /* Those in which a fault begins or ends. */
+        /* The slices in which a fault begins or ends. */
         assert_true(passing.left_out <= 2);
         assert_true(passing.slices > 3000 && passing.bytes < 20 * passing.slices);
     }

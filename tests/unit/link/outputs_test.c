@@ -1,4 +1,4 @@
-/* The reader of outputs.txt: every finding, every change of it, and how many reports that makes. */
+/* The reader of outputs.txt: every finding, every change of it, and the number of reports that it makes. */
 #include "support/support.h"
 
 #include <poll.h>
@@ -130,7 +130,7 @@ static void a_missing_file_is_reported_and_found_when_it_comes(void **state) {
     outputs_teardown(&f);
 }
 
-/* Each of them instead of the file, at once or by rename; none is opened. */
+/* Each of them replaces the file, at once or by rename; none is opened. */
 static void what_is_no_file_is_reported(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -177,7 +177,7 @@ static void an_unreadable_file_is_reported_with_the_reason(void **state) {
     outputs_teardown(&f);
 }
 
-/* Nothing about the file changes, and yet it cannot be opened for a while; nothing is left open by it all. */
+/* The file does not change, and yet it cannot be opened for a while; afterwards nothing is left open. */
 static void running_out_of_descriptors_is_survived(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -217,7 +217,7 @@ static void a_torn_read_is_counted_not_reported(void **state) {
     outputs_teardown(&f);
 }
 
-/* A slow reader that finds the file torn each time is not looking at one bad state. */
+/* If a slow reader finds the file torn each time, it does not see one bad state. */
 static void a_change_starts_the_settle_time_anew(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -246,7 +246,7 @@ static void a_file_that_never_rests_is_reported_after_64_bad_looks(void **state)
     outputs_teardown(&f);
 }
 
-/* ... but never before the settle time, however often it is looked at. */
+/* ... but never before the settle time, however often it looks. */
 static void many_looks_are_no_substitute_for_time(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -282,7 +282,7 @@ static void from_one_bad_finding_to_another_is_one_report_each(void **state) {
     outputs_teardown(&f);
 }
 
-/* Without an event and before the time nothing is looked at, whatever happens beside the file. */
+/* Without an event and before the time the reader does not look, whatever happens beside the file. */
 static void neighbours_make_no_looks(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -297,7 +297,7 @@ static void neighbours_make_no_looks(void **state) {
     outputs_teardown(&f);
 }
 
-/* What is changed beyond the folder is found by looking every poll_us. */
+/* A change beyond the folder is found by looking every poll_us. */
 static void a_symbolic_link_is_followed(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -352,7 +352,7 @@ static void a_folder_may_come_go_and_be_exchanged(void **state) {
     outputs_teardown(&f);
 }
 
-/* No event tells of it: the watched folder itself stays what it was. */
+/* No event reports it: the watched folder itself stays unchanged. */
 static void a_folder_exchanged_further_up_is_noticed_within_a_second(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -372,7 +372,7 @@ static void a_folder_exchanged_further_up_is_noticed_within_a_second(void **stat
     outputs_teardown(&f);
 }
 
-/* As many descriptors as are open now, so that there is none for inotify. */
+/* Uses up the descriptors, so that there is none for inotify. */
 static void without_inotify_the_reader_polls(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -395,7 +395,7 @@ static void without_inotify_the_reader_polls(void **state) {
     outputs_teardown(&f);
 }
 
-/* On proc, say, inotify tells nothing. */
+/* On proc, for example, inotify reports nothing. */
 static void on_other_file_systems_the_reader_polls(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -408,7 +408,8 @@ static void on_other_file_systems_the_reader_polls(void **state) {
     outputs_teardown(&f);
 }
 
-/* More events than the kernel keeps, and the file's own among the lost ones. Each update takes only some. */
+/* There are more events than the kernel keeps, and the file's own are among the lost ones. Each
+ * update takes only some. */
 static void lost_events_lose_nothing(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -445,7 +446,7 @@ static void a_report_is_one_bounded_line_whatever_the_path(void **state) {
     outputs_teardown(&f);
 }
 
-/* A path without a folder is the working directory's. */
+/* A path without a folder is in the working directory. */
 static void a_bare_name_works(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -464,8 +465,8 @@ static void a_bare_name_works(void **state) {
 
 /* ---------------------------------------------------------------------------------------------- the grammar */
 
-/* The grammar of outputs.txt, against a second reading of it, and random contents against the whole reader.
- */
+/* The grammar of outputs.txt compared with a second reading of it, and the whole reader with random
+ * contents. */
 
 #define ROUNDS 10000
 
@@ -564,7 +565,7 @@ static bool is_good_by_strtok(const char *text, size_t count, int32_t *values) {
     return found == count;
 }
 
-/* Random files, nearly good as often as wild; no zero bytes. */
+/* Random files, nearly valid as often as wild; no zero bytes. */
 static size_t random_text(char *text, size_t most) {
     static const char usual[] = "01 \n\t\r01 \n2";
     const bool wild = wh_test_below(4) == 0;
@@ -605,7 +606,8 @@ static void random_files_change_nothing_unless_they_are_good(void **state) {
     outputs_teardown(&f);
 }
 
-/* Everything at the path that can be, in any order: the finding in force is the one that a person sees. */
+/* Everything that can be at the path, in any order: the finding in force is the one that a person
+ * would see. */
 static void random_things_at_the_path(void **state) {
     (void)state;
     (void)wh_test_seed();
@@ -721,7 +723,7 @@ static void what_is_refused_leaves_nothing_behind(void **state) {
     outputs_teardown(&f);
 }
 
-/* A limit on the size of files stands for a full disk. */
+/* A limit on the size of files simulates a full disk. */
 static void a_failed_write_leaves_the_old_file(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -743,7 +745,7 @@ static void a_failed_write_leaves_the_old_file(void **state) {
     outputs_teardown(&f);
 }
 
-/* Temporary files that killed writers left do not stop it, up to a point. */
+/* Temporary files of killed writers do not stop it, up to a point. */
 static void leftovers_are_stepped_over(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -773,7 +775,7 @@ static void write_by_rename(const char *path, const int32_t *valves) {
     }
 }
 
-/* As a program with a buffer does: truncate, write once. */
+/* A program with a buffer truncates, and writes once. */
 static void write_at_once(const char *path, const int32_t *valves) {
     char text[2 * VALVES];
     for (size_t i = 0; i < VALVES; ++i) {
@@ -786,7 +788,7 @@ static void write_at_once(const char *path, const int32_t *valves) {
     }
 }
 
-/* As one without does: truncate, write each value and each line feed on its own. */
+/* A program without a buffer truncates, and writes each value and each line feed on its own. */
 static void write_by_byte(const char *path, const int32_t *valves) {
     const int fd = open(path, O_WRONLY | O_TRUNC | O_CLOEXEC);
     for (size_t i = 0; i < VALVES; ++i) {
@@ -828,7 +830,7 @@ static bool has_ended(pid_t child) {
     return ended == child;
 }
 
-/* The clock stands still: whatever the machine does meanwhile, no bad state lasts. */
+/* The clock stands still: whatever the machine does in the meantime, no bad state lasts. */
 static void hammer(writer_t writer, const char *name) {
     outputs_fixture_t f;
     outputs_setup(&f);

@@ -1,5 +1,6 @@
-/* What motion control takes as a state, and what not, though its hash is right: a simulator on memq that says something
- * impossible first, and then the truth. When motion control waits no longer, and what it takes for silence. */
+/* The states that motion control accepts, and those that it refuses though their hash is right: a
+ * simulator on memq first publishes an impossible state, and then the true one. The test also
+ * checks when motion control stops waiting, and when it assumes silence. */
 #include "support/support.h"
 
 #include <time.h>
@@ -33,7 +34,7 @@ static int tear_down(void **state) {
     return 0;
 }
 
-/* wh_physics_state_hash of what the message says. */
+/* wh_physics_state_hash of the message's contents. */
 static int64_t hash_of(const waferhand_state *message) {
     static wh_link_arrays_t arrays;
     wh_grasp_t table;
@@ -164,7 +165,7 @@ static void impossible_states_are_not(void **state) {
         miss_no_wafer,         pick_by_nobody,          hand_over_from_nobody, lie_below_no_such_wafer,
         measure_in_the_future, measure_before_the_run,  refuse_a_wafer};
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
-        /* More than once where the machine was so busy that the client asked again. */
+        /* There may be more than one on a busy machine, on which the client asked again. */
         if (malformed_after(changes[i]) == 0) {
             fail_msg("change %zu was taken", i);
         }
@@ -175,7 +176,7 @@ static void impossible_states_are_not(void **state) {
 
 /* ------------------------------------------------------------------------------------ when to wait no longer */
 
-/* How the simulator answers: as one of another layout does, a slice late, or not. */
+/* The way the simulator answers: as one of another layout does, a slice late, or not at all. */
 static bool has_other_layout, is_late, is_silent;
 
 static volatile sig_atomic_t stop;
@@ -223,7 +224,7 @@ static void answer_truly(void *user, const void *data, size_t size) {
     assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
 }
 
-/* As a signal does that comes once the command is out. */
+/* The stop of a signal that comes once the command is out. */
 static void stop_and_answer(void *user, const void *data, size_t size) {
     stop = 1;
     answer_truly(user, data, size);
@@ -250,7 +251,7 @@ static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answer
     wh_node_close(&node);
 }
 
-/* As fast as it can, after its first slice, which a simulator has answered. */
+/* It runs at full speed after its first slice, which a simulator has answered. */
 static void begin_free_run(int64_t timeout_us, wh_state_t *answer) {
     const wh_protocol_client_options_t options = {.rate = 1000, .timeout_us = timeout_us};
     open_client(&options);
@@ -299,7 +300,7 @@ static void note_state(void *user, const wh_state_t *state) {
     told[told_count++] = state->seq;
 }
 
-/* Answers from slice 2 on come all at once, behind slice 4, and each of them twice. */
+/* The answers from slice 2 on come all at once, behind slice 4, and each of them twice. */
 static void answer_in_a_heap(void *user, const void *data, size_t size) {
     static uint8_t kept[3][WH_LINK_DATAGRAM];
     static size_t sizes[3];
@@ -318,7 +319,7 @@ static void answer_in_a_heap(void *user, const void *data, size_t size) {
     }
 }
 
-/* An edge scan has samples in each state, so none of those between two exchanges may be passed over. */
+/* An edge scan has samples in each state, so no state between two exchanges may be skipped. */
 static void a_free_run_tells_each_state_that_it_takes_once(void **state) {
     (void)state;
     const wh_protocol_client_options_t options = {.rate = 1000, .taken = note_state};
@@ -337,7 +338,7 @@ static void a_free_run_tells_each_state_that_it_takes_once(void **state) {
     wh_node_close(&node);
 }
 
-/* Without a word from a simulator the next slice is due all the same, but for one whose state is awaited. */
+/* Without an answer from a simulator the next slice is due all the same, unless its state is awaited. */
 static void a_free_run_waits_for_a_state_that_is_awaited(void **state) {
     (void)state;
     wh_state_t answer = {.status = WH_OK};
@@ -356,7 +357,7 @@ static void a_free_run_waits_for_a_state_that_is_awaited(void **state) {
     wh_node_close(&node);
 }
 
-/* What the simulator has stepped is taken; nothing is sent after the stop. */
+/* The slices that the simulator has stepped are accepted; nothing is sent after the stop. */
 static void a_stop_loses_no_slice(void **state) {
     (void)state;
     const wh_protocol_client_options_t options = {.stop = &stop};
@@ -378,7 +379,7 @@ static bool has_come(void) {
     return true;
 }
 
-/* It came while the client did not wait, as when it says that there is no answer. */
+/* It came while the client did not wait, as when the client reports that there is no answer. */
 static void a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator(void **state) {
     (void)state;
     const wh_protocol_client_options_t options = {.interrupted = has_come, .timeout_us = 10000000};
@@ -416,7 +417,7 @@ static void sleep_ms(long ms) {
     (void)nanosleep(&pause, NULL);
 }
 
-/* It owes no answer: before the first command, and while nothing is sent. Then it does. */
+/* It owes no answer before the first command, and while nothing is sent. Then it owes one. */
 static void a_simulator_that_was_not_asked_is_not_silent(void **state) {
     (void)state;
     const wh_protocol_client_options_t options = {.rate = 0};
@@ -440,8 +441,8 @@ static void a_simulator_that_was_not_asked_is_not_silent(void **state) {
     wh_node_close(&node);
 }
 
-/* Those behind the last state, of which nobody knows. */
-/* One that does all but take a state back. */
+/* The slices behind the last state, about which nobody knows. */
+/* A simulator that does everything except take a state back. */
 static void answer_but_take_nothing(void *user, const void *data, size_t size) {
     waferhand_command message;
     assert_true(wh_link_decode_command(data, size, &message));
@@ -478,7 +479,7 @@ static void a_run_is_put_back_if_the_simulator_takes_its_state(void **state) {
     assert_int_equal(send_slice(4, &answer), WH_OK);
     assert_int_equal(wh_protocol_client_restore(&client, saved[1], size, &answer), WH_STATUS_NOT_RESTORED);
     assert_int_equal(client.identity.run, run);
-    assert_int_equal(send_slice(5, &answer), WH_OK); /* all is as it was */
+    assert_int_equal(send_slice(5, &answer), WH_OK); /* everything is as before */
     assert_int_equal(server.seq, 5);
 
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_RESTORE, take_back, NULL));

@@ -1,4 +1,5 @@
-/* The simulator's side of the protocol: what is stepped, repeated, ignored, turned away, taken over. */
+/* The simulator's side of the protocol: which messages are stepped, repeated, ignored, refused or
+ * taken over. */
 #include "support/support.h"
 
 #include "layout/layout.h"
@@ -29,7 +30,7 @@ static int tear_down(void **state) {
     return 0;
 }
 
-/* The end-effector a little higher in each slice, everything closed. */
+/* The end-effector rises a little in each slice, with everything closed. */
 static waferhand_command command(int64_t run, int64_t seq) {
     waferhand_command message;
     memset(&message, 0, sizeof message);
@@ -189,7 +190,7 @@ static void no_other_state_is_taken_over(void **state) {
     }
 }
 
-/* Of a sealed message, no other bits pass; cut short, it does not either. */
+/* Only the bits of a sealed message pass; a message that is cut short does not pass either. */
 static void flipped_bits_are_seen(void **state) {
     (void)state;
     uint8_t bytes[4096];
@@ -210,8 +211,9 @@ static void flipped_bits_are_seen(void **state) {
 
 /* ---------------------------------------------------------------------------------------------- taking over */
 
-/* The state of a simulator with delayed vacuum, pads and faults: taken over by another in the middle of a run it goes on with
- * the same bits, and none that no simulator could be in is taken over. */
+/* The state of a simulator with delayed vacuum, pads and faults. Another simulator takes it over in
+ * the middle of a run and goes on with the same bits. A state that no simulator can be in is
+ * refused. */
 
 #define SCRIPT "tests/end_to_end/data/delayed.lua"
 #define EDGE "lua/examples/09_edge_scan.lua"
@@ -231,7 +233,7 @@ static void send_physics(const wh_command_t *command) {
     uint8_t bytes[4096];
     const size_t size = encode_command(command, bytes, sizeof bytes);
     assert_true(wh_link_decode_command(bytes, size, &decoded));
-    /* Twice, as a network does. */
+    /* Twice, as a network may deliver it. */
     const wh_protocol_server_result_t result = wh_protocol_server_command(server, &decoded, NULL);
     assert_true(result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN);
     assert_int_equal(wh_protocol_server_command(server, &decoded, NULL), WH_SERVER_ANSWERED);
@@ -244,9 +246,9 @@ static void restart(const wh_layout_t *layout) {
     assert_true(wh_link_decode_state(server->encoded, server->encoded_size, &message));
     assert_int_equal(wh_protocol_server_open(other, layout), WH_OK);
     const int64_t run = message.run;
-    message.run = 0; /* that of no run */
+    message.run = 0; /* the number of no run */
     assert_int_equal(wh_protocol_server_restore(other, &message), WH_SERVER_IGNORED);
-    message.run = 1; /* as good as any */
+    message.run = 1; /* any number of a run will do */
     assert_int_equal(wh_protocol_server_restore(other, &message), WH_SERVER_RESTORED);
     assert_int_equal(wh_protocol_server_open(other, layout), WH_OK);
     message.run = run;
@@ -313,7 +315,8 @@ static void restarted_again_and_again(void **state) {
     assert_true(run_with(1, false) == by_call);
 }
 
-/* Also in the middle of a scan; and motion control collects the same samples, as the script's expectations show. */
+/* Also in the middle of a scan: motion control collects the same samples, as the script's
+ * expectations show. */
 static void a_scan_goes_on_in_another_server(void **state) {
     (void)state;
     script = EDGE;
@@ -328,7 +331,7 @@ static void a_scan_goes_on_in_another_server(void **state) {
     script = SCRIPT;
 }
 
-/* Also with a latch on its way; and motion control centres by the same crossings. */
+/* Also while a latch is on its way: motion control centres by the same crossings. */
 static void a_pass_through_beams_goes_on_in_another_server(void **state) {
     (void)state;
     script = BEAMS;
@@ -390,7 +393,7 @@ static void no_other_scan_is_taken_over(void **state) {
                          changed ? WH_SERVER_IGNORED : WH_SERVER_RESTORED);
         (void)waferhand_state_decode_cleanup(&message);
     }
-    /* A count that is not followed by so many samples. */
+    /* A count that is larger than the number of samples that follow. */
     for (size_t cut = 1; cut < sampled_size; cut += 7) {
         waferhand_state message;
         assert_false(wh_link_decode_state(sampled, sampled_size - cut, &message));
@@ -515,7 +518,7 @@ static void no_other_condition_is_taken_over(void **state) {
     wh_script_run_close(&run);
 }
 
-/* What replay makes of the cell's message is the layout's own physics. */
+/* replay builds the layout's own physics from the cell's message. */
 static void the_cell_tells_it_all(void **state) {
     wh_script_run_options_t options = {.script = SCRIPT};
     wh_script_run_t run;
@@ -542,7 +545,7 @@ static void the_cell_tells_it_all(void **state) {
     wh_script_run_close(&run);
 }
 
-/* The same with edge sensors and rims; a cell that no layout could have made is refused. */
+/* Edge sensors and rims are taken over, too; a cell that no layout could have made is refused. */
 static void the_cell_tells_what_sensors_see(void **state) {
     static wh_link_cell_t cell;
     static uint8_t bytes[WH_LINK_DATAGRAM];
@@ -585,7 +588,7 @@ static void the_cell_tells_what_sensors_see(void **state) {
     wh_script_run_close(&run);
 }
 
-/* The same with beams and the blades that break them. */
+/* Beams and the blades that break them are taken over, too. */
 static void the_cell_tells_what_beams_see(void **state) {
     static wh_link_cell_t cell;
     static uint8_t bytes[WH_LINK_DATAGRAM];
@@ -627,7 +630,7 @@ static void the_cell_tells_what_beams_see(void **state) {
     wh_script_run_close(&run);
 }
 
-/* And the faces that a probe touches. */
+/* The faces that a probe touches are taken over, too. */
 static void the_cell_tells_what_a_probe_touches(void **state) {
     static wh_link_cell_t cell;
     static uint8_t bytes[WH_LINK_DATAGRAM];

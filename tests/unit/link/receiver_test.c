@@ -1,4 +1,4 @@
-/* Datagrams as a hostile network sends them, over a pair of sockets, and URLs as people mistype them. */
+/* Datagrams as a hostile network sends them, over a pair of sockets, and URLs with typing errors. */
 #include "support/support.h"
 
 #include <arpa/inet.h>
@@ -136,7 +136,7 @@ static void a_wrong_part_of_an_url_is_named_with_its_value_and_what_was_expected
     }
 }
 
-/* One is as good as another: only that they differ counts. */
+/* The value has no meaning: only the difference counts. */
 static void a_message_tells_which_socket_it_came_from(void **state) {
     (void)state;
     struct sockaddr_in place = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};

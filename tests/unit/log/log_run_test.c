@@ -1,4 +1,4 @@
-/* Logs that show nothing: what each of them lacks is said, and nothing is read from beside the lists. */
+/* Logs with missing parts: each gap is reported, and nothing is read from beside the lists. */
 #include "log/log_run.h"
 
 #include <unistd.h>
@@ -26,7 +26,7 @@ static void put_number(FILE *file, uint64_t value, int bytes) {
     }
 }
 
-/* As of LCM: a mark, number, time, sizes, channel, data. */
+/* An event of LCM: a mark, number, time, sizes, channel, data. */
 static void put_event(FILE *file, uint64_t number, const char *channel, const void *bytes, size_t size) {
     put_number(file, 0xEDA1DA01, 4);
     put_number(file, number, 8);

@@ -1,4 +1,4 @@
-/* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
+/* Recordings in memory: equal slices, differing ones and their names, and missing ones. */
 #include "support/support.h"
 
 #include <unistd.h>
@@ -77,7 +77,7 @@ static void simulate(int64_t seq) {
     assert_int_not_equal(wh_protocol_server_command(&server, &message, NULL), WH_SERVER_IGNORED);
 }
 
-/* As if another simulator had computed another state. */
+/* A state that another simulator could have computed. */
 static void record_changed_state(void (*change)(waferhand_state *message)) {
     waferhand_state message;
     assert_true(wh_link_decode_state(server.encoded, server.encoded_size, &message));
@@ -160,6 +160,23 @@ static void the_first_difference_is_named(void **state) {
     assert_int_equal(run->compared, 6);
 }
 
+/* A state that comes again is not stepped again, and must be as before: at once, later, or while it waits. */
+static void a_state_that_comes_again_otherwise_is_counted(void **state) {
+    (void)state;
+    for (int64_t seq = 1; seq <= 6; ++seq) {
+        const waferhand_command message = command(seq);
+        simulate(seq);
+        record_command(&message);
+        record_state();
+        if (seq == 2) {
+            record_changed_state(move_wafer);
+        }
+        assert_int_equal(replay.losses[WH_REPLAY_CONTRADICTS].count, seq >= 2 ? 1 : 0);
+    }
+    assert_int_equal(only_run()->compared, 6);
+    assert_int_equal(only_run()->differing, 0);
+}
+
 static void another_command_is_found_out(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 3; ++seq) {
@@ -202,7 +219,7 @@ static void a_hole_is_bridged(void **state) {
     assert_int_equal(only_run()->skipped, 4);
 }
 
-/* Each slice up to the last one is compared or passed over, however many are missing. */
+/* Each slice up to the last one is compared or skipped, however many are missing. */
 static void a_hole_of_any_size_is_counted(void **state) {
     static const int64_t holes[][2] = {{4, 5}, {4, 9}, {4, 3000}, {1, 3000}, {1, 90000}, {7, 90000}};
     (void)state;
@@ -251,7 +268,7 @@ static void the_reason_of_a_failed_run_is_kept(void **state) {
     assert_false(only_run()->is_told_wrong);
 }
 
-/* No program tells a verdict that does not fit its counts, or what it told before. */
+/* No program publishes a verdict that does not fit its counts, or contradicts its earlier ones. */
 static void a_verdict_that_contradicts_is_damage(void **state) {
     static const struct {
         int32_t second; /* the phase of the second expectation; the first one was met */
@@ -282,7 +299,7 @@ static void a_verdict_that_contradicts_is_damage(void **state) {
     }
 }
 
-/* Only the simulator's word tells that a command of an unknown layout is as good as answered. */
+/* Only the simulator's own message shows that a command of an unknown layout was in effect answered. */
 static void a_run_of_another_layout_is_told(void **state) {
     (void)state;
     for (int refused = 0; refused < 2; ++refused) {
@@ -324,7 +341,8 @@ static void narrow_near_projxy(waferhand_cell *cell) {
     cell->near_projxy = 1e-200;
 }
 
-/* Numbers that a layout's file would be refused for, too: their squares are zero, and something divides by them. */
+/* Numbers for which a layout's file would be refused, too: their squares are zero, and are used as
+ * divisors. */
 static void cells_that_no_layout_describes(void **state) {
     static void (*const changes[])(waferhand_cell * cell) = {narrow_projz, narrow_near_projz,
                                                              narrow_near_projxy};
@@ -348,7 +366,7 @@ static void garbage_is_counted(void **state) {
     wh_replay_event(&replay, WH_CHANNEL_CELL, bytes, 0);
     wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, 1000);
     assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 3);
-    /* What is only passed over if it is sound, too. */
+    /* Data that are skipped only if they are sound, too. */
     static const char *const others[] = {WH_CHANNEL_MCS,       WH_CHANNEL_RESTORE, WH_CHANNEL_REQUEST,
                                          WH_CHANNEL_PROXIMITY, WH_CHANNEL_SLICES,  WH_CHANNEL_RECORDING,
                                          WH_CHANNEL_EDGE_SCAN, WH_CHANNEL_LATCH};
@@ -365,7 +383,7 @@ static void narrow_height(waferhand_state *message) {
     message->wafers[1].position[1] += 1e-9;
 }
 
-/* The hash is the right one: the body alone is another. */
+/* The hash is right, but the body is another one. */
 static void a_body_without_a_check_differs(void **state) {
     waferhand_state message;
     (void)state;
@@ -485,14 +503,14 @@ static void event_numbers_tell_what_is_missing(void **state) {
 #define HEADER 28
 #define EVENTS 2000
 #define LOG_BYTES (1 << 20)
-/* Slices of the logs that are damaged. */
+/* The slices of the logs that get damaged. */
 #define SLICES 120
 
 typedef enum { OF_SLICES, OF_ALL, OF_VERSION_1, VERSIONS } version_t;
 
-/* A log in memory, and where its events begin. */
+/* A log in memory, and the places where its events begin. */
 typedef struct {
-    uint8_t bytes[2 * LOG_BYTES]; /* room for what is put in */
+    uint8_t bytes[2 * LOG_BYTES]; /* room for insertions */
     size_t size;
     size_t starts[EVENTS + 1];
     size_t count;
@@ -568,7 +586,7 @@ static void put_event(log_t *log, const log_t *from, size_t event) {
     log->size += length;
 }
 
-/* As programs before recordings wrote it. */
+/* In the form of programs before recordings. */
 static void make_version_1(void) {
     log_t *log = &whole[OF_VERSION_1];
     uint64_t number = 0;
@@ -621,7 +639,8 @@ static wh_reading_verdict_t verdict_of(log_t *log, bool lenient) {
     assert_non_null(file);
     wh_replay_close(&replay);
     memset(&replay, 0, sizeof replay);
-    wh_reading_replay(file, &reader, &replay, &reading);
+    const wh_log_files_t files = {.files = {file}, .count = 1};
+    wh_reading_replay(&files, &reader, &replay, &reading);
     wh_log_close(&reader);
     (void)fclose(file);
     return wh_reading_judge(&replay, &reading, lenient, NULL);
@@ -632,8 +651,8 @@ static void copy_whole(const log_t *log) {
     damaged.size = log->size;
 }
 
-/* True for a byte that nothing vouches for: a time stamp; and in a log of version 1 what is in messages without
- * a check. */
+/* True for a byte that nothing protects: a time stamp; in a log of version 1 also the bytes of
+ * messages without a check. */
 static bool is_unguarded(const log_t *log, version_t version, size_t at) {
     size_t event = 0;
     while (log->starts[event + 1] <= at) {
@@ -682,7 +701,7 @@ static void cut_out(const log_t *log, version_t version) {
     damaged.size -= length;
 }
 
-/* Events in another order, one of them twice or not at all. */
+/* Events in another order, one of them twice or missing. */
 static void shuffle(const log_t *log, version_t version) {
     const size_t one = wh_test_below((uint32_t)log->count);
     const size_t other = (one + 1 + wh_test_below((uint32_t)log->count - 1)) % log->count;
@@ -713,7 +732,8 @@ static const struct {
              {"bytes cut out", cut_out},
              {"events shuffled", shuffle}};
 
-/* No damage yields a right check: no slice in the log is another one, so none may be said to differ. */
+/* No damage yields a right check. No slice in the log is another one, so none may be reported as
+ * different. */
 static void damaged_logs_never_say_more_than_they_have(void **state) {
     (void)state;
     (void)wh_test_seed();
@@ -723,7 +743,7 @@ static void damaged_logs_never_say_more_than_they_have(void **state) {
         assert_int_equal(verdict, WH_READING_SAME);
         assert_int_equal(replay.runs[0].compared, SLICES);
     }
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 1000 / WH_TEST_SHARE; ++i) {
         const version_t version = (version_t)wh_test_below(VERSIONS);
         const size_t kind = wh_test_below(sizeof kinds / sizeof kinds[0]);
         do {
@@ -739,13 +759,13 @@ static void damaged_logs_never_say_more_than_they_have(void **state) {
     }
 }
 
-/* A state with another body and the right check of it differs in that slice alone. */
+/* A state with another body and the right check for it differs in that slice alone. */
 static void a_forged_state_differs_where_it_stands(void **state) {
     (void)state;
     record_all_versions();
     for (version_t version = OF_SLICES; version < VERSIONS; ++version) {
         const log_t *log = &whole[version];
-        for (size_t event = 0; event < log->count; ++event) {
+        for (size_t event = 0; event<log->count; event += WH_TEST_SHARE> 1 ? 3 : 1) {
             if (!is_on(log, event, WH_CHANNEL_STATE)) {
                 continue;
             }
@@ -764,23 +784,30 @@ static void an_unknown_version_is_refused(void **state) {
     record_all_versions();
     const log_t *log = &whole[OF_SLICES];
     const size_t data = log->starts[0] + HEADER + strlen(WH_CHANNEL_RECORDING);
-    for (uint8_t version = WH_RECORDING_VERSION - 1; version <= WH_RECORDING_VERSION + 1; version += 2) {
+    static const uint8_t unknown[] = {0, WH_RECORDING_OLDEST - 1, WH_RECORDING_VERSION + 1};
+    for (size_t i = 0; i < sizeof unknown; ++i) {
         copy_whole(log);
-        damaged.bytes[data + 43] = version;
+        damaged.bytes[data + 43] = unknown[i];
         wh_link_seal(damaged.bytes + data, log->starts[1] - data);
         assert_int_equal(verdict_of(&damaged, false), WH_READING_UNUSABLE);
-        assert_int_equal(replay.recording.version, version);
+        assert_int_equal(replay.recording.version, unknown[i]);
     }
+    /* A log of the program before this one is read: the first message alone says so here, and is sealed. */
+    copy_whole(log);
+    damaged.bytes[data + 43] = WH_RECORDING_OLDEST;
+    wh_link_seal(damaged.bytes + data, log->starts[1] - data);
+    assert_int_not_equal(verdict_of(&damaged, false), WH_READING_UNUSABLE);
+    assert_int_equal(replay.runs[0].differing, 0);
 }
 
-/* A bit of the cell alone: the slices may be what they were. */
+/* One bit of the cell alone: the slices may be unchanged. */
 static void a_changed_cell_is_no_difference(void **state) {
     (void)state;
     record_all_versions();
     for (version_t version = OF_SLICES; version <= OF_ALL; ++version) {
         const log_t *log = &whole[version];
         const size_t data = log->starts[1] + HEADER + strlen(WH_CHANNEL_CELL);
-        for (size_t at = data + 8; at < log->starts[2]; ++at) {
+        for (size_t at = data + 8; at < log->starts[2]; at += WH_TEST_SHARE) {
             copy_whole(log);
             damaged.bytes[at] ^= (uint8_t)(1U << at % 8);
             const wh_reading_verdict_t verdict = verdict_of(&damaged, false);
@@ -807,7 +834,7 @@ static void a_log_that_is_not_closed_is_cut(void **state) {
 /* -------------------------------------------------------------------------------- back to an earlier state */
 
 #define AGAIN (RUN + 1)
-/* The slice whose state the second run goes on from: farther than commands wait for a state. */
+/* The slice whose state starts the second run: it is farther away than commands wait for a state. */
 #define SAVED (WH_REPLAY_WINDOW + 50)
 
 /* An event of a log in memory. */
@@ -837,7 +864,7 @@ static void keep_slice(int64_t run, int64_t seq) {
     keep_event(WH_CHANNEL_STATE, server.encoded, server.encoded_size);
 }
 
-/* A run, and a second one that goes on from a state of the first, which it has had from its slice SAVED; the
+/* A run, and a second one that continues from a state of the first, taken from its slice SAVED; the
  * event of that state in the second run. */
 static size_t keep_two_runs(void) {
     event_count = 0;
@@ -904,7 +931,7 @@ static void a_run_that_goes_on_from_an_earlier_state_is_whole(void **state) {
     let_events_go();
 }
 
-/* The state is missing; so is that of the earlier run; so are slices of the later one behind it. */
+/* The state is missing; so is the one of the earlier run; so are slices of the later run behind it. */
 static void what_goes_on_from_no_known_state_has_lost_slices(void **state) {
     (void)state;
     const size_t begins = keep_two_runs();
@@ -925,11 +952,11 @@ static void what_goes_on_from_no_known_state_has_lost_slices(void **state) {
     let_events_go();
 }
 
-/* A state of the same number that no slice had is none to go on from. */
+/* A state with that number that belongs to no slice cannot be a start. */
 static void another_state_of_the_same_slice_is_no_earlier_one(void **state) {
     (void)state;
     const size_t begins = keep_two_runs();
-    const size_t other = 2 * SAVED + 1; /* of the slice behind it, told to be this one's */
+    const size_t other = 2 * SAVED + 1; /* the slice behind it, reported as this one's */
     waferhand_state message;
     assert_true(wh_link_decode_state(events[other].data, events[other].size, &message));
     message.run = AGAIN;
@@ -950,6 +977,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_same, set_up, tear_down),
         cmocka_unit_test_setup_teardown(states_before_their_commands, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_first_difference_is_named, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_state_that_comes_again_otherwise_is_counted, set_up, tear_down),
         cmocka_unit_test_setup_teardown(another_command_is_found_out, set_up, tear_down),
         cmocka_unit_test_setup_teardown(valves_from_outside_are_followed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_hole_is_bridged, set_up, tear_down),

@@ -1,4 +1,4 @@
-/* A slice as a row of numbers with names; and which slices two recordings have. */
+/* A slice as a row of numbers with names; and the slices that two recordings have in common. */
 #include "log/compare.h"
 
 #include "support/layout.h"
@@ -142,8 +142,8 @@ static double value_of(const wh_layout_t *layout, const wh_state_t *slice, const
     return values[found];
 }
 
-/* EE is turned by 90 degrees and looks up at the front of W1, whose x is turned by 30 degrees more: seen from below its y
- * is the other way round. W2 lies. */
+/* EE is turned by 90 degrees and looks up at the front of W1, whose x is turned by 30 degrees more.
+ * Seen from below its y points the other way. W2 lies. */
 static void how_a_wafer_is_held(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -180,8 +180,8 @@ static wh_compare_t compare(struct wh_log_digest *one, size_t one_count, struct 
     wh_compare_t found;
     const wh_layout_t *layout = read_cell("");
     wh_log_run_t *const both[] = {&runs[0], &runs[1]};
-    const wh_log_digests_t digests[] = {{one, one_count, one_count, NULL},
-                                        {other, other_count, other_count, NULL}};
+    const wh_log_digests_t digests[] = {{one, one_count, one_count, {NULL, NULL}},
+                                        {other, other_count, other_count, {NULL, NULL}}};
     runs[0].cell.layout = runs[1].cell.layout = layout;
     assert_true(wh_compare_runs(both, digests, &found));
     return found;

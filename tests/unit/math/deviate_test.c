@@ -43,7 +43,8 @@ static void the_logarithm_is_libms_to_the_last_digits(void **state) {
     assert_true(isnan(wh_ln(0)) && isnan(wh_ln(-1)) && isnan(wh_ln((double)INFINITY)));
 }
 
-/* A number is its name's alone: neighbours in any of the four differ, and nothing remembers. */
+/* A number depends only on its name: neighbours in any of the four parts differ, and no call
+ * changes another. */
 static void a_deviate_depends_on_its_name(void **state) {
     (void)state;
     const wh_trial_t trial = {7, 11};
@@ -59,7 +60,7 @@ static void a_deviate_depends_on_its_name(void **state) {
     assert_true(wh_deviate_uniform(&trial, 3, 5) == u && wh_deviate_normal(&trial, 3, 5) == n);
 }
 
-/* Moments of n values are off by their standard errors; six of them are never seen. */
+/* Moments of n values are off by their standard errors; an error of six of them never occurs. */
 static void deviates_have_their_moments(void **state) {
     (void)state;
     const double N = 200000;
@@ -86,7 +87,7 @@ static void deviates_have_their_moments(void **state) {
     assert_true(fabs(normal[3] / N - 3) < 6 * sqrt(96.0) / root);
 }
 
-/* The same bits on every machine: these are of x86-64. In float the cosine is another. */
+/* The bits are the same on every machine: these are from x86-64. In float the cosine is another. */
 static void deviates_keep_their_bits(void **state) {
     (void)state;
     uint64_t hash = 0;

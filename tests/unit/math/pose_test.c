@@ -1,4 +1,4 @@
-/* Poses: products against long double, what counts as a rotation, and how a worn one is mended. */
+/* Poses: products compared with long double, the limits of a rotation, and the mending of a worn one. */
 #include "support/support.h"
 
 #include "math/pose.h"
@@ -207,7 +207,7 @@ static void orthonormalise_squares_the_error(void **state) {
 
 /* ------------------------------------------------------------------------------------------- the way in */
 
-/* A matrix with each entry rounded to a multiple of 1/32768 that fits 16 bits, as Q15 has it. */
+/* A matrix with each entry rounded to a multiple of 1/32768 that fits 16 bits, as Q15 stores it. */
 static wh_mat3_t in_q15(const wh_mat3_t *R) {
     wh_mat3_t rounded;
     for (int k = 0; k < 9; ++k) {
@@ -250,7 +250,7 @@ static void fixed_point_rotations_are_refused_as_they_are_and_good_once_mended(v
     assert_true(refused > RUNS * 9 / 10);
 }
 
-/* Up to the limit: mended to the nearest rotation; beyond: refused, not a bit of it changed. */
+/* Up to the limit it is mended to the nearest rotation; beyond it is refused, and not a bit is changed. */
 static void mending_ends_where_its_header_says(void **state) {
     (void)state;
     int mended = 0;
@@ -291,7 +291,8 @@ static void mirrors_and_numbers_that_are_none_are_not_mended(void **state) {
     assert_int_equal(wh_rotation_mend(NULL), WH_STATUS_NULL_ARGUMENT);
 }
 
-/* Against Rodrigues' formula, which shares nothing with it; of any length within the limit, and either sign. */
+/* Compared with Rodrigues' formula, which shares nothing with it; any length within the limit, and
+ * either sign. */
 static void quaternions_are_turns_about_their_axes(void **state) {
     (void)state;
     for (int run = 0; run < RUNS; ++run) {
@@ -329,7 +330,7 @@ static void quaternions_that_are_none_change_nothing(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ relations */
 
-/* How one frame lies as seen from another, against closed forms and against what must hold of any two. */
+/* The pose of one frame in another, compared with closed forms and with rules that hold for any two. */
 
 /* Tolerances are written for double. */
 #define NUMBERS (WH_TEST_ROUNDING * 9007199254740992.0)
@@ -355,7 +356,7 @@ static void axes_are_the_first_frame_s(void **state) {
     assert_near(relation.turn, 0, 1e-16 * NUMBERS);
 }
 
-/* About z the z axes stay together, about x they go apart by as much as all turns. */
+/* About z the z axes stay parallel; about x they part by the whole turn. */
 static void angles_small_and_large(void **state) {
     (void)state;
     static const double angles[] = {0, 1e-12, 1e-8, 1e-3, 0.5, 1.5, 3, WH_TEST_PI - 1e-8, WH_TEST_PI};
@@ -382,7 +383,7 @@ static void a_whole_turn_is_more_than_the_tilt(void **state) {
     assert_near(cos(relation.turn / 2), cos(0.15) * cos(0.55), 1e-15 * NUMBERS);
 }
 
-/* Either way round it is as far and as much, and both ways lead back. */
+/* In both directions distance and angle are equal, and both ways lead back. */
 static void both_ways(void **state) {
     (void)state;
     for (int i = 0; i < 2000; ++i) {

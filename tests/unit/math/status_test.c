@@ -1,4 +1,5 @@
-/* The catalogue of statuses, as a caller sees it: each number its own name and text, anything else none. */
+/* The catalogue of statuses from the caller's side: each number has its own name and text, and
+ * other numbers have none. */
 #include "support/support.h"
 
 #include "math/status.h"
@@ -57,7 +58,8 @@ static void other_numbers_are_unknown(void **state) {
         const bool silent = strcmp(wh_status_text((wh_status_t)number), "unknown status") == 0;
         assert_int_equal(silent, unknown || !is_of_library((wh_status_t)number));
     }
-    /* Where the compiler gives an enumeration no more bytes than it needs, some of these become other numbers. */
+    /* If the compiler gives an enumeration no more bytes than it needs, some of these become other
+     * numbers. */
     static const int none[] = {-1, 9999, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < 4; ++i) {
         const wh_status_t status = (wh_status_t)none[i];

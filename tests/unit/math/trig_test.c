@@ -27,7 +27,7 @@ typedef uint64_t bits_t;
 #define EIGHTHS_HASH UINT64_C(0x6bb34f7a3fc583a5)
 #endif
 
-/* Where long double is no longer than the number under test, the oracle's own error comes on top. */
+/* If long double is no longer than the number under test, the oracle's own error is added. */
 #define ORACLE_ULP (LDBL_MANT_DIG > DIGITS ? 0.001 : 1.0)
 
 static double ulps_off(wh_real_t got, long double want) {
@@ -74,11 +74,11 @@ static void sin_and_cos_are_near_the_oracle(void **state) {
 /* Next to n pi/2 nearly all digits of x cancel: the reduction's hardest arguments. */
 static void reduction_holds_next_to_every_quarter_turn(void **state) {
     (void)state;
-    for (int n = 1; n < 63662; ++n) {
+    for (int n = 1; n<63662; n += WH_TEST_SHARE> 1 ? 21 : 1) {
         const long double turn = (long double)n * (PI / 2);
         const wh_real_t x = (wh_real_t)turn;
         const long double rest = sinl((long double)x - turn);
-        /* The oracle knows n pi/2 to its own last digit only. */
+        /* The oracle knows n pi/2 only to its own last digit. */
         const double blur = (double)(turn * LDBL_EPSILON) + fabs((double)rest) * 1e-6;
         const wh_real_t small = n % 2 == 0 ? wh_sin(x) : wh_cos(x);
         assert_near(small, n % 4 < 1 || n % 4 > 2 ? rest : -rest, blur);
@@ -141,7 +141,7 @@ static void whole_quarters_in_degrees_are_exact(void **state) {
 
 static void degrees_are_near_the_oracle(void **state) {
     (void)state;
-    /* Where long double is double the oracle's own roundings count: of the factor, the angle and the sine. */
+    /* If long double is double, the oracle's own roundings count: of the factor, the angle and the sine. */
     const double own = sizeof(wh_real_t) < sizeof(double) || LDBL_MANT_DIG > DBL_MANT_DIG ? 0 : 2;
     for (int i = 0; i < SAMPLES; ++i) {
         const wh_real_t deg = i % 2 == 0 ? random_real(-400, 400) : random_real(-5e6, 5e6);
@@ -204,7 +204,7 @@ static void atan2_takes_every_magnitude(void **state) {
     }
 }
 
-/* Where squares and products of the arguments are no numbers any more, or have lost digits. */
+/* Squares and products of the arguments are no numbers any more here, or have lost digits. */
 static void atan2_is_near_the_oracle_far_out(void **state) {
     (void)state;
     const double most = DIGITS == 24 ? 1e38 : 1e308;
@@ -218,8 +218,9 @@ static void atan2_is_near_the_oracle_far_out(void **state) {
 }
 
 #if !defined(WH_FLOAT)
-/* Angles so close to the middle between two numbers that the last digits of the constants say which is nearer: about
- * the centres 1/4 to 1, and beside the axes. The right one of the two was found with 120 digits. */
+/* Angles so close to the middle between two numbers that the last digits of the constants decide
+ * which is nearer: about the centres 1/4 to 1, and beside the axes. The right one of the two was
+ * found with 120 digits. */
 static void atan2_rounds_the_right_way_at_its_hardest(void **state) {
     (void)state;
     static const struct {
@@ -244,7 +245,7 @@ static void atan2_rounds_the_right_way_at_its_hardest(void **state) {
 }
 #endif
 
-/* C99, F.9.1.4: the C library gives these to the letter. */
+/* C99, F.9.1.4: the C library returns exactly these. */
 static void atan2_has_the_special_values_of_c99(void **state) {
     (void)state;
     const wh_real_t inf = (wh_real_t)INFINITY;
@@ -336,7 +337,7 @@ static void times(long double a[3][3], const long double b[3][3]) {
     memcpy(a, c, sizeof c);
 }
 
-/* Rz(yaw) Ry(pitch) Rx(roll), each written down as in a textbook. */
+/* Rz(yaw) Ry(pitch) Rx(roll), each written as in a textbook. */
 static void roll_pitch_and_yaw_are_about_fixed_axes(void **state) {
     (void)state;
     for (int i = 0; i < 1000; ++i) {
@@ -359,7 +360,7 @@ static void roll_pitch_and_yaw_are_about_fixed_axes(void **state) {
     }
 }
 
-/* One number for all results: a machine or a compiler that rounds otherwise is found out. */
+/* One number for all results: it detects a machine or a compiler that rounds differently. */
 static void bits_are_the_same_on_every_machine(void **state) {
     (void)state;
     uint64_t seed = 1;
@@ -376,7 +377,8 @@ static void bits_are_the_same_on_every_machine(void **state) {
     assert_true(hash == HASH);
 }
 
-/* At the odd eighths of a turn the last digits of x say which quarter turn is nearer, and so how it is computed. */
+/* At the odd eighths of a turn the last digits of x decide which quarter turn is nearer, and so how
+ * it is computed. */
 static void bits_are_the_same_between_two_quarters(void **state) {
     (void)state;
     const wh_real_t eighth = WH_PI / 4;

@@ -1,4 +1,4 @@
-/* Robots of several, with two arms or wrists: each axis has a name of its own and moves by itself. */
+/* Cells with several robots, with two arms or wrists: each axis has a name of its own and moves by itself. */
 #include "support/support.h"
 
 #include "mcs/session.h"

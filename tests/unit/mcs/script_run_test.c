@@ -1,4 +1,4 @@
-/* The examples, run as the program runs them: what the paper published, to its last digit. */
+/* The examples, run as the program runs them: the paper's results, to the last digit. */
 #include "support/support.h"
 
 #include <math.h>
@@ -101,7 +101,7 @@ static void missed_pick_run(void **state) {
     assert_int_equal(count_events(WH_EVENT_NEAR_MISS), 1);
 }
 
-/* The arm stands before the station when the map is known, and is there still after the refusals. */
+/* The arm stands before the station when the map is known, and is still there after the refusals. */
 static void cross_slotted_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/06_cross_slotted.lua"), WH_RUN_MET);

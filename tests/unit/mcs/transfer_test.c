@@ -1,4 +1,4 @@
-/* Commands against a cell whose sensors lie, two blades, corrections, phases, and a judge that looks ahead. */
+/* Commands in a cell with lying sensors, two blades, corrections, phases, and a judge that looks ahead. */
 #include "support/support.h"
 
 #include "mcs/session.h"
@@ -6,12 +6,12 @@
 static wh_session_t session;
 static char answer[WH_SESSION_ANSWER_BYTES];
 
-/* A link that does what the simulator does and then spoils the sensors. */
+/* A link that acts as the simulator does and then spoils the sensors. */
 static struct {
     wh_link_t link;
     wh_link_t *simulator;
     uint32_t forced_off, forced_on;
-    int64_t from, until; /* slices in which it does; until 0: none */
+    int64_t from, until; /* the slices in which it does so; until 0: none */
     int64_t slices;
 } liar;
 
@@ -53,11 +53,11 @@ static int close_session(void **state) {
     return 0;
 }
 
-/* From now on, for so many slices, the sensors of gripper 0 are on or off. */
+/* From now on, for this number of slices, the sensors of gripper 0 are on or off. */
 static void lie(bool on, int64_t slices) {
     liar.forced_on = on ? 1 : 0;
     liar.forced_off = on ? 0 : 1;
-    liar.from = session.mcs.track.slice;
+    liar.from = wh_session_slice(&session);
     liar.until = slices == 0 ? INT64_MAX : liar.from + slices;
 }
 
@@ -75,7 +75,8 @@ static void assert_answer(const char *line, const char *expected) {
 
 /* ------------------------------------------------------------------------------------------------- vacuum */
 
-/* The blade goes down again before it leaves: the wafer stays in its slot, and the robot is ready for more. */
+/* The blade moves down again before it leaves: the wafer stays in its slot, and the robot is ready
+ * for the next command. */
 static void a_vacuum_that_does_not_come(void **state) {
     (void)state;
     lie(false, 0);
@@ -130,7 +131,8 @@ static void a_wafer_is_lost_on_the_way(void **state) {
     assert_int_equal(session.mcs.track.valves[0], WH_VALVE_OPEN);
 }
 
-/* Lost on the way in: the arm stands in the station, and nothing else goes in before it is out. */
+/* The wafer is lost on the way in: the arm stands in the station, and no other arm enters before it
+ * is out. */
 static void a_wafer_is_lost_in_a_station(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK");
@@ -166,7 +168,7 @@ static void swap(void **state) {
     assert_answer("HOLDER \"Wafer 2\"", "OK holder=BACK");
     assert_answer("OFFSET \"Wafer 1\" A 2", "OK dx=");
     assert_answer("PUT A 2 gripper=BACK", "ERROR 56 WAFER_ALREADY_THERE: ");
-    /* The empty blade finds nothing: the other keeps what it has. */
+    /* The empty blade finds nothing: the other one keeps its wafer. */
     assert_answer("SWAP A 4", "ERROR 42 ");
     assert_answer("HOLDER \"Wafer 2\"", "OK holder=BACK");
     assert_answer("SWAP A 2", "OK wafer=\"Wafer 1\" put=\"Wafer 2\"");
@@ -240,13 +242,13 @@ static void a_collision_ahead(void **state) {
     assert_answer("GET A 1",
                   "ERROR 61 COLLISION_AHEAD: the motion would collide; on the way out of A slot 1: the "
                   "blade would meet the moon");
-    assert_int_equal(session.mcs.track.slice, 0);
+    assert_int_equal(wh_session_slice(&session), 0);
     assert_int_equal(liar.slices, 0);
     assert_answer("AXES", "OK theta=0 r=150 z=900 yaw=0 ");
     judge.asked = 0;
     assert_answer("GET A 1", "OK");
     assert_int_equal(judge.asked, 6);
-    judge.slice = session.mcs.track.slice;
+    judge.slice = wh_session_slice(&session);
     judge.refused_line = 1;
     assert_answer("LINE dz=1", "ERROR 61 ");
     assert_answer("LINE dz=1", "OK");
@@ -339,8 +341,8 @@ static void what_is_held_in_a_phase_moves_no_more(void **state) {
     assert_answer("CONTINUE", "OK wafer=\"Wafer 3\" put=\"Wafer 1\"");
 }
 
-/* The vacuum that does not come is noticed by the CONTINUE, and so is a wafer that is lost while it is held.
- * If a WAIT between has seen that, nothing moves, and the command is held as before. */
+/* CONTINUE notices if the vacuum does not come, and also if a wafer is lost while it is held. If a
+ * WAIT between has seen that, nothing moves, and the command is held as before. */
 static void what_fails_behind_a_phase_fails_the_continue(void **state) {
     (void)state;
     assert_answer("GET A 1 stop=extended", "OK");
@@ -409,7 +411,7 @@ static const char *const aligner =
     "    { name = 'W2', station = 'A', slot = 2 } },\n"
     "}\n";
 
-/* W1 is aligned to 90 degrees; all of that is saved under the name `aligned`. */
+/* W1 is aligned to 90 degrees; this state is saved under the name `aligned`. */
 static int open_aligned(void **state) {
     (void)state;
     char path[WH_TEST_PATH];
@@ -441,7 +443,8 @@ static void execute_all(const char *lines) {
     }
 }
 
-/* A GET corrects by so much, as its text tells. W1 lay at 1, -2 turned by 30 degrees: 60 more are asked for. */
+/* A GET corrects by this amount, as its text tells. W1 lay at 1, -2, turned by 30 degrees: 60 more
+ * are asked for. */
 static void assert_corrected(const char *get, double dx, double dy) {
     char text[60];
     double x = 0, y = 0;
@@ -485,7 +488,7 @@ static void what_align_found_turns_with_the_chuck(void **state) {
     assert_corrected("GET P 1", 2.232, -0.134);
 }
 
-/* And where a command says for itself how it goes. */
+/* A command that states its own speed. */
 static void what_align_found_is_forgotten_with_the_wafer(void **state) {
     (void)state;
     static const char *const gone[] = {"GET P 1|PUT P 1", "GET P 1 correct=false|PUT P 1",
@@ -526,7 +529,7 @@ static void a_swap_takes_where_align_found_the_wafer(void **state) {
 /* Nothing moves. */
 static void an_align_that_cannot_be(void **state) {
     (void)state;
-    const int64_t slice = session.mcs.track.slice;
+    const int64_t slice = wh_session_slice(&session);
     static const char *const bad[] = {
         "PUT P 1 correct=false", "SWAP P 1 correct=false", "READY P 1 correct=false",
         "ALIGN P 361",           "ALIGN P mode=pins",      "ALIGN P mark=flat",
@@ -539,7 +542,7 @@ static void an_align_that_cannot_be(void **state) {
     assert_answer("EDGE_SCAN A", "ERROR 48 BAD_ARGUMENT: ");
     assert_answer("ALIGN A", "ERROR 49 NOT_A_PREALIGNER: ");
     assert_answer("ALIGN Q", "ERROR 40 NO_SUCH_STATION: ");
-    assert_int_equal(session.mcs.track.slice, slice);
+    assert_int_equal(wh_session_slice(&session), slice);
     assert_answer("GET P 1 stop=extended", "OK");
     assert_answer("ALIGN P", "ERROR 65 IN_PHASE: ");
     assert_answer("EDGE_SCAN P", "ERROR 65 IN_PHASE: ");

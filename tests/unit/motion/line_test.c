@@ -1,5 +1,5 @@
-/* Oracle: the axes' derivatives by time, from power series of the straight path in long double: no formula of
- * the code under test is used for R or theta. */
+/* Oracle: the axes' derivatives by time, from power series of the straight path in long double. No
+ * formula of the code under test is used for R or theta. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -101,7 +101,7 @@ static wh_status_t plan(wh_line_t *line, const wh_robot_t *robot, const task_t *
     return wh_line_plan(line, robot, task->from, task->step[0], task->step[1], task->step[2], task->cap);
 }
 
-/* Axes' derivatives at t, of the straight path that the task asks for. */
+/* The axes' derivatives at t, for the straight path of the task. */
 static void oracle(const wh_line_t *line, const task_t *task, wh_real_t t, jet_t q[WH_ROBOT_AXES]) {
     wh_motion_t m;
     wh_profile_at(&line->path, t, &m);
@@ -130,8 +130,8 @@ static void oracle(const wh_line_t *line, const task_t *task, wh_real_t t, jet_t
     q[3] = plus(zero, q[0], -1);
 }
 
-/* The share of its limits that the axis uses: the factor in time by which it could be slowed to just hold
- * them. */
+/* The share of its limits that the axis uses: the factor in time by which it could be slowed to
+ * just keep them. */
 static double worst_use(const jet_t *q, const wh_limits_t *limits) {
     const double speed = fabs((double)q->d[1]) / (double)limits->speed;
     const double acceleration = sqrt(fabs((double)q->d[2]) / (double)limits->acceleration);
@@ -151,8 +151,8 @@ static wh_real_t instant_of(const wh_line_t *line, double s) {
     return (wh_real_t)early;
 }
 
-/* Half the instants are anywhere, half about the point closest to base's axis, where theta and R bend most.
- */
+/* Half the instants are anywhere, half are near the point closest to base's axis, where theta and R
+ * bend most. */
 static wh_real_t telling_instant(const wh_line_t *line, int k) {
     if (k % 2 == 0) {
         return (wh_real_t)wh_test_uniform(0, (double)wh_line_duration(line));
@@ -163,7 +163,7 @@ static wh_real_t telling_instant(const wh_line_t *line, int k) {
     return instant_of(line, closest + beside * wh_test_uniform(-1.5, 1.5));
 }
 
-/* The greatest use of a limit on the line, at any of many instants and of any axis. */
+/* The greatest use of a limit on the line, at any of many instants and for any axis. */
 static double greatest_use(const wh_line_t *line, const wh_robot_t *robot, const task_t *task) {
     double use = 0;
     for (int k = 0; k < 4 * INSTANTS; ++k) {
@@ -200,8 +200,8 @@ static void no_axis_exceeds_its_limits(void **state) {
     assert_true(loosest > 0.5);
 }
 
-/* Arms that bear much of one kind and little of another, passing close by base's axis: each bound binds
- * somewhere. */
+/* Arms with a high limit of one kind and a low one of another, passing close by base's axis: each
+ * bound decides somewhere. */
 static void odd_robots_keep_their_limits(void **state) {
     (void)state;
     double sum = 0;
@@ -284,7 +284,7 @@ static void ends_are_exact(void **state) {
     }
 }
 
-/* Refused exactly when a point of the line is out of travel. */
+/* It is refused exactly if a point of the line is out of travel. */
 static void travel_is_checked_everywhere(void **state) {
     (void)state;
     const wh_robot_t robot = standard();
@@ -446,7 +446,7 @@ static void bad_arguments_change_nothing(void **state) {
     assert_memory_equal(&line, &before, sizeof line);
 }
 
-/* Limits and caps by which the line would take longer than a number can say. */
+/* Limits and caps with which the line would take longer than a number can say. */
 static void limits_too_extreme_are_refused(void **state) {
     (void)state;
     const wh_real_t least = sizeof(wh_real_t) == 4 ? WH_REAL(1e-45) : WH_REAL(5e-324);
@@ -463,9 +463,9 @@ static void limits_too_extreme_are_refused(void **state) {
 }
 
 /* ------------------------------------------------------------ by how much a line is slowed */
-/* Oracle: by how much a line is slowed, from the axes' derivatives along it at very many of its points. The closed-form
- * maxima of motion/line.c are neither above nor below what occurs. */
-#define SLOWED_LINES 3000
+/* Oracle: the slowing of a line, from the axes' derivatives at very many of its points. The
+ * closed-form maxima of motion/line.c are neither above nor below the values that occur. */
+#define SLOWED_LINES (3000 / WH_TEST_SHARE)
 #define POINTS 400
 
 #if defined(WH_FLOAT)
@@ -497,7 +497,7 @@ static void look_at(const passage_t *p, double c, most_t *R_most, most_t *theta_
     keep(theta_most, d / (R * R), 2 * d * c / pow(R, 4), 2 * d * (3 * c * c - d * d) / pow(R, 6));
 }
 
-/* Evenly over the line, and again within a few d of the closest point, where everything happens. */
+/* Evenly over the line, and again within a few d of the closest point, where the values change. */
 static void look_along(const passage_t *p, most_t *R_most, most_t *theta_most) {
     const most_t none = {0, 0, 0};
     *R_most = *theta_most = none;
@@ -537,7 +537,7 @@ static wh_robot_t random_robot(void) {
     return robot;
 }
 
-/* What the header says the factor is, for the path as it was before it was slowed. */
+/* The factor by the header's definition, for the path before it was slowed. */
 static double expected(const wh_line_t *line, const wh_robot_t *robot, const passage_t *p, double share) {
     const double k = (double)line->slowed;
     const double v = share * (double)wh_profile_peak_speed(&line->path) * k;

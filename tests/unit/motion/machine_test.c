@@ -1,4 +1,4 @@
-/* The machine: which descriptions are refused, whose limits an axis has, and where grippers ride. */
+/* The machine: which descriptions are refused, which limits an axis has, and where grippers are mounted. */
 #include "support/pose.h"
 
 #include "math/trig.h"
@@ -60,7 +60,7 @@ static void the_greatest_counts_pass(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_OK);
 }
 
-/* The chuck on a stage that goes 5 mm to either side, and pins beside it, 3 mm below its plane at rest. */
+/* The chuck on a stage that moves 5 mm to either side, and pins beside it, 3 mm below its plane at rest. */
 static wh_machine_t machine_with_stage(void) {
     wh_machine_t machine = machine_with_chuck();
     static const wh_limits_t limits = {50, 500, 5000};
@@ -132,7 +132,7 @@ static void a_stage_or_pins_that_cannot_be_are_refused(void **state) {
     machine.axis_count = 7; /* pins have none left */
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
     machine = machine_with_stage();
-    machine.mounts[1].axis = 6; /* nor has a stage its third */
+    machine.mounts[1].axis = 6; /* nor does a stage have its third one */
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
     machine = machine_with_stage();
     machine.mounts[2].kind = (wh_mount_kind_t)4;
@@ -170,7 +170,7 @@ static void every_mount_is_looked_at(void **state) {
     }
 }
 
-/* Two chucks and the robot, in any order; what is beyond the counts is neither read nor written. */
+/* Two chucks and the robot, in any order; entries beyond the counts are neither read nor written. */
 static void each_gripper_has_its_pose(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
@@ -219,7 +219,7 @@ static void a_chuck_that_stands_nowhere_is_refused(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_FINITE);
 }
 
-/* The robot's grippers are where the robot is: what stands in their mount does not matter. */
+/* The robot's grippers move with the robot: the values in their mount do not matter. */
 static void the_robots_mount_is_not_looked_at(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
@@ -288,7 +288,7 @@ static void the_robots_gripper_is_the_robots_effector(void **state) {
     assert_memory_equal(&poses[0], &effector, sizeof effector);
 }
 
-/* Turning by `angle` carries a point on the chuck round its own axis, tilted as the station is. */
+/* A turn by `angle` carries a point on the chuck round its own axis, tilted as the station is. */
 static void a_chuck_turns_about_its_own_z(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
@@ -310,7 +310,7 @@ static void a_chuck_turns_about_its_own_z(void **state) {
     }
 }
 
-/* The chuck's whole travel is within what the sine reduces: a valid pose at both ends. */
+/* The chuck's whole travel is within the sine's range: both ends give a valid pose. */
 static void a_chuck_has_a_pose_over_its_whole_travel(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
@@ -347,7 +347,7 @@ static void a_shifted_gripper_sits_beside_the_effector(void **state) {
     assert_near(poses[1].R.m[1][0], -1, 1e-6);
 }
 
-/* A flag that is not set leaves every bit alone, whatever stands in the pose. */
+/* A flag that is not set leaves every bit alone, whatever the pose contains. */
 static void a_gripper_that_is_not_shifted_is_the_effector(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_two_blades();
@@ -375,7 +375,7 @@ static void a_tilted_or_broken_shift_is_refused(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_A_ROTATION);
 }
 
-/* As slight as that, and seen in any one entry. */
+/* A difference this small is seen in any one entry. */
 static void the_slightest_tilt_shows(void **state) {
     static const size_t places[][2] = {{0, 2}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
     (void)state;
@@ -386,7 +386,8 @@ static void the_slightest_tilt_shows(void **state) {
     }
 }
 
-/* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's own inverse. */
+/* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's
+ * own inverse. */
 static void the_inverse_brings_each_gripper_there(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_two_blades();
@@ -429,8 +430,8 @@ static void the_inverse_refuses_what_the_robots_does(void **state) {
 }
 
 /* ---------------------------------------------- followed from slice to slice */
-/* Grippers followed from slice to slice: the poses of wh_machine_grippers, to the last bit, whatever moves and whatever
- * stands still; and what stands still is left alone. */
+/* Grippers followed from slice to slice: the poses of wh_machine_grippers, to the last bit,
+ * whatever moves and whatever stands still. Grippers that stand still are left alone. */
 enum { AXES = 6, GRIPPERS = 4 };
 
 static wh_machine_t machine;
@@ -468,12 +469,12 @@ static void follow(const wh_real_t axes[]) {
     }
 }
 
-/* Any of the axes move, to places where they were before, too; now and then theta and yaw alone, against each other. */
+/* Any of the axes move, also to earlier places; now and then only theta and yaw, against each other. */
 static void the_poses_are_the_machines(void **state) {
     static const wh_real_t angles[] = {0, WH_REAL(-0.0), 1, WH_REAL(-2.5), WH_PI, -WH_PI};
     wh_real_t axes[WH_AXES] = {0, 300, 900, 0, 0, 0};
     (void)state;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000 / WH_TEST_SHARE; ++i) {
         const uint64_t moving = wh_test_below(64);
         for (size_t axis = 0; axis < AXES; ++axis) {
             const bool is_length = axis == WH_AXIS_R || axis == WH_AXIS_Z;
@@ -490,7 +491,7 @@ static void the_poses_are_the_machines(void **state) {
     }
 }
 
-/* Zeros of different sign are different angles, and what is no number is followed as well. */
+/* Zeros of different sign are different angles, and NaN is followed as well. */
 static void the_bits_decide(void **state) {
     static const wh_real_t angles[] = {0, WH_REAL(-0.0), 0, WH_REAL(NAN), WH_REAL(NAN), 1, WH_REAL(INFINITY)};
     (void)state;
@@ -526,7 +527,7 @@ static void what_stands_still_is_not_written(void **state) {
     }
 }
 
-/* What stands beyond the axes in use is none of them. */
+/* Entries beyond the axes in use are no axes. */
 static void the_axes_beyond_the_last_are_left_alone(void **state) {
     (void)state;
     wh_real_t axes[AXES + 1] = {0, 300, 900, 0, 0, 0, 7};
@@ -538,7 +539,7 @@ static void the_axes_beyond_the_last_are_left_alone(void **state) {
     assert_near(cache.axes[AXES - 1], 0, 0);
 }
 
-/* A command that follows a track says what the track says, and keeps the faults that it is to bring. */
+/* A command that follows a track contains the track's values, and keeps the faults that it is to bring. */
 static void a_command_follows_a_track(void **state) {
     wh_track_t track;
     wh_command_t command;
@@ -690,8 +691,8 @@ static void a_carrier_goes_where_it_is_brought(void **state) {
     }
 }
 
-/* Turned over about an axis 5 mm above its contact plane the gripper hangs 10 mm higher, face down; it is brought
- * to a point with the flip as it is, and its lines are straight there, too. */
+/* Turned over about an axis 5 mm above its contact plane the gripper hangs 10 mm higher, face down.
+ * It is brought to a point with the flip unchanged, and its lines are straight there, too. */
 static void a_flip_is_held(void **state) {
     (void)state;
     static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZY, WH_CHAIN_TRZ, WH_CHAIN_SCARA};
@@ -736,7 +737,8 @@ static void a_flip_is_held(void **state) {
     }
 }
 
-/* The second gripper goes 60 mm ahead, in a line from where it is at these axes; the axis `still` does not move. */
+/* The second gripper moves 60 mm ahead, in a line from its place at these axes; the axis `still`
+ * does not move. */
 static void go_ahead(wh_track_t *track, const wh_machine_t *carried, const wh_real_t q[],
                      const wh_pose_t *from, size_t still) {
     wh_pose_t again[2];
@@ -761,8 +763,8 @@ static void go_ahead(wh_track_t *track, const wh_machine_t *carried, const wh_re
     assert_int_equal(wh_track_begin(track, &line), WH_STATUS_BAD_SEGMENT);
 }
 
-/* Two arms of a TRZ, opposite to each other, and two wrists of a SCARA: each gripper is brought by its own arm and goes
- * its own lines, while the other arm's own axis stands still. */
+/* Two arms of a TRZ, opposite to each other, and two wrists of a SCARA. Each gripper is brought by
+ * its own arm and follows its own lines, while the other arm's own axis stands still. */
 static void a_second_arm_goes_its_own_way(void **state) {
     (void)state;
     static const wh_chain_kind_t kinds[] = {WH_CHAIN_TRZ, WH_CHAIN_SCARA};
@@ -883,7 +885,7 @@ static void a_track_plays_a_carriers_lines(void **state) {
         segment.kind = WH_SEGMENT_WAY;
         segment.reach = 500;
         segment.target[WH_AXIS_THETA] += WH_REAL(0.5);
-        segment.target[4] += 10; /* the rail goes with it */
+        segment.target[4] += 10; /* the rail moves with it */
         assert_int_equal(wh_track_begin(&track, &segment),
                          kinds[k] == WH_CHAIN_SCARA ? WH_STATUS_BAD_SEGMENT : WH_OK);
         segment.kind = WH_SEGMENT_LINE;
@@ -948,7 +950,7 @@ static void several_robots_have_axes_one_after_another(void **state) {
     assert_int_equal(wh_machine_validate(&two), WH_STATUS_OUT_OF_RANGE);
 }
 
-/* What moves one robot leaves the other's grippers and axes as they were, to the last bit. */
+/* A motion of one robot leaves the other's grippers and axes unchanged, to the last bit. */
 static void each_robot_goes_by_itself(void **state) {
     (void)state;
     wh_carrier_t carriers[2];
@@ -964,7 +966,7 @@ static void each_robot_goes_by_itself(void **state) {
     memcpy(q, home, sizeof q);
     q[4] += WH_REAL(0.25);
     q[5] += 30;
-    memset(&grippers[0], 0x55, sizeof grippers[0]); /* must not be written */
+    memset(&grippers[0], 0x55, sizeof grippers[0]); /* it must not be written */
     const wh_gripper_input_t untouched = grippers[0];
     wh_machine_update(&two, q, &last, grippers);
     wh_machine_grippers(&two, q, poses);
@@ -1014,7 +1016,7 @@ static void a_track_moves_the_robot_that_is_named(void **state) {
     assert_near(poses[1].r.z, begin[1].r.z + 10, 1e7 * WH_TEST_ROUNDING);
     segment = wh_track_blank(&track);
     segment.kind = WH_SEGMENT_LINE;
-    segment.travel = wh_vec3(50, 20, 0); /* without a name the first one */
+    segment.travel = wh_vec3(50, 20, 0); /* without a name it is the first one */
     play_alone(&track, &segment, 4);
     wh_machine_grippers(&two, track.axes, poses);
     assert_near(poses[0].r.y, begin[0].r.y + 20, 1e7 * WH_TEST_ROUNDING);
@@ -1065,8 +1067,8 @@ static void doors_have_the_last_axes(void **state) {
     assert_int_not_equal(wh_machine_validate(&cell), WH_OK);
 }
 
-/* A flipper turns about x through `height`: half a turn brings its plane to twice the height, upside down, and
- * back again to the very bits. */
+/* A flipper turns about x through `height`: half a turn brings its plane to twice the height,
+ * upside down, and back again to the same bits. */
 static void a_flipper_turns_about_the_middle_of_a_wafer(void **state) {
     (void)state;
     wh_machine_t cell = machine_with_chuck();

@@ -1,5 +1,5 @@
-/* Moves. Oracle: each axis planned alone; the slowest decides. Ways: limits and the circle are kept at each sample, and none of 200
- * inner positions is faster. */
+/* Moves. Oracle: each axis is planned alone, and the slowest decides. Ways: limits and the circle
+ * are kept at each sample, and none of 200 inner positions is faster. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -70,7 +70,7 @@ static void the_slowest_axis_decides(void **state) {
     }
 }
 
-/* To the last bit, axes that do not move or hardly so among them. */
+/* To the last bit, also for axes that do not move or hardly move. */
 static void each_axis_is_planned_alone_and_stretched(void **state) {
     (void)state;
     for (int i = 0; i < MOVES; ++i) {
@@ -178,8 +178,8 @@ static void a_move_goes_on_from_the_last_ones_end(void **state) {
     }
 }
 
-/* An axis that takes ages and one that takes no time to speak of cannot go together, in whatever order they stand and
- * whatever stands between them. */
+/* An axis that takes extremely long and one that takes almost no time cannot move together, in
+ * whatever order they stand and whatever stands between them. */
 static void durations_too_far_apart_are_refused(void **state) {
     (void)state;
     enum { AGES, INSTANT, USUAL, STILL, KINDS };
@@ -203,7 +203,7 @@ static void durations_too_far_apart_are_refused(void **state) {
     }
 }
 
-/* Just as long as it may is taken. */
+/* A move that takes exactly the longest time is accepted. */
 static void a_move_that_takes_longer_than_it_may_changes_nothing(void **state) {
     (void)state;
     const wh_real_t from[2] = {0, 0};
@@ -247,7 +247,7 @@ static void bad_arguments_change_nothing(void **state) {
 
 /* ----------------------------------------------------------------------------------------------------------------- ways */
 
-#define WAYS 400
+#define WAYS (400 / WH_TEST_SHARE)
 #define SAMPLES 600
 
 #if defined(WH_FLOAT)
@@ -310,7 +310,7 @@ static double difference(wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES], size_t axis, i
 static void assert_limits_kept(const transit_t *t, wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES], double apart) {
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         const wh_limits_t *limits = &t->robot.limits[axis];
-        const double rounding = sizeof(wh_real_t) == 4 ? 1e-6 : 2.3e-16; /* of a float's time, too */
+        const double rounding = sizeof(wh_real_t) == 4 ? 1e-6 : 2.3e-16; /* also for a float's time */
         const double size = 1 + fabs((double)t->from[axis]) + fabs((double)t->to[axis]);
         assert_true(difference(q, axis, 1, apart) <=
                     (double)limits->speed * (1 + WAY_TOLERANCE) + 2 * rounding * size / apart);
@@ -321,7 +321,7 @@ static void assert_limits_kept(const transit_t *t, wh_real_t q[SAMPLES + 7][WH_R
     }
 }
 
-/* Between two ends outside of the circle nothing turns outside of it. */
+/* Between two ends outside the circle no turn happens outside it. */
 static void assert_circle_kept(const transit_t *t, wh_real_t q[SAMPLES + 7][WH_ROBOT_AXES]) {
     const bool leads_in = t->from[WH_AXIS_R] > t->reach && t->to[WH_AXIS_R] > t->reach;
     for (int k = 1; leads_in && k < SAMPLES + 7; ++k) {
@@ -349,7 +349,8 @@ static void ways_keep_limits_and_circle(void **state) {
     assert_true(went_in > WAYS / 2);
 }
 
-/* When a leg from `begin` has come to `place`, by small steps and a straight line between two of them. */
+/* The time at which a leg from `begin` has come to `place`, by small steps and a straight line
+ * between two of them. */
 static double passes(const wh_profile_t *leg, double begin, double place) {
     const double duration = (double)wh_profile_duration(leg);
     double before = begin;
@@ -363,7 +364,7 @@ static double passes(const wh_profile_t *leg, double begin, double place) {
     return duration;
 }
 
-/* The duration by way of an inner position, from the header's own words. */
+/* The duration of the way over an inner position, from the header's definition. */
 static double by_way_of(const transit_t *t, double inner, double turn) {
     wh_profile_t in;
     wh_profile_t out;
@@ -409,7 +410,7 @@ static void no_inner_position_is_faster(void **state) {
     assert_true(worst < 1e-3);
 }
 
-/* From 700 mm to 700 mm with a circle of 400 mm: t_in + T_theta + t_out is what no way can beat. */
+/* From 700 mm to 700 mm with a circle of 400 mm: no way can be faster than t_in + T_theta + t_out. */
 static void a_way_is_near_its_bound(void **state) {
     (void)state;
     wh_robot_t robot;

@@ -1,5 +1,6 @@
-/* Ways of two arms, on a rail, with a flip: random ones keep all limits and the circle at each millisecond, end exactly, and are
- * near what no way can beat. By via points a rail is passed, too, and so are points of an elbow and of two arms. */
+/* Ways of two arms, on a rail, with a flip: random ones keep all limits and the circle at each
+ * millisecond, end exactly, and are close to the lower bound of all ways. With via points a rail is
+ * passed, too, and so are points of an elbow and of two arms. */
 #include <complex.h>
 #include <math.h>
 #include <setjmp.h>
@@ -105,7 +106,8 @@ static bool has_moved(const wh_real_t q[], const wh_real_t before[], size_t axis
     return fabs((double)q[axis] - (double)before[axis]) > 16 * ROUNDING * (1 + fabs((double)q[axis]));
 }
 
-/* Within a millisecond a turn may begin, or end: one of its ends is within the circle. An arm that is in at both ends never leaves. */
+/* Within a millisecond a turn may begin, or end: one of its ends is within the circle. An arm that
+ * is within it at both ends never leaves it. */
 static void assert_circle_kept(int all) {
     static const size_t arms[] = {WH_AXIS_R, SECOND};
     for (int k = 1; k < all; ++k) {
@@ -136,7 +138,7 @@ static void ways_of_all_axes_keep_limits_and_circle(void **state) {
     assert_true(both > WAYS / 4);
 }
 
-/* When an arm that never brakes has gone this far. */
+/* The time at which an arm that never brakes has moved this far. */
 static double passes(double distance) {
     wh_profile_t far;
     assert_int_equal(wh_profile_plan(&far, 1000000, &robot.limits[WH_AXIS_R]), WH_OK);
@@ -149,7 +151,8 @@ static double passes(double distance) {
     return early;
 }
 
-/* The one comes in from 700 mm, the other goes out to 700 mm, with a circle of 400 mm, or the same arm does both. */
+/* One arm comes in from 700 mm and the other moves out to 700 mm, with a circle of 400 mm; or the
+ * same arm does both. */
 static void two_arms_are_near_their_bound(void **state) {
     (void)state;
     double worst = 0;
@@ -218,7 +221,7 @@ static void bad_ways_change_nothing(void **state) {
     assert_memory_equal(&way, &good, sizeof way);
 }
 
-/* R's end goes along with the rail: a point that only the rail passes is passed within the blend. */
+/* R's end moves along with the rail: a point for the rail alone is passed within the blend. */
 static void a_rail_passes_a_point(void **state) {
     (void)state;
     static wh_via_t via;
@@ -229,7 +232,7 @@ static void a_rail_passes_a_point(void **state) {
     assert_int_equal(wh_via_plan_polar(&via, &robot, begin, &point, 1, end), WH_OK);
     assert_true(via.begin[1] < via.end[0]);
     double nearest = 1e9;
-    double turned = 1e9; /* how far the rail has to go when theta begins to turn */
+    double turned = 1e9; /* the way that the rail still has when theta begins to turn */
     for (double t = 0; t <= (double)wh_via_duration(&via); t += 1e-4) {
         wh_real_t q[WH_CARRIER_AXES];
         wh_via_at(&via, WH_REAL(t), q);
@@ -246,7 +249,7 @@ static void a_rail_passes_a_point(void **state) {
     assert_int_equal(wh_via_plan_polar(&via, &robot, begin, &point, 1, end), WH_STATUS_OUT_OF_RANGE);
 }
 
-/* How far apart an arm's end is at two places, of a SCARA, or of the polar arm with this R. */
+/* The distance between an arm's end at two places, for a SCARA, or for the polar arm with this R. */
 static double between_ends(const wh_real_t a[], const wh_real_t b[], size_t arm) {
     double complex ends[2];
     const wh_real_t *const q[2] = {a, b};
@@ -260,7 +263,7 @@ static double between_ends(const wh_real_t a[], const wh_real_t b[], size_t arm)
     return hypot(cabs(ends[0] - ends[1]), (double)a[WH_AXIS_Z] - (double)b[WH_AXIS_Z]);
 }
 
-/* While one leg runs into the other no arm is beyond the point's reach. */
+/* While one leg blends into the other no arm is beyond the point's reach. */
 static void assert_reach_kept(const wh_via_t *via, const wh_via_point_t *point) {
     const wh_real_t overlap = via->end[0] - via->begin[1];
     for (int k = 0; point->reach[0] > 0 && overlap > 0 && k <= 50; ++k) {
@@ -271,8 +274,8 @@ static void assert_reach_kept(const wh_via_t *via, const wh_via_point_t *point) 
     }
 }
 
-/* Of random ways by one point that can be cut short: where the second leg begins, and where the first one ends, each arm's
- * end is within the blend. Returns how many such ways there were. */
+/* Random ways by one point that can be shortened: at the begin of the second leg, and at the end of
+ * the first one, each arm's end is within the blend. Returns how many such ways there were. */
 static int pass_points(int ways) {
     static wh_via_t via;
     int blended = 0;

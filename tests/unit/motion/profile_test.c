@@ -1,5 +1,5 @@
-/* Oracle: the optimal duration and its phases, worked out again in long double from the limits alone, and the
- * position by summing the phases' polynomials one after another. */
+/* Oracle: the optimal duration and its phases, computed again in long double from the limits alone,
+ * and the position as the sum of the phases' polynomials. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,11 +26,11 @@
 #endif
 
 typedef struct {
-    long double jerk, hold, cruise; /* lengths of phase 1, 2 and 4 */
+    long double jerk, hold, cruise; /* the lengths of phase 1, 2 and 4 */
     long double duration;
 } oracle_t;
 
-/* Three tries: is the speed limit reached, else the acceleration limit, else neither. */
+/* Three tries: the speed limit is reached, else the acceleration limit, else neither. */
 static oracle_t optimum(long double d, const wh_limits_t *limits) {
     const long double v = (long double)limits->speed;
     const long double a = (long double)limits->acceleration;
@@ -96,11 +96,11 @@ static void duration_is_the_analytic_optimum(void **state) {
         ++cases[(o.cruise > 0) * 2 + (o.hold > 0)];
     }
     for (int k = 0; k < 4; ++k) {
-        assert_true(cases[k] > SAMPLES / 100); /* every shape was met */
+        assert_true(cases[k] > SAMPLES / 100); /* every shape occurred */
     }
 }
 
-/* No peak is above its limit; and what is not at its limit is so because another limit came first. */
+/* No peak is above its limit; a peak below its limit is so because another limit came first. */
 static void each_phase_saturates_a_limit(void **state) {
     (void)state;
     for (int i = 0; i < SAMPLES; ++i) {
@@ -145,7 +145,7 @@ static void states_are_the_sum_of_the_phases(void **state) {
         const double d = fabs((double)distance);
         const double v = (double)wh_profile_peak_speed(&profile);
         const double a = (double)wh_profile_peak_acceleration(&profile);
-        /* An instant is rounded to the profile's length: what that makes of each value comes on top. */
+        /* An instant is rounded to the profile's length: the effect on each value is added. */
         const double t_round = (double)o.duration * ROUNDING;
         long double x[3] = {0, 0, 0};
         long double t = 0;
@@ -239,7 +239,7 @@ static void a_small_profile_by_hand(void **state) {
     assert_near(at(&p, 7).position, 11, 0);
     assert_near(at(&p, 9).acceleration, -1, 0);
     assert_near(at(&p, 9.5).jerk, 1, 0);
-    /* Jerk alone: 2 mm at 1 mm/s^3 takes four phases of 1 s. */
+    /* Only jerk: 2 mm at 1 mm/s^3 takes four phases of 1 s. */
     const wh_limits_t wide = {100, 100, 1};
     assert_int_equal(wh_profile_plan(&p, -2, &wide), WH_OK);
     assert_near(wh_profile_duration(&p), 4, 0);
@@ -270,7 +270,7 @@ static void stretching_slows_everything_alike(void **state) {
     }
 }
 
-/* Limits and distances at which a time or the jerk is more than a number can be. */
+/* Limits and distances for which a time or the jerk exceeds the range of numbers. */
 static void what_cannot_be_represented_is_refused(void **state) {
     (void)state;
     static const struct {
@@ -290,7 +290,7 @@ static void what_cannot_be_represented_is_refused(void **state) {
     assert_memory_equal(&p, &before, sizeof p);
 }
 
-/* Times whose squares, products and quotients are out of range are times for all that. */
+/* Times are valid even if their squares, products and quotients are out of range. */
 static void what_can_be_represented_is_planned(void **state) {
     (void)state;
     const wh_real_t large = sizeof(wh_real_t) == 4 ? WH_REAL(1e18) : WH_REAL(1e153);
@@ -299,8 +299,8 @@ static void what_can_be_represented_is_planned(void **state) {
         wh_real_t distance;
         wh_limits_t limits;
     } rows[] = {
-        {8 * large, {1, 1, 1 / large / large}}, /* jerk and cruise, for ages */
-        {1000, {10, 1, steep}},                 /* as good as no jerk phase */
+        {8 * large, {1, 1, 1 / large / large}}, /* jerk and cruise, extremely long */
+        {1000, {10, 1, steep}},                 /* almost no jerk phase */
         {1000 * steep, {10 * steep, steep, steep * WH_REAL(1e3)}},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
@@ -311,7 +311,7 @@ static void what_can_be_represented_is_planned(void **state) {
     }
 }
 
-/* At the largest jerk there is, rounding alone decides whether the profile's own is still a number. */
+/* At the largest possible jerk, only rounding decides whether the profile's own jerk is still a number. */
 static void the_jerk_is_always_a_number(void **state) {
     (void)state;
     const wh_real_t most = sizeof(wh_real_t) == 4 ? (wh_real_t)FLT_MAX : (wh_real_t)DBL_MAX;

@@ -1,11 +1,12 @@
-/* Tracks: segments end exactly, take the right number of slices, wait, time out, and refuse without a trace. */
+/* Tracks: segments end exactly, take the right number of slices, wait, time out, and refuse without
+ * a change. */
 #include "support/support.h"
 
 #include "grasp/grasp.h"
 #include "math/trig.h"
 #include "motion/track.h"
 
-/* The least number there is. */
+/* The smallest positive number. */
 #if defined(WH_FLOAT)
 #define TINIEST 1e-45
 #else
@@ -34,7 +35,7 @@ static wh_segment_t blank(const wh_track_t *track, wh_segment_kind_t kind) {
     return segment;
 }
 
-/* Plays to the end; the number of slices that it took. */
+/* Plays to the end; returns the number of slices. */
 static int64_t play(wh_track_t *track, const wh_segment_t *segment) {
     const int64_t before = track->slice;
     assert_int_equal(wh_track_begin(track, segment), WH_OK);
@@ -74,6 +75,24 @@ static void init_refuses_and_leaves_the_track(void **state) {
     machine.axis_count = 3;
     assert_int_equal(wh_track_init(&track, &machine, 1000), WH_STATUS_OUT_OF_RANGE);
     assert_memory_equal(&track, &before, sizeof track);
+}
+
+/* Zeroed, or in memory that held anything else: nothing of it is read but its mark. */
+static void a_track_that_was_never_initialised_is_refused(void **state) {
+    (void)state;
+    const int fills[] = {0, 0xA5};
+    const wh_track_t good = begin_track(1000);
+    const wh_segment_t segment = wh_track_blank(&good);
+    for (size_t i = 0; i < 2; ++i) {
+        wh_track_t track;
+        wh_track_t before;
+        memset(&track, fills[i], sizeof track);
+        before = track;
+        assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_NOT_INITIALISED);
+        assert_int_equal(wh_track_next(&track, 1), WH_TRACK_DONE);
+        wh_track_skip(&track);
+        assert_memory_equal(&track, &before, sizeof track);
+    }
 }
 
 static void a_blank_segment_changes_nothing(void **state) {
@@ -123,7 +142,8 @@ static void a_dwell_is_rounded_up(void **state) {
     assert_int_equal(track.slice, 16);
 }
 
-/* Whatever the slice, the last one has the target's very bits, and is the first at or after the duration. */
+/* Whatever the slice, the last one has exactly the target's bits, and is the first at or after the
+ * duration. */
 static void moves_end_on_the_targets_bits(void **state) {
     (void)state;
     for (int i = 0; i < 400; ++i) {
@@ -143,7 +163,7 @@ static void moves_end_on_the_targets_bits(void **state) {
     }
 }
 
-/* Slice by slice where the move is at that time, and at its end in the last. */
+/* Slice by slice at the move's position for that time, and in the last slice at its end. */
 static void each_slice_of_a_move_is_on_its_plan(void **state) {
     (void)state;
     wh_track_t track = begin_track(7000);
@@ -328,7 +348,7 @@ static void no_kind(wh_segment_t *s) {
     s->kind = (wh_segment_kind_t)99;
 }
 
-/* What the machine's limits make of a segment: longer than a segment may be, or nothing that can be planned. */
+/* Effects of the machine's limits on a segment: it is longer than a segment may be, or cannot be planned. */
 static void slow_axes_are_refused(void **state) {
     (void)state;
     static const struct {
@@ -347,7 +367,7 @@ static void slow_axes_are_refused(void **state) {
     }
 }
 
-/* How long the last axis takes to go so far, at 2^-17 rad/s. */
+/* The time that the last axis takes for this way, at 2^-17 rad/s. */
 static double slow_seconds(const wh_track_t *track, wh_real_t target) {
     wh_limits_t limits[WH_AXES];
     wh_real_t to[WH_AXES];
@@ -389,7 +409,7 @@ static void a_segment_of_just_the_longest_duration(void **state) {
     assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
 }
 
-/* All axes that there can be. */
+/* The largest number of axes. */
 static void a_move_of_every_axis(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
@@ -403,7 +423,7 @@ static void a_move_of_every_axis(void **state) {
     assert_memory_equal(track.axes, segment.target, sizeof track.axes);
 }
 
-/* In the middle of another segment: that one goes on as if nobody had asked. */
+/* In the middle of another segment: that one continues as if there had been no request. */
 static void a_refused_segment_leaves_the_track(void **state) {
     (void)state;
     static const refusal_t refusals[] = {
@@ -445,6 +465,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(starts_at_home_with_closed_valves),
         cmocka_unit_test(init_refuses_and_leaves_the_track),
+        cmocka_unit_test(a_track_that_was_never_initialised_is_refused),
         cmocka_unit_test(a_blank_segment_changes_nothing),
         cmocka_unit_test(a_whole_number_of_slices_is_just_that_many),
         cmocka_unit_test(a_dwell_is_rounded_up),

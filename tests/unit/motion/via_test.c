@@ -1,5 +1,5 @@
-/* Ways by via points: random ones keep all limits when sampled each millisecond, pass each point within its blend,
- * and are faster than stopping there. */
+/* Ways by via points: random ones keep all limits when sampled each millisecond, pass each point
+ * within its blend, and are faster than stopping there. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 #include "motion/track.h"
 #include "support/support.h"
 
-#define WAYS (120 / WH_TEST_SHARE)
+#define WAYS (120 / WH_TEST_SHARE + 2)
 #define LONGEST 20000
 
 #if defined(WH_FLOAT)
@@ -40,7 +40,7 @@ static void random_axes(wh_real_t q[WH_ROBOT_AXES]) {
     }
 }
 
-/* Some axes stand still on a leg, as where an arm comes in first. */
+/* Some axes stand still on a leg, as when an arm comes in first. */
 static void random_way(int i) {
     wh_robot_default(&robot);
     count = (size_t)i % WH_VIA_POINTS + 1;
@@ -95,7 +95,7 @@ static double distance(const wh_real_t a[], const wh_real_t b[]) {
                 pow((double)a[2] - (double)b[2], 2));
 }
 
-/* In a tenth of a millisecond at most 0.1 mm is gone by each axis. */
+/* In a tenth of a millisecond each axis moves at most 0.1 mm. */
 static void assert_passed_near(const wh_via_point_t *point) {
     double nearest = 1e9;
     for (double t = 0; t <= (double)wh_via_duration(&via) + 1e-4; t += 1e-4) {

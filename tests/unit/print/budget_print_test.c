@@ -1,4 +1,4 @@
-/* A budget's table and JSON, word for word, of figures that are made up. */
+/* A budget's table and JSON, word for word, for invented figures. */
 #include "print/budget_print.h"
 
 #include <locale.h>
@@ -36,7 +36,8 @@ static void set_error(size_t station, size_t axis, int32_t down, int32_t up) {
     error->has_effect = true;
 }
 
-/* A fails for all but its yaw, B 2 for z and, least of all, roll; C and D have no effect, and D is not asked for. */
+/* A fails for all errors but its yaw, B 2 for z and, least of all, roll; C and D have no effect,
+ * and D is not asked for. */
 static int set_up(void **state) {
     (void)state;
     memset(&study, 0, sizeof study);
@@ -167,13 +168,13 @@ static void the_whole_table(void **state) {
         "\n"
         "! collisions were not looked for: the layout has no collision = true\n"
         "\n"
-        "Of all errors roll of B 2 allows the least: 0.900 deg of roll (2.356 mm at a wafer's rim). Beyond "
+        "The tightest error is roll of B 2: 0.900 deg of roll (2.356 mm at a wafer's rim). Beyond "
         "that the run fails: 42 WAFER_MISSING in GET A 1: |dr_proj_z| 0.501 is not below 0.5\n"
         "Teach B 2 best, up to 0.900 deg of roll (2.356 mm at a wafer's rim); the next is A with 2.499 mm of "
         "z\n");
 }
 
-/* All lines but five of C's, whose six errors are alike. */
+/* All lines except five of C's, whose six errors are alike. */
 static const char *const json_lines[] = {
     "  \"format\": 1,",
     "  \"ok\": true,",

@@ -1,4 +1,5 @@
-/* The smallest gaps of a run and how they went over time, and how near axes come to their ends: word for word. */
+/* The smallest gaps of a run and their course over time, and the distances of axes from their ends:
+ * word for word. */
 #include "print/print_internal.h"
 
 #include <locale.h>
@@ -15,7 +16,8 @@ static wh_curves_t curves;
 static wh_station_reach_t reach[2];
 static char *text;
 
-/* The blade came 0.25 mm below a wafer and 3 mm above another one, and touched a ledge; the arm came near to nothing. */
+/* The blade came 0.25 mm below a wafer and 3 mm above another one, and touched a ledge; the arm
+ * came near nothing. */
 static int set_up(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(cell);
@@ -86,7 +88,7 @@ static void gaps_and_their_curves(void **state) {
               "                                                                 ^ 0.000 mm at 4.000 s\n");
 }
 
-/* 28 columns beside names and scale, without UTF-8; of a curve that begins later. */
+/* 28 columns beside names and scale, without UTF-8, for a curve that begins later. */
 static void curves_in_a_narrow_terminal(void **state) {
     (void)state;
     curves.first = 1000;

@@ -1,4 +1,4 @@
-/* Estimates as tables, JSON and Lua, word for word, of figures that are made up. */
+/* Estimates as tables, JSON and Lua, word for word, for invented figures. */
 #include "print/estimate_print.h"
 
 #include <locale.h>
@@ -60,7 +60,7 @@ static const wh_point_table_t *make_points(void) {
     return &table;
 }
 
-/* Theta with all, r without a jerk, the chucks not determined. */
+/* Theta has all values, r has no jerk, and the chucks are not determined. */
 static const wh_move_table_t *make_moves(void) {
     static wh_timed_move_t moves[] = {{90, 1, false}, {45, 0.75, false}, {10, 0.25, true}};
     static size_t lines[] = {2, 3, 4};
@@ -333,16 +333,15 @@ static void a_geometry_as_lua(void **state) {
     (void)state;
     print(GEOMETRY, LUA);
     assert_string_equal(
-        text,
-        "grippers = {\n"
-        "  { at = { 2.250, 2.500, 0 }, rpy = { 0, 0, 114.59 } },\n"
-        "},\n"
-        "-- A layout's robot stands at the origin of base, level. Of base, the touched points' frame says:\n"
-        "-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\n"
-        "-- What is known in that frame goes into base before it is a station's at and rpy.\n"
-        "-- A layout's theta is the controller's * 1.01000\n"
-        "-- A layout's r is the controller's * 1.01100 - 0.750\n"
-        "-- A layout's z is the controller's * 1.01200\n");
+        text, "grippers = {\n"
+              "  { at = { 2.250, 2.500, 0 }, rpy = { 0, 0, 114.59 } },\n"
+              "},\n"
+              "-- A layout's robot stands at the origin of base, level. From the touched points' frame:\n"
+              "-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\n"
+              "-- Poses known in that frame go into base before they are a station's at and rpy.\n"
+              "-- A layout's theta is the controller's * 1.01000\n"
+              "-- A layout's r is the controller's * 1.01100 - 0.750\n"
+              "-- A layout's z is the controller's * 1.01200\n");
 }
 
 static void expect_lua(const wh_touch_table_t *table, const char *begin) {
@@ -374,47 +373,46 @@ static void a_geometry_as_a_table(void **state) {
     (void)state;
     print(GEOMETRY, TABLE);
     assert_string_equal(
-        text,
-        "touches.csv: 2 touches\n"
-        "\n"
-        "Robot, in the touched points' frame\n"
-        "number                estimate        sd\n"
-        "x mm                  0.250000  0.010000\n"
-        "y mm                  0.500000  0.010000\n"
-        "tilt_x deg           42.971835  0.572958\n"
-        "tilt_y deg           57.295780  0.572958\n"
-        "zero_theta deg       71.619724  0.572958\n"
-        "zero_r mm            -0.750000  0.020000\n"
-        "zero_z mm             1.750000  0.010000\n"
-        "zero_yaw deg        114.591559  0.572958\n"
-        "tool_x mm             2.250000  0.010000\n"
-        "tool_y mm             2.500000  0.010000\n"
-        "scale_theta           1.010000  0.000100\n"
-        "scale_r               1.011000  0.000100\n"
-        "scale_z               1.012000  0.000100\n"
-        "scale_yaw       not determined\n"
-        "\n"
-        "Residuals\n"
-        "touches  set aside  rms mm  largest mm  in line  headings  rms deg\n"
-        "      1          1  0.0400      0.0500        2         1   0.0100\n"
-        "\n"
-        "Points touched, less where the robot has them; and where a layout has them\n"
-        "line      dx mm    dy mm      dz mm  x in base mm  y in base mm  z in base mm\n"
-        "   2  -407.4000  -1.0000  -909.5500       -11.500         5.000       -97.000\n"
-        "   4  -505.5000   2.0000  -957.1500        -8.500         8.000       -94.000\n"
-        "\n"
-        "robot, set aside: lines 4\n"
-        "\n"
-        "For a layout\n"
-        "grippers = {\n"
-        "  { at = { 2.250, 2.500, 0 }, rpy = { 0, 0, 114.59 } },\n"
-        "},\n"
-        "-- A layout's robot stands at the origin of base, level. Of base, the touched points' frame says:\n"
-        "-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\n"
-        "-- What is known in that frame goes into base before it is a station's at and rpy.\n"
-        "-- A layout's theta is the controller's * 1.01000\n"
-        "-- A layout's r is the controller's * 1.01100 - 0.750\n"
-        "-- A layout's z is the controller's * 1.01200\n");
+        text, "touches.csv: 2 touches\n"
+              "\n"
+              "Robot, in the touched points' frame\n"
+              "number                estimate        sd\n"
+              "x mm                  0.250000  0.010000\n"
+              "y mm                  0.500000  0.010000\n"
+              "tilt_x deg           42.971835  0.572958\n"
+              "tilt_y deg           57.295780  0.572958\n"
+              "zero_theta deg       71.619724  0.572958\n"
+              "zero_r mm            -0.750000  0.020000\n"
+              "zero_z mm             1.750000  0.010000\n"
+              "zero_yaw deg        114.591559  0.572958\n"
+              "tool_x mm             2.250000  0.010000\n"
+              "tool_y mm             2.500000  0.010000\n"
+              "scale_theta           1.010000  0.000100\n"
+              "scale_r               1.011000  0.000100\n"
+              "scale_z               1.012000  0.000100\n"
+              "scale_yaw       not determined\n"
+              "\n"
+              "Residuals\n"
+              "touches  set aside  rms mm  largest mm  in line  headings  rms deg\n"
+              "      1          1  0.0400      0.0500        2         1   0.0100\n"
+              "\n"
+              "Points touched, less where the robot has them; and where a layout has them\n"
+              "line      dx mm    dy mm      dz mm  x in base mm  y in base mm  z in base mm\n"
+              "   2  -407.4000  -1.0000  -909.5500       -11.500         5.000       -97.000\n"
+              "   4  -505.5000   2.0000  -957.1500        -8.500         8.000       -94.000\n"
+              "\n"
+              "robot, set aside: lines 4\n"
+              "\n"
+              "For a layout\n"
+              "grippers = {\n"
+              "  { at = { 2.250, 2.500, 0 }, rpy = { 0, 0, 114.59 } },\n"
+              "},\n"
+              "-- A layout's robot stands at the origin of base, level. From the touched points' frame:\n"
+              "-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\n"
+              "-- Poses known in that frame go into base before they are a station's at and rpy.\n"
+              "-- A layout's theta is the controller's * 1.01000\n"
+              "-- A layout's r is the controller's * 1.01100 - 0.750\n"
+              "-- A layout's z is the controller's * 1.01200\n");
 }
 
 static void a_geometry_as_json(void **state) {
@@ -461,9 +459,9 @@ static void a_geometry_as_json(void **state) {
               "\"in_base\": [-8.5, 8.0, -94.0]}\n"
               "  ],\n"
               "  \"lua\": \"grippers = {\\n  { at = { 2.250, 2.500, 0 }, rpy = { 0, 0, 114.59 } },\\n},\\n-- "
-              "A layout's robot stands at the origin of base, level. Of base, the touched points' frame "
-              "says:\\n-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\\n-- "
-              "What is known in that frame goes into base before it is a station's at and rpy.\\n-- A "
+              "A layout's robot stands at the origin of base, level. From the touched points' frame:"
+              "\\n-- base = { at = { 12.500, -3.000, 100.000 }, rpy = { 0.10, -0.20, 30.00 } }\\n-- "
+              "Poses known in that frame go into base before they are a station's at and rpy.\\n-- A "
               "layout's theta is the controller's * 1.01000\\n-- A layout's r is the controller's * 1.01100 "
               "- 0.750\\n-- A layout's z is the controller's * 1.01200\\n\"\n"
               "}\n");

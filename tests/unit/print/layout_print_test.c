@@ -1,11 +1,11 @@
-/* A layout and what is wrong with it, word for word: the table, and the JSON but for most of its parts. */
+/* A layout and its errors, word for word: the table, and the JSON except for most of its parts. */
 #include "print/layout_print.h"
 
 #include <locale.h>
 
 #include "support/layout.h"
 
-/* With a place to fill in: how A stands, and how the second blade is turned. */
+/* With a place to fill in: the pose of A, and the turn of the second blade. */
 static const char cell[] =
     "grippers = { { name = 'EE' }, { name = 'UP', on = 'robot', at = { 0, 0, 40 }, rpy = { 0, 0, %d }, valve "
     "= 'v' }, "
@@ -154,8 +154,8 @@ static const char whole_table[] =
     "✗ P: entering 3 mm below a slot, pin on EE touches the wafer in it; pitch 10 mm\n"
     "! P: `retract` of 300 mm (default) leaves 0 mm between a wafer on the blade and the station's wafers\n"
     "! A: beams[2] is stuck (`stuck = \"dark\"`) and tells of no wafer\n"
-    "! P: `sensor.samples` of 900 are 1.047 mm apart on a wafer's rim: ALIGN is sure of a notch with 0.4 mm "
-    "or less, 2357 samples, and without one of the centre alone\n";
+    "! P: `sensor.samples` of 900 are 1.047 mm apart on a wafer's rim: ALIGN is sure of a notch with 0.31 mm "
+    "or less, 3041 samples, and without one of the centre alone\n";
 
 static void the_whole_table(void **state) {
     (void)state;
@@ -164,7 +164,7 @@ static void the_whole_table(void **state) {
     assert_string_equal(text, whole_table);
 }
 
-/* The JSON up to the wafers, from there to the parts, some of the parts, and what follows them. */
+/* The JSON up to the wafers, from there to the parts, some of the parts, and the rest after them. */
 static const char begin[] =
     "{\n"
     "  \"format\": 1,\n"
@@ -200,7 +200,8 @@ static const char begin[] =
     "  \"stations\": [\n"
     "    {\"name\": \"A\", \"kind\": \"slots\", \"at\": [700.0, 0.0, 900.0], \"rotation\": [[1.0, 0.0, 0.0], "
     "[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], \"slots\": 3, \"pitch\": 12.0, \"stroke\": 6.0, \"offset\": 3.0, "
-    "\"retract\": 310.0, \"pickup_speed\": 20.0, \"taught\": true, \"effector\": \"EE\", \"counts\": true, "
+    "\"retract\": 310.0, \"pickup_speed\": 20.0, \"taught\": true, \"by_axes\": false, \"effector\": \"EE\", "
+    "\"counts\": true, "
     "\"wafers\": 2, \"room\": {\"above\": 0.0, \"below\": 5.2249999999999091, \"beside\": 65.0, \"before\": "
     "10.0, \"lifted\": 7.2459999999998672}, \"sensor\": null, \"beams\": [{\"x\": -155.0, \"y\": 60.0, "
     "\"low\": -30.0, \"high\": 54.0, \"delay_on\": 0.002, \"delay_off\": 0.001, \"jitter\": "
@@ -209,12 +210,14 @@ static const char begin[] =
     "\"dx\": 1.0, \"dy\": 2.0, \"late\": 0.0001, \"stuck\": \"dark\"}], \"centre\": false},\n"
     "    {\"name\": \"F\", \"kind\": \"foup\", \"at\": [0.0, 900.0, 900.0], \"rotation\": [[0.0, -1.0, 0.0], "
     "[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], \"slots\": 2, \"pitch\": 10.0, \"stroke\": 6.0, \"offset\": 3.0, "
-    "\"retract\": 290.0, \"pickup_speed\": 20.0, \"taught\": false, \"effector\": \"EE\", \"counts\": true, "
+    "\"retract\": 290.0, \"pickup_speed\": 20.0, \"taught\": false, \"by_axes\": false, \"effector\": "
+    "\"EE\", \"counts\": true, "
     "\"wafers\": 0, \"room\": {\"above\": 0.0, \"below\": 3.2249999999999091, \"beside\": 65.0, \"before\": "
     "0.0, \"lifted\": 5.2459999999998672}, \"sensor\": null, \"beams\": [], \"centre\": false},\n"
     "    {\"name\": \"P\", \"kind\": \"prealigner\", \"at\": [-600.0, 0.0, 950.0], \"rotation\": [[-1.0, "
     "-0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], \"slots\": 1, \"pitch\": 10.0, \"stroke\": 6.0, "
-    "\"offset\": 3.0, \"retract\": 300.0, \"pickup_speed\": 20.0, \"taught\": true, \"effector\": \"EE\", "
+    "\"offset\": 3.0, \"retract\": 300.0, \"pickup_speed\": 20.0, \"taught\": true, \"by_axes\": false, "
+    "\"effector\": \"EE\", "
     "\"counts\": false, \"wafers\": 0, \"room\": {\"above\": 0.0, \"below\": null, \"beside\": 10.0, "
     "\"before\": 0.0, \"lifted\": null}, \"sensor\": {\"samples\": 900, \"pixel\": 0.0070000000000000001, "
     "\"length\": 28.0, \"at\": 0.0, \"encoder\": 0, \"noise\": 0.01, \"tilt\": 0.0, \"offset\": "
@@ -291,7 +294,7 @@ static const char end[] =
     "    {\"kind\": \"sight\", \"text\": \"A: beams[2] is stuck (`stuck = \\\"dark\\\"`) and tells of no "
     "wafer\", \"station\": \"A\", \"slot\": null},\n"
     "    {\"kind\": \"sight\", \"text\": \"P: `sensor.samples` of 900 are 1.047 mm apart on a wafer's rim: "
-    "ALIGN is sure of a notch with 0.4 mm or less, 2357 samples, and without one of the centre alone\", "
+    "ALIGN is sure of a notch with 0.31 mm or less, 3041 samples, and without one of the centre alone\", "
     "\"station\": \"P\", \"slot\": null}\n"
     "  ]\n"
     "}\n";

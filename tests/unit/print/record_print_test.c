@@ -1,11 +1,4 @@
-/* The report for people: what it says, and that it lines up. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+/* The report for people: its contents and its alignment. */
 #include <float.h>
 #include <jansson.h>
 #include <locale.h>
@@ -16,6 +9,7 @@
 
 #include "print/record_print.h"
 #include "support/record.h"
+#include "support/support.h"
 #include "text/grid.h"
 #include "text/json_compare.h"
 
@@ -50,6 +44,7 @@ static void transfer(void **state) {
     (void)state;
     fixture_transfer(&f);
     (void)fixture_event(&f, WH_EVENT_SETTLED, 13090000, 0, FIXTURE_EE); /* no miss */
+    f.record.unlooked = WH_RECORD_UNLOOKED;
     char *text = print(&f.record, &piped);
     assert_says(text, "lua/examples/01_transfer.lua on lua/layouts/paper.lua\n"
                       "tolerance paper: |dr_proj_z| < 0.5 mm, |dr_proj_xy| < 50 mm, "
@@ -70,7 +65,8 @@ static void transfer(void **state) {
     assert_says(text, "\n✓ all 2 met\n");
     assert_says(text, "4 commands, 22.870 s simulated in 22,870 slices; 0.009 s of wall time, "
                       "2,628 times faster than real time\n"
-                      "no wafers per hour: no station is known to count\nhash 00c0ffee12345678\nok\n");
+                      "no wafers per hour: no station is known to count\nhash 00c0ffee12345678\n! collisions "
+                      "were not looked for: the layout has no collision = true\nok\n");
     assert_silent(text, "Misses");
     assert_silent(text, "Hand-over");
     assert_silent(text, "Errors");
@@ -200,7 +196,7 @@ static void digits(void **state) {
     assert_string_equal(text, "-0.0010");
 }
 
-/* Equality fails, and the words say so. */
+/* Equality fails, and the text says so. */
 static void equal_to_the_limit(void **state) {
     static fixture_t f;
     (void)state;
@@ -214,7 +210,7 @@ static void equal_to_the_limit(void **state) {
     free(text);
 }
 
-/* Where a heading begins or ends in a header line, in columns. */
+/* The columns in which a heading begins and ends in a header line. */
 static size_t column_of(const wchar_t *header, const wchar_t *heading, bool at_end) {
     const wchar_t *found = wcsstr(header, heading);
     assert_non_null(found);
@@ -379,7 +375,7 @@ static void ascii_serves_where_utf8_does_not(void **state) {
     free(text);
 }
 
-/* What a script wrote reaches the terminal as text. */
+/* A script's text reaches the terminal as text. */
 static void hostile_text(void **state) {
     static char script[] = "a\033[2Jb", failure[] = "line 1\nline 2\t\x9b\xff";
     static fixture_t f;
@@ -396,7 +392,7 @@ static void hostile_text(void **state) {
     free(text);
 }
 
-/* What happened between commands is not lost, and a command may take more than one wafer. */
+/* Events between commands are not lost, and a command may take more than one wafer. */
 static void rows_of_events(void **state) {
     static fixture_t f;
     (void)state;
@@ -521,10 +517,10 @@ static void assert_real(json_t *object, const char *key, double value) {
 }
 
 static void head(void **state) {
-    static const char *const keys[] = {"format",       "ok",          "script",   "layout", "slices",
-                                       "missed",       "simulated_s", "wall_s",   "hash",   "throughput",
-                                       "steady_cycle", "split",       "commands", "wafers", "events",
-                                       "expectations", "cycles",      "gantt",    "reach",  NULL};
+    static const char *const keys[] = {
+        "format", "ok",     "script",         "layout",       "slices",     "missed", "simulated_s",
+        "wall_s", "hash",   "not_looked_for", "steady_cycle", "throughput", "split",  "commands",
+        "wafers", "events", "expectations",   "cycles",       "gantt",      "reach",  NULL};
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -671,7 +667,7 @@ static void event_values(void **state) {
     json_decref(root);
 }
 
-/* Degrees, as the layout has its limit and a wafer its tilt. */
+/* Degrees, the unit of the layout's limit and of a wafer's tilt. */
 static void askew_in_degrees(void **state) {
     static fixture_t f;
     (void)state;
@@ -706,7 +702,7 @@ static void expectations_are_written(void **state) {
     json_decref(root);
 }
 
-/* Text may be anything, and NaN is no JSON. */
+/* Text may contain anything, and NaN is no JSON. */
 static void hostile_values(void **state) {
     static char wrong[] = "a\xff\xc3\xa4\xe2\x82 \x1b\"\n\xed\xa0\x80", broken[] = "\xf0\x9f";
     static fixture_t f;
@@ -814,7 +810,8 @@ static void results_are_compared_member_by_member(void **state) {
         {"{\"x\": null}", "{}", "x "},
         {"{\"wall_s\": 1, \"y\": {\"wall_s\": 2}}", "{\"y\": {}}", ""},
         {"{\"a\": 1, \"b\": {\"c\": [1, 2]}}", "{\"d\": 1, \"b\": {\"c\": [1, 3, 4]}}", "a b.c[1] b.c[2] d "},
-        /* Times: an element's own, of two the earlier, that around it, and that of its place in the list beside. */
+        /* Times: an element has its own time; of two the earlier one counts; otherwise the time of
+         * the element around it, or of its place in the list beside. */
         {"{\"e\": [{\"utime\": 2000000, \"v\": 1}]}", "{\"e\": [{\"utime\": 2000000, \"v\": 2}]}",
          "e[0].v@2 "},
         {"{\"e\": [{\"begin_s\": 2}]}", "{\"e\": [{\"begin_s\": 3}]}", "e[0].begin_s@2 "},

@@ -1,4 +1,4 @@
-/* A study's table, CSV and JSON, word for word, of trials whose outcomes are made up. */
+/* A study's table, CSV and JSON, word for word, for trials with invented outcomes. */
 #include "print/study_print.h"
 
 #include <locale.h>
@@ -36,6 +36,7 @@ static int set_up(void **state) {
     study.wafers[0] = (wh_study_wafer_t){0, WH_NONE, {1, 3, 0.1, 0, 0.2, WH_PI / 180, WH_FACE_BACK}};
     study.wafers[1] = (wh_study_wafer_t){1, 0, {.station = WH_NONE}};
     study.causes = wh_causes_of(study.layout, &study.cause_count);
+    study.drawn = wh_causes_of(study.layout, &study.drawn_count);
     study.lines = 1000;
     wh_tally_init(&tally, study.wafer_count);
     return 0;
@@ -45,22 +46,28 @@ static int tear_down(void **state) {
     (void)state;
     wh_tally_free(&tally);
     free(study.causes);
+    free(study.drawn);
     free(text);
     text = NULL;
     return 0;
 }
 
-/* What the first wafer's dx was drawn to be, a third of it taken over. It fails above 0.4. */
+/* The drawn error for the first wafer's dx; a third of it is taken over. It fails above 0.4. */
 static void add_trial(uint64_t trial) {
     static char expected[] = "W1 in B slot 3; found dX 0.7", held[] = "W, 2 held by EE", get[] = "GET A 1";
+    static char put[] = "PUT B 3: W1 in that slot; it lies in B slot 2";
     const wh_trial_t name = {study.seed, trial};
     const double dx = (double)wh_errors_draw_wafer(study.layout->errors, &name, 0).moved.x;
     const bool is_met = fabs(dx) <= 0.4;
-    wh_expectation_record_t expectations[] = {{4, expected, is_met}, {5, held, trial != 5}};
+    wh_expectation_record_t expectations[] = {{4, expected, is_met, false}, {5, held, trial != 5, false}};
     wh_command_record_t command = {
         .line = 3, .text = get, .error = trial == 2 || trial == 6 ? WH_STATUS_WAFER_MISSING : WH_OK};
+    /* Two PUTs in the line of an expectation: the first is always met, and is not told. */
+    wh_expectation_record_t implied[] = {{4, put, true, true}, {4, put, trial != 1, true}};
     const wh_record_t record = {.expectations = expectations,
                                 .expectation_count = 2,
+                                .implied = implied,
+                                .implied_count = 2,
                                 .commands = &command,
                                 .command_count = 1,
                                 .failure = trial == 6 ? get : NULL};
@@ -117,9 +124,10 @@ static void the_whole_table(void **state) {
         "40 trials of seed 7\n"
         "\n"
         "Expectations\n"
-        "line  expected         seen  met      %  95 %                first missed\n"
-        "   4  W1 in B slot 3     40   21  52.50  37.4974 to 67.0645             2\n"
-        "   5  W, 2 held by EE    40   39  97.50  87.1186 to 99.5573             5\n"
+        "line  expected                  seen  met      %  95 %                first missed\n"
+        "   4  PUT B 3: W1 in that slot    40   39  97.50  87.1186 to 99.5573             1\n"
+        "   4  W1 in B slot 3              40   21  52.50  37.4974 to 67.0645             2\n"
+        "   5  W, 2 held by EE             40   39  97.50  87.1186 to 99.5573             5\n"
         "\n"
         "Errors of commands\n"
         "line  command  error             trials     %  95 %               first\n"
@@ -206,7 +214,7 @@ static void trials_as_lines(void **state) {
         "018667057883540276,0.004077496885060498,0.00653852516477998\n");
 }
 
-/* The text goes on with these lines; returns what follows them. */
+/* The text continues with these lines; returns the rest after them. */
 static const char *expect_lines(const char *at, const char *const lines[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const size_t length = strcspn(at, "\n");
@@ -218,7 +226,7 @@ static const char *expect_lines(const char *at, const char *const lines[], size_
     return at;
 }
 
-/* The JSON up to the drawn errors, some of these, and what follows them. */
+/* The JSON up to the drawn errors, some of these, and the rest after them. */
 static const char *const begin[] = {
     "{",
     "  \"format\": 1,",
@@ -234,11 +242,15 @@ static const char *const begin[] = {
     "  \"whole\": 2,",
     "  \"whole_why\": null,",
     "  \"noise_alone\": false,",
+    "  \"drawn_aside\": 0,",
     "  \"run_without_errors\": {\"ok\": true, \"hash\": \"0000000000000abc\", \"slices\": 4302, "
     "\"simulated_s\": 4.3019999999999996, \"throughput\": {\"wafers_per_hour\": null, \"reason\": \"no wafer "
     "was put into a station that counts\", \"wafers\": 0, \"seconds\": 4.3019999999999996, \"first_cycle\": "
     "null, \"last_cycle\": null, \"puts\": 0, \"counting\": [\"A\", \"B\"]}},",
     "  \"expectations\": [",
+    "    {\"line\": 4, \"text\": \"PUT B 3: W1 in that slot\", \"seen\": 8, \"met\": 7, \"rate\": 0.875, "
+    "\"low\": "
+    "0.52911181778714655, \"high\": 0.97758250854994333, \"first_missed\": 1},",
     "    {\"line\": 4, \"text\": \"W1 in B slot 3\", \"seen\": 8, \"met\": 6, \"rate\": 0.75, \"low\": "
     "0.40927543031016894, \"high\": 0.928520787247891, \"first_missed\": 2},",
     "    {\"line\": 5, \"text\": \"W, 2 held by EE\", \"seen\": 8, \"met\": 7, \"rate\": 0.875, \"low\": "
@@ -303,7 +315,8 @@ static const char *const end[] = {
     "\"yaw\": 0.014474381303810513}], \"rims\": [], \"beams\": [], \"valves\": [{\"gripper\": \"EE\", "
     "\"slices\": 3}], "
     "\"vacuum_s\": 0.0066472041339965295}},",
-    "    {\"trial\": 2, \"ok\": false, \"off\": 0.15065661217929635, \"why\": \"1 command failed, line 4 "
+    "    {\"trial\": 2, \"ok\": false, \"off\": 0.15065661217929635, \"why\": \"1 command failed: 42 "
+    "WAFER_MISSING in line 3, line 4 "
     "missed\", \"drawn\": {\"wafers\": [{\"name\": \"W1\", \"dx\": 0.45196983653788902, \"dy\": 0.0, \"dz\": "
     "0.0, \"tilt_x\": -0.014659992348016338, \"tilt_y\": 0.025260960188187524, \"turn\": 0.0}, {\"name\": "
     "\"W, 2\", \"dx\": -0.2652092078572405, \"dy\": 0.0, \"dz\": 0.0, \"tilt_x\": 0.02700455420371705, "
@@ -316,7 +329,8 @@ static const char *const end[] = {
     "  ]",
     "}"};
 
-/* So few trials that no correlation is determined: their last digits are those of the machine's own tanh. */
+/* There are so few trials that no correlation is determined: their last digits depend on the
+ * machine's own tanh. */
 static void the_whole_json(void **state) {
     (void)state;
     add_trials(8);

@@ -1,5 +1,5 @@
-/* Slices counted one after another: whatever changes from one to the next, alone or with others, is noted in that very
- * slice. The oracle looks at everything anew in each. */
+/* Slices counted one after another: every change from one to the next, alone or with others, is
+ * noted in that very slice. The oracle looks at everything anew in each slice. */
 #include "support/pose.h"
 
 #include "record/activity.h"
@@ -48,7 +48,7 @@ static int tear_down(void **state) {
     return 0;
 }
 
-/* What resource `r` is busy with in this slice of this share: the meaning of wh_busy_t. */
+/* The work of resource `r` in this slice of this share: the meaning of wh_busy_t. */
 static int32_t busy(size_t r, wh_share_t share) {
     const size_t g = r >= FIRST ? (r - FIRST) / 3 : GRIPPERS;
     if (r == 0) {
@@ -81,7 +81,8 @@ static bool is_state(size_t r) {
 }
 
 static void keep(size_t r, int32_t what, int64_t slice) {
-    /* The end of the slice that says so, for a wafer and a valve; for what moves the end of the one before. */
+    /* The end of the slice that reports it, for a wafer and a valve; for moving parts the end of
+     * the slice before. */
     const int64_t border = is_state(r) ? slice : slice - 1;
     if (oracle.what[r] == what) {
         return;
@@ -109,7 +110,7 @@ static void count(void) {
     }
 }
 
-/* In no particular order where several end at once. */
+/* In any order if several end at once. */
 static void compare(void) {
     assert_memory_equal(activity.shares, oracle.shares, sizeof oracle.shares);
     assert_int_equal(activity.interval_count, oracle.count);
@@ -182,7 +183,7 @@ static void several_changes_at_once(void **state) {
     compare();
 }
 
-/* The end ends all, also what then goes on just as it did. */
+/* The end of the run ends all intervals, also those that just continue. */
 static void what_goes_on_after_an_end_begins_anew(void **state) {
     (void)state;
     task.moves = task.robot = true;
@@ -198,7 +199,7 @@ static void what_goes_on_after_an_end_begins_anew(void **state) {
     assert_int_equal(activity.interval_count, 3 * 4); /* robot, chuck, wafer, valve */
 }
 
-/* A slice like nothing at all is counted, too, and as what it is. */
+/* A slice that resembles no other is counted, too, with its own state. */
 static void the_first_slice_is_like_no_other(void **state) {
     (void)state;
     for (size_t g = 0; g < GRIPPERS; ++g) {
@@ -228,7 +229,7 @@ static void a_segment_keeps_busy_what_it_moves(void **state) {
     (void)state;
     wh_segment_t segment = {
         .kind = WH_SEGMENT_AXES, .gripper = WH_NONE, .target = {0.5, 400, 900, 0, 0.25, 0}};
-    /* A motion of no length is one, but keeps nobody busy. */
+    /* A motion of zero length is a motion, but makes nothing busy. */
     expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, false, 0, 0, {0}});
     segment.target[1] = 401;
     expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, true, true, 1, 0, {0}});
@@ -250,7 +251,8 @@ static void what_stands_still_has_its_share(void **state) {
     expect_task(&segment, true, &(wh_task_t){WH_SHARE_VACUUM, false, true, 0, 0, {0}});
     segment.kind = WH_SEGMENT_SENSOR;
     expect_task(&segment, false, &(wh_task_t){WH_SHARE_VACUUM, false, true, 0, 0, {0}});
-    /* The track's valves are open. One that is told what it is does not switch: a log could not tell. */
+    /* The track's valves are open. A valve that is told its own state does not switch: a log could
+     * not tell. */
     segment.kind = WH_SEGMENT_VALVES;
     expect_task(&segment, false, &(wh_task_t){WH_SHARE_WAITING, false, true, 0, 0, {0}});
     segment.valves[0] = WH_NONE;
@@ -263,7 +265,7 @@ static void what_stands_still_has_its_share(void **state) {
 
 static wh_carrier_t carriers[2];
 
-/* Two robots of four axes, the first has gripper 0, the second grippers 1 and 2. */
+/* Two robots of four axes: the first has gripper 0, the second grippers 1 and 2. */
 static int set_up_two(void **state) {
     (void)set_up(state);
     memset(carriers, 0, sizeof carriers);
@@ -292,7 +294,7 @@ static void expect_span(size_t i, int32_t robot, wh_share_t share, int64_t begin
     assert_int_equal(span->end, last);
 }
 
-/* One goes loaded while the other one stands for vacuum: each has its own. */
+/* One moves loaded while the other one stands for vacuum: each has its own share. */
 static void each_of_several_robots_is_busy_by_itself(void **state) {
     (void)state;
     bool moving[WH_AXES] = {false};
@@ -314,7 +316,8 @@ static void each_of_several_robots_is_busy_by_itself(void **state) {
     expect_span(1, 0, WH_SHARE_VACUUM, 0, 3);
 }
 
-/* What nobody says whose it is, those stand for that went last; what has no robot keeps none busy. */
+/* If nobody owns a motion, the robots that moved last stand for it; a motion without a robot makes
+ * none busy. */
 static void those_stand_that_went_last(void **state) {
     (void)state;
     bool moving[WH_AXES] = {false};
@@ -322,7 +325,7 @@ static void those_stand_that_went_last(void **state) {
     const wh_task_t waits = wh_activity_motion(&machine, still, WH_SHARE_WAITING);
     wh_task_t nobodys = waits;
     wh_activity_narrow(&nobodys, &machine, 0);
-    step_with(&waits); /* nobody went as yet */
+    step_with(&waits); /* nobody has moved yet */
     moving[4] = true;
     const wh_task_t goes = wh_activity_motion(&machine, moving, WH_SHARE_WAITING);
     step_with(&goes);

@@ -1,4 +1,4 @@
-/* Centrings in a record: the values that scripts are told, and words that claim no more than is known. */
+/* Centrings in a record: the values that scripts get, and texts that claim no more than is known. */
 #include "support/support.h"
 
 #include <unistd.h>
@@ -19,7 +19,7 @@ static void play(const char *script) {
     assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
 }
 
-/* A script in a folder of its own; `%s` in it is where we are. */
+/* A script in a folder of its own; `%s` in it is the current folder. */
 static void play_text(const char *text) {
     char folder[WH_TEST_PATH], path[WH_TEST_PATH + 50], here[4000];
     assert_non_null(mkdtemp(wh_test_path(folder, "centrings")));
@@ -58,7 +58,7 @@ static const char *const told =
     "  expect(true, table.concat(t, ' '))\n"
     "end\n";
 
-/* The next number of a text that ends with it. */
+/* The number behind the next place at which this text occurs. */
 static double next(const char **text) {
     char *end = NULL;
     const double value = strtod(*text, &end);
@@ -99,7 +99,7 @@ static void assert_told(const wh_centring_record_t *centring, const char *text) 
     assert_string_equal(text, "");
 }
 
-/* Sure by four crossings and by three, into stations that lie differently, and not sure. */
+/* Sure with four crossings and with three, into stations that lie differently, and not sure. */
 static void a_record_has_what_scripts_are_told(void **state) {
     (void)state;
     char text[3000];
@@ -150,7 +150,7 @@ static void words_tell_the_verdict(void **state) {
     assert_string_equal(words_of(2, 5, &sure), "command: PUT OLD 1, failed with 75 CENTRE_NOT_SURE");
 }
 
-/* The estimate is sure, but motion control does not go by it. */
+/* The estimate is sure, but motion control does not use it. */
 static void a_wafer_that_is_too_far_off_is_not_called_sure(void **state) {
     (void)state;
     play_text("get('A', 1) pcall(put, 'LL', 1, { dx = -4.5 })\n");
@@ -162,7 +162,7 @@ static void a_wafer_that_is_too_far_off_is_not_called_sure(void **state) {
     assert_false(sure);
 }
 
-/* What comes of a log claims no more than the log tells. */
+/* A record from a log claims no more than the log contains. */
 static void words_of_a_log_say_what_it_does_not_tell(void **state) {
     (void)state;
     play("lua/examples/13_centring.lua");
@@ -214,7 +214,7 @@ static void words_tell_what_was_known_before(void **state) {
 
 /* ---------------------------------------------------------------------------------------------------- passes */
 
-/* A latch whose place is behind a gap has no crossing, and then no centre is told. */
+/* A latch whose place is behind a gap has no crossing; then no centre is reported. */
 static void latches_without_places_are_missed(void **state) {
     (void)state;
     play("lua/examples/13_centring.lua");

@@ -1,5 +1,5 @@
-/* What a report shows of a run against the run itself, slice by slice: curves, rows of plots, its document and its scene,
- * whose buffer is read back and held against glTF's rules. */
+/* A report's view of a run compared with the run itself, slice by slice: curves, rows of plots, its
+ * document and its scene. The scene's buffer is read back and checked by glTF's rules. */
 #include "support/support.h"
 
 #include <jansson.h>
@@ -25,7 +25,7 @@ typedef struct {
 
 static wh_script_run_t run;
 static wh_signals_t signals;
-static slice_t *slices; /* by number, 0 not used */
+static slice_t *slices; /* the slices by number; 0 is not used */
 static size_t slice_count, slice_capacity;
 
 static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
@@ -121,7 +121,7 @@ static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
     return found;
 }
 
-/* How far a pose may be off: its axes' tolerances, those of angles at the robot's reach. */
+/* The tolerance of a pose: that of its axes, with angles at the robot's reach. */
 static double room_mm(const slice_t *was) {
     return was->is_exact
                ? 1e-9
@@ -151,12 +151,13 @@ static void check_links(int64_t n) {
     wh_arm_place(&signals.layout->shapes.arm, &was->grippers[0], bodies);
     int32_t numbers[WH_SIGNALS_LINKS];
     for (size_t i = 0; i < wh_signals_link_bodies(signals.layout, numbers); ++i) {
-        /* The elbow goes further than the wrist where the arm is folded or stretched. */
+        /* The elbow moves further than the wrist if the arm is folded or stretched. */
         assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
     }
 }
 
-/* Held, a wafer is where its gripper shows it: a way out from the gripper's origin its turn counts, too. */
+/* A held wafer is at the place that its gripper shows: away from the gripper's origin its turn
+ * counts, too. */
 static void check_wafer(int32_t w, int64_t n) {
     const slice_t *was = &slices[n];
     const wh_stay_t *stay = stay_at(w, n);
@@ -172,7 +173,7 @@ static void check_wafer(int32_t w, int64_t n) {
                 room_rad(was));
 }
 
-/* Between points a slope is not judged by a tolerance: by a hundredth of what the axis does. */
+/* Between points a slope is judged by a hundredth of the axis's value, not by a tolerance. */
 static void check_axes(int64_t n) {
     const double seconds = (double)signals.layout->slice_us / 1e6;
     for (size_t axis = 0; axis < signals.axis_count; ++axis) {
@@ -205,7 +206,7 @@ static void check_all(void) {
     }
 }
 
-/* What the plots of (3) to (5) say at an event is what the event says. */
+/* The plots of (3) to (5) agree with an event at its time. */
 static void check_events(size_t expected) {
     size_t measured = 0;
     for (size_t i = 0; i < run.record.event_count; ++i) {
@@ -259,7 +260,7 @@ static void vacuum_that_leaks(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ own poses */
 
-/* From where a gripper leaves what the axes say, it is shown where it is. */
+/* From the place at which a gripper leaves the pose of the axes, it is shown at its real place. */
 static void a_gripper_that_is_elsewhere(void **state) {
     (void)state;
     play("lua/examples/01_transfer.lua");
@@ -314,8 +315,9 @@ static void assert_told_late(const wh_signals_t *other) {
     assert_near(wh_path_read(curve, 60, NULL), 5, 0.75);
 }
 
-/* Near wafer 0 up to slice 100, near wafer 1 up to 200, then near none. A near miss at 120 is told of slice 50, one at 250 of 150:
- * the curves say so. One at 260 is told of a wafer that was not the nearest then: they do not. */
+/* The gripper is near wafer 0 up to slice 100, near wafer 1 up to 200, then near none. A near miss
+ * reported at 120 refers to slice 50, one at 250 to 150: the curves agree. One at 260 refers to a
+ * wafer that was not the nearest then: the curves do not agree. */
 static void a_near_miss_is_told_late(void **state) {
     (void)state;
     play("lua/examples/01_transfer.lua");
@@ -413,7 +415,7 @@ static const json_t *node(const json_t *scene, const char *name) {
     return json_array_get(json_object_get(scene, "nodes"), node_index(scene, name));
 }
 
-/* The numbers of a list, as many as there are. */
+/* The numbers of a list, all of them. */
 static size_t read_list(const json_t *list, double values[4]) {
     for (size_t i = 0; i < json_array_size(list); ++i) {
         values[i] = json_number_value(json_array_get(list, i));
@@ -446,7 +448,7 @@ static uint8_t *read_buffer(const json_t *scene) {
     return bytes;
 }
 
-/* An accessor's numbers, in the buffer, and how many items of how many numbers they are. */
+/* An accessor's numbers in the buffer, the number of items, and the numbers in an item. */
 typedef struct {
     const float *numbers;
     size_t count, width;
@@ -463,7 +465,7 @@ static floats_t floats_at(const json_t *scene, const uint8_t *buffer, json_int_t
                       strcmp(type, "SCALAR") == 0 ? 1 : (size_t)(type[3] - '0')};
 }
 
-/* Where there are bounds, they are the least and the greatest number. */
+/* If there are bounds, they are the least and the greatest number. */
 static void check_bounds(const json_t *scene, const uint8_t *buffer) {
     size_t bounded = 0;
     for (size_t a = 0; a < json_array_size(json_object_get(scene, "accessors")); ++a) {
@@ -490,7 +492,7 @@ static void check_bounds(const json_t *scene, const uint8_t *buffer) {
     assert_true(bounded > 10);
 }
 
-/* Triangles of vertices that are there, which the normals at their corners show from outside. */
+/* Triangles have valid vertices, and the normals at their corners point outwards. */
 static void check_meshes(const json_t *scene, const uint8_t *buffer) {
     const json_t *accessors = json_object_get(scene, "accessors");
     const json_t *meshes = json_object_get(scene, "meshes");
@@ -557,7 +559,7 @@ static keys_t keys_of(const json_t *scene, const uint8_t *buffer, const char *na
     return keys;
 }
 
-/* What a viewer shows at a slice. `k` is the last keyframe before it. */
+/* The pose that a viewer shows at a slice. `k` is the last keyframe before it. */
 static wh_pose_t shown_at(const keys_t *keys, int64_t n, size_t *k) {
     const float *times = keys->times.numbers;
     const double seconds = (double)n * (double)signals.layout->slice_us / 1e6;
@@ -583,7 +585,7 @@ static wh_pose_t shown_at(const keys_t *keys, int64_t n, size_t *k) {
     return shown;
 }
 
-/* Grippers and wafers move as they did. Places are floats of metres. */
+/* Grippers and wafers move as they did in the run. Places are floats in metres. */
 static void check_animation(const json_t *scene, const uint8_t *buffer) {
     const keys_t gripper = keys_of(scene, buffer, "EE");
     const keys_t wafer = keys_of(scene, buffer, "Wafer 1");
@@ -607,7 +609,7 @@ static void check_still(const json_t *scene, const char *name, const wh_pose_t *
     assert_pose(&shown, pose, 1e-9, 1e-9);
 }
 
-/* Everything stands where it is before the first slice, in a cell whose z is glTF's y. */
+/* Before the first slice everything stands at its place, in a cell whose z is glTF's y. */
 static void check_nodes(const json_t *scene) {
     const wh_layout_t *layout = signals.layout;
     wh_pose_t links[WH_SIGNALS_LINKS], cell;
@@ -663,7 +665,7 @@ static void a_scene_is_made(void **state) {
     json_decref(moving);
 }
 
-/* Whatever was in its place before, an asset begins with nothing; and only lists that have something are written. */
+/* Whatever was in its place before, an asset begins empty; and only lists with entries are written. */
 static void an_empty_scene(void **state) {
     (void)state;
     wh_gltf_t gltf;
@@ -681,7 +683,7 @@ static void an_empty_scene(void **state) {
 
 /* --------------------------------------------------------------------------------------------------- plots */
 
-/* Rows of a block as they were written; `breaks` of one that a gap is before. */
+/* Rows of a block as they were written; `breaks` of a row that has a gap before it. */
 typedef struct {
     int64_t slice;
     double values[WH_MEASURES + 1];
@@ -724,7 +726,7 @@ static row_t *rows_of(const wh_plot_curves_t *of, size_t columns, size_t *count)
     return rows;
 }
 
-/* How far a straight line between two rows is off the curve. */
+/* The distance of a straight line between two rows from the curve. */
 static double off_line(const wh_path_t *curve, const row_t *from, const row_t *to) {
     double off = 0;
     for (int64_t n = from->slice; n <= to->slice; ++n) {
@@ -735,8 +737,9 @@ static double off_line(const wh_path_t *curve, const row_t *from, const row_t *t
     return off;
 }
 
-/* Lines between rows are within the curve's tolerance, but for rows being at whole slices, and of six or more in one cubic none at
- * its two ends could be spared. Returns how many cubics have so many. */
+/* Lines between rows are within the curve's tolerance, apart from rows at whole slices. If six or
+ * more rows are in one cubic, all but its two ends are needed. Returns how many cubics have so
+ * many. */
 static size_t check_rows(const wh_path_t *curve) {
     const wh_points_t *points = &curve->list;
     const wh_plot_curves_t of = {{curve}, 1, 1, false, NULL};
@@ -766,7 +769,7 @@ static size_t check_rows(const wh_path_t *curve) {
     return cut;
 }
 
-/* Of speeds each row is the slope there. */
+/* For speeds each row is the slope there. */
 static void check_slopes(const wh_path_t *curve) {
     const wh_plot_curves_t of = {{curve}, 1, 0.5, true, NULL};
     size_t count = 0;
@@ -780,7 +783,8 @@ static void check_slopes(const wh_path_t *curve) {
     free(rows);
 }
 
-/* Each row tells the curves, and the wafer that they are against. Where that is another one, or there was none, is a gap. */
+/* Each row contains the curves' values, and the wafer against which they are measured. If that is
+ * another wafer, or there was none before, there is a gap. */
 static void check_measured_rows(size_t gripper) {
     const wh_path_t *curves = signals.proximity[gripper];
     const wh_steps_t *nearest = &signals.nearest[gripper];
@@ -887,7 +891,7 @@ static void a_document_is_made(void **state) {
 
 static wh_edge_point_t samples[4000];
 
-/* What the estimate says of the only scan, in words. */
+/* The estimate's text for the only scan. */
 static wh_scan_words_t words_as(const wh_edge_scan_t *scan, const char *command, wh_align_result_t *result) {
     wh_scan_words_t words;
     const wh_edge_wish_t wish = wh_edge_wish_of(command);
@@ -901,7 +905,7 @@ static wh_scan_words_t words_of(const wh_edge_scan_t *scan, wh_align_result_t *r
     return words_as(scan, NULL, result);
 }
 
-/* The layout has the wafer at (1.5, -0.8), turned by 37 degrees, of the radius 150.025. */
+/* In the layout the wafer is at (1.5, -0.8), turned by 37 degrees, with the radius 150.025. */
 static void an_edge_scan(void **state) {
     (void)state;
     play("lua/examples/09_edge_scan.lua");
@@ -933,7 +937,7 @@ static void an_edge_scan(void **state) {
     assert_int_equal(counting, result.circle.used);
 }
 
-/* A scan is told by what its ALIGN was told of the wafer: glass, and a mark that is not looked for. */
+/* A scan uses the wafer's data that its ALIGN had: glass, and a mark that is not looked for. */
 static void a_scan_is_told_as_its_command_has_the_wafer(void **state) {
     (void)state;
     play("lua/examples/09_edge_scan.lua");
@@ -952,7 +956,7 @@ static void a_scan_is_told_as_its_command_has_the_wafer(void **state) {
     assert_true(!wh_edge_wish_at(&record, 1.9).without_mark && wh_edge_wish_at(&record, 2.5).without_mark);
 }
 
-/* Where the axis sees the notch, samples are deepest below the circle. */
+/* At the notch's angle, samples are deepest below the circle. */
 static void the_mark_is_where_the_notch_is_seen(void **state) {
     (void)state;
     play("lua/examples/09_edge_scan.lua");
@@ -965,7 +969,8 @@ static void the_mark_is_where_the_notch_is_seen(void **state) {
     assert_near(wh_edge_scan_mark_at(&result), samples[deepest].angle, 2 * WH_PI / 3600);
 }
 
-/* A scan of `seen` samples of a round wafer without a notch, then `gap` that never came, then one more. */
+/* A scan of `seen` samples of a round wafer without a notch, then `gap` samples that never came,
+ * then one more. */
 static void hear_scan(uint32_t number, int32_t seen, int32_t gap) {
     const int32_t all = seen + gap + 1;
     wh_scan_t scan = {.number = number, .armed = true, .gripper = 1, .count = 3600};
@@ -974,7 +979,7 @@ static void hear_scan(uint32_t number, int32_t seen, int32_t gap) {
         scan.sample_count = 1;
         scan.samples[0] = 2000;
         wh_edge_scans_hear(&signals.scans, slice, &scan);
-        wh_edge_scans_hear(&signals.scans, slice, &scan); /* once more adds nothing */
+        wh_edge_scans_hear(&signals.scans, slice, &scan); /* a repeated one adds nothing */
     }
 }
 
@@ -999,12 +1004,12 @@ static void samples_that_never_came_are_counted(void **state) {
     assert_true(isnan(samples[103].radius) && !isnan(samples[99].radius) && isnan(samples[99].residual));
 }
 
-/* Samples of the true scan but for an arc of which nothing came: the centre may be sure, the notch is not. */
+/* Samples of the true scan without those of an arc: the centre may be sure, the notch is not. */
 static void what_is_not_sure_says_so(void **state) {
     (void)state;
     play("lua/examples/09_edge_scan.lua");
     wh_edge_scan_t *scan = &signals.scans.list[0];
-    const int32_t notch = 3600 - 370; /* of 37 degrees: the chuck turns, the sensor stands */
+    const int32_t notch = 3600 - 370; /* 37 degrees: the chuck turns, the sensor stands */
     for (int32_t i = notch - 100; i < notch + 100; ++i) {
         scan->samples[(i - (int32_t)scan->first % 3600 + 3600) % 3600] = WH_NONE;
         ++scan->missed;
@@ -1020,7 +1025,7 @@ static void what_is_not_sure_says_so(void **state) {
     assert_non_null(strstr(words.lines[4], "200 of them missing"));
 }
 
-/* More than a run keeps are counted, and none of them half. */
+/* Scans beyond a run's capacity are counted, and none of them is stored in part. */
 static void scans_beyond_the_limit_are_counted(void **state) {
     (void)state;
     wh_scan_t scan = {.gripper = 1, .count = -WH_SENSOR_SAMPLES};

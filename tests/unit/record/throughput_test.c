@@ -1,4 +1,5 @@
-/* Wafers per hour by the rules of record/throughput.h, steady cycles by those of record/steady.h, and a whole run's figures against times computed by hand. */
+/* Wafers per hour by the rules of record/throughput.h, steady cycles by those of record/steady.h,
+ * and a whole run's figures compared with times computed by hand. */
 #include "support/support.h"
 
 #include <jansson.h>
@@ -89,7 +90,7 @@ static void what_is_on_its_way_does_not_count(void **state) {
     assert_throughput(WH_FIGURE_NOWHERE, 0, 5, 0, 0);
 }
 
-/* A load lock that counts, and the FOUP behind it: the wafer would be two. */
+/* A load lock that counts, with the FOUP behind it: the wafer would count twice. */
 static void a_wafer_that_is_put_twice_gives_no_figure_without_marks(void **state) {
     (void)state;
     begin(9000);
@@ -203,8 +204,9 @@ static void assert_shares(const int64_t shares[WH_SHARES], int64_t loaded, int64
     }
 }
 
-/* In ms: 2000 to the other station, 1000 in, 174 of the stroke until the wafer is within 0.51 mm, 226 more of it with
- * the wafer, 1 for each valve, 100 of vacuum_delay, 1000 out; a PUT has strokes of 250. */
+/* In ms: 2000 to the other station, 1000 in, 174 of the stroke until the wafer is within 0.51 mm,
+ * 226 more of it with the wafer, 1 for each valve, 100 of vacuum_delay, 1000 out; a PUT has strokes
+ * of 250. */
 static void split_of_a_cycle(void **state) {
     (void)state;
     const wh_record_t *record = play("case=cycles", WH_RUN_MET);
@@ -274,7 +276,8 @@ static void intervals_add_up(void **state) {
     assert_true(record->puts[2].slice == 26506);
 }
 
-/* Over the prealigner and back to its own slot is one wafer; what is dropped, or not taken, is none. */
+/* Over the prealigner and back to its own slot counts as one wafer; a dropped wafer, or one that is
+ * not taken, counts as none. */
 static void prealigner_and_drop(void **state) {
     (void)state;
     const wh_record_t *record = play("case=prealigner", WH_RUN_FAILED);
@@ -297,7 +300,7 @@ static void prealigner_and_drop(void **state) {
     }
 }
 
-/* A SWAP puts one wafer on its way while another comes back: one wafer a cycle, not two. */
+/* A SWAP starts one wafer while another comes back: one wafer per cycle, not two. */
 static void swap(void **state) {
     (void)state;
     const wh_record_t *record = play("case=swap", WH_RUN_MET);
@@ -347,11 +350,11 @@ static void refused_marks(void **state) {
     (void)state;
     const wh_record_t *record = play("case=errors", WH_RUN_MET);
     assert_int_equal(record->expectation_count, 3);
-    /* The level's name is asked for before the command begins, too. */
+    /* The level's name is looked up before the command begins, too. */
     assert_int_equal(record->cycle_count, 1);
 }
 
-/* What a session forgets, and what goes on meanwhile. */
+/* The data that a session forgets, and the work that continues in the meantime. */
 static void forgetting(void **state) {
     (void)state;
     static wh_record_t record;
@@ -400,7 +403,7 @@ static void begin_commands(void) {
     f.record.commands = listed;
 }
 
-/* Gets of one slot after the other, the first from home; each put at its end. */
+/* GETs of one slot after the other, the first from home; each wafer is put down at the end. */
 static void add_transfers(size_t count) {
     static const char *const gets[] = {"GET A 1", "GET A 2", "GET A 3", "GET A 4"};
     for (size_t i = 0; i < count; ++i) {
@@ -442,7 +445,7 @@ static void a_cycle_is_found_without_marks(void **state) {
     assert_int_equal(wh_steady_cycle(&f.record).figure, WH_FIGURE_GIVEN);
     assert_int_equal(wh_steady_cycle(&f.record).wafers, 1);
     assert_int_equal(wh_steady_cycle(&f.record).mark, 0);
-    /* What comes before and behind does not belong to it. */
+    /* Commands before and after do not belong to it. */
     begin_commands();
     add_command("HOME", 1);
     add_transfers(4);
@@ -466,7 +469,7 @@ static void what_does_not_repeat_is_no_cycle(void **state) {
     begin_commands();
     add_transfers(2);
     assert_unsteady(WH_STEADY_NO_CYCLES);
-    /* Three like ones that are less than half of the run. */
+    /* Three equal cycles that are less than half of the run. */
     begin_commands();
     add_transfers(3);
     static const char *const others[] = {"GET B 1", "WAIT 1",  "ROTATE P 1", "HOME",
@@ -477,7 +480,8 @@ static void what_does_not_repeat_is_no_cycle(void **state) {
     assert_unsteady(WH_STEADY_NO_CYCLES);
 }
 
-/* Each of these differs from its neighbours by a hundredth and a bit, has an error, or as many wafers not. */
+/* Each of these differs from its neighbours by slightly more than a hundredth, has an error, or has
+ * another number of wafers. */
 static void cycles_that_differ_are_not_steady(void **state) {
     (void)state;
     begin_commands();
@@ -513,7 +517,7 @@ static void marked_cycles_go_before_what_repeats(void **state) {
     assert_unsteady(WH_STEADY_UNLIKE);
 }
 
-/* One wafer that is put twice in a cycle: marked it is one wafer of it, else nobody can tell. */
+/* One wafer is put down twice in a cycle: with a mark it counts as one, without it nobody can tell. */
 static void a_wafer_put_twice_in_a_cycle(void **state) {
     (void)state;
     begin_commands();
@@ -548,7 +552,7 @@ static void a_kind_is_what_and_where(void **state) {
 
 /* ------------------------------------------------------------------------------------- as reports have them */
 
-/* The figures as a report prints them and as JSON has them. */
+/* The figures as a report prints them and as JSON contains them. */
 
 static fixture_t f_report;
 static wh_busy_span_t intervals[16];
@@ -658,7 +662,7 @@ static void gantt_in_ascii(void **state) {
     free(text);
 }
 
-/* Without a terminal it has 100 columns, on the narrowest 20, and never a blank at a line's end. */
+/* Without a terminal it has 100 columns, on the narrowest one 20, and no line ends with a blank. */
 static void gantt_at_any_width(void **state) {
     (void)state;
     begin_report();
@@ -674,7 +678,8 @@ static void gantt_at_any_width(void **state) {
     }
 }
 
-/* From 2 s to 7 s, 40 columns of 125 slices: what began before has no bar, what lies outside has no row. */
+/* From 2 s to 7 s, 40 columns of 125 slices: intervals that began before have no bar, and those
+ * outside have no row. */
 static void gantt_of_a_window(void **state) {
     const wh_style_t style = {false, true, 50};
     const wh_record_sections_t window = {.gantt = true, .from_s = 2, .to_s = 7};
@@ -698,7 +703,7 @@ static void gantt_of_a_window(void **state) {
     free(text);
 }
 
-/* What goes on after a phase is told with what it goes on with, and what failed is counted. */
+/* A CONTINUE is listed with the command that it continues, and failures are counted. */
 static void totals_of_phases(void **state) {
     const wh_style_t style = {false, false, 120};
     (void)state;
@@ -715,7 +720,7 @@ static void totals_of_phases(void **state) {
                       "PUT P                  1           5.000    5.000   5.000     31.2\n"
                       "CONTINUE of GET B      2           2.000    1.000   3.000     25.0\n");
     free(text);
-    /* A WAIT in between changes nothing of that. */
+    /* A WAIT in between does not change that. */
     fixture_command(&f_report, 9, "WAIT 2", 16, 18);
     fixture_command(&f_report, 10, "CONTINUE", 18, 20);
     f_report.record.slices = 20000;
@@ -842,7 +847,7 @@ static json_t *reread(void) {
     return root;
 }
 
-/* A member or element is what this JSON text says, keys in the same order. */
+/* A member or element equals this JSON text, with the keys in the same order. */
 static void assert_json(const json_t *value, const char *wanted) {
     char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
     assert_non_null(text);
@@ -932,7 +937,7 @@ static void json_of_nothing(void **state) {
     json_decref(root);
 }
 
-/* The library's wh_status_text leaves out what only the program answers. */
+/* The library's wh_status_text leaves out statuses that only the program uses. */
 static void every_status_has_its_text(void **state) {
     (void)state;
 #define WH_STATUS(number, name, text) assert_string_equal(wh_record_error_text(WH_STATUS_##name), text);

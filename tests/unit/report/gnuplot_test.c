@@ -1,4 +1,4 @@
-/* A plot's script and data: word for word, and curves cut into lines that stay within their tolerance. */
+/* A plot's script and data: word for word, and curves split into lines that stay within their tolerance. */
 #include "report/gnuplot.h"
 
 #include "support/support.h"
@@ -175,7 +175,7 @@ static double signal_at(int slice) {
     return 100 * sin(slice / 300.0);
 }
 
-/* From slice 1 on, with a hole from 1001 to 1500. */
+/* From slice 1 on, without the slices 1001 to 1500. */
 static void make_curve(wh_path_t *curve, double tolerance) {
     wh_path_open(curve, tolerance, 100000);
     for (int slice = 1; slice <= SLICES; ++slice) {
@@ -219,7 +219,7 @@ static void lines_stay_within_the_tolerance(void **state) {
     wh_path_close(&curve);
 }
 
-/* Slopes a second; and the number of the wafer, with a gap where it changes. */
+/* Slopes per second; and the number of the wafer, with a gap at each change. */
 static void slopes_and_wafers(void **state) {
     (void)state;
     wh_path_t curve;

@@ -1,12 +1,12 @@
-/* A sweep's drawing, read back: each run stands where its parameter and its figure put it, in its own colour, and ticks are
- * round numbers at their places. */
+/* A sweep's drawing, read back: the parameter and the figure give the place of each run, with its
+ * own colour; ticks are round numbers at their places. */
 #include "report/sweep_plot.h"
 
 #include "support/support.h"
 
 enum { FIRST = 5, OTHERS = 3, POINTS = FIRST * OTHERS };
 
-/* The picture's frame: what the ticks of y and the discs must agree with. */
+/* The picture's frame: the ticks of y and the discs must agree with it. */
 enum { LEFT = 90, RIGHT = 736, TOP = 56, PANEL = 170, PITCH = 196, LANE = 16 };
 
 static wh_script_sweep_t sweep;
@@ -66,7 +66,7 @@ static double figure_of(size_t point, size_t panel) {
     return panel == 0 ? points[point].simulated_s : points[point].projz;
 }
 
-/* Least and most of all figures, 5 % beyond them. */
+/* The least and greatest of all figures, and 5 % beyond them. */
 static void range_of(size_t panel, double *low, double *high) {
     *low = (double)INFINITY;
     *high = -(double)INFINITY;
@@ -131,7 +131,7 @@ static void curves_join_what_differs_in_the_first_parameter_alone(void **state) 
     assert_int_equal(count("class=\"curve\" stroke"), 2 * OTHERS);
 }
 
-/* One that has not the figure leaves a hole, one that failed a cross. */
+/* A run without the figure leaves a hole, a failed one a cross. */
 static void what_is_missing_or_failed_is_seen(void **state) {
     (void)state;
     char cross[80];
@@ -152,7 +152,8 @@ static void what_is_missing_or_failed_is_seen(void **state) {
     assert_int_equal(begun, 2);
 }
 
-/* Ticks of y stand at multiples of 1, 2 or 5 times a power of ten, two to nine of them, each at its value's place. */
+/* Ticks of y stand at multiples of 1, 2 or 5 times a power of ten. There are two to nine, each at
+ * its value's place. */
 static void ticks_are_round_and_in_place(void **state) {
     (void)state;
     draw();
@@ -216,7 +217,7 @@ static void combinations_are_named_beside_their_lanes(void **state) {
     assert_int_equal(count("class=\"frame\" x"), 2);
 }
 
-/* One value, all figures the same: both have room. Nothing is divided by 0. */
+/* With one value, or with equal figures, both axes have some range. Nothing is divided by 0. */
 static void a_single_run_has_room(void **state) {
     (void)state;
     axes[0].count = sweep.point_count = sweep.axis_count = 1;

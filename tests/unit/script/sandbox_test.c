@@ -20,7 +20,7 @@
 typedef struct {
     const char *script;
     wh_sandbox_reason_t reason;
-    const char *message; /* a part of it; it begins with "case.lua" when there is one */
+    const char *message; /* a part of it; it begins with "case.lua" if there is one */
 } case_t;
 
 static const case_t cases[] = {
@@ -143,7 +143,7 @@ static const case_t cases[] = {
     {"local s = ('a'):rep(1e6) while true do utf8.len(s) end", WH_SANDBOX_BUDGET, ""},
     {"local s = ('1'):rep(1e6) while true do local x = tonumber(s) end", WH_SANDBOX_BUDGET, ""},
     {"local s = ('1'):rep(1e6) while true do local x = s + 0 end", WH_SANDBOX_BUDGET, ""},
-    /* ways out that are not there */
+    /* ways out that do not exist */
     {"for _, name in ipairs { 'os', 'io', 'debug', 'package', 'dofile', 'loadfile', 'collectgarbage', 'warn' "
      "} do\n"
      "  assert(rawget(_G, name) == nil)\n"
@@ -232,7 +232,7 @@ static void scripts_end_with_reason_and_line(void **state) {
     assert_int_equal(failed, 0);
 }
 
-/* The same, with all of them in one sandbox one after the other. */
+/* These cases run one after the other in one sandbox, too. */
 static void one_sandbox_survives_them_all(void **state) {
     (void)state;
     wh_sandbox_result_t result;
@@ -258,13 +258,13 @@ static void a_runaway_recursion_ends(void **state) {
 
 static void too_little_memory_is_no_sandbox(void **state) {
     (void)state;
-    for (size_t bytes = 1000; bytes < 100000; bytes += 1000) {
+    for (size_t bytes = 1000; bytes < 100000; bytes += 1000 * WH_TEST_SHARE) {
         const wh_sandbox_limits_t limits = {.memory_bytes = bytes};
         wh_sandbox_free(wh_sandbox_new(&limits)); /* null or not: no crash, no leak */
     }
 }
 
-/* Runs out of memory at every possible place of a script that does a bit of all. */
+/* Memory ends at every possible place of a script that does a bit of everything. */
 static void memory_may_end_anywhere(void **state) {
     (void)state;
     static const char script[] =
@@ -273,7 +273,7 @@ static void memory_may_end_anywhere(void **state) {
         "local s = ('ab'):rep(200):gsub('a', function(a) return a .. #t end)\n"
         "local co = coroutine.wrap(function() coroutine.yield(load('return 1')()) end) co()\n"
         "table.sort({ 3, 1, 2 }) error({ message = s })";
-    for (size_t bytes = 60000; bytes < 140000; bytes += 200) {
+    for (size_t bytes = 60000; bytes < 140000; bytes += 200 * WH_TEST_SHARE) {
         const wh_sandbox_limits_t limits = {.memory_bytes = bytes};
         wh_sandbox_t *const sandbox = wh_sandbox_new(&limits);
         if (sandbox != NULL) {
@@ -287,8 +287,8 @@ static void memory_may_end_anywhere(void **state) {
 
 /* ------------------------------------------------------------------------------------------ the host's side */
 
-/* The host's side of the sandbox: files, layouts, charges, parameters, and what is left when a script has
- * ended. */
+/* The host's side of the sandbox: files, layouts, charges, parameters, and the state after a script
+ * has ended. */
 
 /* ---- Files ---- */
 
@@ -388,7 +388,7 @@ static void layouts_are_evaluated_within_scripts(void **state) {
     assert_ends(script, WH_SANDBOX_ERROR, "wrong.lua:2: attempt");
 }
 
-/* What stands in a file that is no Lua: nothing of it is told to a script. */
+/* The contents of a file that is no Lua: a script learns nothing of them. */
 static void other_files_are_not_quoted(void **state) {
     (void)state;
     static const char *const texts[] = {
@@ -407,7 +407,7 @@ static void other_files_are_not_quoted(void **state) {
             fail_msg("%s: %s", texts[i], result.message);
         }
         assert_false(wh_sandbox_evaluate(wh_sandbox_state(sandbox), file, &result));
-        assert_true(i != 4 || strstr(result.message, "near '3s'")); /* its owner reads what Lua says */
+        assert_true(i != 4 || strstr(result.message, "near '3s'")); /* its owner reads Lua's message */
         wh_sandbox_free(sandbox);
     }
 }
@@ -626,7 +626,7 @@ static int remove_folder(void **state) {
 
 /* ------------------------------------------------------------------------------------- the same in each run */
 
-/* The same script does the same in each run; patterns are Lua's own; no text whatever crashes the sandbox. */
+/* Each run of a script does the same; patterns behave as Lua's own; no text crashes the sandbox. */
 
 static uint64_t random_state;
 
@@ -650,7 +650,7 @@ static void random_begin(void) {
 
 /* ---- What a script prints ---- */
 
-/* Runs a text in a new sandbox and returns what it printed; the caller frees it. */
+/* Runs a text in a new sandbox and returns its output; the caller frees it. */
 static char *printed_by(const char *script) {
     char *text = NULL;
     size_t size = 0;
@@ -735,7 +735,7 @@ static void numbers_are_the_same_everywhere(void **state) {
     free(first);
 }
 
-/* Steps counted for the same script must not depend on the hash seed or on addresses. */
+/* The steps of a script must not depend on the hash seed or on addresses. */
 static uint64_t spent_by(const char *script) {
     wh_sandbox_t *const sandbox = wh_sandbox_new(NULL);
     assert_non_null(sandbox);
@@ -773,7 +773,7 @@ static const char compare_script[] =
     "end end))\n"
     "return table.concat(out, '|')";
 
-/* Random text over an alphabet that makes patterns likely to mean something. */
+/* Random text over an alphabet that often gives valid patterns. */
 static void random_text(char *text, size_t limit, const char *alphabet) {
     const size_t length = random_below(limit);
     for (size_t i = 0; i < length; ++i) {
@@ -804,7 +804,7 @@ static void patterns_are_those_of_lua(void **state) {
     lua_State *const own = wh_sandbox_state(sandbox);
     load_comparison(stock);
     load_comparison(own);
-    for (int i = 0; i < 30000; ++i) {
+    for (int i = 0; i < 30000 / WH_TEST_SHARE; ++i) {
         char subject[12], pattern[14], replacement[5];
         wh_sandbox_result_t result;
         random_text(subject, sizeof subject, "aab(b) %1.");
@@ -881,7 +881,7 @@ static void no_text_crashes(void **state) {
     random_begin();
     FILE *const nowhere = fopen("/dev/null", "w");
     wh_sandbox_t *sandbox = new_for_fuzzing(nowhere);
-    for (int i = 0; i < 6000; ++i) {
+    for (int i = 0; i < 6000 / WH_TEST_SHARE; ++i) {
         char text[400];
         size_t length = random_below(60);
         for (size_t k = 0; k < length; ++k) {
@@ -894,7 +894,7 @@ static void no_text_crashes(void **state) {
             length = mutate(text, length, sizeof text);
         }
         assert_ends_run(sandbox, text, length);
-        if (i % 200 == 0) { /* globals that a text has overwritten */
+        if (i % 200 == 0) { /* a text may have overwritten these globals */
             wh_sandbox_free(sandbox);
             sandbox = new_for_fuzzing(nowhere);
         }

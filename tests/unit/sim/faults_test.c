@@ -1,4 +1,4 @@
-/* Faults on purpose in the simulator: their names, what is refused, when they begin and end. */
+/* Faults on purpose in the simulator: their names, the refusals, and their begin and end. */
 #include "support/faults.h"
 
 static void faults_have_names(void **state) {
@@ -59,7 +59,8 @@ static void what_no_cell_can_have_is_refused(void **state) {
     refuse_fault(&f, WH_STATUS_NOT_FINITE);
 }
 
-/* An offset that is none of a wafer's says nothing: a fault that has one is a mistake, as with a wrong `other`. */
+/* An offset that moves no wafer has no meaning: a fault with such an offset is a mistake, and so is
+ * one with a wrong `other`. */
 static void only_a_wafers_fault_has_an_offset(void **state) {
     (void)state;
     for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
@@ -86,7 +87,8 @@ static void only_a_wafers_fault_has_an_offset(void **state) {
     refuse_fault(&nan, WH_STATUS_OUT_OF_RANGE);
 }
 
-/* As they are made, or with the one thing more that their kind needs, a cell takes them and they act. */
+/* Faults as they are made, or with the one more field that their kind needs: a cell accepts them
+ * and they act. */
 static void faults_are_made_ready_to_be_taken(void **state) {
     (void)state;
     for (int i = 0; i < WH_FAULT_KINDS; ++i) {
@@ -145,7 +147,7 @@ static void the_ends_of_the_ranges(void **state) {
     }
 }
 
-/* Where numbers end, too, a wafer that faults move stays where a table can have it. */
+/* Also at the ends of the number range, a wafer that faults move stays at a place that a table can hold. */
 static void no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     (void)state;
     wh_real_t *const parts[] = {&command.faults[0].fault.offset.r.x, &command.faults[0].fault.offset.r.y,
@@ -184,7 +186,7 @@ static void faults_take_slots(void **state) {
     assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
     bring(3, &f);
     step(880, CLOSED);
-    /* Taken now, but for the very same fault with another end. */
+    /* It is accepted now, except for the very same fault with another end. */
     wh_fault_t others[10] = {f, f, f, f, f, f, f, f, f, f};
     others[0].kind = WH_FAULT_SENSOR_OFF;
     others[1].target = 1;
@@ -205,7 +207,7 @@ static void faults_take_slots(void **state) {
     bring(3, &f);
     step(880, CLOSED);
     expect_event(WH_EVENT_FAULT_CLEARED, WH_NONE, 0, 3);
-    /* Over: free for another; so is one below that was never used. */
+    /* It is over, so its slot is free for another; so is a slot below that was never used. */
     others[0].from = command.seq + 1;
     bring(3, &others[0]);
     step(880, CLOSED);
@@ -246,7 +248,7 @@ static void a_fault_acts_from_and_until(void **state) {
     }
 }
 
-/* Told late that it was to end long ago, it ends now. */
+/* The news that it ended long ago comes late: it ends now. */
 static void an_end_that_has_passed(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
@@ -262,7 +264,7 @@ static void an_end_that_has_passed(void **state) {
     assert_int_equal(answer.sensors, 0);
 }
 
-/* Nothing is left of the fault that a slot had before. */
+/* Nothing is left of the slot's earlier fault. */
 static void a_slot_that_is_used_again_is_new(void **state) {
     (void)state;
     static const wh_pose_t none;
@@ -281,7 +283,7 @@ static void a_slot_that_is_used_again_is_new(void **state) {
     assert_memory_equal(&slot->placed, &none, sizeof none);
 }
 
-/* A new one whose slices are past is taken, and is over in that slice: no event, nothing acts. */
+/* A new fault whose slices are past is accepted, and is over in that slice: no event, no effect. */
 static void a_fault_whose_slices_are_past(void **state) {
     (void)state;
     for (int i = 0; i < 9; ++i) {
@@ -301,7 +303,7 @@ static void a_fault_whose_slices_are_past(void **state) {
     }
 }
 
-/* One that is cleared before it began was never there, for whoever reads events. */
+/* A fault that is cleared before it began does not appear in the events. */
 static void a_fault_that_never_begins(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
@@ -319,7 +321,7 @@ static void a_fault_that_never_begins(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- effects */
 
-/* What faults on purpose do to signals, axes and wafers. */
+/* The effects of faults on signals, axes and wafers. */
 
 /* ----------------------------------------------------------------------------------------------------- signals */
 
@@ -371,7 +373,7 @@ static void a_neighbours_faults_do_not_count(void **state) {
     assert_int_equal(answer.sensors, 1);
 }
 
-/* Until it begins, and when it is over, commands and sensors go through. */
+/* Before it begins, and after it is over, commands and sensors pass unchanged. */
 static void only_while_it_acts(void **state) {
     static const wh_fault_kind_t kinds[] = {WH_FAULT_AXIS_STOPPED, WH_FAULT_COMMAND_LOST,
                                             WH_FAULT_VALVE_STUCK, WH_FAULT_SENSOR_ON};
@@ -502,7 +504,7 @@ static void a_wafer_is_moved_and_put_back(void **state) {
     assert_true(answer.wafers[0].base_from_wafer.R.m[2][1] == 0);
 }
 
-/* Two rotations that each just pass, but not their product. */
+/* Two rotations that each just pass, but their product does not. */
 static void a_turn_that_just_passes_is_mended(void **state) {
     (void)state;
     wh_pose_t worn = wh_test_at(700, 0, 900);
@@ -528,7 +530,7 @@ static void doubled_is_onto_the_other(void **state) {
     assert_true(answer.wafers[0].base_from_wafer.r.z == 911);
 }
 
-/* A wafer that a gripper carries lies in no slot: the other one waits until it does. */
+/* A wafer that a gripper carries lies in no slot: the second fault waits until it does. */
 static void doubled_waits_while_the_other_is_held(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
@@ -546,7 +548,7 @@ static void doubled_waits_while_the_other_is_held(void **state) {
     assert_true(answer.wafers[0].base_from_wafer.r.z == 913);
 }
 
-/* A wafer that somebody took meanwhile stays where it came to. */
+/* A wafer that a gripper took in the meantime stays at its new place. */
 static void a_wafer_that_was_taken_is_not_put_back(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
@@ -559,7 +561,7 @@ static void a_wafer_that_was_taken_is_not_put_back(void **state) {
     expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
     assert_true(answer.wafers[0].base_from_wafer.r.x == 703 && answer.wafers[0].base_from_wafer.r.z == 902);
     assert_int_equal(answer.grippers[0].wafer, 0);
-    /* The same again, let go somewhere else before it is cleared. */
+    /* Now it is released at another place before the fault is cleared. */
     f = fault_of(WH_FAULT_WAFER_SHIFTED, 1);
     f.offset = wh_test_at(0, 0, 3);
     bring(0, &f);
@@ -573,7 +575,8 @@ static void a_wafer_that_was_taken_is_not_put_back(void **state) {
     assert_true(answer.wafers[1].base_from_wafer.r.z == 813);
 }
 
-/* Of two faults of one wafer the first may end first, or both at once: in the end it lies where it lay before both. */
+/* Among two faults of one wafer the first may end first, or both at once. In the end the wafer lies
+ * where it lay before both. */
 static void two_faults_of_one_wafer(void **state) {
     (void)state;
     for (int together = 0; together < 2; ++together) {
@@ -610,7 +613,7 @@ static void expect_x_after_clearing(int32_t slot, double x) {
     assert_true(wafers[0].base_from_wafer.r.x == WH_REAL(x));
 }
 
-/* Each hands on where it lay to the one that moved it next, and to none of the others. */
+/* Each passes the wafer's earlier place on to the fault that moved it next, and to no other. */
 static void three_faults_of_one_wafer_among_others(void **state) {
     (void)state;
     wh_fault_t waiting = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
@@ -621,7 +624,7 @@ static void three_faults_of_one_wafer_among_others(void **state) {
     shift(2, 0);
     shift(0, 0);
     shift(1, 0);
-    /* the other wafer lies where the second one had put this one */
+    /* the other wafer lies where the second fault had put this one */
     const wh_pose_t same = wh_test_at(706, 0, 900);
     assert_int_equal(wh_grasp_place(&simulator.table, 1, &same), WH_OK);
     shift(4, 1);
@@ -633,7 +636,7 @@ static void three_faults_of_one_wafer_among_others(void **state) {
     assert_true(wafers[1].base_from_wafer.r.x == 706);
 }
 
-/* The first in the slots is not the only one that acts. */
+/* Not only the first fault in the slots acts. */
 static void faults_overrule_grippers_each_in_turn(void **state) {
     (void)state;
     step(880, CLOSED);
@@ -648,7 +651,7 @@ static void faults_overrule_grippers_each_in_turn(void **state) {
     assert_true(answer.grippers[0].base_from_gripper.r.z == 880);
 }
 
-/* Taken where the fault had put it, it is the gripper's, though it has not moved since. */
+/* A wafer that is taken at the fault's place is the gripper's, though it has not moved since. */
 static void a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
@@ -666,7 +669,7 @@ static void a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     assert_int_equal(simulator.table.counters.refused, 0);
 }
 
-/* Shifts wafer 0, which gripper 0 then takes and sets down where it lay: the same bits. */
+/* Shifts wafer 0; then gripper 0 takes it and puts it down at the same place, with the same bits. */
 static void take_and_set_down(void) {
     const wh_pose_t placed = wafers[0].base_from_wafer;
     step(880, OPEN);
@@ -679,7 +682,7 @@ static void take_and_set_down(void) {
     step(880, CLOSED);
 }
 
-/* What a gripper has set down lies there, be it where the fault had put it to the last bit. */
+/* A wafer that a gripper has put down stays there, even if it is exactly where the fault had put it. */
 static void a_wafer_that_was_set_down_in_its_place_is_not_put_back(void **state) {
     (void)state;
     shift(2, 0);
@@ -703,7 +706,7 @@ static void a_wafer_that_was_held_for_one_slice_is_not_put_back(void **state) {
     expect_x_after_clearing(0, 703);
 }
 
-/* Neither fault puts back the wafer that was set down between them, and a later one finds it where it was set down. */
+/* Neither fault moves back the wafer that was put down between them; a later one finds it at that place. */
 static void a_fault_after_the_taking_puts_back_to_where_the_wafer_was_set_down(void **state) {
     (void)state;
     for (int order = 0; order < 2; ++order) {
@@ -722,7 +725,8 @@ static void a_fault_after_the_taking_puts_back_to_where_the_wafer_was_set_down(v
     }
 }
 
-/* Moved by hand, and moved back later; or to where another fault then takes it to the old place. */
+/* The wafer is moved by hand, and moved back later; or it is moved to a place from which another
+ * fault takes it to the old one. */
 static void a_wafer_that_was_placed_by_hand_is_not_put_back(void **state) {
     (void)state;
     const wh_pose_t away = wh_test_at(700, 0, 900);
@@ -743,7 +747,7 @@ static void a_wafer_that_was_placed_by_hand_is_not_put_back(void **state) {
     expect_x_after_clearing(0, 700);
 }
 
-/* The end of a fault whose wafer was taken can still be changed, and its slot is not free before. */
+/* The end of a fault whose wafer was taken can still be changed, and its slot is not free before that. */
 static void a_taken_wafers_fault_goes_on(void **state) {
     (void)state;
     shift(0, 0);

@@ -1,4 +1,5 @@
-/* A simulator whose gripper has an edge grip: its sensor, its faults, and that its state is all that a step depends on. */
+/* A simulator whose gripper has an edge grip: its sensor, its faults, and that a step depends on
+ * its state alone. */
 #include "support/pose.h"
 
 #include "sim/snapshot.h"
@@ -124,7 +125,8 @@ static void a_slow_plunger_goes_as_fast_as_its_fault_lets_it(void **state) {
     assert_near(state_of(&run)->s, before + 2 * 0.04, 1e-9);
 }
 
-/* Saved in each slice of the plunger's way and read by a second simulator: both go on with the same hash. */
+/* It is saved in each slice of the plunger's way and read by a second simulator: both continue with
+ * the same hash. */
 static void a_snapshot_has_all_of_a_plunger_on_its_way(void **state) {
     (void)state;
     static uint8_t bytes[WH_SNAPSHOT_SIZE(1, 1)];

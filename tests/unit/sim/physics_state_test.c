@@ -1,4 +1,4 @@
-/* The simulator's condition: which ones are refused, and what the hash covers. */
+/* The simulator's state: which ones are refused, and which fields the hash covers. */
 #include "support/faults.h"
 
 #if defined(WH_FLOAT)
@@ -45,7 +45,7 @@ static void conditions_that_no_simulator_leaves(void **state) {
     more.told[0] = OPEN;
     assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more = good;
-    more.vacuum[GRIPPERS].level = 7; /* beyond those that there are */
+    more.vacuum[GRIPPERS].level = 7; /* beyond the existing ones */
     more.faults.count = 2;           /* a free slot */
     assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more.faults.slots[0].phase = WH_FAULT_OVER; /* its poses do not matter any more */
@@ -55,7 +55,7 @@ static void conditions_that_no_simulator_leaves(void **state) {
     assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
 }
 
-/* A fault of gripper 1 where there are 2 grippers and 1 wafer, and the other way round. */
+/* A fault of gripper 1, with 2 grippers and 1 wafer, and the other way round. */
 static void grippers_and_wafers_are_counted_apart(void **state) {
     (void)state;
     wh_physics_t physics = wh_physics_default();
@@ -69,7 +69,7 @@ static void grippers_and_wafers_are_counted_apart(void **state) {
     assert_int_equal(wh_physics_state_validate(&condition, 1, 2), WH_STATUS_OUT_OF_RANGE);
 }
 
-/* A state has room for WH_GRIPPERS. Run under the address sanitizer, this reads nothing beyond. */
+/* A state has room for WH_GRIPPERS. Under the address sanitizer this shows that nothing beyond is read. */
 static void more_grippers_than_there_is_room_for(void **state) {
     (void)state;
     static const size_t counts[] = {WH_GRIPPERS + 1, 33, 1000000, SIZE_MAX};
@@ -91,7 +91,8 @@ static void more_grippers_than_there_is_room_for(void **state) {
     free(alone);
 }
 
-/* A table of its own may have more grippers than a simulator: the hash covers what a state can have of them. */
+/* A table of its own may have more grippers than a simulator: the hash covers those that a state
+ * can contain. */
 static void a_large_table_has_a_hash(void **state) {
     (void)state;
     static wh_gripper_t many[WH_GRIPPERS + 3];
@@ -179,7 +180,7 @@ static void the_hash_covers_each_word(void **state) {
     }
 }
 
-/* Whoever keeps a run's hashes compares them with those of another machine, another compiler, another year. */
+/* Stored hashes of a run are compared with those of another machine, another compiler, another year. */
 static void the_hash_is_this_number(void **state) {
     (void)state;
     wh_fault_t fault = fault_of(WH_FAULT_LEAK, 0);
@@ -204,7 +205,7 @@ static void without_any_it_is_the_tables_hash(void **state) {
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
     step(880, CLOSED);
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
-    simulator.physics.faults.count = 1; /* a free slot is none */
+    simulator.physics.faults.count = 1; /* a free slot does not count */
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
     bring_kind(WH_FAULT_SENSOR_ON, 0);
     step(880, CLOSED);

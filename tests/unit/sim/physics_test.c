@@ -1,4 +1,5 @@
-/* The simulator with a delayed vacuum and with pads: what reaches whoever asks it, and that the ideal one is the paper's. */
+/* The simulator with a delayed vacuum and with pads: the values that a caller gets, and that ideal
+ * vacuum gives the paper's results. */
 #include "support/pose.h"
 
 #include "sim/simulator.h"
@@ -75,7 +76,8 @@ static void what_is_refused(void **state) {
     assert_int_equal(wh_simulator_set_physics(&simulator, &physics), WH_STATUS_OUT_OF_RANGE);
 }
 
-/* Random moves and valves: wafers and events of a grasp table alone, bit for bit, and the sensors tell who holds one. */
+/* Random moves and valves: wafers and events are those of a grasp table alone, bit for bit, and the
+ * sensors show which gripper holds one. */
 static void ideal_is_the_paper(void **state) {
     static wh_wafer_t plain_wafers[WAFERS];
     static wh_gripper_t plain_grippers[GRIPPERS];
@@ -132,7 +134,7 @@ static void delayed_goes_its_own_way(void **state) {
     assert_int_equal(count(WH_EVENT_VACUUM_LOST), 0);
 }
 
-/* One second, and nothing else that takes its time. */
+/* One second, and nothing else that takes time. */
 static void a_slow_pump_alone(void **state) {
     (void)state;
     physics.vacuum.build = 1;
@@ -144,7 +146,7 @@ static void a_slow_pump_alone(void **state) {
     assert_true(answer.physics->vacuum[0].level < WH_REAL(0.01));
 }
 
-/* Pads that carry so much in the wafer's plane: a run along x just below and just above. */
+/* Pads whose limit is in the wafer's plane: a run along x just below and just above it. */
 static void run_along(double factor, size_t slips) {
     const double limit = 0.25 * (9810 + 1000 * 5 / 0.125);
     size_t begun = 0;
@@ -185,7 +187,7 @@ static void a_wafer_that_would_slip_is_named(void **state) {
     run_along(1 + margin, 1);
 }
 
-/* All grippers take a wafer and jerk it away, in one slice the one, in another the others. */
+/* All grippers take a wafer and jerk it away, some in one slice and the others in another. */
 static void each_gripper_slips_for_itself(void **state) {
     (void)state;
     physics.pads.friction = WH_REAL(0.25);
@@ -215,7 +217,7 @@ static void each_gripper_slips_for_itself(void **state) {
     }
 }
 
-/* There a gripper seems to hold a wafer by its vacuum. */
+/* In these states a gripper seems to hold a wafer by its vacuum. */
 static void what_is_beyond_the_grippers_is_left_alone(void **state) {
     (void)state;
     physics.vacuum = wh_vacuum_delayed();
@@ -232,7 +234,7 @@ static void what_is_beyond_the_grippers_is_left_alone(void **state) {
     assert_int_equal(input->valve, CLOSED);
 }
 
-/* Each fault is told, though many begin in one slice. */
+/* Each fault is reported, though many begin in one slice. */
 static void all_slots_at_once(void **state) {
     (void)state;
     use();
@@ -251,7 +253,7 @@ static void all_slots_at_once(void **state) {
     assert_int_equal(answer.sensors, 1);
 }
 
-/* What the layout has from the beginning. */
+/* The layout has it from the beginning. */
 static void a_fault_from_the_beginning(void **state) {
     (void)state;
     wh_fault_t *fault = &physics.faults[0];
@@ -269,7 +271,7 @@ static void a_fault_from_the_beginning(void **state) {
     assert_int_equal(count(WH_EVENT_FAULT_ARMED), 1);
 }
 
-/* An observer that leaves no room for what comes after it, and counts the wafers that faults move. */
+/* An observer that leaves no room for later events, and counts the wafers that faults move. */
 static void fill(void *user, const wh_command_t *order, const wh_gripper_input_t inputs[],
                  const wh_grasp_t *table, wh_event_list_t *list) {
     (void)order;
@@ -316,7 +318,7 @@ static void what_does_not_fit_is_not_told(void **state) {
     assert_int_equal(placed, 1);
 }
 
-/* A cell with one station of two slots, 10 mm apart, where the first wafer lies in slot 2, and a slow vacuum. */
+/* A cell with one station of two slots, 10 mm apart, with the first wafer in slot 2, and a slow vacuum. */
 static wh_station_t shelf;
 
 static void stand_on_a_shelf(void) {
@@ -360,7 +362,7 @@ static void a_support_stops_a_wafer_whose_vacuum_still_holds(void **state) {
     assert_near(answer.wafers[0].base_from_wafer.r.x, 0, 0);
 }
 
-/* At the plane itself, as in a PUT of a seated wafer: the support has it as soon as the valve closes. */
+/* At the plane itself, as in a PUT of a seated wafer: the support takes it as soon as the valve closes. */
 static void a_wafer_at_the_plane_stays_there(void **state) {
     (void)state;
     stand_on_a_shelf();
@@ -372,7 +374,7 @@ static void a_wafer_at_the_plane_stays_there(void **state) {
     assert_near(height(), 0, 1e-6);
 }
 
-/* Of a tilted slot, or with a low `release`, the wafer is below the plane when its valve closes. */
+/* In a tilted slot, or with a low `release`, the wafer is below the plane when its valve closes. */
 static void a_wafer_a_little_below_the_plane_goes_no_farther(void **state) {
     (void)state;
     stand_on_a_shelf();
@@ -387,16 +389,16 @@ static void a_wafer_a_little_below_the_plane_goes_no_farther(void **state) {
 
 static void only_a_support_below_stops_a_wafer(void **state) {
     (void)state;
-    /* With an open valve the blade pulls on: collisions tell. */
+    /* With an open valve the blade pulls the wafer on: the collision check reports that. */
     stand_on_a_shelf();
     step(0, WH_REAL(0.5), OPEN);
     step(0, WH_REAL(-0.7), OPEN);
     assert_int_equal(answer.grippers[0].wafer, 0);
-    /* From farther below the plane, too, and upwards through the plane of slot 2. */
+    /* Also from farther below the plane, and upwards through the plane of slot 2. */
     step(0, WH_REAL(-1.0), CLOSED);
     step(0, WH_REAL(1.0), CLOSED);
     assert_int_equal(answer.grippers[0].wafer, 0);
-    /* Beside the slot there is none. */
+    /* Beside the slot there is no support. */
     step(100, WH_REAL(1.0), CLOSED);
     step(100, WH_REAL(-1.0), CLOSED);
     assert_int_equal(answer.grippers[0].wafer, 0);

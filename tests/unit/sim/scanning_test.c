@@ -1,5 +1,5 @@
-/* Scans of an edge sensor, slice by slice: each sample once, as the sensor reads it there; orders that cannot be taken; scans
- * that end early; states that are copied, saved and hashed. */
+/* Scans of an edge sensor, slice by slice: each sample comes once, as the sensor reads it there;
+ * orders that are refused; scans that end early; states that are copied, saved and hashed. */
 #include "sim/scanning.h"
 
 #include "math/hash.h"
@@ -75,7 +75,8 @@ static void arm(run_t *of, int64_t first, int32_t count) {
     of->command.scan = (wh_scan_order_t){WH_SCAN_ARM, CHUCK, count, first};
 }
 
-/* The chuck turns from 0 by `turn` in so many slices, armed in the first of them; it stands in that one. */
+/* The chuck turns from 0 by `turn` in this number of slices. It is armed in the first of them, and
+ * stands in that one. */
 static const wh_scan_t *turn_by(run_t *of, double turn, int slices, int64_t first, int32_t count) {
     of->count = 0;
     arm(of, first, count);
@@ -259,7 +260,8 @@ static void without_a_wafer_there_is_nothing_and_face_down_it_is_mirrored(void *
     }
     assert_int_equal(run.count, 3600);
     assert_true(fabs(deepest * 2 * WH_TEST_PI / 3600 - 0.4) < 0.01);
-    /* A wafer that the chuck does not hold stays where it is: here its notch, mirrored, below the sensor. */
+    /* A wafer that the chuck does not hold stays in its place: here its notch, mirrored, is below
+     * the sensor. */
     const wh_mat3_t turned = wh_test_rotation(0, 0, 1, 0.3);
     const wh_mat3_t over = wh_test_rotation(1, 0, 0, WH_TEST_PI);
     begin_turned(&run, 0.001, wh_mat3_multiply(&turned, &over));
@@ -297,7 +299,7 @@ static void a_sensor_that_a_fault_breaks_down_says_so(void **state) {
     }
 }
 
-/* As one whose latency is longer by as much. */
+/* The effect equals that of a latency that is longer by as much. */
 static void a_sensor_that_a_fault_makes_late_reads_what_comes_later(void **state) {
     (void)state;
     begin(&run, 0.001);
@@ -350,7 +352,7 @@ static void a_saved_scan_goes_on_bit_for_bit(void **state) {
     }
     assert_memory_equal(&run.simulator.physics.scan, &twin.simulator.physics.scan,
                         sizeof run.simulator.physics.scan);
-    /* not into a cell with another sensor, nor a scan that no simulator has */
+    /* not into a cell with another sensor, and no scan that a simulator cannot have */
     scanner.sensor.noise = 0.004;
     assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_STATUS_OTHER_SNAPSHOT);
     wh_physics_state_t broken = run.simulator.physics;
@@ -362,7 +364,7 @@ static void a_saved_scan_goes_on_bit_for_bit(void **state) {
     broken = run.simulator.physics;
     broken.scan.gripper = GRIPPERS;
     assert_int_equal(wh_physics_state_validate(&broken, GRIPPERS, WAFERS), WH_STATUS_OUT_OF_RANGE);
-    /* a state that is never scanned in is one of a cell without grippers, too */
+    /* a state without any scan fits a cell without grippers, too */
     wh_physics_state_start(&broken, NULL);
     assert_int_equal(wh_physics_state_validate(&broken, 0, WAFERS), WH_OK);
     broken = run.simulator.physics;

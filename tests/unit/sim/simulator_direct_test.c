@@ -1,5 +1,6 @@
-/* The simulator's two ways through a slice: a cell without faults whose vacuum is there at once goes the short one. Here
- * each run goes both: a second simulator has a fault that never begins, and so takes the long way. */
+/* The simulator's two ways through a slice: a cell without faults and with an immediate vacuum
+ * takes the short one. Here each run takes both: a second simulator has a fault that never begins,
+ * and so takes the long way. */
 #include "support/pose.h"
 
 #include "sim/simulator.h"
@@ -52,7 +53,7 @@ static int set_up(void **state) {
     return 0;
 }
 
-/* Grippers up and down among the wafers; now and then a valve that is none or a pose that is none. */
+/* Grippers move up and down among the wafers; now and then a valve or a pose is invalid. */
 static wh_command_t any_command(int64_t seq) {
     wh_command_t command;
     memset(&command, 0, sizeof command);
@@ -96,7 +97,7 @@ static void compare(void) {
     compare_conditions(&plain.simulator.physics, &faulty.simulator.physics);
 }
 
-/* Returns in how many slices some gripper held a wafer. */
+/* Returns the number of slices in which some gripper held a wafer. */
 static int step_both(void) {
     int held = 0;
     for (int64_t seq = 1; seq <= SLICES; ++seq) {
@@ -115,7 +116,7 @@ static void ideal_vacuum_goes_both_ways(void **state) {
     assert_true(step_both() > SLICES / 2);
 }
 
-/* Levels and sensors that a vacuum with another config left behind: the first slice puts them right. */
+/* Levels and sensors that a vacuum with another config left behind: the first slice corrects them. */
 static void whatever_the_levels_were(void **state) {
     (void)state;
     for (int i = 0; i < 8; ++i) {

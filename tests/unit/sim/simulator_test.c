@@ -1,4 +1,4 @@
-/* The simulator: what it refuses, what a state shows, and that the cell has its say. */
+/* The simulator: its refusals, the contents of a state, and that the cell judges. */
 #include "support/pose.h"
 
 #include "sim/played.h"
@@ -106,7 +106,13 @@ static void grips_are_refused_that_the_simulator_does_not_take(void **state) {
     assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_NULL_ARGUMENT);
     grips[1].kind = WH_GRIP_VACUUM;
     assert_null(simulator.given.gripping);
+    parts.dt = 0.002; /* plungers would go twice as fast */
+    assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_OUT_OF_RANGE);
+    parts.dt = 0.001;
     assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_OK);
+    wh_physics_t slower = wh_physics_default();
+    slower.slice_s = WH_REAL(0.002);
+    assert_int_equal(wh_simulator_set_physics(&simulator, &slower), WH_STATUS_OUT_OF_RANGE);
     step(0, 0, CLOSED);
     assert_int_equal(wh_simulator_set_grips(&simulator, &parts), WH_STATUS_OUT_OF_RANGE);
 }
@@ -146,9 +152,9 @@ static void passive_pads_lift_a_wafer_whatever_their_valve_does(void **state) {
     assert_near(wafers[0].base_from_wafer.r.z, 900, 1e5 * WH_TEST_ROUNDING);
 }
 
-/* Friction of 0.2 holds 1962 mm/s^2: of a constant acceleration 0.001962 mm in the square of a slice. */
-/* Half the acceleration that friction of 0.2 holds is 0.000981 mm in the square of a slice; a float's places are
- * good to 6e-5 mm. */
+/* Friction of 0.2 holds 1962 mm/s^2: a constant acceleration is 0.001962 mm per slice squared. */
+/* Half the acceleration that friction of 0.2 holds is 0.000981 mm per slice squared; a float's
+ * places are good to 6e-5 mm. */
 #if defined(WH_FLOAT)
 #define TOO_FAST 0.0012
 #define SLOW 0.0008
@@ -193,6 +199,42 @@ static void init_refuses_what_it_cannot_use(void **state) {
     assert_int_equal(wh_simulator_init(&simulator, &config, &large, &cell), WH_STATUS_BAD_CAPACITY);
     assert_int_equal(wh_simulator_init(&simulator, &wide, &storage, &cell), WH_STATUS_BAD_TOLERANCE);
     assert_memory_equal(&simulator, &before, sizeof simulator);
+}
+
+/* Counts beyond the arrays always; what does not go on where that is asked for. */
+static void counts_and_times_are_looked_at(void **state) {
+    (void)state;
+    command.axis_count = 4000000;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_OUT_OF_RANGE);
+    command.axis_count = WH_AXES;
+    step(0, 0, CLOSED);
+    command.seq = -7;
+    command.utime = -7000;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+
+    assert_int_equal(wh_simulator_set_strict(NULL, true), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_set_strict(&simulator, true), WH_OK);
+    /* The slices that it saw before count. */
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_OUT_OF_RANGE);
+    command.seq += 1;
+    command.utime += 1;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(wh_simulator_set_strict(&simulator, true), WH_OK);
+    const uint64_t hash = wh_simulator_hash(&simulator);
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_OUT_OF_RANGE);
+    command.utime += 1;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_OUT_OF_RANGE);
+    command.seq += 1;
+    command.utime -= 1;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_OUT_OF_RANGE);
+    assert_true(wh_simulator_hash(&simulator) == hash);
+    command.utime += 1;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(wh_simulator_set_strict(&simulator, false), WH_OK);
+    command.seq = 1;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    memset(&simulator, 0, sizeof simulator);
+    assert_int_equal(wh_simulator_set_strict(&simulator, true), WH_STATUS_NOT_INITIALISED);
 }
 
 static void init_refuses_a_cell_that_is_none(void **state) {
@@ -241,11 +283,11 @@ static void a_simulator_that_was_never_initialised_is_refused(void **state) {
         assert_memory_equal(&simulator, &before, sizeof simulator);
     }
     memcpy(&simulator, &good, sizeof simulator);
-    simulator.table.mark = 0; /* another's hand in it */
+    simulator.table.mark = 0; /* somebody overwrote it */
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_NOT_INITIALISED);
 }
 
-/* As many grippers as a command carries, all of which let go at once, each in the air. */
+/* The largest number of grippers in a command; all of them release at once, each in the air. */
 static void all_grippers_at_once(void **state) {
     (void)state;
     static wh_wafer_t many_wafers[WH_GRIPPERS];
@@ -336,7 +378,7 @@ static void the_cell_judges_a_release_in_the_same_slice(void **state) {
     assert_near(answer.events[1].height, 900, 2048 * WH_TEST_ROUNDING);
 }
 
-/* A refused command: answered, counted, and nothing has moved. */
+/* A refused command is answered and counted, and nothing has moved. */
 static void expect_refused(wh_status_t status, size_t events) {
     const uint64_t hash = simulator.link.hash(&simulator.link);
     const uint64_t refused = simulator.table.counters.refused;
@@ -389,7 +431,7 @@ static void entries_beyond_the_count_are_not_looked_at(void **state) {
     assert_int_equal(answer.sensors, 1);
 }
 
-/* The interface at which an MCS meets it. */
+/* The interface that an MCS uses. */
 static void the_link_is_the_simulator(void **state) {
     (void)state;
     wh_link_t *link = &simulator.link;
@@ -402,7 +444,7 @@ static void the_link_is_the_simulator(void **state) {
     assert_int_equal(link->missed(link), 0); /* a call is never late */
 }
 
-/* Zeroed, and after each refusal of wh_player_init, whatever stood there before. */
+/* Zeroed, and after each refusal of wh_player_init, whatever its memory held before. */
 static void a_player_without_a_run_plays_nothing(void **state) {
     (void)state;
     static wh_player_t player;
@@ -505,7 +547,7 @@ static void a_runs_two_slice_lengths_agree(void **state) {
     }
     const wh_grasp_storage_t storage = storage_here();
     static wh_player_t player;
-    for (int64_t us = 1; us <= 1000000; us += us < 5000 ? 1 : 997) {
+    for (int64_t us = 1; us <= 1000000; us += (us < 5000 ? 1 : 997) * WH_TEST_SHARE) {
         run.slice_us = us;
         run.physics.slice_s = (wh_real_t)us / WH_REAL(1e6);
         assert_int_equal(wh_player_init(&player, &run, &storage), WH_OK);
@@ -533,6 +575,7 @@ static void a_runs_faults_are_in_order(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(init_refuses_what_it_cannot_use, set_up),
+        cmocka_unit_test_setup(counts_and_times_are_looked_at, set_up),
         cmocka_unit_test_setup(init_refuses_a_cell_that_is_none, set_up),
         cmocka_unit_test_setup(a_simulator_that_was_never_initialised_is_refused, set_up),
         cmocka_unit_test_setup(all_grippers_at_once, set_up),

@@ -1,4 +1,4 @@
-/* Why a trial failed, in words. */
+/* The reason why a trial failed, in words. */
 #include "support/support.h"
 
 #include "study/lines.h"
@@ -14,6 +14,10 @@ static void assert_why(const wh_trial_line_t *trial, const char *expected) {
 static void all_that_went_wrong_is_named(void **state) {
     (void)state;
     assert_why(&(wh_trial_line_t){.errors = 1}, "1 command failed");
+    assert_why(&(wh_trial_line_t){.errors = 2, .error = 42, .error_line = 5},
+               "2 commands failed: 42 WAFER_MISSING in line 5");
+    assert_why(&(wh_trial_line_t){.ended = true, .errors = 2, .error = 42, .error_line = 5},
+               "ended by 42 WAFER_MISSING in line 5");
     assert_why(&(wh_trial_line_t){.errors = 2, .missed = 1, .missed_line = 7},
                "2 commands failed, line 7 missed");
     assert_why(&(wh_trial_line_t){.missed = 3, .missed_line = 7}, "line 7 missed, 2 more");

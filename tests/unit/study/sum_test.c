@@ -1,5 +1,6 @@
-/* Means, deviations, quantiles and histograms of a study, whoever adds them up; intervals of a rate against closed forms;
- * correlations against the textbook's, and none where there is nothing to say. */
+/* Means, deviations, quantiles and histograms of a study, in any order of addition; intervals of a
+ * rate compared with closed forms; correlations compared with the textbook's, and none if there is
+ * nothing to report. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +56,7 @@ static void sums_have_mean_deviation_and_quantiles(void **state) {
     check_quantiles(&sum, values, VALUES);
 }
 
-/* However the values are shared out, what comes together is the same to the last bit. */
+/* However the values are shared out, the combined result is the same to the last bit. */
 static void sums_do_not_depend_on_who_adds(void **state) {
     (void)state;
     static wh_sum_t all;
@@ -109,7 +110,7 @@ static void wilsons_limits_solve_his_equation(void **state) {
     }
 }
 
-/* All of n: the lower limit is n / (n + z^2). None: the upper one is z^2 / (n + z^2). */
+/* All n: the lower limit is n / (n + z^2). None: the upper one is z^2 / (n + z^2). */
 static void intervals_at_the_ends_have_closed_forms(void **state) {
     (void)state;
     const double square = 1.959963984540054 * 1.959963984540054;
@@ -153,8 +154,8 @@ static void histogram_counts_all(void **state) {
 
 enum { PAIRS = 400, CAUSES = 3 };
 
-/* The first cause is what the wafer's dx follows, and by its size what fails; the second goes with nothing; the third
- * never varies. */
+/* The wafer's dx follows the first cause, and failures follow its size; the second cause is
+ * independent; the third never varies. */
 static void draw(size_t trial, double drawn[CAUSES], double ends[WH_RELATION_ENDS], bool *failed) {
     const wh_trial_t name = {7, trial};
     const double noise = wh_deviate_normal(&name, 2, 0);
@@ -185,7 +186,7 @@ static void add_pairs(wh_relations_t *relations, wh_sum_t sums[WH_RELATION_ENDS]
     }
 }
 
-/* Of the first cause, or its size, with dx, tilt or failing, as a textbook has it. */
+/* The textbook's correlation of the first cause, or its size, with dx, tilt or failing. */
 static double plain_correlation(bool by_size, int with) {
     double x[PAIRS], y[PAIRS];
     double mean_x = 0, mean_y = 0, xy = 0, xx = 0, yy = 0;
@@ -233,7 +234,7 @@ static void correlations_are_the_textbooks(void **state) {
     assert_near(tilt.r, 1, 1e-6);
     assert_true(size.low > 0.5 && size.high < 0.9 && value.low < 0 && value.high > 0);
     assert_true(dx.low > 0.5 && dx.low < dx.r && dx.r < dx.high && dx.high < 0.85);
-    /* What goes with nothing is not told to. */
+    /* An independent cause is not reported. */
     const wh_correlation_t none = wh_relations_failing(&whole, 1, true, PAIRS, failed);
     assert_true(none.determined && none.low < 0 && none.high > 0);
     /* 21 intervals: erfc(z / sqrt 2) = 0.05 / 21, z = 3.038; atanh is linear near 0. */

@@ -1,4 +1,4 @@
-/* Ranges of a sweep: which values they have, in which order they are combined, and what is refused. */
+/* Ranges of a sweep: their values, the order in which they are combined, and the refusals. */
 #include "study/sweep.h"
 
 #include "support/support.h"

@@ -1,4 +1,5 @@
-/* Several robots in a study: each was taught a station by itself, and goes there; where wafers end follows from that alone. */
+/* Several robots in a study: each was taught a station by itself, and moves there. The places of
+ * the wafers follow from that alone. */
 #include "study/study.h"
 #include "support/support.h"
 
@@ -9,7 +10,7 @@ static wh_script_run_t run;
 
 /* ----------------------------------------------------------------------------------------------- the draws */
 
-/* One for each station, robot and axis, and none is another; the station itself only turns. */
+/* One for each station, robot and axis, all different; the station itself only turns. */
 static void each_robot_draws_by_itself(void **state) {
     (void)state;
     enum { STATIONS = 3, ROBOTS = 8 };
@@ -40,7 +41,7 @@ static void each_robot_draws_by_itself(void **state) {
             assert_true(fabs(seen[i] - seen[j]) > 0);
         }
     }
-    errors.robot_count = 1; /* then it is the station that stands elsewhere, as ever */
+    errors.robot_count = 1; /* then the station itself stands elsewhere, as before */
     const wh_vec3_t taught = wh_errors_draw_taught(&errors, &trial, 0, 0);
     const wh_displacement_t stands = wh_errors_draw_station(&errors, &trial, 0);
     assert_near(wh_vec3_norm(&taught), 0, 0);
@@ -56,7 +57,7 @@ typedef struct {
     int robot, from, to;
 } leg_t;
 
-/* FROM, IN, OUT, PM, TO as lua/layouts/two_robots.lua has them, and the ways in of both robots. */
+/* FROM, IN, OUT, PM, TO as in lua/layouts/two_robots.lua, and the ways in of both robots. */
 enum { FROM, IN, OUT, PM, TO, PLACES };
 static const char *const names[PLACES] = {"FROM", "IN", "OUT", "PM", "TO"};
 static const double places[PLACES][2] = {{-1500, -400}, {-130, -250}, {-130, 250}, {1300, 0}, {-1500, 400}};
@@ -64,14 +65,16 @@ static const double headings[PLACES] = {180, 0, 0, 0, 180};
 static const leg_t legs[] = {{0, FROM, IN}, {1, IN, PM}, {1, PM, OUT}, {0, OUT, TO}};
 static const char *const robots[2] = {"ATM", "VAC"};
 
-/* Where the blade is, and its heading: of the arm without a wrist along the arm, which stands at x = 600. */
+/* The place of the blade, and its heading: for the arm without a wrist, which stands at x = 600,
+ * along the arm. */
 static void blade_at(double taught[PLACES][2][2], int robot, int place, double at[3]) {
     at[0] = places[place][0] - taught[place][robot][0];
     at[1] = places[place][1] - taught[place][robot][1];
     at[2] = robot == 0 ? headings[place] * pi / 180 : atan2(at[1], at[0] - 600);
 }
 
-/* Carried rigidly, it is put down where the blade was taught the other station. */
+/* The wafer is carried rigidly, and is put down at the place that the blade was taught for the
+ * other station. */
 static void carry(double taught[PLACES][2][2], double wafer[2]) {
     for (size_t i = 0; i < sizeof legs / sizeof legs[0]; ++i) {
         double from[3];

@@ -1,4 +1,4 @@
-/* Which name somebody may have meant: against counting slips by trying all of them. */
+/* The name that somebody may have meant: compared with counting slips by trying all of them. */
 #include "text/nearest.h"
 
 #include <stdbool.h>
@@ -15,7 +15,8 @@ static bool is_same(char a, char b) {
     return (a | 0x20) == (b | 0x20);
 }
 
-/* The fewest slips from one text to the other, letter by letter from the front: what the header says, and slow. */
+/* The fewest slips from one text to the other, letter by letter from the front: the header's
+ * definition, computed slowly. */
 static size_t count_slips(const char *from, const char *to) {
     if (*from == '\0' || *to == '\0') {
         return strlen(from) + strlen(to);

@@ -1,5 +1,6 @@
-/* Options that a table binds to variables: each kind, defaults, shared tables. Refusals are tests/end_to_end/bad_input's.
- * The arrays that their lists are: without memory the program ends. And the name that a wrong word is near to. */
+/* Options that a table binds to variables: each kind, defaults, shared tables.
+ * tests/end_to_end/bad_input tests the refusals. The test covers the arrays of their lists, too:
+ * without memory the program ends. It also covers the name that is nearest to a wrong word. */
 #include "support/support.h"
 
 #include <sys/wait.h>

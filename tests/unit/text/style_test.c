@@ -1,11 +1,5 @@
-/* Which bytes are characters, against jansson's own check, and where a text is cut; when there is colour, and how text
- * is made fit to print. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+/* The bytes that form characters, compared with jansson's own check, and the places at which a text
+ * is cut; when there is colour, and how text is made fit to print. */
 #include <fcntl.h>
 #include <jansson.h>
 #include <locale.h>
@@ -14,10 +8,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "support/support.h"
 #include "text/style.h"
 #include "text/utf8.h"
 
-/* Every text of up to three bytes, and those of four that begin with a lead of four, whose last byte is at an edge. */
+/* Every text of up to three bytes, and those of four that begin with a lead byte for four and have
+ * a last byte at an edge. */
 static void a_character_is_what_jansson_takes_for_one(void **state) {
     static const unsigned char edges[] = {0x00, 0x7F, 0x80, 0xBF, 0xC0, 0xFF};
     (void)state;
@@ -101,7 +97,7 @@ static void no_terminal(void **state) {
     free(text);
 }
 
-/* A terminal of 72 columns. Null where the system gives none. */
+/* A terminal of 72 columns. Null if the system gives none. */
 static FILE *open_terminal(int *leader) {
     const struct winsize size = {.ws_row = 24, .ws_col = 72};
     *leader = posix_openpt(O_RDWR | O_NOCTTY);
@@ -126,7 +122,7 @@ static void expect_colour(FILE *terminal, const char *ranks, const char *forced,
     assert_int_equal(style.width, ranks && !wanted ? 0 : 72);
 }
 
-/* mpirun gives the first rank a terminal that nobody sees: colours are to be asked for there. */
+/* mpirun gives the first rank a terminal that nobody sees: there a user has to ask for colours. */
 static void a_terminal_under_mpirun(void **state) {
     (void)state;
     int leader = -1;

@@ -1,5 +1,5 @@
-/* What stands in pages and pictures: texts that are fit for XML, labels that keep apart, bytes in base 64 and deflated,
- * which zlib undoes. */
+/* The contents of pages and pictures: texts that are fit for XML, labels that keep apart, bytes in
+ * base 64 and deflated ones, which zlib inflates again. */
 #include "text/svg.h"
 
 #include <zlib.h>

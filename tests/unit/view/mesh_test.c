@@ -18,7 +18,8 @@ static wh_vec3_t corner(const wh_mesh_t *mesh, size_t i) {
     return wh_vec3((double)v[0], (double)v[1], (double)v[2]);
 }
 
-/* By the divergence theorem, about the first corner: exact for a closed surface, and negative for one that is inside out. */
+/* By the divergence theorem, about the first corner: exact for a closed surface, and negative if it
+ * is inside out. */
 static double volume(const wh_mesh_t *mesh) {
     const wh_vec3_t origin = corner(mesh, 0);
     double sum = 0;
@@ -34,7 +35,8 @@ static double volume(const wh_mesh_t *mesh) {
     return sum;
 }
 
-/* Of a closed surface the sum of all faces, as vectors, is nothing; vertices' normals have length 1 and look the faces' way. */
+/* For a closed surface the sum of all faces, as vectors, is zero; the vertices' normals have length
+ * 1 and point to the faces' side. */
 static void assert_closed(const wh_mesh_t *mesh, double area) {
     wh_vec3_t sum = {0, 0, 0};
     assert_int_equal(mesh->index_count % 3, 0);
@@ -66,7 +68,7 @@ static void check(const wh_convex_t *convex, double expected, double tolerance) 
     wh_mesh_free(&mesh);
 }
 
-/* Of a polygon with so many corners on the unit circle. */
+/* The area of a polygon with this number of corners on the unit circle. */
 static double polygon_area(int corners) {
     return corners * sin(2 * acos(-1.0) / corners) / 2;
 }
@@ -109,7 +111,7 @@ static void a_hull_becomes_triangles(void **state) {
     check(&mesh, 8 * 10 * 20 * 30, 1e-4);
 }
 
-/* So many points are thinned to the outermost ones. */
+/* This many points are thinned to the outermost ones. */
 static void hull_of_many_points(void **state) {
     (void)state;
     static wh_vec3_t points[5000];

@@ -1,5 +1,6 @@
-/* What a view adds to a step allocates nothing, though everything were sent after each: the bodies, and where they are. The places are the
- * simulator's, slice by slice, and its bits are those that it has without a view. */
+/* The view's part of a step allocates nothing, even if everything is sent after each step: the
+ * bodies, and their places. The places are the simulator's, slice by slice, and its bits are the
+ * same as without a view. */
 #include "support/heap.h"
 #include "support/server.h"
 

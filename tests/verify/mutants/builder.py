@@ -94,7 +94,7 @@ class Builder:
         with open(name, "w", encoding="utf-8") as file:
             file.write(text)
         target = os.path.join(folder, "mutant.o")
-        # A header by itself, its functions made visible.
+        # A header by itself, with its functions made visible.
         alone = ["-x", "c", "-Dstatic=", "-Dinline="] if source.is_header else []
         if not self.compile(name, target, alone):
             return None

@@ -107,7 +107,7 @@ class Campaign:
         self.differing = []
         self.survivors = []
         self.listed = []
-        self.stale = []  # what the list has in vain
+        self.stale = []  # list entries that are not needed
 
     def key(self, mutant):
         return self.digest + mutant.key
@@ -181,7 +181,7 @@ class Campaign:
         missing = wanted - {(mutant.line, mutant.text) for mutant in listed}
         self.stale = [f"{self.source.path}\n- {line}\n+ {text}" for line, text in sorted(missing)]
         if self.sample is not None:
-            # Only a run of all is worth the time to see whether what is listed still survives.
+            # Only a run of all mutants justifies the time to see whether the listed ones still survive.
             self.listed = [mutant for mutant in self.differing if self.compile(mutant) in excused]
         self.judge_all([mutant for mutant in self.differing if mutant not in self.listed], excused)
         if self.sample is None:

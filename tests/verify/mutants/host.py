@@ -21,16 +21,17 @@ from records import Results, Survivors
 LEAST_RATE = 0.9
 LIST = "tests/verify/mutants/survivors"
 LONGEST_S = float(os.environ.get("LONGEST", "240"))  # a test that takes longer is not used
-TESTS_S = 240  # as long as tests are begun against one mutant
-COUNTING_SHARE = 0.5  # of the time that there is, to find out which test runs which line
-# C alone is counted: C++ has to be optimised, which takes long.
+TESTS_S = 240  # tests are begun against one mutant for this long
+COUNTING_SHARE = 0.5  # share of the time for finding out which test runs which line
+# Only C is counted: C++ has to be optimised, which takes long.
 COUNTED = ["CFLAGS=-O0 -g1 --coverage -fprofile-update=atomic", "LDFLAGS=--coverage"]
-# Compiled as the Makefile does it, so that a compiler's cache may have it; but linking is quicker without lines.
+# It is compiled as the Makefile compiles it, so that a compiler cache may have it; but linking is quicker without lines.
 PLAIN = ["LDFLAGS=-Wl,--strip-debug"]
-# In CI warnings are errors: a change that the compiler warns of does not pass there.
+# In CI warnings are errors: a change that the compiler warns about does not pass there.
 STRICT = [*PLAIN, "B=build/strict", "WERROR=1"]
 COMPILER = "a warning of the compiler"
-CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE"
+# Loops run longer than make test has time for under sanitizers; random rounds get WH_TEST_SECONDS.
+CHECKED = "-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE -DWH_TEST_SHARE=5"
 CHECKED = ["B=build/sanitize", f"CFLAGS={CHECKED}", f"CXXFLAGS={CHECKED}", *PLAIN,
            "EXTRA= -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all"]
 
@@ -104,7 +105,7 @@ class Tree:
         """The exit status, or None after so many seconds. What the program leaves behind is ended."""
         more = {"ASAN_OPTIONS": "hard_rss_limit_mb=4000"}
         command = ["prlimit", "--core=0", f"--fsize={1 << 30}", os.path.join(os.path.abspath(self.folder), program)]
-        with subprocess.Popen(command, cwd=self.folder, env={**os.environ, **more}, stdin=subprocess.DEVNULL,
+        with subprocess.Popen(command, cwd=self.folder, env={"WH_TEST_SECONDS": "3", **os.environ, **more}, stdin=subprocess.DEVNULL,
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as process:
             RUNNING.add(process.pid)
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -215,7 +216,7 @@ class Lane:
         self.tree, self.lines = Tree(folder, jobs), lines
         self.program = ["all", *lines.tools]
         self.tree.make_all(PLAIN, self.program)
-        self.plain = {source: bytes_of(self.tree.place(source)) for source in lines.sources}  # whatever is edited meanwhile
+        self.plain = {source: bytes_of(self.tree.place(source)) for source in lines.sources}  # edits in the meantime have no effect
         self.sound, self.originals = {}, {}
 
     def built(self, source):
@@ -260,7 +261,7 @@ class Lane:
             status = self.status(test) if self.sound.get(test, True) or is_end_to_end(test) else 0
             if status != 0 and self.is_sound(source, text, test, status):
                 return test, passed
-            if status is not None:  # else the machine was too slow: it is asked another time
+            if status is not None:  # else the machine was too slow: it is tested another time
                 passed.append(test)
         return "", passed
 

@@ -107,7 +107,7 @@ class Source:
 
     def __init__(self, path):
         self.path = path
-        # The generator takes {- for the beginning of another language's comment.
+        # The generator reads {- as the beginning of another language's comment.
         self.lines = [line.rstrip().replace("{-", "{ -") + "\n" for line in read(path).split("\n")]
         self.is_header = path.endswith(".h")
 

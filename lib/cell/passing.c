@@ -1,0 +1,196 @@
+/* Held wafers that go through the ledges of a slot, or through a chuck. */
+#include "station.h"
+
+/* How far up through the station's slots a place is above slot 1. */
+static wh_real_t height_of(const wh_station_t *station, const wh_vec3_t *place) {
+    const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t from = wh_vec3_subtract(place, &station->base_from_station.r);
+    return wh_vec3_dot(&up, &from);
+}
+
+/* How far up the centre of the face is that looks at the slots. */
+static wh_real_t height_over(const wh_cell_t *cell, const wh_station_t *station,
+                             const wh_pose_t *base_from_wafer) {
+    wh_vec3_t centre = base_from_wafer->r;
+    if (wh_face_seen(base_from_wafer, cell->thickness, &station->base_from_station) == WH_FACE_FRONT) {
+        const wh_vec3_t n = wh_mat3_column(&base_from_wafer->R, 2);
+        const wh_vec3_t through = wh_vec3_scale(cell->thickness, &n);
+        centre = wh_vec3_add(&centre, &through);
+    }
+    return height_of(station, &centre);
+}
+
+/* How far below a slot's plane a wafer is when it has passed the slot. On the way up it is farther: a wafer
+ * that the vacuum draws down onto its pads is not to pass its own slot as it is lifted. With a wide tolerance
+ * a quarter of the pitch is enough: a stroke that ends below the slot above has not passed it. */
+static wh_real_t depth_of(const wh_cell_t *cell, const wh_station_t *station, bool goes_up) {
+    const wh_real_t projz = cell->tolerance.projz, quarter = station->pitch / 4;
+    const wh_real_t most = quarter > projz ? quarter : projz;
+    return !goes_up ? projz : 2 * projz < most ? 2 * projz : most;
+}
+
+/* How many of the station's slots are not above a wafer of this height: it is at most `depth` below their
+ * planes. It never falls while the height grows, so no crossing falls between two slices. */
+static int32_t count_below(const wh_station_t *station, wh_real_t height, wh_real_t depth) {
+    const wh_real_t position = (height + depth) / station->pitch + 1;
+    if (position == position && position >= 0 && position < (wh_real_t)station->slots) {
+        return (int32_t)position;
+    }
+    return position > 0 ? station->slots : 0;
+}
+
+/* True if a wafer is over the slot, or below it. */
+static bool is_over(const wh_cell_t *cell, const wh_station_t *station, const wh_place_t *place,
+                    const wh_pose_t *base_from_wafer) {
+    const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t n = wh_mat3_column(&base_from_wafer->R, 2);
+    const wh_real_t cosine = wh_vec3_dot(&n, &up);
+    const wh_real_t aside = wh_real_sqrt(place->dx * place->dx + place->dy * place->dy);
+    return aside < cell->tolerance.projxy &&
+           (place->face == WH_FACE_FRONT ? -cosine : cosine) > cell->tolerance.planar;
+}
+
+/* The number of slots below it, before and after a way. Both are equal if it passes none. */
+typedef struct {
+    int32_t before, after;
+} counts_t;
+
+static counts_t count_on_way(const wh_cell_t *cell, const wh_station_t *station, wh_real_t from,
+                             wh_real_t to) {
+    counts_t counts = {0, 0};
+    if (to < from || to > from) {
+        const wh_real_t depth = depth_of(cell, station, to > from);
+        counts.before = count_below(station, from, depth);
+        counts.after = count_below(station, to, depth);
+    }
+    return counts;
+}
+
+/* The wafer as it passes a slot's height, between two poses at these heights: its tilt is that of the end. */
+static wh_pose_t pose_at(const wh_cell_t *cell, const wh_station_t *station, int32_t slot,
+                         const wh_pose_t *base_from_wafer, const wh_pose_t *next,
+                         const wh_real_t heights[2]) {
+    const wh_real_t depth = depth_of(cell, station, heights[1] > heights[0]);
+    const wh_real_t plane = (wh_real_t)(slot - 1) * station->pitch - depth;
+    const wh_vec3_t way = wh_vec3_subtract(&next->r, &base_from_wafer->r);
+    const wh_vec3_t part = wh_vec3_scale((plane - heights[0]) / (heights[1] - heights[0]), &way);
+    const wh_pose_t pose = {next->R, wh_vec3_add(&base_from_wafer->r, &part)};
+    return pose;
+}
+
+static bool passes(const wh_cell_t *cell, int32_t s, const wh_pose_t *base_from_wafer, const wh_pose_t *next,
+                   wh_passing_t *passing) {
+    const wh_station_t *station = &cell->stations[s];
+    const wh_real_t heights[2] = {height_over(cell, station, base_from_wafer),
+                                  height_over(cell, station, next)};
+    const counts_t counts = count_on_way(cell, station, heights[0], heights[1]);
+    const bool goes_up = counts.after > counts.before;
+    int32_t below = counts.before;
+    while (below != counts.after) {
+        const int32_t slot = goes_up ? below + 1 : below;
+        const wh_pose_t pose = pose_at(cell, station, slot, base_from_wafer, next, heights);
+        const wh_place_t place = wh_cell_measure(cell, station, slot, &pose);
+        if (is_over(cell, station, &place, &pose)) {
+            passing->station = s;
+            passing->slot = slot;
+            passing->goes_up = goes_up;
+            return true;
+        }
+        below += goes_up ? 1 : -1;
+    }
+    return false;
+}
+
+bool wh_cell_passes(const wh_cell_t *cell, int32_t gripper, const wh_pose_t *base_from_wafer,
+                    const wh_pose_t *next, wh_passing_t *passing) {
+    for (size_t s = 0; s < cell->count; ++s) {
+        if (cell->stations[s].chuck != gripper && passes(cell, (int32_t)s, base_from_wafer, next, passing)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static WH_OUT_OF_LINE bool goes_through(const wh_cell_t *cell, const wh_grasp_t *table,
+                                        const wh_gripper_input_t *input, int32_t gripper,
+                                        const wh_pose_t *base_from_wafer, wh_passing_t *passing) {
+    const wh_gripper_t *holder = &table->storage.grippers[gripper];
+    wh_pose_t next;
+    wh_pose_compose_to(&input->base_from_gripper, &holder->gripper_from_wafer, &next);
+    return wh_cell_passes(cell, gripper, base_from_wafer, &next, passing);
+}
+
+/* False if no back face passes a slot, wherever it is beside it: what most slices are. */
+static bool may_pass(const wh_cell_t *cell, const wh_vec3_t *from, const wh_vec3_t *to) {
+    bool may = cell->thickness > 0;
+    for (size_t s = 0; s < cell->count && !may; ++s) {
+        const wh_station_t *station = &cell->stations[s];
+        const counts_t counts = count_on_way(cell, station, height_of(station, from), height_of(station, to));
+        may = counts.before != counts.after;
+    }
+    return may;
+}
+
+/* A wafer goes with its gripper, and is let go at the slice's end. */
+static bool is_pushed(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t *input,
+                      int32_t gripper, const wh_pose_t *base_from_wafer, wh_passing_t *passing) {
+    const wh_gripper_t *holder = &table->storage.grippers[gripper];
+    const wh_pose_t *base_from_gripper = &input->base_from_gripper;
+    const wh_vec3_t aside = wh_mat3_transform(&base_from_gripper->R, &holder->gripper_from_wafer.r);
+    const wh_vec3_t to = wh_vec3_add(&aside, &base_from_gripper->r);
+    return may_pass(cell, &base_from_wafer->r, &to) &&
+           goes_through(cell, table, input, gripper, base_from_wafer, passing);
+}
+
+bool wh_cell_begin_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
+                           wh_passing_t passing[]) {
+    bool found = false;
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        const int32_t wafer = table->storage.grippers[g].wafer;
+        passing[g].wafer = WH_NONE;
+        passing[g].station = 0;
+        passing[g].slot = 0;
+        passing[g].goes_up = false;
+        if (wh_is_index(wafer, table->storage.wafer_count) &&
+            is_pushed(cell, table, &inputs[g], (int32_t)g, &table->storage.wafers[wafer].base_from_wafer,
+                      &passing[g])) {
+            passing[g].wafer = wafer;
+            found = true;
+        }
+    }
+    return found;
+}
+
+/* Passive pads leave a wafer at the plane, whatever they go on to do. */
+static void judge(const wh_cell_t *cell, const wh_grasp_t *table, size_t g, const wh_passing_t *passing,
+                  wh_event_list_t *list) {
+    static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
+    const wh_pose_t *pose = &table->storage.wafers[passing->wafer].base_from_wafer;
+    const wh_station_t *station = &cell->stations[passing->station];
+    const wh_place_t place = wh_cell_measure(cell, station, passing->slot, pose);
+    const wh_real_t depth = depth_of(cell, station, passing->goes_up);
+    const bool is_above = count_below(station, height_over(cell, station, pose), depth) >= passing->slot;
+    if (list->count >= list->capacity || is_above != passing->goes_up) {
+        return;
+    }
+    wh_event_t *said = &list->events[list->count++];
+    *said = blank;
+    said->kind = WH_EVENT_PUSHED_THROUGH;
+    said->face = place.face;
+    said->slice = table->slice;
+    said->measured_slice = table->slice;
+    said->wafer = passing->wafer;
+    said->gripper = (int32_t)g;
+    said->value = -place.dz;
+    said->limit = depth;
+    said->at = pose->r;
+}
+
+void wh_cell_end_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_passing_t passing[],
+                         wh_event_list_t *list) {
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        if (passing[g].wafer != WH_NONE) {
+            judge(cell, table, g, &passing[g], list);
+        }
+    }
+}

@@ -1,0 +1,334 @@
+#include "figures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/hash.h"
+#include "../text/array.h"
+#include "transfer.h"
+#include "waiting.h"
+
+const char *const wh_flow_robot_class_names[WH_FLOW_ROBOT_CLASSES] = {
+    "empty_way",   "loaded_way",  "pick",       "place",      "swap",        "door", "waits_wafer",
+    "waits_place", "waits_clean", "waits_pump", "waits_down", "waits_robot", "idle"};
+const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES] = {
+    "process", "blocked", "handled", "stored", "clean", "pump", "down", "empty"};
+
+/* Cleans, pumps and failures of a place and its station, summed up to now. */
+typedef struct {
+    int64_t clean_us, pump_us, down_us;
+} aside_t;
+
+/* One place's time is counted up to here. */
+typedef struct {
+    int64_t since_us;
+    aside_t aside;
+    bool is_over; /* the wafer in it is at its end */
+} place_t;
+
+typedef struct {
+    wh_flow_figures_t *figures;
+    place_t *places;
+    aside_t *asides;       /* by place */
+    int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
+    wh_flow_visit_t *open; /* by wafer: the transfer that runs */
+} measure_t;
+
+/* ------------------------------------------------------------------------------------------------- stations */
+
+static void add(measure_t *measure, int32_t station, wh_flow_station_class_t which, int64_t us) {
+    measure->figures->stations[station][which] += us;
+}
+
+/* Goes on to `to_us` in one class. Cleans, pumps and failures within count as themselves if `which` is one that
+ * gives way to them. */
+static void go_to(measure_t *measure, const wh_flow_state_t *state, int32_t number, int64_t to_us,
+                  wh_flow_station_class_t which) {
+    place_t *place = &measure->places[number];
+    const int32_t station = state->tool->place_stations[number];
+    int64_t us = to_us - place->since_us;
+    if (us <= 0) {
+        return;
+    }
+    if (which != WH_FLOW_STATION_PROCESS && which != WH_FLOW_STATION_HANDLED) {
+        const aside_t *now = &measure->asides[number];
+        const int64_t parts[3] = {now->clean_us - place->aside.clean_us, now->pump_us - place->aside.pump_us,
+                                  now->down_us - place->aside.down_us};
+        for (size_t i = 0; i < 3; ++i) {
+            const int64_t part_us = parts[i] < us ? parts[i] : us;
+            add(measure, station, (wh_flow_station_class_t)(WH_FLOW_STATION_CLEAN + i), part_us);
+            us -= part_us;
+        }
+    }
+    add(measure, station, which, us);
+    place->since_us = to_us;
+    place->aside = measure->asides[number];
+}
+
+/* The time of a wafer in a place up to now: shutting, process, and waiting. */
+static void account_wafer(measure_t *measure, const wh_flow_state_t *state, int32_t wafer, int64_t now_us) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int32_t station = state->tool->place_stations[at->place];
+    if (at->step == 0) {
+        go_to(measure, state, at->place, at->entered_us,
+              measure->places[at->place].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
+        go_to(measure, state, at->place, now_us, WH_FLOW_STATION_STORED);
+        measure->places[at->place].is_over = false;
+        return;
+    }
+    const int64_t processed_us = at->done_us - at->clean_us;
+    const int64_t begin_us = processed_us - wh_flow_process_us(state, wafer, station);
+    go_to(measure, state, at->place, begin_us < now_us ? begin_us : now_us, WH_FLOW_STATION_HANDLED);
+    go_to(measure, state, at->place, processed_us < now_us ? processed_us : now_us, WH_FLOW_STATION_PROCESS);
+    go_to(measure, state, at->place, at->done_us < now_us ? at->done_us : now_us, WH_FLOW_STATION_CLEAN);
+    go_to(measure, state, at->place, now_us, WH_FLOW_STATION_BLOCKED);
+}
+
+/* A done wafer was kept by the place where it goes, until that was or will be empty; then the robot. */
+static void blame(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *stay) {
+    const size_t stations = state->tool->station_count, robots = state->tool->robot_count;
+    int64_t from_us = stay->begin_us;
+    const int32_t to = state->robots[stay->robot].to;
+    if (to != WH_FLOW_NONE && to != stay->place) {
+        const wh_flow_place_t *place = &state->places[to];
+        int64_t empty_us = place->wafer == WH_FLOW_NONE ? place->empty_us : stay->end_us;
+        empty_us = empty_us > stay->end_us ? stay->end_us : empty_us;
+        if (empty_us > from_us) {
+            measure->figures->blocked_by_station[(size_t)stay->station * stations +
+                                                 (size_t)state->tool->place_stations[to]] +=
+                empty_us - from_us;
+            from_us = empty_us;
+        }
+    }
+    measure->figures->blocked_by_robot[(size_t)stay->station * robots + (size_t)stay->robot] +=
+        stay->end_us - from_us;
+}
+
+static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *state,
+                         const wh_flow_event_t *stay) {
+    const int64_t window_us = state->tool->stations[stay->station].window_us;
+    const int64_t stay_us = stay->end_us - stay->begin_us;
+    if (wh_flow_process_us(state, stay->wafer, stay->station) == 0 && window_us == WH_FLOW_NEVER) {
+        return;
+    }
+    figures->longest_stay_us = stay_us > figures->longest_stay_us ? stay_us : figures->longest_stay_us;
+    if (stay_us > window_us) {
+        figures->breaches = wh_array_grow(figures->breaches, figures->breach_count, &figures->breach_capacity,
+                                          sizeof *figures->breaches);
+        figures->breaches[figures->breach_count++] = (wh_flow_breach_t){
+            stay->wafer, stay->station, stay->step, stay->begin_us, stay->end_us, window_us};
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- visits */
+
+static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
+    measure->open[stay->wafer] = (wh_flow_visit_t){.wafer = stay->wafer,
+                                                   .step = stay->step + 1,
+                                                   .robot = stay->robot,
+                                                   .from = stay->place,
+                                                   .pick_us = stay->end_us,
+                                                   .process_us = WH_FLOW_NEVER,
+                                                   .done_us = WH_FLOW_NEVER};
+}
+
+static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
+    wh_flow_figures_t *figures = measure->figures;
+    wh_flow_visit_t *visit = &measure->open[wafer];
+    visit->place = event->place;
+    visit->arm = event->arm;
+    visit->place_us = event->begin_us;
+    visit->placed_us = event->end_us;
+    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
+                                    sizeof *figures->visits);
+    measure->visits[wafer] = (int32_t)figures->visit_count;
+    figures->visits[figures->visit_count++] = *visit;
+}
+
+static void note_process(measure_t *measure, const wh_flow_event_t *event) {
+    if (measure->visits[event->wafer] != WH_FLOW_NONE) {
+        wh_flow_visit_t *visit = &measure->figures->visits[measure->visits[event->wafer]];
+        visit->process_us = event->begin_us;
+        visit->done_us = event->end_us;
+    }
+}
+
+static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event) {
+    figures->doings = wh_array_grow(figures->doings, figures->doing_count, &figures->doing_capacity,
+                                    sizeof *figures->doings);
+    figures->doings[figures->doing_count++] = (wh_flow_doing_t){event->kind, event->station,  event->place,
+                                                                event->side, event->begin_us, event->end_us};
+}
+
+/* --------------------------------------------------------------------------------------------------- events */
+
+static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    account_wafer(measure, state, event->wafer, event->end_us);
+    if (event->step > 0) {
+        blame(measure, state, event);
+        check_window(measure->figures, state, event);
+    }
+    if (measure->open) {
+        begin_visit(measure, event);
+    }
+}
+
+static void hear_placing(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    const int32_t wafer = event->kind == WH_FLOW_EVENT_SWAP ? event->other : event->wafer;
+    if (event->kind == WH_FLOW_EVENT_PLACE) {
+        go_to(measure, state, event->place, event->begin_us,
+              measure->places[event->place].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
+    }
+    go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
+    measure->places[event->place].is_over =
+        state->wafers[wafer].step + 1 == wh_flow_last_step(state->plan, wafer);
+    ++measure->figures->placed[event->station];
+    if (measure->open) {
+        end_visit(measure, event, wafer);
+    }
+    if (measure->open && event->kind == WH_FLOW_EVENT_SWAP) {
+        measure->open[event->wafer].picked_us = event->end_us;
+    }
+}
+
+static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
+    const int64_t numbers[] = {(int64_t)event->kind, event->begin_us, event->end_us, event->robot,
+                               event->wafer,         event->other,    event->place,  event->station};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
+        hash = wh_hash_word(hash, (uint64_t)numbers[i]);
+    }
+    return hash;
+}
+
+static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    measure_t *measure = context;
+    measure->figures->hash = hash_event(measure->figures->hash, event);
+    switch (event->kind) {
+    case WH_FLOW_EVENT_STAY:
+        hear_stay(measure, state, event);
+        break;
+    case WH_FLOW_EVENT_PICK:
+        go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
+        if (measure->open) {
+            measure->open[event->wafer].picked_us = event->end_us;
+        }
+        break;
+    case WH_FLOW_EVENT_PLACE:
+    case WH_FLOW_EVENT_SWAP:
+        hear_placing(measure, state, event);
+        break;
+    case WH_FLOW_EVENT_PROCESS:
+        if (measure->open) {
+            note_process(measure, event);
+        }
+        break;
+    case WH_FLOW_EVENT_CLEAN:
+    case WH_FLOW_EVENT_PUMP:
+    case WH_FLOW_EVENT_DOWN:
+        if (measure->open) {
+            note_doing(measure->figures, event);
+        }
+        break;
+    case WH_FLOW_EVENT_MOVE:
+    case WH_FLOW_EVENT_OPEN:
+    default:
+        break;
+    }
+}
+
+/* One of them at a time: a clean before a pump, a pump before a failure. */
+static void add_aside(aside_t *aside, const wh_flow_station_state_t *station, bool is_cleaning, int64_t us) {
+    if (is_cleaning) {
+        aside->clean_us += us;
+    } else if (station->pump_us != WH_FLOW_NEVER) {
+        aside->pump_us += us;
+    } else if (station->down_us != WH_FLOW_NEVER) {
+        aside->down_us += us;
+    }
+}
+
+static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) {
+    measure_t *measure = context;
+    const int64_t us = to_us - state->now_us;
+    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+        measure->figures->robots[r][wh_flow_robot_class(state, (int32_t)r)] += us;
+    }
+    for (size_t s = 0; s < state->tool->station_count; ++s) {
+        const wh_flow_station_state_t *station = &state->stations[s];
+        if (station->clean_us == WH_FLOW_NEVER && station->pump_us == WH_FLOW_NEVER &&
+            station->down_us == WH_FLOW_NEVER) {
+            continue;
+        }
+        const wh_flow_station_t *of = &state->tool->stations[s];
+        for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
+            add_aside(&measure->asides[p], station, state->places[p].clean_us != WH_FLOW_NEVER, us);
+        }
+    }
+}
+
+static void end(void *context, const wh_flow_state_t *state) {
+    measure_t *measure = context;
+    for (size_t p = 0; p < state->tool->place_count; ++p) {
+        const int32_t wafer = state->places[p].wafer;
+        if (wafer != WH_FLOW_NONE && !state->wafers[wafer].is_over) {
+            account_wafer(measure, state, wafer, state->now_us);
+        } else {
+            go_to(measure, state, (int32_t)p, state->now_us,
+                  measure->places[p].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
+        }
+    }
+    measure->figures->end_us = state->now_us;
+}
+
+/* ---------------------------------------------------------------------------------------------------- whole */
+
+static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
+    const size_t robots = tool->robot_count, stations = tool->station_count;
+    *figures = (wh_flow_figures_t){
+        .tool = tool,
+        .plan = plan,
+        .hash = WH_HASH_START,
+        .robots = wh_array_new(robots, sizeof *figures->robots),
+        .stations = wh_array_new(stations, sizeof *figures->stations),
+        .blocked_by_robot = wh_array_new(stations * robots, sizeof *figures->blocked_by_robot),
+        .blocked_by_station = wh_array_new(stations * stations, sizeof *figures->blocked_by_station),
+        .placed = wh_array_new(stations, sizeof *figures->placed),
+    };
+}
+
+void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,
+                     wh_flow_figures_t *figures) {
+    measure_t measure = {.figures = figures,
+                         .places = wh_array_new(tool->place_count, sizeof *measure.places),
+                         .asides = wh_array_new(tool->place_count, sizeof *measure.asides)};
+    open_figures(figures, tool, plan);
+    if (keeps_visits) {
+        measure.visits = wh_array_new(plan->wafer_count, sizeof *measure.visits);
+        measure.open = wh_array_new(plan->wafer_count, sizeof *measure.open);
+        memset(measure.visits, 0xff, plan->wafer_count * sizeof *measure.visits);
+    }
+    const wh_flow_listener_t listener = {&measure, hear, advance, end};
+    wh_flow_play(tool, plan, &listener, &figures->result);
+    free(measure.places);
+    free(measure.asides);
+    free(measure.visits);
+    free(measure.open);
+}
+
+void wh_flow_figures_close(wh_flow_figures_t *figures) {
+    free(figures->robots);
+    free(figures->stations);
+    free(figures->blocked_by_robot);
+    free(figures->blocked_by_station);
+    free(figures->placed);
+    free(figures->breaches);
+    free(figures->visits);
+    free(figures->doings);
+    wh_flow_result_close(&figures->result);
+    memset(figures, 0, sizeof *figures);
+}
+
+void wh_flow_close(wh_flow_t *flow) {
+    wh_flow_plan_close(&flow->plan, flow->tool);
+    wh_flow_figures_close(&flow->figures);
+}

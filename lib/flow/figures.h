@@ -1,0 +1,83 @@
+/* Where the time of a flow went: each robot's and each place's, in classes without a rest, so that they add up to the
+ * makespan to the microsecond; each wafer's stays; what was waited for. */
+#ifndef WH_FLOW_FIGURES_H
+#define WH_FLOW_FIGURES_H
+
+#include "flow.h"
+#include "waiting.h"
+
+/* The time of a station's places. */
+typedef enum {
+    WH_FLOW_STATION_PROCESS,
+    WH_FLOW_STATION_BLOCKED, /* done, and the next place full, or the robot busy elsewhere */
+    WH_FLOW_STATION_HANDLED, /* a blade is in it, or its door shuts before a process */
+    WH_FLOW_STATION_STORED,  /* by wafers that have not begun, or are at their end */
+    WH_FLOW_STATION_CLEAN,
+    WH_FLOW_STATION_PUMP,
+    WH_FLOW_STATION_DOWN,
+    WH_FLOW_STATION_EMPTY,
+    WH_FLOW_STATION_CLASSES
+} wh_flow_station_class_t;
+
+/* Names for people and for JSON, such as waits_wafer. */
+extern const char *const wh_flow_robot_class_names[WH_FLOW_ROBOT_CLASSES];
+extern const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES];
+
+/* A stay after a process that was longer than the window. */
+typedef struct {
+    int32_t wafer, station, step;
+    int64_t done_us, taken_us, window_us;
+} wh_flow_breach_t;
+
+/* A wafer's visit to a place, from the begin of the transfer there on. Times that have not come are
+ * WH_FLOW_NEVER. */
+typedef struct {
+    int32_t wafer, step, robot, arm, from, place;
+    int64_t pick_us, picked_us, place_us, placed_us, process_us, done_us;
+} wh_flow_visit_t;
+
+/* A station's own doing. */
+typedef struct {
+    wh_flow_event_kind_t kind; /* WH_FLOW_EVENT_CLEAN, WH_FLOW_EVENT_PUMP, WH_FLOW_EVENT_DOWN */
+    int32_t station, place;    /* place: of a clean */
+    wh_flow_side_t side;       /* of a pump: to which it went */
+    int64_t begin_us, end_us;
+} wh_flow_doing_t;
+
+typedef struct {
+    const wh_flow_tool_t *tool;
+    const wh_flow_plan_t *plan;
+    wh_flow_result_t result;
+    int64_t (*robots)[WH_FLOW_ROBOT_CLASSES];     /* us, by robot */
+    int64_t (*stations)[WH_FLOW_STATION_CLASSES]; /* us of all its places */
+    int64_t *blocked_by_robot;                    /* of WH_FLOW_STATION_BLOCKED, by station and robot */
+    int64_t *blocked_by_station;                  /* by station and station */
+    size_t *placed;                               /* wafers placed, by station */
+    wh_flow_breach_t *breaches;
+    size_t breach_count, breach_capacity;
+    wh_flow_visit_t *visits; /* by the end of placing; none if not asked for */
+    size_t visit_count, visit_capacity;
+    wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
+    size_t doing_count, doing_capacity;
+    int64_t longest_stay_us; /* after a process */
+    uint64_t hash;           /* of all that was told, in its order */
+    int64_t end_us;          /* up to which time is counted: the makespan, or when nobody went on */
+} wh_flow_figures_t;
+
+/* A flow that a run has played: it owns the plan. */
+typedef struct {
+    int line; /* of the script */
+    const wh_flow_tool_t *tool;
+    bool is_lateness_told; /* a stay beyond a window is told, and does not fail the run */
+    wh_flow_plan_t plan;
+    wh_flow_figures_t figures;
+} wh_flow_t;
+
+void wh_flow_close(wh_flow_t *flow);
+
+/* wh_flow_play, with figures. `keeps_visits`: about 100 bytes for each placing. Close them in any case. */
+void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,
+                     wh_flow_figures_t *figures);
+void wh_flow_figures_close(wh_flow_figures_t *figures);
+
+#endif

@@ -1,0 +1,182 @@
+#include "flow.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+#include "robots.h"
+#include "stations.h"
+
+/* How many orders of a rule are looked at. */
+#define ORDERS 16
+
+/* The user's listener, and the times of the last placings. */
+typedef struct {
+    wh_flow_listener_t listener;
+    int64_t *ends_us;
+    size_t count, capacity;
+} play_t;
+
+static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    play_t *play = context;
+    if (event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP) {
+        const int32_t wafer = event->kind == WH_FLOW_EVENT_PLACE ? event->wafer : event->other;
+        const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
+        if (state->wafers[wafer].step + 1 == wh_flow_last_step(state->plan, wafer) && !lot->is_dummy) {
+            play->ends_us = wh_array_grow(play->ends_us, play->count, &play->capacity, sizeof *play->ends_us);
+            play->ends_us[play->count++] = event->end_us;
+        }
+    }
+    if (play->listener.event) {
+        play->listener.event(play->listener.context, state, event);
+    }
+}
+
+static void pass_on(void *context, const wh_flow_state_t *state, int64_t to_us) {
+    const play_t *play = context;
+    if (play->listener.advance) {
+        play->listener.advance(play->listener.context, state, to_us);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- instants */
+
+static void end_all(wh_flow_state_t *state) {
+    wh_flow_stations_end(state);
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
+        if (state->robots[r].until_us == state->now_us) {
+            wh_flow_robot_end(state, r);
+        }
+    }
+}
+
+/* A free robot is asked, one in front of its place places. True if something began. */
+static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                        uint64_t *asked) {
+    if (state->robots[robot].action == WH_FLOW_WAITING) {
+        return wh_flow_robot_place(state, robot);
+    }
+    if (state->robots[robot].action != WH_FLOW_IDLE) {
+        return false;
+    }
+    wh_flow_order_t orders[ORDERS];
+    const int count = wh_flow_ask(state, rules, robot, orders, ORDERS);
+    ++*asked;
+    state->robots[robot].has_wish = count > 0;
+    if (count > 0) {
+        state->robots[robot].wish = orders[0];
+    }
+    for (int i = 0; i < count && !state->cause; ++i) {
+        if (wh_flow_robot_begin(state, robot, &orders[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_any_over(const wh_flow_state_t *state) {
+    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+        if (state->robots[r].until_us == state->now_us) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* One instant: all that ends, then what stations begin, then robots, until nobody begins anything; once more if what
+ * began takes no time. */
+static void play_instant(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+    do {
+        end_all(state);
+        wh_flow_stations_begin(state);
+        bool begun = true;
+        while (begun && !state->cause) {
+            begun = false;
+            for (int32_t r = 0; r < (int32_t)state->tool->robot_count && !state->cause; ++r) {
+                begun = begin_robot(state, rules, r, asked) || begun;
+            }
+        }
+    } while (is_any_over(state) && !state->cause);
+}
+
+static int64_t next_instant(const wh_flow_state_t *state) {
+    int64_t idle_us = WH_FLOW_NEVER;
+    int64_t next_us = wh_flow_stations_next(state, &idle_us);
+    for (size_t r = 0; r < state->tool->robot_count; ++r) {
+        const int64_t until_us = state->robots[r].until_us;
+        next_us = until_us > state->now_us && until_us < next_us ? until_us : next_us;
+    }
+    return next_us != WH_FLOW_NEVER && idle_us < next_us ? idle_us : next_us;
+}
+
+/* Nobody can go on: shipped rules are asked once more, without waiting for steps to fill. True if a robot begins. */
+static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+    if (state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN) {
+        return false;
+    }
+    bool begun = false;
+    state->is_relaxed = true;
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count && !begun; ++r) {
+        begun = begin_robot(state, rules, r, asked);
+    }
+    state->is_relaxed = false;
+    return begun;
+}
+
+static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+    while (true) {
+        play_instant(state, rules, asked);
+        if (state->cause) {
+            return WH_FLOW_BROKEN;
+        }
+        if (state->over == state->plan->wafer_count) {
+            return WH_FLOW_DONE;
+        }
+        const int64_t next_us = next_instant(state);
+        if (next_us == WH_FLOW_NEVER && !relax(state, rules, asked)) {
+            return WH_FLOW_STUCK;
+        }
+        if (next_us == WH_FLOW_NEVER) {
+            continue;
+        }
+        if (next_us > state->plan->until_us) {
+            return WH_FLOW_CUT;
+        }
+        state->listener.advance(state->listener.context, state, next_us);
+        state->now_us = next_us;
+    }
+}
+
+void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_listener_t *listener,
+                  wh_flow_result_t *result) {
+    play_t play = {0};
+    wh_flow_state_t state;
+    wh_flow_rules_t rules;
+    if (listener) {
+        play.listener = *listener;
+    }
+    *result = (wh_flow_result_t){.cycle_us = WH_FLOW_NEVER};
+    wh_flow_state_open(&state, tool, plan);
+    state.listener = (wh_flow_listener_t){&play, hear, pass_on, NULL};
+    wh_flow_rules_open(&rules, &state);
+    result->end = play_on(&state, &rules, &result->asked);
+    result->makespan_us = state.last_us;
+    if (play.listener.end) {
+        play.listener.end(play.listener.context, &state);
+    }
+    result->over = play.count;
+    result->period = wh_flow_steady(play.ends_us, play.count, &result->cycle_us);
+    if (result->end == WH_FLOW_STUCK) {
+        result->why = wh_flow_stuck_text(&state);
+    } else if (state.cause) {
+        result->why = wh_text_copy(state.cause);
+    }
+    free(play.ends_us);
+    wh_flow_rules_close(&rules, tool);
+    wh_flow_state_close(&state);
+}
+
+void wh_flow_result_close(wh_flow_result_t *result) {
+    free(result->why);
+    memset(result, 0, sizeof *result);
+}

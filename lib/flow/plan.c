@@ -1,0 +1,174 @@
+#include "plan.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+
+static void free_route(wh_flow_route_t *route) {
+    for (size_t k = 0; k < route->step_count; ++k) {
+        free(route->steps[k].stations);
+    }
+    free(route->steps);
+    free(route->name);
+}
+
+void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
+    for (size_t i = 0; plan->backs && i < tool->station_count; ++i) {
+        free(plan->backs[i].stations);
+    }
+    free(plan->backs);
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        free_route(&plan->routes[i]);
+    }
+    for (size_t i = 0; i < plan->lot_count; ++i) {
+        free(plan->lots[i].name);
+    }
+    for (size_t i = 0; i < plan->wafer_count; ++i) {
+        free(plan->wafers[i].name);
+    }
+    for (size_t i = 0; plan->lists && i < tool->robot_count; ++i) {
+        free(plan->lists[i].lines);
+    }
+    free(plan->routes);
+    free(plan->lots);
+    free(plan->wafers);
+    free(plan->downs);
+    free(plan->lists);
+    memset(plan, 0, sizeof *plan);
+}
+
+static const wh_flow_route_t *route_of(const wh_flow_plan_t *plan, int32_t wafer) {
+    return &plan->routes[plan->lots[plan->wafers[wafer].lot].route];
+}
+
+int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer) {
+    return (int32_t)route_of(plan, wafer)->step_count - (plan->wafers[wafer].goes_back ? 0 : 1);
+}
+
+const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
+    const wh_flow_route_t *route = route_of(plan, wafer);
+    return (size_t)step < route->step_count ? &route->steps[step]
+                                            : &plan->backs[plan->wafers[wafer].back_station];
+}
+
+int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
+    return step == wh_flow_last_step(plan, wafer) ? plan->wafers[wafer].back : WH_FLOW_NONE;
+}
+
+/* ------------------------------------------------------------------------------------------------ finishing */
+
+__attribute__((format(printf, 1, 2))) static char *problem_of(const char *format, ...) {
+    char text[400];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return wh_text_copy(text);
+}
+
+/* True if a robot carries from this station to one of the step's, from side to side. */
+static bool is_carried(const wh_flow_tool_t *tool, int32_t from, const wh_flow_step_t *step) {
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        for (size_t i = 0; tool->serves[wh_flow_of(tool, (int32_t)r, from)] && i < step->station_count; ++i) {
+            if (tool->serves[wh_flow_of(tool, (int32_t)r, step->stations[i])]) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static char *count_step(wh_flow_step_t *step, const wh_flow_route_t *route, size_t k,
+                        const wh_flow_tool_t *tool) {
+    int32_t places = 0;
+    for (size_t i = 0; i < step->station_count; ++i) {
+        places += tool->stations[step->stations[i]].slots;
+    }
+    step->most = places - step->kept_empty;
+    return step->most > 0
+               ? NULL
+               : problem_of("route %s, step %zu: %d of its %d places are kept empty (expected fewer)",
+                            route->name, k, (int)step->kept_empty, (int)places);
+}
+
+static char *check_way(const wh_flow_tool_t *tool, const wh_flow_route_t *route, const wh_flow_step_t *next,
+                       size_t k, int32_t from) {
+    if (next->station_count == 1 && next->stations[0] == from) {
+        return problem_of("route %s: step %zu is %s again (expected another station)", route->name, k,
+                          tool->stations[from].name);
+    }
+    if (!is_carried(tool, from, next)) {
+        return problem_of("route %s: no robot carries a wafer from %s to step %zu, %s", route->name,
+                          tool->stations[from].name, k, tool->stations[next->stations[0]].name);
+    }
+    return NULL;
+}
+
+static char *finish_route(wh_flow_route_t *route, const wh_flow_tool_t *tool) {
+    char *problem = NULL;
+    route->steps[0].most = INT32_MAX;
+    for (size_t k = 1; k < route->step_count && !problem; ++k) {
+        problem = count_step(&route->steps[k], route, k, tool);
+        const wh_flow_step_t *before = &route->steps[k - 1];
+        for (size_t i = 0; k > 1 && i < before->station_count && !problem; ++i) {
+            problem = check_way(tool, route, &route->steps[k], k, before->stations[i]);
+        }
+    }
+    return problem;
+}
+
+/* The wafer goes back by a step of its own, unless its route ends there alone. */
+static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
+    wh_flow_wafer_t *wafer = &plan->wafers[w];
+    const wh_flow_route_t *route = route_of(plan, w);
+    const wh_flow_step_t *last = &route->steps[route->step_count - 1];
+    if (wafer->back == WH_FLOW_NONE) {
+        return;
+    }
+    wafer->back_station = tool->place_stations[wafer->back];
+    wafer->goes_back = last->station_count != 1 || last->stations[0] != wafer->back_station;
+    wh_flow_step_t *step = &plan->backs[wafer->back_station];
+    if (step->station_count == 0) {
+        *step = (wh_flow_step_t){.stations = wh_array_new(1, sizeof *step->stations),
+                                 .station_count = 1,
+                                 .process_us = WH_FLOW_NONE,
+                                 .most = tool->stations[wafer->back_station].slots};
+        step->stations[0] = wafer->back_station;
+    }
+}
+
+/* Each wafer can leave its first place, and can get back. */
+static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
+    const wh_flow_route_t *route = route_of(plan, w);
+    const wh_flow_step_t *last = &route->steps[route->step_count - 1];
+    char *problem = check_way(tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home]);
+    find_back(plan, tool, w);
+    for (size_t i = 0; plan->wafers[w].goes_back && i < last->station_count && !problem; ++i) {
+        problem = check_way(tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
+                            last->stations[i]);
+    }
+    return problem;
+}
+
+char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
+    plan->step_count = 0;
+    plan->backs = wh_array_new(tool->station_count, sizeof *plan->backs);
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        plan->routes[i].first_step = plan->step_count;
+        plan->step_count += plan->routes[i].step_count + 1;
+        char *problem = finish_route(&plan->routes[i], tool);
+        if (problem) {
+            return problem;
+        }
+    }
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        char *problem = check_wafer(plan, tool, w);
+        if (problem) {
+            return problem;
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,114 @@
+/* The plan of a flow: lots, their routes, and the rule by which robots choose. */
+#ifndef WH_FLOW_PLAN_H
+#define WH_FLOW_PLAN_H
+
+#include "tool.h"
+
+/* Step 0 of a route is where the lot lies at first; its steps count from 1 on. */
+typedef struct {
+    int32_t *stations; /* parallel ones, as listed */
+    size_t station_count;
+    int64_t process_us; /* WH_FLOW_NONE: that of the station */
+    int32_t kept_empty; /* places of the step that stay empty */
+    int32_t most;       /* wafers that it may hold: all its places but kept_empty */
+    bool second_arm;    /* the second arm alone takes out of it */
+} wh_flow_step_t;
+
+typedef struct {
+    char *name;
+    wh_flow_step_t *steps; /* steps[0] is unused but for second_arm and most */
+    size_t step_count;     /* with step 0 */
+    size_t first_step;     /* the index of its step 0 among the steps of all routes */
+} wh_flow_route_t;
+
+typedef struct {
+    char *name;
+    int32_t lot, home; /* home: a place */
+    int32_t back;      /* the place where it ends, or WH_FLOW_NONE: the best of the last step */
+    int32_t back_station;
+    bool goes_back; /* that is one more step, behind those of its route */
+} wh_flow_wafer_t;
+
+typedef struct {
+    char *name;
+    int32_t route, priority;
+    int64_t arrives_us;
+    size_t first_wafer, wafer_count;
+    bool is_dummy; /* its wafers are moved, and not counted */
+} wh_flow_lot_t;
+
+typedef struct {
+    int32_t station;
+    int64_t at_us, for_us;
+} wh_flow_down_t;
+
+typedef enum { WH_FLOW_TRANSFER, WH_FLOW_KEEP, WH_FLOW_BRING, WH_FLOW_SWAP, WH_FLOW_PUMP } wh_flow_do_t;
+
+/* A line of a robot's list. */
+typedef struct {
+    wh_flow_do_t what;
+    int32_t from, to; /* stations; the lock is `to` */
+    int32_t wafer;    /* WH_FLOW_NONE: the first that entered, or was kept */
+    wh_flow_side_t side;
+} wh_flow_line_t;
+
+typedef struct {
+    wh_flow_line_t *lines;
+    size_t count, capacity;
+} wh_flow_list_t;
+
+typedef enum {
+    WH_FLOW_BACKWARD,
+    WH_FLOW_SWAPPING,
+    WH_FLOW_FIRST_COME,
+    WH_FLOW_LONGEST_WAIT,
+    WH_FLOW_LISTS,
+    WH_FLOW_OWN,
+} wh_flow_rule_t;
+
+struct wh_flow_state;
+struct wh_flow_order;
+
+/* A rule of the user's: fills at most `most` orders for the robot, the best one first, and returns their
+ * number. A negative number ends the flow; the user knows why. */
+typedef int (*wh_flow_own_rule_t)(void *context, const struct wh_flow_state *state, int32_t robot,
+                                  struct wh_flow_order *orders, size_t most);
+
+typedef struct {
+    wh_flow_route_t *routes;
+    size_t route_count, step_count; /* of all routes together, with a way back for each */
+    wh_flow_step_t *backs;          /* by station: the step back to it */
+    wh_flow_lot_t *lots;            /* by arrival */
+    size_t lot_count;
+    wh_flow_wafer_t *wafers; /* lot after lot */
+    size_t wafer_count;
+    wh_flow_down_t *downs;
+    size_t down_count;
+    wh_flow_rule_t rule;
+    wh_flow_list_t *lists; /* by robot, for WH_FLOW_LISTS */
+    wh_flow_own_rule_t own;
+    void *own_context;
+    int64_t until_us; /* WH_FLOW_NEVER: until all wafers are there */
+    int64_t takt_us;  /* the least time between two wafers' starts */
+    bool is_safe;     /* shipped rules leave out transfers after which wafers could block each other */
+} wh_flow_plan_t;
+
+/* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
+void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
+
+/* To be called once when all is filled: numbers the steps, and counts what each step may hold. Returns null, or
+ * what is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
+ * whose places are all kept empty, the same station twice in succession. */
+char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
+
+/* The number of the wafer's last step. */
+int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer);
+
+/* A step of the wafer's route, or that of its way back. Step 0 has no stations. */
+const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step);
+
+/* The place where the wafer must end, if this step of its route is the last one and `back` is given; else
+ * WH_FLOW_NONE. */
+int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step);
+
+#endif

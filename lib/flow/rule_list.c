@@ -1,0 +1,131 @@
+/* Lists: each robot carries out its own lines in their order. */
+#include <stdio.h>
+
+#include "../text/array.h"
+#include "rules.h"
+#include "transfer.h"
+
+static bool has_station(const wh_flow_step_t *step, int32_t station) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (step->stations[i] == station) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool serves_one(const wh_flow_tool_t *tool, int32_t robot, const wh_flow_step_t *step) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (tool->serves[wh_flow_of(tool, robot, step->stations[i])]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool leads_to(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
+    return has_station(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
+}
+
+/* The wafer that a line means, if it lies in the station: the one named, or the first that entered. */
+static int32_t wafer_in(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
+    const wh_flow_station_t *station = &state->tool->stations[line->from];
+    int32_t best = WH_FLOW_NONE;
+    for (int32_t place = station->first_place; place < station->first_place + station->slots; ++place) {
+        const int32_t wafer = state->places[place].wafer;
+        if (wafer == WH_FLOW_NONE || state->wafers[wafer].is_moving || state->wafers[wafer].is_over ||
+            (line->wafer != WH_FLOW_NONE && line->wafer != wafer) ||
+            (line->what == WH_FLOW_TRANSFER && !leads_to(state, wafer, line->to)) ||
+            (line->what == WH_FLOW_KEEP && !wh_flow_is_carrier(state, robot, wafer))) {
+            continue;
+        }
+        if (best == WH_FLOW_NONE || state->wafers[wafer].entered_us < state->wafers[best].entered_us ||
+            (state->wafers[wafer].entered_us == state->wafers[best].entered_us && wafer < best)) {
+            best = wafer;
+        }
+    }
+    return best;
+}
+
+static int32_t kept_for(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    int32_t best = WH_FLOW_NONE;
+    int64_t best_us = WH_FLOW_NEVER;
+    for (int32_t arm = 0; arm < 2; ++arm) {
+        const int32_t wafer = at->arms[arm];
+        if (wafer != WH_FLOW_NONE && leads_to(state, wafer, line->to) &&
+            (line->wafer == WH_FLOW_NONE || line->wafer == wafer) && at->kept_us[arm] < best_us) {
+            best = wafer;
+            best_us = at->kept_us[arm];
+        }
+    }
+    return best;
+}
+
+/* True if some wafer lies, or will lie, in the line's station before a step that the line serves. */
+static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        const int32_t last = wh_flow_last_step(state->plan, w);
+        if (state->wafers[w].is_over || (line->wafer != WH_FLOW_NONE && line->wafer != w)) {
+            continue;
+        }
+        for (int32_t k = state->wafers[w].step; k < last; ++k) {
+            const bool is_here = k == 0
+                                     ? state->tool->place_stations[state->plan->wafers[w].home] == line->from
+                                     : has_station(wh_flow_step_of(state->plan, w, k), line->from);
+            const wh_flow_step_t *next = wh_flow_step_of(state->plan, w, k + 1);
+            const bool goes = line->what == WH_FLOW_KEEP ? serves_one(state->tool, robot, next)
+                                                         : has_station(next, line->to);
+            if (is_here && goes) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static bool has_no_arm(const wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    return at->arms[0] != WH_FLOW_NONE &&
+           (state->tool->robots[robot].arms < 2 || at->arms[1] != WH_FLOW_NONE);
+}
+
+static int fail(wh_flow_state_t *state, int32_t robot, int32_t number, const char *why) {
+    char text[200];
+    (void)snprintf(text, sizeof text, "list of %s, line %d: %s", state->tool->robots[robot].name,
+                   (int)number + 1, why);
+    state->cause = wh_text_copy(text);
+    return -1;
+}
+
+int wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order) {
+    const wh_flow_list_t *list = &state->plan->lists[robot];
+    const int32_t number = state->robots[robot].mark;
+    if ((size_t)number >= list->count) {
+        return 0;
+    }
+    const wh_flow_line_t *line = &list->lines[number];
+    *order = (wh_flow_order_t){.what = line->what,
+                               .wafer = WH_FLOW_NONE,
+                               .at = line->from,
+                               .station = line->to,
+                               .place = WH_FLOW_NONE,
+                               .mark = number + 1,
+                               .side = line->side};
+    if (line->what == WH_FLOW_BRING) {
+        order->at = line->to;
+        order->wafer = kept_for(state, robot, line);
+        if (order->wafer == WH_FLOW_NONE) {
+            return fail(state, robot, number, "no wafer on an arm goes there next");
+        }
+    } else if (line->what != WH_FLOW_PUMP) {
+        order->wafer = wafer_in(state, robot, line);
+        if (order->wafer == WH_FLOW_NONE && !is_possible(state, robot, line)) {
+            return fail(state, robot, number, "no wafer lies there, or will, whose next step it serves");
+        }
+        if (has_no_arm(state, robot)) {
+            return fail(state, robot, number, "each arm has a wafer");
+        }
+    }
+    return 1;
+}

@@ -1,0 +1,78 @@
+/* first_come and longest_wait: among the transfers that can begin as soon as the robot is there. If none can, the
+ * robot goes ahead to the one that can begin soonest. */
+#include "rules.h"
+#include "transfer.h"
+
+typedef struct {
+    int32_t wafer, place;
+    int64_t begin_us; /* when its pick could begin */
+    bool is_ready;    /* as soon as the robot is there */
+} candidate_t;
+
+static int32_t priority_of(const wh_flow_state_t *state, int32_t wafer) {
+    return state->plan->lots[state->plan->wafers[wafer].lot].priority;
+}
+
+/* Ties: higher priority, the later step, the wafer that entered its place first, the lot's order. */
+static bool wins_tie(const wh_flow_state_t *state, int32_t a, int32_t b) {
+    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
+    if (priority_of(state, a) != priority_of(state, b)) {
+        return priority_of(state, a) > priority_of(state, b);
+    }
+    if (one->step != other->step) {
+        return one->step > other->step;
+    }
+    return one->entered_us != other->entered_us ? one->entered_us < other->entered_us : a < b;
+}
+
+static bool is_better(const wh_flow_state_t *state, const candidate_t *a, const candidate_t *b) {
+    if (b->wafer == WH_FLOW_NONE || a->is_ready != b->is_ready) {
+        return b->wafer == WH_FLOW_NONE || a->is_ready;
+    }
+    if (!a->is_ready) {
+        return a->begin_us != b->begin_us ? a->begin_us < b->begin_us : wins_tie(state, a->wafer, b->wafer);
+    }
+    if (state->plan->rule == WH_FLOW_FIRST_COME) {
+        return a->wafer < b->wafer;
+    }
+    const int64_t a_us = state->wafers[a->wafer].done_us, b_us = state->wafers[b->wafer].done_us;
+    return a_us != b_us ? a_us < b_us : wins_tie(state, a->wafer, b->wafer);
+}
+
+/* All wafers of a step; of those in their first places, the first that can go. */
+static void look_at_step(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
+                         candidate_t *best) {
+    const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
+    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+        if (!wh_flow_may_take(state, robot, wafer)) {
+            continue;
+        }
+        int64_t there_us = 0;
+        const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
+        candidate_t candidate = {wafer, WH_FLOW_NONE, begin_us, begin_us == there_us};
+        if (begin_us != WH_FLOW_NEVER && is_better(state, &candidate, best)) {
+            candidate.place = wh_flow_safe_place(state, robot, wafer, begin_us, WH_FLOW_NONE);
+            *best = candidate.place != WH_FLOW_NONE ? candidate : *best;
+        }
+        if (task->step == 0 && best->wafer == wafer) {
+            return;
+        }
+    }
+}
+
+int wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                      wh_flow_order_t *order) {
+    candidate_t best = {WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NEVER, false};
+    for (size_t i = 0; i < rules->rounds[robot].count; ++i) {
+        look_at_step(state, robot, &rules->rounds[robot].tasks[i], &best);
+    }
+    if (best.wafer == WH_FLOW_NONE) {
+        return 0;
+    }
+    *order = (wh_flow_order_t){.what = WH_FLOW_TRANSFER,
+                               .wafer = best.wafer,
+                               .at = wh_flow_station_of(state, best.wafer),
+                               .station = WH_FLOW_NONE,
+                               .place = best.place};
+    return 1;
+}

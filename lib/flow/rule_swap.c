@@ -1,0 +1,239 @@
+/* swap: a robot with two arms takes a wafer, and where its next place is full it exchanges the two, and goes on with
+ * what it took until a place was empty. It takes one only if the exchanges that follow lead to an empty place. */
+#include "rules.h"
+#include "safe.h"
+#include "transfer.h"
+
+/* The most exchanges in a row. */
+#define LONGEST 64
+
+static int32_t carried(const wh_flow_robot_state_t *robot) {
+    const int32_t a = robot->arms[0], b = robot->arms[1];
+    if (a == WH_FLOW_NONE || b == WH_FLOW_NONE) {
+        return a == WH_FLOW_NONE ? b : a;
+    }
+    return robot->kept_us[0] <= robot->kept_us[1] ? a : b;
+}
+
+static int32_t priority_of(const wh_flow_state_t *state, int32_t wafer) {
+    return state->plan->lots[state->plan->wafers[wafer].lot].priority;
+}
+
+/* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is done first;
+ * then by priority, the later step, the one that entered first. */
+static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, int32_t b) {
+    const bool a_goes = wh_flow_is_carrier(state, robot, a), b_goes = wh_flow_is_carrier(state, robot, b);
+    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
+    if (a_goes != b_goes || one->done_us != other->done_us) {
+        return a_goes != b_goes ? a_goes : one->done_us < other->done_us;
+    }
+    if (priority_of(state, a) != priority_of(state, b)) {
+        return priority_of(state, a) > priority_of(state, b);
+    }
+    return one->step != other->step ? one->step > other->step : one->entered_us < other->entered_us;
+}
+
+/* The best of the next step's full places, or WH_FLOW_NONE. */
+static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const wh_flow_tool_t *tool = state->tool;
+    const int32_t next = state->wafers[wafer].step + 1;
+    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
+    const int32_t end = wh_flow_end_of(state->plan, wafer, next);
+    int32_t best = WH_FLOW_NONE;
+    for (size_t i = 0; i < step->station_count; ++i) {
+        const wh_flow_station_t *station = &tool->stations[step->stations[i]];
+        const wh_flow_side_t side = tool->sides[wh_flow_of(tool, robot, step->stations[i])];
+        for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+            const wh_flow_place_t *place = &state->places[p];
+            const wh_flow_side_t slot = tool->slot_sides[p];
+            if (!tool->serves[wh_flow_of(tool, robot, step->stations[i])] || place->wafer == WH_FLOW_NONE ||
+                (place->coming != WH_FLOW_NONE && place->coming != wafer) ||
+                (end != WH_FLOW_NONE && end != p) ||
+                state->stations[step->stations[i]].down_us != WH_FLOW_NEVER ||
+                (side != WH_FLOW_BOTH && slot != WH_FLOW_BOTH && side != slot)) {
+                continue;
+            }
+            if (best == WH_FLOW_NONE || is_before(state, robot, place->wafer, state->places[best].wafer)) {
+                best = p;
+            }
+        }
+    }
+    return best;
+}
+
+int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us) {
+    wh_flow_into_t moves[LONGEST];
+    for (size_t count = 0; count < LONGEST; ++count) {
+        const int32_t station = wh_flow_station_of(state, wafer);
+        const int64_t wait_us = begin_us == WH_FLOW_NEVER ? WH_FLOW_UNKNOWN : begin_us - state->now_us;
+        const wh_flow_target_t target = wh_flow_target(
+            state, robot, wafer, station, wait_us + wh_flow_pick_us(state, robot, station), WH_FLOW_NONE);
+        const int32_t place = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+        for (size_t i = 0; i < count; ++i) {
+            if (moves[i].wafer == wafer) {
+                return WH_FLOW_NONE;
+            }
+        }
+        if (place == WH_FLOW_NONE) {
+            return WH_FLOW_NONE;
+        }
+        moves[count] = (wh_flow_into_t){wafer, place};
+        if (target.place != WH_FLOW_NONE) {
+            const bool is_good = !state->checks_safety || wh_flow_is_safe(state, moves, count + 1);
+            return is_good ? moves[0].place : WH_FLOW_NONE;
+        }
+        wafer = state->places[place].wafer;
+        begin_us = WH_FLOW_NEVER;
+        if (!wh_flow_is_carrier(state, robot, wafer)) {
+            return WH_FLOW_NONE;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
+static bool is_clean_next(const wh_flow_state_t *state, int32_t place) {
+    const wh_flow_station_t *of = &state->tool->stations[state->tool->place_stations[place]];
+    return !of->cleans_full && of->clean_after > 0 && state->places[place].since_clean + 1 >= of->clean_after;
+}
+
+/* Before a full place: against its wafer, as soon as that is done. A clean that is due comes between. */
+static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place, wh_flow_order_t *order) {
+    const int32_t other = state->places[place].wafer;
+    if (!wh_flow_may_take(state, robot, other) || state->wafers[other].done_us > state->now_us ||
+        state->robots[robot].station != order->at) {
+        return;
+    }
+    const int32_t onward = wh_flow_swap_way(state, robot, other, state->now_us);
+    if (onward != WH_FLOW_NONE && is_clean_next(state, place)) {
+        order->what = WH_FLOW_KEEP;
+        order->wafer = other;
+        order->place = onward;
+    } else if (onward != WH_FLOW_NONE) {
+        order->what = WH_FLOW_SWAP;
+        order->onward = onward;
+    }
+}
+
+/* With a wafer: to an empty place of its next step, else to a full one. It is chosen anew at each instant. */
+static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
+    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    if (at->heading != WH_FLOW_NONE && state->places[at->heading].coming == wafer) {
+        state->places[at->heading].coming = WH_FLOW_NONE;
+    }
+    const wh_flow_target_t target =
+        wh_flow_target(state, robot, wafer, state->robots[robot].station, 0, WH_FLOW_NONE);
+    at->heading = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+    if (at->heading == WH_FLOW_NONE) {
+        return 0;
+    }
+    state->places[at->heading].coming = wafer;
+    at->is_bound = true;
+    const int32_t station = state->tool->place_stations[at->heading];
+    *order = (wh_flow_order_t){.what = WH_FLOW_BRING,
+                               .wafer = wafer,
+                               .at = station,
+                               .station = station,
+                               .place = at->heading,
+                               .onward = WH_FLOW_NONE};
+    if (state->places[at->heading].wafer != WH_FLOW_NONE &&
+        state->places[at->heading].leaving_us == WH_FLOW_NEVER) {
+        exchange(state, robot, at->heading, order);
+    }
+    return 1;
+}
+
+/* The find of an empty-handed robot in a step. */
+typedef struct {
+    int32_t wafer, place;
+    bool is_any; /* a wafer lies there, though perhaps none may be taken */
+} found_t;
+
+static bool entered_before(const wh_flow_state_t *state, int32_t a, int32_t b) {
+    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
+    if (one->entered_us != other->entered_us) {
+        return one->entered_us < other->entered_us;
+    }
+    return priority_of(state, a) != priority_of(state, b) ? priority_of(state, a) > priority_of(state, b)
+                                                          : a < b;
+}
+
+static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
+                      found_t *found) {
+    const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
+    int32_t left_out = WH_FLOW_NONE;
+    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+        int64_t there_us = 0;
+        if (state->plan->wafers[wafer].lot == left_out || !wh_flow_may_take(state, robot, wafer)) {
+            continue;
+        }
+        found->is_any = true;
+        if (task->step == 0) {
+            left_out = state->plan->wafers[wafer].lot; /* its others want the same places */
+        }
+        if (found->wafer != WH_FLOW_NONE && !entered_before(state, wafer, found->wafer)) {
+            continue;
+        }
+        const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
+        const int32_t place = wh_flow_swap_way(state, robot, wafer, begin_us);
+        if (place != WH_FLOW_NONE) {
+            found->wafer = wafer;
+            found->place = place;
+        }
+    }
+}
+
+/* The first step of its route that the robot empties. */
+static bool is_first(const wh_flow_round_t *round, const wh_flow_task_t *task) {
+    for (size_t i = 0; i < round->count; ++i) {
+        if (round->tasks[i].route == task->route && round->tasks[i].step < task->step) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) {
+    const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
+    return !state->is_relaxed && (wh_flow_still_to_come(state, task->route, task->step) > 0 ||
+                                  state->counts[step] > state->leaving[step]);
+}
+
+/* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the earliest. */
+static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                wh_flow_order_t *order) {
+    const wh_flow_round_t *round = &rules->rounds[robot];
+    found_t found = {WH_FLOW_NONE, WH_FLOW_NONE, false};
+    bool is_awaited = false;
+    for (size_t i = 0; i < round->count; ++i) {
+        if (is_first(round, &round->tasks[i]) && is_coming(state, &round->tasks[i])) {
+            is_awaited = true;
+            look_into(state, robot, &round->tasks[i], &found);
+        }
+    }
+    if (found.wafer == WH_FLOW_NONE && is_awaited && !found.is_any) {
+        return 0;
+    }
+    for (size_t i = round->count; i > 0 && found.wafer == WH_FLOW_NONE;) {
+        size_t first = i - 1; /* those of one number stand in the order of their routes */
+        while (first > 0 && round->tasks[first - 1].step == round->tasks[i - 1].step) {
+            --first;
+        }
+        for (size_t k = first; k < i && found.wafer == WH_FLOW_NONE; ++k) {
+            look_into(state, robot, &round->tasks[k], &found);
+        }
+        i = first;
+    }
+    *order = (wh_flow_order_t){.what = WH_FLOW_KEEP,
+                               .wafer = found.wafer,
+                               .at = found.wafer == WH_FLOW_NONE ? WH_FLOW_NONE
+                                                                 : wh_flow_station_of(state, found.wafer),
+                               .station = WH_FLOW_NONE,
+                               .place = found.place};
+    return found.wafer == WH_FLOW_NONE ? 0 : 1;
+}
+
+int wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                     wh_flow_order_t *order) {
+    const int32_t has = carried(&state->robots[robot]);
+    return has != WH_FLOW_NONE ? carry_on(state, robot, has, order) : take(state, rules, robot, order);
+}

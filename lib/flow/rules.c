@@ -1,0 +1,139 @@
+#include "rules.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+
+static bool serves_any(const wh_flow_tool_t *tool, int32_t robot, const int32_t *stations, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        if (tool->serves[wh_flow_of(tool, robot, stations[i])]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Step 0 of a route lies where its lots do. */
+static bool serves_home(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot,
+                        int32_t route) {
+    for (size_t w = 0; w < plan->wafer_count; ++w) {
+        const int32_t home = tool->place_stations[plan->wafers[w].home];
+        if (plan->lots[plan->wafers[w].lot].route == route && tool->serves[wh_flow_of(tool, robot, home)]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* True if the robot serves the step's stations and those of the next one; behind the last step lie those to which
+ * wafers go back. */
+static bool empties(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot, int32_t route,
+                    int32_t k) {
+    const wh_flow_route_t *of = &plan->routes[route];
+    const wh_flow_step_t *step = &of->steps[k], *next = step + 1;
+    if (k > 0 && !serves_any(tool, robot, step->stations, step->station_count)) {
+        return false;
+    }
+    if (k == 0 && !serves_home(tool, plan, robot, route)) {
+        return false;
+    }
+    if ((size_t)k + 1 < of->step_count) {
+        return serves_any(tool, robot, next->stations, next->station_count);
+    }
+    for (size_t w = 0; w < plan->wafer_count; ++w) {
+        if (plan->lots[plan->wafers[w].lot].route == route && plan->wafers[w].goes_back &&
+            tool->serves[wh_flow_of(tool, robot, plan->wafers[w].back_station)]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void open_round(wh_flow_round_t *round, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+                       int32_t robot) {
+    size_t longest = 0;
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        longest = plan->routes[i].step_count > longest ? plan->routes[i].step_count : longest;
+    }
+    for (int32_t k = (int32_t)longest - 1; k >= 0; --k) {
+        for (int32_t i = 0; i < (int32_t)plan->route_count; ++i) {
+            if ((size_t)k < plan->routes[i].step_count && empties(tool, plan, robot, i, k)) {
+                round->tasks =
+                    wh_array_grow(round->tasks, round->count, &round->capacity, sizeof *round->tasks);
+                round->tasks[round->count++] = (wh_flow_task_t){i, k};
+            }
+        }
+    }
+}
+
+/* Marks in `leads` what each station leads to: from each of a step to each of the next. */
+static void lead(const wh_flow_route_t *route, size_t count, bool *leads) {
+    for (size_t k = 1; k + 1 < route->step_count; ++k) {
+        const wh_flow_step_t *step = &route->steps[k], *next = step + 1;
+        for (size_t i = 0; i < step->station_count; ++i) {
+            for (size_t j = 0; j < next->station_count; ++j) {
+                leads[(size_t)step->stations[i] * count + (size_t)next->stations[j]] = true;
+            }
+        }
+    }
+}
+
+/* True if some station leads back to itself. */
+static bool find_circle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
+    const size_t count = tool->station_count;
+    bool *leads = wh_array_new(count * count, sizeof *leads), found = false;
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        lead(&plan->routes[i], count, leads);
+    }
+    for (size_t by = 0; by < count; ++by) {
+        for (size_t from = 0; from < count; ++from) {
+            for (size_t to = 0; leads[from * count + by] && to < count; ++to) {
+                leads[from * count + to] = leads[from * count + to] || leads[by * count + to];
+            }
+        }
+    }
+    for (size_t i = 0; i < count; ++i) {
+        found = found || leads[i * count + i];
+    }
+    free(leads);
+    return found;
+}
+
+void wh_flow_rules_open(wh_flow_rules_t *rules, wh_flow_state_t *state) {
+    const wh_flow_tool_t *tool = state->tool;
+    const wh_flow_plan_t *plan = state->plan;
+    const bool is_shipped = plan->rule != WH_FLOW_LISTS && plan->rule != WH_FLOW_OWN;
+    state->checks_safety = plan->is_safe && is_shipped && find_circle(tool, plan);
+    rules->rounds = wh_array_new(tool->robot_count, sizeof *rules->rounds);
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        open_round(&rules->rounds[i], tool, plan, (int32_t)i);
+    }
+}
+
+void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool) {
+    for (size_t i = 0; rules->rounds && i < tool->robot_count; ++i) {
+        free(rules->rounds[i].tasks);
+    }
+    free(rules->rounds);
+    memset(rules, 0, sizeof *rules);
+}
+
+int wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *orders,
+                size_t most) {
+    switch (state->plan->rule) {
+    case WH_FLOW_BACKWARD:
+        return wh_flow_ask_backward(state, rules, robot, orders);
+    case WH_FLOW_SWAPPING:
+        return state->tool->robots[robot].arms > 1 ? wh_flow_ask_swap(state, rules, robot, orders)
+                                                   : wh_flow_ask_backward(state, rules, robot, orders);
+    case WH_FLOW_LISTS:
+        return wh_flow_ask_list(state, robot, orders);
+    case WH_FLOW_OWN:
+        return state->plan->own(state->plan->own_context, state, robot, orders, most);
+    case WH_FLOW_FIRST_COME:
+    case WH_FLOW_LONGEST_WAIT:
+    default:
+        return wh_flow_ask_ready(state, rules, robot, orders);
+    }
+}

@@ -1,0 +1,42 @@
+/* The rules by which a robot that is free chooses what it does next. */
+#ifndef WH_FLOW_RULES_H
+#define WH_FLOW_RULES_H
+
+#include "state.h"
+
+/* A step that a robot empties. */
+typedef struct {
+    int32_t route, step;
+} wh_flow_task_t;
+
+/* A robot's round: from the last step to the first; of one number, in the order of the routes. */
+typedef struct {
+    wh_flow_task_t *tasks;
+    size_t count, capacity;
+} wh_flow_round_t;
+
+typedef struct {
+    wh_flow_round_t *rounds; /* by robot */
+} wh_flow_rules_t;
+
+/* Also sets `checks_safety` of the state: shipped rules, if the plan is to be safe and some station leads back to
+ * itself. */
+void wh_flow_rules_open(wh_flow_rules_t *rules, wh_flow_state_t *state);
+void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool);
+
+/* Fills at most `most` orders for a robot that is free, the best first, and returns their number. An order whose
+ * time has not come yet sends the robot ahead. A negative number ends the flow: `state->cause` says why. */
+int wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *orders,
+                size_t most);
+
+/* The rules one by one: 1 and an order, or 0. */
+int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                         wh_flow_order_t *order);
+int wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                      wh_flow_order_t *order);
+/* It fixes where a wafer on an arm goes. */
+int wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                     wh_flow_order_t *order);
+int wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
+
+#endif

@@ -1,0 +1,144 @@
+#include "state.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+
+static void open_stations(wh_flow_state_t *state) {
+    const wh_flow_tool_t *tool = state->tool;
+    for (size_t i = 0; i < tool->place_count; ++i) {
+        const int64_t idle_us = tool->stations[tool->place_stations[i]].idle_us;
+        state->places[i] = (wh_flow_place_t){WH_FLOW_NONE,  WH_FLOW_NONE, -1, WH_FLOW_NEVER,
+                                             WH_FLOW_NEVER, idle_us,      0,  false};
+    }
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        state->stations[i] = (wh_flow_station_state_t){.user = WH_FLOW_NONE,
+                                                       .clean_us = WH_FLOW_NEVER,
+                                                       .idle_us = tool->stations[i].idle_us,
+                                                       .down_us = WH_FLOW_NEVER,
+                                                       .pump_us = WH_FLOW_NEVER,
+                                                       .done_us = WH_FLOW_NEVER,
+                                                       .side = tool->stations[i].side};
+    }
+}
+
+static void open_robots(wh_flow_state_t *state) {
+    const wh_flow_plan_t *plan = state->plan;
+    for (size_t i = 0; i < state->tool->robot_count; ++i) {
+        state->robots[i] = (wh_flow_robot_state_t){.until_us = WH_FLOW_NEVER,
+                                                   .station = state->tool->robots[i].at,
+                                                   .from = WH_FLOW_NONE,
+                                                   .to = WH_FLOW_NONE,
+                                                   .arms = {WH_FLOW_NONE, WH_FLOW_NONE}};
+        for (size_t k = 0; plan->lists && k < plan->lists[i].count; ++k) {
+            if (plan->lists[i].lines[k].what == WH_FLOW_PUMP) {
+                state->stations[plan->lists[i].lines[k].to].is_listed = true;
+            }
+        }
+    }
+}
+
+void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
+    *state = (wh_flow_state_t){
+        .tool = tool,
+        .plan = plan,
+        .places = wh_array_new(tool->place_count, sizeof *state->places),
+        .stations = wh_array_new(tool->station_count, sizeof *state->stations),
+        .robots = wh_array_new(tool->robot_count, sizeof *state->robots),
+        .wafers = wh_array_new(plan->wafer_count, sizeof *state->wafers),
+        .counts = wh_array_new(plan->step_count, sizeof *state->counts),
+        .leaving = wh_array_new(plan->step_count, sizeof *state->leaving),
+        .heads = wh_array_new(plan->step_count, sizeof *state->heads),
+        .tails = wh_array_new(plan->step_count, sizeof *state->tails),
+    };
+    open_stations(state);
+    open_robots(state);
+    for (size_t i = 0; i < plan->wafer_count; ++i) {
+        state->wafers[i] = (wh_flow_wafer_state_t){.place = WH_FLOW_NONE,
+                                                   .robot = WH_FLOW_NONE,
+                                                   .heading = WH_FLOW_NONE,
+                                                   .next = WH_FLOW_NONE,
+                                                   .before = WH_FLOW_NONE,
+                                                   .done_us = WH_FLOW_NEVER};
+    }
+    for (size_t i = 0; i < plan->step_count; ++i) {
+        state->heads[i] = state->tails[i] = WH_FLOW_NONE;
+    }
+}
+
+void wh_flow_state_close(wh_flow_state_t *state) {
+    free(state->places);
+    free(state->stations);
+    free(state->robots);
+    free(state->wafers);
+    free(state->counts);
+    free(state->leaving);
+    free(state->heads);
+    free(state->tails);
+    free(state->cause);
+    memset(state, 0, sizeof *state);
+}
+
+size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step) {
+    const wh_flow_plan_t *plan = state->plan;
+    return plan->routes[plan->lots[plan->wafers[wafer].lot].route].first_step + (size_t)step;
+}
+
+void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer) {
+    wh_flow_wafer_state_t *entering = &state->wafers[wafer];
+    const size_t step = wh_flow_step_index(state, wafer, entering->step);
+    entering->before = state->tails[step];
+    entering->next = WH_FLOW_NONE;
+    if (entering->before != WH_FLOW_NONE) {
+        state->wafers[entering->before].next = wafer;
+    } else {
+        state->heads[step] = wafer;
+    }
+    state->tails[step] = wafer;
+}
+
+void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *leaving = &state->wafers[wafer];
+    const size_t step = wh_flow_step_index(state, wafer, leaving->step);
+    if (leaving->before != WH_FLOW_NONE) {
+        state->wafers[leaving->before].next = leaving->next;
+    } else {
+        state->heads[step] = leaving->next;
+    }
+    if (leaving->next != WH_FLOW_NONE) {
+        state->wafers[leaving->next].before = leaving->before;
+    } else {
+        state->tails[step] = leaving->before;
+    }
+}
+
+int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
+    const size_t first = state->plan->routes[route].first_step;
+    int32_t sum = step > 0 ? -state->leaving[first + (size_t)step - 1] : 0;
+    for (int32_t k = 0; k < step; ++k) {
+        sum += state->counts[first + (size_t)k];
+    }
+    return sum;
+}
+
+int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const bool second_alone = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step)->second_arm;
+    for (int32_t arm = second_alone ? 1 : 0; arm < state->tool->robots[robot].arms; ++arm) {
+        if (state->robots[robot].arms[arm] == WH_FLOW_NONE) {
+            return arm;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
+int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer) {
+    const int32_t place = state->wafers[wafer].place;
+    return place == WH_FLOW_NONE ? WH_FLOW_NONE : state->tool->place_stations[place];
+}
+
+void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event) {
+    if (state->listener.event) {
+        state->listener.event(state->listener.context, state, event);
+    }
+}

@@ -1,0 +1,164 @@
+/* A tool at an instant: who is where, what runs, and what is known of its end. The engine alone changes it; rules
+ * read it. */
+#ifndef WH_FLOW_STATE_H
+#define WH_FLOW_STATE_H
+
+#include "plan.h"
+
+typedef struct {
+    int32_t wafer;       /* that lies there, or WH_FLOW_NONE */
+    int32_t coming;      /* whose transfer to here has begun, or WH_FLOW_NONE */
+    int64_t empty_us;    /* since when it is empty; below 0: always */
+    int64_t leaving_us;  /* the end of a pick out of it that has begun, or WH_FLOW_NEVER */
+    int64_t clean_us;    /* the end of a clean that runs, or WH_FLOW_NEVER */
+    int64_t idle_us;     /* when a clean is due because no wafer came, or WH_FLOW_NEVER */
+    int32_t since_clean; /* wafers */
+    bool is_clean_due;
+} wh_flow_place_t;
+
+typedef struct {
+    int32_t user;     /* the robot whose blade is in it or next, or WH_FLOW_NONE */
+    int64_t shut_us;  /* until then its door shuts */
+    int64_t busy_us;  /* the end of the access that runs, its door shut again */
+    int64_t clean_us; /* the end of the clean that ends next in its places, or WH_FLOW_NEVER */
+    int64_t idle_us;  /* the next time at which one is due because no wafer came, or WH_FLOW_NEVER */
+    int64_t down_began_us;
+    int64_t down_us; /* the end of a failure, or WH_FLOW_NEVER */
+    int64_t pump_us; /* the end of pumping, or WH_FLOW_NEVER */
+    int64_t pump_began_us;
+    int64_t done_us; /* the end of the process that ends next, or WH_FLOW_NEVER */
+    wh_flow_side_t side, pump_to;
+    bool is_listed; /* a lock that lists turn */
+    int32_t wafers;
+    bool has_due; /* one of its places must be cleaned, and is not yet */
+} wh_flow_station_state_t;
+
+typedef struct {
+    int32_t place, robot, arm; /* where it is; WH_FLOW_NONE else */
+    int32_t step;              /* in which it counts, or from which it comes */
+    int64_t entered_us;        /* when it was placed there */
+    int64_t done_us;           /* from then on it may be taken; WH_FLOW_NEVER: not known yet */
+    int64_t clean_us;          /* how long its place is cleaned around it before that, after its process */
+    int32_t next, before;      /* in its step, by the time of entering */
+    int32_t heading;           /* swap: the place, perhaps a full one, for which a robot has taken it */
+    bool is_counted; /* it counts in the next step already, though its transfer there has not begun */
+    bool is_bound;   /* its place is chosen, by a transfer that has begun or as its robot goes on with it */
+    bool is_moving;  /* its transfer has begun */
+    bool is_over;
+} wh_flow_wafer_state_t;
+
+typedef enum {
+    WH_FLOW_IDLE,
+    WH_FLOW_MOVING,  /* empty, to `station` */
+    WH_FLOW_OPENING, /* the door for a pick, a place or a swap that is next */
+    WH_FLOW_PICKING,
+    WH_FLOW_CARRYING, /* to `station` */
+    WH_FLOW_WAITING,  /* in front of the place with the wafer */
+    WH_FLOW_PLACING,
+    WH_FLOW_SWAPS,
+} wh_flow_action_t;
+
+/* A rule's answer. */
+typedef struct wh_flow_order {
+    wh_flow_do_t what;
+    int32_t wafer;   /* to be taken, or to be brought; WH_FLOW_NONE: it is not there yet */
+    int32_t at;      /* the station in front of which the robot must stand for it */
+    int32_t station; /* of its next step; WH_FLOW_NONE: the best one */
+    int32_t place;   /* likewise, or of the wafer to swap against */
+    int32_t onward;  /* of a swap: where the wafer that comes out goes next */
+    int32_t mark;    /* of the rule: see wh_flow_robot_state_t */
+    wh_flow_side_t side;
+} wh_flow_order_t;
+
+typedef struct {
+    wh_flow_action_t action, then; /* then: what comes after the door */
+    int64_t since_us, until_us;    /* of the action; until: WH_FLOW_NEVER for those that wait */
+    int32_t station;               /* where it stands or goes */
+    wh_flow_order_t order;         /* carried out now */
+    int32_t from, to, arm;         /* of the transfer: places, and the arm in use */
+    int32_t arms[2];               /* wafers, or WH_FLOW_NONE */
+    int64_t kept_us[2];
+    int32_t mark;         /* backward: where the round goes on; lists: the next line */
+    wh_flow_order_t wish; /* the first answer of the rule when it was asked last */
+    bool has_wish;
+} wh_flow_robot_state_t;
+
+typedef enum {
+    WH_FLOW_EVENT_MOVE,
+    WH_FLOW_EVENT_OPEN,
+    WH_FLOW_EVENT_PICK,
+    WH_FLOW_EVENT_PLACE,
+    WH_FLOW_EVENT_SWAP,
+    WH_FLOW_EVENT_PROCESS,
+    WH_FLOW_EVENT_CLEAN,
+    WH_FLOW_EVENT_PUMP,
+    WH_FLOW_EVENT_DOWN,
+    WH_FLOW_EVENT_STAY,
+} wh_flow_event_kind_t;
+
+/* One thing that took time, told when it has ended, so by the order of the ends. */
+typedef struct {
+    wh_flow_event_kind_t kind;
+    int64_t begin_us, end_us;
+    int32_t robot, arm, wafer, other; /* other: what a swap brought in */
+    int32_t place, station, from;     /* from: the station that a move comes from */
+    int32_t step;
+    bool is_loaded;
+    wh_flow_side_t side;
+} wh_flow_event_t;
+
+/* The listener of a flow. Each may be null. */
+typedef struct {
+    void *context;
+    void (*event)(void *context, const struct wh_flow_state *state, const wh_flow_event_t *event);
+    void (*advance)(void *context, const struct wh_flow_state *state,
+                    int64_t to_us); /* before time goes on */
+    void (*end)(void *context, const struct wh_flow_state *state);
+} wh_flow_listener_t;
+
+typedef struct wh_flow_state {
+    const wh_flow_tool_t *tool;
+    const wh_flow_plan_t *plan;
+    int64_t now_us;
+    wh_flow_place_t *places;
+    wh_flow_station_state_t *stations;
+    wh_flow_robot_state_t *robots;
+    wh_flow_wafer_state_t *wafers;
+    int32_t *counts;        /* by step: from the begin of the transfer in to the end of the pick out */
+    int32_t *leaving;       /* by step: those of them whose pick out runs */
+    int32_t *heads, *tails; /* by step: the wafers that lie there */
+    size_t next_lot, next_down;
+    size_t over;           /* wafers at their end */
+    size_t arrived;        /* wafers of lots that are there */
+    int64_t next_start_us; /* by takt */
+    int64_t last_us;       /* the end of the last placing */
+    wh_flow_listener_t listener;
+    bool checks_safety; /* rules leave out transfers after which wafers could block each other */
+    bool is_relaxed;    /* nobody could go on: shipped rules wait for no fuller step now */
+    char *cause;        /* why the flow ended early, or null; freed by wh_flow_state_close */
+} wh_flow_state_t;
+
+/* The tool's beginning. The tool and the plan must outlive the state; the plan must be finished. */
+void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan);
+void wh_flow_state_close(wh_flow_state_t *state);
+
+/* The index of a wafer's step in counts, heads and tails. */
+size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t step);
+
+/* Puts the wafer behind all others of its step, or takes it out. */
+void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);
+void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer);
+
+/* How many wafers of arrived lots are still to come into this step of the route: they are before it. */
+int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step);
+
+/* The arm that is free to take from the wafer's step, or WH_FLOW_NONE. */
+int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
+
+/* The station in whose place the wafer lies, or WH_FLOW_NONE. */
+int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
+
+/* Tells the listener, if there is one. */
+void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event);
+
+#endif

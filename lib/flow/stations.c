@@ -1,0 +1,440 @@
+#include "stations.h"
+
+#include "transfer.h"
+
+/* Told for a station alone. */
+static void tell(const wh_flow_state_t *state, wh_flow_event_kind_t kind, int32_t station, int64_t begin_us) {
+    const wh_flow_event_t event = {.kind = kind,
+                                   .begin_us = begin_us,
+                                   .end_us = state->now_us,
+                                   .robot = WH_FLOW_NONE,
+                                   .wafer = WH_FLOW_NONE,
+                                   .other = WH_FLOW_NONE,
+                                   .place = WH_FLOW_NONE,
+                                   .station = station,
+                                   .side = state->stations[station].side};
+    wh_flow_tell(state, &event);
+}
+
+static void end_wafer(wh_flow_state_t *state, int32_t wafer) {
+    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    at->is_over = true;
+    at->done_us = WH_FLOW_NEVER;
+    wh_flow_step_leave(state, wafer);
+    --state->counts[wh_flow_step_index(state, wafer, at->step)];
+    ++state->over;
+}
+
+static bool is_last(const wh_flow_state_t *state, int32_t wafer) {
+    return state->wafers[wafer].step == wh_flow_last_step(state->plan, wafer);
+}
+
+/* Notes the next clean in a station's places. */
+static void plan_cleans(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    wh_flow_station_state_t *station = &state->stations[number];
+    station->clean_us = station->idle_us = WH_FLOW_NEVER;
+    station->has_due = false;
+    for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
+        const wh_flow_place_t *at = &state->places[place];
+        station->clean_us = at->clean_us < station->clean_us ? at->clean_us : station->clean_us;
+        station->idle_us = at->idle_us < station->idle_us ? at->idle_us : station->idle_us;
+        station->has_due = station->has_due || at->is_clean_due;
+    }
+}
+
+static bool is_cleaned(const wh_flow_station_t *station) {
+    return station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
+}
+
+void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
+    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int32_t number = state->tool->place_stations[at->place];
+    wh_flow_station_state_t *station = &state->stations[number];
+    ++station->wafers;
+    state->places[at->place].idle_us = WH_FLOW_NEVER;
+    if (is_last(state, wafer)) {
+        end_wafer(state, wafer);
+        return;
+    }
+    const int64_t for_us = wh_flow_process_us(state, wafer, number);
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    const bool is_due = of->clean_after > 0 && state->places[at->place].since_clean + 1 >= of->clean_after;
+    at->clean_us = of->cleans_full && is_due ? of->clean_us : 0;
+    const int64_t lasts_us = for_us + at->clean_us;
+    const int64_t begin_us = station->down_us != WH_FLOW_NEVER && station->down_us > station->shut_us
+                                 ? station->down_us
+                                 : station->shut_us;
+    at->done_us = lasts_us == 0 ? station->shut_us : begin_us + lasts_us;
+    if (is_cleaned(&state->tool->stations[number])) {
+        plan_cleans(state, number);
+    }
+    if (lasts_us > 0 && at->done_us < station->done_us) {
+        station->done_us = at->done_us;
+    }
+}
+
+void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
+    const int32_t station = state->tool->place_stations[number];
+    const wh_flow_station_t *of = &state->tool->stations[station];
+    wh_flow_place_t *place = &state->places[number];
+    --state->stations[station].wafers;
+    ++place->since_clean;
+    if (is_cleaned(of)) {
+        const bool is_due = of->clean_after > 0 && place->since_clean >= of->clean_after;
+        place->is_clean_due = is_due && !of->cleans_full;
+        place->since_clean = is_due && of->cleans_full ? 0 : place->since_clean;
+        place->idle_us = of->idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + of->idle_us;
+        plan_cleans(state, station);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- ends */
+
+/* A process ends before the clean around its wafer. */
+static void tell_process(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
+    const int64_t end_us = state->wafers[wafer].done_us - state->wafers[wafer].clean_us;
+    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_PROCESS,
+                                   .begin_us = end_us - wh_flow_process_us(state, wafer, station),
+                                   .end_us = end_us,
+                                   .robot = WH_FLOW_NONE,
+                                   .wafer = wafer,
+                                   .other = WH_FLOW_NONE,
+                                   .place = state->wafers[wafer].place,
+                                   .station = station,
+                                   .step = state->wafers[wafer].step};
+    wh_flow_tell(state, &event);
+}
+
+static void end_processes(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    wh_flow_station_state_t *station = &state->stations[number];
+    station->done_us = WH_FLOW_NEVER;
+    for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
+        const int32_t wafer = state->places[place].wafer;
+        if (wafer == WH_FLOW_NONE || state->wafers[wafer].is_over) {
+            continue;
+        }
+        const int64_t done_us = state->wafers[wafer].done_us;
+        if (done_us == state->now_us) {
+            tell_process(state, wafer, number);
+        } else if (done_us > state->now_us && done_us < station->done_us) {
+            station->done_us = done_us;
+        }
+    }
+}
+
+static void end_cleans(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    for (int32_t i = of->first_place; i < of->first_place + of->slots; ++i) {
+        wh_flow_place_t *place = &state->places[i];
+        if (place->clean_us == state->now_us) {
+            place->clean_us = WH_FLOW_NEVER;
+            place->since_clean = 0;
+            place->is_clean_due = false;
+            const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
+                                           .begin_us = state->now_us - of->clean_us,
+                                           .end_us = state->now_us,
+                                           .robot = WH_FLOW_NONE,
+                                           .wafer = WH_FLOW_NONE,
+                                           .other = WH_FLOW_NONE,
+                                           .place = i,
+                                           .station = number};
+            wh_flow_tell(state, &event);
+        }
+    }
+    plan_cleans(state, number);
+}
+
+static int64_t pump_us(const wh_flow_state_t *state, int32_t number, wh_flow_side_t to) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    return state->stations[number].wafers == 0 ? of->empty_pump_us[to] : of->pump_us[to];
+}
+
+void wh_flow_stations_end(wh_flow_state_t *state) {
+    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
+        wh_flow_station_state_t *station = &state->stations[i];
+        if (station->done_us == state->now_us) {
+            end_processes(state, i);
+        }
+        if (station->clean_us == state->now_us) {
+            end_cleans(state, i);
+        }
+        if (station->pump_us == state->now_us) {
+            station->side = station->pump_to;
+            station->pump_us = WH_FLOW_NEVER;
+            tell(state, WH_FLOW_EVENT_PUMP, i, station->pump_began_us);
+        }
+        if (station->down_us == state->now_us) {
+            station->down_us = WH_FLOW_NEVER;
+            tell(state, WH_FLOW_EVENT_DOWN, i, station->down_began_us);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- beginnings */
+
+bool wh_flow_station_pump(wh_flow_state_t *state, int32_t number, wh_flow_side_t side) {
+    wh_flow_station_state_t *station = &state->stations[number];
+    if (station->pump_us != WH_FLOW_NEVER && station->pump_to == side) {
+        return true;
+    }
+    if (station->pump_us == WH_FLOW_NEVER && station->side == side) {
+        return true;
+    }
+    if (station->pump_us != WH_FLOW_NEVER || station->user != WH_FLOW_NONE ||
+        station->shut_us > state->now_us || station->down_us != WH_FLOW_NEVER) {
+        return false;
+    }
+    station->pump_to = side;
+    station->pump_us = state->now_us + pump_us(state, number, side);
+    station->pump_began_us = state->now_us;
+    return true;
+}
+
+/* Since when a side waits for a lock; WH_FLOW_NEVER: it does not. */
+typedef struct {
+    int64_t since_us[2];
+} wants_t;
+
+static void want(wants_t *wants, wh_flow_side_t side, int64_t since_us) {
+    if (side != WH_FLOW_BOTH && since_us < wants->since_us[side]) {
+        wants->since_us[side] = since_us;
+    }
+}
+
+static bool is_swapping(const wh_flow_state_t *state, int32_t robot) {
+    return state->plan->rule == WH_FLOW_SWAPPING && state->tool->robots[robot].arms > 1;
+}
+
+/* Transfers into the lock that have begun: their place is or will be empty, or an exchange. */
+static void want_begun(const wh_flow_state_t *state, int32_t lock, wants_t *wants) {
+    const wh_flow_station_t *of = &state->tool->stations[lock];
+    for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
+        const wh_flow_place_t *place = &state->places[p];
+        if (place->coming == WH_FLOW_NONE || !state->wafers[place->coming].is_bound) {
+            continue;
+        }
+        int32_t robot = state->wafers[place->coming].robot;
+        for (int32_t r = 0; robot == WH_FLOW_NONE && r < (int32_t)state->tool->robot_count; ++r) {
+            robot = state->robots[r].order.wafer == place->coming && state->robots[r].action != WH_FLOW_IDLE
+                        ? r
+                        : robot;
+        }
+        const bool is_empty = place->wafer == WH_FLOW_NONE || place->leaving_us != WH_FLOW_NEVER;
+        if (robot != WH_FLOW_NONE &&
+            (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer)))) {
+            want(wants, state->tool->sides[wh_flow_of(state->tool, robot, lock)],
+                 state->wafers[place->coming].done_us);
+        }
+    }
+}
+
+/* True if a robot could begin to carry the wafer into or out of the lock but for pressure and where it stands. */
+static bool is_able(const wh_flow_state_t *state, int32_t lock, int32_t robot, int32_t wafer) {
+    const int32_t station = wh_flow_station_of(state, wafer);
+    if (is_swapping(state, robot)) {
+        const int32_t place = wh_flow_swap_way(state, robot, wafer, WH_FLOW_NEVER);
+        return place != WH_FLOW_NONE && (station == lock || state->tool->place_stations[place] == lock);
+    }
+    return wh_flow_safe_place(state, robot, wafer, WH_FLOW_NEVER, station == lock ? WH_FLOW_NONE : lock) !=
+           WH_FLOW_NONE;
+}
+
+static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer, wants_t *able,
+                       wants_t *lying) {
+    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    const bool is_out = wh_flow_station_of(state, wafer) == lock;
+    bool is_into = false;
+    for (size_t i = 0; i < next->station_count; ++i) {
+        is_into = is_into || next->stations[i] == lock;
+    }
+    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !is_into)) {
+        return;
+    }
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
+        const wh_flow_side_t side = state->tool->sides[wh_flow_of(state->tool, r, lock)];
+        if (!state->tool->serves[wh_flow_of(state->tool, r, lock)] || !wh_flow_is_carrier(state, r, wafer)) {
+            continue;
+        }
+        if (is_able(state, lock, r, wafer)) {
+            want(able, side, state->wafers[wafer].done_us);
+        } else if (is_out) {
+            want(lying, side, state->wafers[wafer].done_us);
+        }
+    }
+}
+
+static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, wants_t *lying) {
+    for (size_t step = 0; step < state->plan->step_count; ++step) {
+        int32_t left_out = WH_FLOW_NONE;
+        for (int32_t w = state->heads[step]; w != WH_FLOW_NONE; w = state->wafers[w].next) {
+            if (state->wafers[w].step > 0 || state->plan->wafers[w].lot != left_out) {
+                want_wafer(state, lock, w, able, lying);
+            }
+            if (state->wafers[w].step == 0) {
+                left_out = state->plan->wafers[w].lot; /* its others want the same */
+            }
+        }
+    }
+}
+
+/* The side to which the lock should turn, or that it has: for transfers into it that have begun, else for wafers that
+ * could be carried into or out of it, else for those in it; among several the one done longest decides. */
+static wh_flow_side_t turn_to(const wh_flow_state_t *state, int32_t lock) {
+    const wh_flow_side_t side = state->stations[lock].side;
+    const wh_flow_side_t other = side == WH_FLOW_VACUUM ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+    wants_t kinds[3];
+    for (size_t i = 0; i < 3; ++i) {
+        kinds[i] = (wants_t){{WH_FLOW_NEVER, WH_FLOW_NEVER}};
+    }
+    want_begun(state, lock, &kinds[0]);
+    if (kinds[0].since_us[side] != WH_FLOW_NEVER) {
+        return side;
+    }
+    if (kinds[0].since_us[other] == WH_FLOW_NEVER) {
+        want_all(state, lock, &kinds[1], &kinds[2]);
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        if (kinds[i].since_us[0] != WH_FLOW_NEVER || kinds[i].since_us[1] != WH_FLOW_NEVER) {
+            return kinds[i].since_us[other] < kinds[i].since_us[side] ? other : side;
+        }
+    }
+    return side;
+}
+
+static void turn(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_state_t *station = &state->stations[number];
+    if (station->is_listed || station->pump_us != WH_FLOW_NEVER || station->user != WH_FLOW_NONE ||
+        station->shut_us > state->now_us || station->down_us != WH_FLOW_NEVER) {
+        return;
+    }
+    const wh_flow_side_t side = turn_to(state, number);
+    if (side != station->side) {
+        (void)wh_flow_station_pump(state, number, side);
+    }
+}
+
+static void begin_cleans(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    for (int32_t i = of->first_place; i < of->first_place + of->slots; ++i) {
+        wh_flow_place_t *place = &state->places[i];
+        if ((place->is_clean_due || place->idle_us <= state->now_us) && place->wafer == WH_FLOW_NONE &&
+            place->clean_us == WH_FLOW_NEVER && state->stations[number].down_us == WH_FLOW_NEVER &&
+            state->stations[number].shut_us <= state->now_us) {
+            place->clean_us = state->now_us + of->clean_us;
+            place->is_clean_due = false;
+            place->idle_us = WH_FLOW_NEVER;
+        }
+    }
+    plan_cleans(state, number);
+}
+
+static bool can_arrive(const wh_flow_state_t *state, const wh_flow_lot_t *lot) {
+    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
+        const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
+        if (place->coming != WH_FLOW_NONE ||
+            (place->wafer != WH_FLOW_NONE && !state->wafers[place->wafer].is_over)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* True if every wafer of the lot to which this one belongs is at its end. */
+static bool is_lot_over(const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
+    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
+        if (!state->wafers[i].is_over) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
+    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
+        wh_flow_wafer_state_t *wafer = &state->wafers[i];
+        wafer->place = state->plan->wafers[i].home;
+        wafer->entered_us = wafer->done_us = state->now_us;
+        state->places[wafer->place].wafer = (int32_t)i;
+        ++state->stations[state->tool->place_stations[wafer->place]].wafers;
+        ++state->counts[wh_flow_step_index(state, (int32_t)i, 0)];
+        wh_flow_step_enter(state, (int32_t)i);
+        ++state->arrived;
+    }
+}
+
+/* Wafers of lots that are over leave the load ports where a lot arrives. */
+static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
+    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
+        const int32_t place = state->plan->wafers[i].home, wafer = state->places[place].wafer;
+        if (wafer != WH_FLOW_NONE && !is_lot_over(state, wafer)) {
+            return false;
+        }
+    }
+    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
+        const int32_t place = state->plan->wafers[i].home, wafer = state->places[place].wafer;
+        if (wafer != WH_FLOW_NONE) {
+            state->places[place].wafer = WH_FLOW_NONE;
+            state->wafers[wafer].place = WH_FLOW_NONE;
+            --state->stations[state->tool->place_stations[place]].wafers;
+        }
+    }
+    return true;
+}
+
+void wh_flow_stations_begin(wh_flow_state_t *state) {
+    const wh_flow_plan_t *plan = state->plan;
+    while (state->next_lot < plan->lot_count && plan->lots[state->next_lot].arrives_us <= state->now_us &&
+           can_arrive(state, &plan->lots[state->next_lot]) &&
+           make_room(state, &plan->lots[state->next_lot])) {
+        arrive(state, &plan->lots[state->next_lot++]);
+    }
+    for (; state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us;
+         ++state->next_down) {
+        const wh_flow_down_t *down = &plan->downs[state->next_down];
+        wh_flow_station_state_t *station = &state->stations[down->station];
+        const int64_t until_us = state->now_us + down->for_us;
+        station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
+        station->down_us =
+            station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    }
+    for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
+        if (state->stations[i].has_due || state->stations[i].idle_us <= state->now_us) {
+            begin_cleans(state, i);
+        }
+        if (state->tool->stations[i].is_lock) {
+            turn(state, i);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- next */
+
+static int64_t sooner(const wh_flow_state_t *state, int64_t best_us, int64_t us) {
+    return us > state->now_us && us < best_us ? us : best_us;
+}
+
+int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
+    const wh_flow_plan_t *plan = state->plan;
+    int64_t next_us = WH_FLOW_NEVER;
+    *idle_us = WH_FLOW_NEVER;
+    for (size_t i = 0; i < state->tool->station_count; ++i) {
+        const wh_flow_station_state_t *station = &state->stations[i];
+        next_us = sooner(state, next_us, station->done_us);
+        next_us = sooner(state, next_us, station->clean_us);
+        next_us = sooner(state, next_us, station->pump_us);
+        next_us = sooner(state, next_us, station->shut_us);
+        next_us = sooner(state, next_us, station->down_us);
+        *idle_us = sooner(state, *idle_us, station->idle_us);
+    }
+    next_us = sooner(state, next_us, state->next_start_us);
+    if (state->next_lot < plan->lot_count) {
+        next_us = sooner(state, next_us, plan->lots[state->next_lot].arrives_us);
+    }
+    if (state->next_down < plan->down_count) {
+        next_us = sooner(state, next_us, plan->downs[state->next_down].at_us);
+    }
+    return next_us;
+}

@@ -1,0 +1,66 @@
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+#include "flow.h"
+#include "transfer.h"
+
+typedef struct {
+    char *text;
+    size_t length, capacity;
+} text_t;
+
+__attribute__((format(printf, 2, 3))) static void say(text_t *text, const char *format, ...) {
+    char part[300];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(part, sizeof part, format, arguments);
+    va_end(arguments);
+    const size_t more = length < (int)sizeof part ? (size_t)length : sizeof part - 1;
+    text->text = wh_array_reserve(text->text, text->length + more + 1, &text->capacity, 1);
+    memcpy(text->text + text->length, part, more + 1);
+    text->length += more;
+}
+
+static const char *station_name(const wh_flow_state_t *state, int32_t station) {
+    return state->tool->stations[station].name;
+}
+
+/* "W2 in X waits for B, where W1 is" */
+static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, at->step + 1);
+    say(text, "%s%s ", text->length > 0 ? "; " : "", state->plan->wafers[wafer].name);
+    if (at->robot != WH_FLOW_NONE) {
+        say(text, "on %s", state->tool->robots[at->robot].name);
+    } else {
+        say(text, "in %s", station_name(state, state->tool->place_stations[at->place]));
+    }
+    for (size_t i = 0; i < next->station_count; ++i) {
+        const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
+        const wh_flow_place_t *place = &state->places[station->first_place];
+        const int32_t other = place->wafer != WH_FLOW_NONE ? place->wafer : place->coming;
+        say(text, "%s%s", i == 0 ? " waits for " : " or ", station->name);
+        if (other != WH_FLOW_NONE && other != wafer) {
+            say(text, ", where %s is", state->plan->wafers[other].name);
+        }
+    }
+}
+
+char *wh_flow_stuck_text(const wh_flow_state_t *state) {
+    text_t text = {0};
+    int said = 0;
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count && said < 12; ++w) {
+        const wh_flow_wafer_state_t *at = &state->wafers[w];
+        if (!at->is_over && (at->robot != WH_FLOW_NONE || (at->place != WH_FLOW_NONE && at->step > 0))) {
+            say_wafer(state, w, &text);
+            ++said;
+        }
+    }
+    if (said == 0) {
+        say(&text, "no robot takes the next wafer out of its first place");
+    }
+    return text.text;
+}

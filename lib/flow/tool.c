@@ -1,0 +1,139 @@
+#include "tool.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/hash.h"
+#include "../text/array.h"
+
+void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count) {
+    const size_t pairs = robot_count * station_count;
+    *tool = (wh_flow_tool_t){
+        .stations = wh_array_new(station_count, sizeof *tool->stations),
+        .robots = wh_array_new(robot_count, sizeof *tool->robots),
+        .station_count = station_count,
+        .robot_count = robot_count,
+        .pick_us = wh_array_new(pairs, sizeof *tool->pick_us),
+        .place_us = wh_array_new(pairs, sizeof *tool->place_us),
+        .swap_us = wh_array_new(pairs, sizeof *tool->swap_us),
+        .doors = wh_array_new(pairs, sizeof *tool->doors),
+        .serves = wh_array_new(pairs, sizeof *tool->serves),
+        .sides = wh_array_new(pairs, sizeof *tool->sides),
+        .move_us = wh_array_new(pairs * station_count, sizeof *tool->move_us),
+    };
+    for (size_t i = 0; i < station_count; ++i) {
+        tool->stations[i].slots = 1;
+        tool->stations[i].window_us = WH_FLOW_NEVER;
+        tool->stations[i].idle_us = WH_FLOW_NEVER;
+    }
+    for (size_t i = 0; i < robot_count; ++i) {
+        tool->robots[i].arms = 1;
+    }
+    for (size_t i = 0; i < pairs; ++i) {
+        tool->sides[i] = WH_FLOW_BOTH;
+    }
+}
+
+void wh_flow_tool_number(wh_flow_tool_t *tool) {
+    tool->place_count = 0;
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        tool->stations[i].first_place = (int32_t)tool->place_count;
+        tool->place_count += (size_t)tool->stations[i].slots;
+    }
+    tool->place_stations = wh_array_new(tool->place_count, sizeof *tool->place_stations);
+    tool->slot_sides = wh_array_new(tool->place_count, sizeof *tool->slot_sides);
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        const wh_flow_station_t *station = &tool->stations[i];
+        for (int32_t slot = 0; slot < station->slots; ++slot) {
+            tool->place_stations[station->first_place + slot] = (int32_t)i;
+            tool->slot_sides[station->first_place + slot] = WH_FLOW_BOTH;
+        }
+    }
+}
+
+void wh_flow_tool_close(wh_flow_tool_t *tool) {
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        free(tool->stations[i].name);
+    }
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        free(tool->robots[i].name);
+    }
+    free(tool->stations);
+    free(tool->robots);
+    free(tool->pick_us);
+    free(tool->place_us);
+    free(tool->swap_us);
+    free(tool->doors);
+    free(tool->serves);
+    free(tool->sides);
+    free(tool->move_us);
+    free(tool->place_stations);
+    free(tool->slot_sides);
+    memset(tool, 0, sizeof *tool);
+}
+
+int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name) {
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        if (strcmp(tool->stations[i].name, name) == 0) {
+            return (int32_t)i;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
+int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name) {
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        if (strcmp(tool->robots[i].name, name) == 0) {
+            return (int32_t)i;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    for (const char *c = text; *c; ++c) {
+        hash = wh_hash_word(hash, (unsigned char)*c);
+    }
+    return wh_hash_word(hash, 0);
+}
+
+static uint64_t hash_times(uint64_t hash, const int64_t times_us[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_word(hash, (uint64_t)times_us[i]);
+    }
+    return hash;
+}
+
+static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
+    const int64_t times_us[] = {station->process_us,       station->window_us,       station->clean_us,
+                                station->idle_us,          station->pump_us[0],      station->pump_us[1],
+                                station->empty_pump_us[0], station->empty_pump_us[1]};
+    hash = hash_times(hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
+    hash = wh_hash_int(wh_hash_int(hash, station->slots), station->clean_after);
+    hash = wh_hash_int(wh_hash_int(hash, station->is_lock), station->is_load_port);
+    hash = wh_hash_int(hash, station->cleans_full);
+    return wh_hash_int(hash, (int32_t)station->side);
+}
+
+uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
+    const size_t pairs = tool->robot_count * tool->station_count;
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        hash = hash_station(hash, &tool->stations[i]);
+    }
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        hash = hash_text(hash, tool->robots[i].name);
+        hash = wh_hash_int(wh_hash_int(hash, tool->robots[i].arms), tool->robots[i].at);
+    }
+    hash = hash_times(hash, tool->pick_us, pairs);
+    hash = hash_times(hash, tool->place_us, pairs);
+    hash = hash_times(hash, tool->swap_us, pairs);
+    hash = hash_times(hash, tool->move_us, pairs * tool->station_count);
+    for (size_t i = 0; i < pairs; ++i) {
+        hash = hash_times(hash, (const int64_t[]){tool->doors[i].open_us, tool->doors[i].close_us}, 2);
+        hash = wh_hash_int(wh_hash_int(hash, tool->serves[i]), (int32_t)tool->sides[i]);
+    }
+    for (size_t i = 0; i < tool->place_count; ++i) {
+        hash = wh_hash_int(hash, (int32_t)tool->slot_sides[i]);
+    }
+    return hash;
+}

@@ -1,0 +1,91 @@
+/* A tool as its schedule sees it: stations that hold wafers and take time, robots that are times alone. All
+ * times are whole microseconds.
+ *
+ * Stations have numbers from 0 on, in the layout's order; robots have numbers in the order of their names. A
+ * place is one slot of one station; places are numbered through, station after station. */
+#ifndef WH_FLOW_TOOL_H
+#define WH_FLOW_TOOL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* No station, place, wafer, robot, or step. */
+#define WH_FLOW_NONE (-1)
+
+/* A time that does not come. */
+#define WH_FLOW_NEVER INT64_MAX
+
+/* Two pressures, and what a robot or a slot without a side has. */
+typedef enum { WH_FLOW_ATMOSPHERE, WH_FLOW_VACUUM, WH_FLOW_BOTH } wh_flow_side_t;
+
+typedef struct {
+    char *name;
+    int32_t slots, first_place;
+    int64_t process_us;  /* after each placing; 0: none */
+    int64_t window_us;   /* the longest stay after a process; WH_FLOW_NEVER: any */
+    int32_t clean_after; /* wafers; 0: not by their number */
+    int64_t clean_us;
+    bool
+        cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
+    int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
+    bool is_lock, is_load_port;
+    wh_flow_side_t side;                  /* of a lock, at the beginning */
+    int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
+} wh_flow_station_t;
+
+typedef struct {
+    char *name;
+    int32_t arms; /* 1 or 2 */
+    int32_t at;   /* the station in front of which it stands at the beginning */
+} wh_flow_robot_t;
+
+typedef struct {
+    int64_t open_us, close_us;
+} wh_flow_door_t;
+
+/* Rows by robot, then by station: see wh_flow_of. */
+typedef struct {
+    wh_flow_station_t *stations;
+    wh_flow_robot_t *robots;
+    size_t station_count, robot_count, place_count;
+    int64_t *pick_us, *place_us, *swap_us;
+    wh_flow_door_t *doors;
+    bool *serves;
+    wh_flow_side_t *sides;      /* where this robot meets this station */
+    int64_t *move_us;           /* by robot, station from, station to */
+    int32_t *place_stations;    /* by place */
+    wh_flow_side_t *slot_sides; /* by place: the side whose robots may bring a wafer there */
+} wh_flow_tool_t;
+
+/* Makes room for so many robots and stations. Names are null, times are 0, no robot serves a station, each
+ * station has one slot. Close it in any case. */
+void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count);
+void wh_flow_tool_close(wh_flow_tool_t *tool);
+
+/* To be called once after each station has its number of slots: numbers the places. */
+void wh_flow_tool_number(wh_flow_tool_t *tool);
+
+/* The index of a robot and a station in pick_us, place_us, swap_us, doors, serves and sides. */
+static inline size_t wh_flow_of(const wh_flow_tool_t *tool, int32_t robot, int32_t station) {
+    return (size_t)robot * tool->station_count + (size_t)station;
+}
+
+/* How long a robot takes from one station to another; 0 if they are the same one. */
+static inline int64_t wh_flow_move_us(const wh_flow_tool_t *tool, int32_t robot, int32_t from, int32_t to) {
+    return from == to ? 0 : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
+}
+
+/* The number of the station or robot of this name, or WH_FLOW_NONE. */
+int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name);
+int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name);
+
+/* Continues a hash with all that the tool's description says. */
+uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash);
+
+/* The slot of a place in its station, from 1 on. */
+static inline int32_t wh_flow_slot(const wh_flow_tool_t *tool, int32_t place) {
+    return place - tool->stations[tool->place_stations[place]].first_place + 1;
+}
+
+#endif

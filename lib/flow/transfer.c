@@ -1,0 +1,260 @@
+#include "transfer.h"
+
+#include "safe.h"
+
+int64_t wh_flow_pick_us(const wh_flow_state_t *state, int32_t robot, int32_t station) {
+    const size_t of = wh_flow_of(state->tool, robot, station);
+    return state->tool->doors[of].open_us + state->tool->pick_us[of];
+}
+
+int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
+    const int64_t of_step = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step)->process_us;
+    return state->wafers[wafer].step == 0 ? 0
+           : of_step == WH_FLOW_NONE      ? state->tool->stations[station].process_us
+                                          : of_step;
+}
+
+static bool has_side(wh_flow_side_t needed, wh_flow_side_t side) {
+    return needed == WH_FLOW_BOTH || side == WH_FLOW_BOTH || needed == side;
+}
+
+bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
+    const wh_flow_station_state_t *now = &state->stations[station];
+    if (now->user != WH_FLOW_NONE || now->shut_us > state->now_us || now->down_us != WH_FLOW_NEVER) {
+        return false;
+    }
+    return !state->tool->stations[station].is_lock ||
+           (now->pump_us == WH_FLOW_NEVER &&
+            has_side(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
+}
+
+/* ------------------------------------------------------------------------------------------------- targets */
+
+/* When the place will be empty and clean, or WH_FLOW_NEVER; `empty_us` is when it will be empty. */
+static int64_t clean_from(const wh_flow_state_t *state, int32_t place, int64_t *empty_us) {
+    const int32_t number = state->tool->place_stations[place];
+    const wh_flow_place_t *at = &state->places[place];
+    const wh_flow_station_t *station = &state->tool->stations[number];
+    if (at->coming != WH_FLOW_NONE || (at->wafer != WH_FLOW_NONE && at->leaving_us == WH_FLOW_NEVER)) {
+        return WH_FLOW_NEVER;
+    }
+    *empty_us = at->wafer == WH_FLOW_NONE ? state->now_us : at->leaving_us;
+    if (at->clean_us != WH_FLOW_NEVER) {
+        return at->clean_us;
+    }
+    const bool is_due =
+        at->is_clean_due || (at->wafer != WH_FLOW_NONE && !station->cleans_full && station->clean_after > 0 &&
+                             at->since_clean + 1 >= station->clean_after);
+    if (!is_due) {
+        return *empty_us;
+    }
+    const wh_flow_station_state_t *now = &state->stations[number]; /* it begins when the door is shut */
+    return station->clean_us + (at->wafer != WH_FLOW_NONE      ? now->busy_us
+                                : now->shut_us > state->now_us ? now->shut_us
+                                                               : state->now_us);
+}
+
+/* Since when it is empty, or will be; 0 if no wafer ever lay there. */
+static int64_t emptied_us(const wh_flow_place_t *place) {
+    const int64_t us = place->wafer == WH_FLOW_NONE ? place->empty_us : place->leaving_us;
+    return us < 0 ? 0 : us;
+}
+
+static int64_t later(int64_t a_us, int64_t b_us) {
+    return a_us > b_us ? a_us : b_us;
+}
+
+/* When a robot that is there could begin, as far as the station is concerned; WH_FLOW_NEVER: not known, for a lock has
+ * another pressure and does not pump. */
+static int64_t open_from(const wh_flow_state_t *state, int32_t robot, int32_t station) {
+    const wh_flow_station_state_t *now = &state->stations[station];
+    const size_t of = wh_flow_of(state->tool, robot, station);
+    const wh_flow_side_t side = state->tool->sides[of];
+    int64_t us = now->busy_us;
+    us = now->down_us != WH_FLOW_NEVER ? later(us, now->down_us) : us;
+    if (!state->tool->stations[station].is_lock) {
+        return us;
+    }
+    if (now->pump_us != WH_FLOW_NEVER) {
+        return has_side(side, now->pump_to) ? later(us, now->pump_us) : WH_FLOW_NEVER;
+    }
+    return has_side(side, now->side) ? us : WH_FLOW_NEVER;
+}
+
+/* The targets of one question, the best first. */
+typedef struct {
+    wh_flow_target_t *targets;
+    size_t count, most;
+} found_t;
+
+static bool is_better(const wh_flow_state_t *state, const wh_flow_target_t *a, const wh_flow_target_t *b) {
+    return a->place_us != b->place_us
+               ? a->place_us < b->place_us
+               : emptied_us(&state->places[a->place]) < emptied_us(&state->places[b->place]);
+}
+
+/* Keeps the best ones. Equal ones stay in the order in which they are listed. */
+static void add_target(const wh_flow_state_t *state, found_t *found, const wh_flow_target_t *target) {
+    size_t at = found->count;
+    while (at > 0 && is_better(state, target, &found->targets[at - 1])) {
+        --at;
+    }
+    if (at == found->most) {
+        return;
+    }
+    const size_t last = found->count < found->most ? found->count++ : found->most - 1;
+    for (size_t i = last; i > at; --i) {
+        found->targets[i] = found->targets[i - 1];
+    }
+    found->targets[at] = *target;
+}
+
+/* `there_us`: when the blade is in front, its door open. */
+static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, int64_t there_us,
+                    found_t *found) {
+    const int32_t station = state->tool->place_stations[place];
+    const size_t of = wh_flow_of(state->tool, robot, station);
+    int64_t empty_us = 0;
+    if (!has_side(state->tool->slot_sides[place], state->tool->sides[of]) ||
+        state->stations[station].down_us != WH_FLOW_NEVER) {
+        return;
+    }
+    const int64_t clean_us = clean_from(state, place, &empty_us);
+    if (clean_us == WH_FLOW_NEVER || empty_us > there_us) {
+        return;
+    }
+    const int64_t open_us = open_from(state, robot, station);
+    const wh_flow_target_t target = {
+        place, open_us == WH_FLOW_NEVER
+                   ? WH_FLOW_NEVER
+                   : later(there_us, later(clean_us, open_us) + state->tool->doors[of].open_us)};
+    add_target(state, found, &target);
+}
+
+/* True if this wafer of any route counts in that step of that route; `ahead`: it is on its way to there. */
+static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route, int32_t step,
+                      int32_t ahead) {
+    return state->plan->lots[state->plan->wafers[wafer].lot].route == route &&
+           state->wafers[wafer].step + ahead == step;
+}
+
+wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us) {
+    const wh_flow_step_t *step = &state->plan->routes[route].steps[number];
+    wh_flow_room_t room = {0, 0};
+    int32_t down = 0;
+    for (size_t i = 0; i < step->station_count; ++i) {
+        const wh_flow_station_t *station = &state->tool->stations[step->stations[i]];
+        const bool is_down = state->stations[step->stations[i]].down_us != WH_FLOW_NEVER;
+        for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+            const wh_flow_place_t *place = &state->places[p];
+            const bool lies = place->wafer != WH_FLOW_NONE && place->leaving_us > at_us;
+            ++room.may;
+            down += is_down && !lies && place->coming == WH_FLOW_NONE;
+            if (place->coming != WH_FLOW_NONE) {
+                const bool is_own = counts_in(state, place->coming, route, number, 1);
+                room.holds += is_own;
+                room.may -= !is_own;
+            } else if (lies && !state->wafers[place->wafer].is_over) {
+                const bool is_own = counts_in(state, place->wafer, route, number, 0);
+                room.holds += is_own;
+                room.may -= !is_own;
+            }
+        }
+    }
+    room.may -= step->kept_empty > down ? step->kept_empty : down;
+    return room;
+}
+
+size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
+                       int64_t loaded_us, int32_t station, wh_flow_target_t targets[], size_t most) {
+    const wh_flow_tool_t *tool = state->tool;
+    found_t found = {targets, 0, most};
+    const int32_t next = state->wafers[wafer].step + 1;
+    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
+    const int32_t route = state->plan->lots[state->plan->wafers[wafer].lot].route;
+    const int32_t end = wh_flow_end_of(state->plan, wafer, next);
+    for (size_t i = 0; i < step->station_count; ++i) {
+        const int32_t to = step->stations[i];
+        if ((station != WH_FLOW_NONE && to != station) || !tool->serves[wh_flow_of(tool, robot, to)]) {
+            continue;
+        }
+        const int64_t there_us = state->now_us + loaded_us + wh_flow_move_us(tool, robot, from, to) +
+                                 tool->doors[wh_flow_of(tool, robot, to)].open_us;
+        if (step->kept_empty > 0) {
+            const wh_flow_room_t room = wh_flow_room(state, route, next, there_us);
+            if (room.holds >= room.may) {
+                continue;
+            }
+        }
+        const int32_t first = tool->stations[to].first_place;
+        for (int32_t place = first; place < first + tool->stations[to].slots; ++place) {
+            if (end == WH_FLOW_NONE || end == place) {
+                look_at(state, robot, place, there_us, &found);
+            }
+        }
+    }
+    return found.count;
+}
+
+wh_flow_target_t wh_flow_target(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
+                                int64_t loaded_us, int32_t station) {
+    wh_flow_target_t best = {WH_FLOW_NONE, WH_FLOW_NEVER};
+    (void)wh_flow_targets(state, robot, wafer, from, loaded_us, station, &best, 1);
+    return best;
+}
+
+int32_t wh_flow_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us,
+                           int32_t station) {
+    const int32_t from = wh_flow_station_of(state, wafer);
+    const int64_t wait_us = begin_us == WH_FLOW_NEVER ? WH_FLOW_UNKNOWN : begin_us - state->now_us;
+    wh_flow_target_t targets[64];
+    const size_t count =
+        wh_flow_targets(state, robot, wafer, from, wait_us + wh_flow_pick_us(state, robot, from), station,
+                        targets, sizeof targets / sizeof targets[0]);
+    for (size_t i = 0; i < count; ++i) {
+        const wh_flow_into_t into = {wafer, targets[i].place};
+        if (!state->checks_safety || wh_flow_is_safe(state, &into, 1)) {
+            return targets[i].place;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
+int64_t wh_flow_begin_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t *there_us) {
+    const int64_t from_us = wh_flow_takeable_us(state, robot, wafer);
+    *there_us = state->now_us + wh_flow_move_us(state->tool, robot, state->robots[robot].station,
+                                                wh_flow_station_of(state, wafer));
+    return from_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : later(from_us, *there_us);
+}
+
+/* ------------------------------------------------------------------------------------------------- taking */
+
+bool wh_flow_is_carrier(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int32_t station = wh_flow_station_of(state, wafer);
+    if (station == WH_FLOW_NONE || at->is_moving || at->is_over ||
+        !state->tool->serves[wh_flow_of(state->tool, robot, station)]) {
+        return false;
+    }
+    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, at->step + 1);
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (state->tool->serves[wh_flow_of(state->tool, robot, step->stations[i])]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    return wh_flow_is_carrier(state, robot, wafer) && wh_flow_free_arm(state, robot, wafer) != WH_FLOW_NONE;
+}
+
+int64_t wh_flow_takeable_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const int64_t open_us = open_from(state, robot, wh_flow_station_of(state, wafer));
+    int64_t from_us = state->wafers[wafer].done_us;
+    if (from_us == WH_FLOW_NEVER || open_us == WH_FLOW_NEVER) {
+        return WH_FLOW_NEVER;
+    }
+    from_us = later(from_us, open_us);
+    return state->wafers[wafer].step == 0 ? later(from_us, state->next_start_us) : from_us;
+}

@@ -1,0 +1,106 @@
+#include "actions.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "../record/record.h"
+#include "journal.h"
+#include "status.h"
+#include "telling.h"
+
+/* ---------------------------------------------------------------------------------------------------- clock */
+
+void wh_host_begin_clock(wh_host_t *host, wh_controller_t *controller) {
+    const wh_session_t *session = host->session;
+    host->running = controller;
+    host->clock.last_served_us = 0; /* bytes behind this action are heard in its first slice */
+    host->is_told_to_stop = false;
+    host->clock.base_wall_us = wh_host_now(host);
+    host->clock.base_run_us = wh_session_time_us(session);
+    host->clock.slice = wh_session_slice(session);
+}
+
+/* ------------------------------------------------------------------------------------------------- stopping */
+
+void wh_controller_end_job(wh_controller_t *controller, wh_status_t status, const char *why) {
+    wh_mcs_end_job(&controller->host->session->mcs, wh_controller_job(controller), status, why);
+}
+
+void wh_controller_stop_running(wh_controller_t *controller) {
+    wh_host_t *host = controller->host;
+    controller->action.is_stopped = true;
+    if (wh_host_plays_jobs(host)) {
+        wh_controller_end_job(controller, WH_STATUS_STOPPED, "by a request");
+    } else {
+        host->is_told_to_stop = true;
+        wh_mcs_stop(&host->session->mcs);
+    }
+}
+
+void wh_host_release(wh_host_t *host) {
+    host->is_held = false;
+    host->holder = NULL;
+}
+
+void wh_host_stop(wh_host_t *host) {
+    wh_host_note(host, host->running ? host->running : host->controllers[0], WH_TRANSCRIPT_HALTED, NULL, 0);
+    wh_host_release(host);
+    for (size_t i = 0; i < host->count; ++i) {
+        wh_controller_t *controller = host->controllers[i];
+        controller->action.is_stopped = controller->action.is_there;
+        if (controller->action.is_running) {
+            wh_controller_stop_running(controller);
+        }
+    }
+    if (!host->running) {
+        wh_mcs_give_up(&host->session->mcs, WH_NONE);
+    }
+}
+
+void wh_host_end(wh_host_t *host) {
+    if (!host->is_ended) {
+        host->is_ended = true;
+        wh_host_note(host, host->running ? host->running : host->controllers[0], WH_TRANSCRIPT_STOPPED, NULL,
+                     0);
+    }
+    wh_session_stop(host->session);
+}
+
+void wh_host_heed_stop(wh_host_t *host, wh_status_t status) {
+    if (status == WH_STATUS_STOPPED && *host->stop) {
+        wh_host_end(host);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- ending */
+
+void wh_controller_end(wh_controller_t *controller, wh_status_t number, const char *text, double seconds) {
+    wh_host_t *host = controller->host;
+    const bool is_told = !controller->action.is_left || controller->dialect.completes_to_next;
+    const uint64_t before = controller->line.told;
+    controller->counters.busy += number == WH_STATUS_BUSY ? 1 : 0;
+    /* The encoder asks for the controller's state, so the action has ended before it is told. */
+    controller->action.is_there = false;
+    controller->action.is_running = false;
+    if (is_told) {
+        wh_controller_tell_result(controller, WH_ENCODE_COMPLETE, &controller->action.request, number, text,
+                                  seconds);
+    }
+    if (controller->line.told == before) { /* the host's next frame comes behind this end all the same */
+        wh_host_note(host, controller, WH_TRANSCRIPT_ENDED, NULL, 0);
+    }
+    if (is_told && controller->dialect.timing.ackn_s > 0 && controller->dialect.text) {
+        controller->owed.due_us = wh_host_now(host) + (int64_t)(controller->dialect.timing.ackn_s * 1e6);
+        memcpy(controller->owed.sequence, controller->action.request.sequence,
+               sizeof controller->owed.sequence);
+    }
+    wh_dialect_forget(&controller->dialect, &controller->action.request);
+}
+
+void wh_controller_end_unbegun(wh_controller_t *controller, wh_status_t number, const char *reason) {
+    char text[WH_SANDBOX_MESSAGE_BYTES];
+    char whole[WH_SANDBOX_MESSAGE_BYTES];
+    (void)snprintf(whole, sizeof whole, "%s; %s", wh_record_error_text(number), reason);
+    wh_session_write_error(text, sizeof text, number, whole);
+    wh_controller_end(controller, number, text, 0);
+}

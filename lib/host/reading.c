@@ -1,0 +1,212 @@
+#include "reading.h"
+
+#include <stdlib.h>
+
+#include "../text/clock.h"
+#include "journal.h"
+#include "line.h"
+#include "requests.h"
+#include "status.h"
+
+/* A frame that is too long is noted with the one byte that was too many. When it is read again, this byte
+ * makes it too long again. */
+static void take_frame(wh_controller_t *controller, const wh_frame_t *frame) {
+    wh_host_note(controller->host, controller,
+                 frame->kind == WH_FRAME_TIMEOUT ? WH_TRANSCRIPT_TIMED_OUT : WH_TRANSCRIPT_SAID, frame->bytes,
+                 frame->size + (frame->is_over ? 1 : 0));
+    wh_controller_take(controller, frame);
+}
+
+/* True if there is time for Lua in this slice, and no accepted action has yet to begin: frames behind such an
+ * action are heard while it runs. */
+static bool may_hear(const wh_host_t *host) {
+    return host->clock.lua_us < WH_HOST_LUA_US && (host->running || !wh_host_next_action(host));
+}
+
+/* Takes at least one frame out of these bytes, if there is one. Returns how many bytes were taken. */
+static size_t feed_bytes(wh_controller_t *controller, const uint8_t *bytes, size_t size, int64_t now_us) {
+    wh_frame_t frame = {.kind = WH_FRAME_GOOD};
+    size_t at = 0;
+    do {
+        at += wh_framer_feed(&controller->line.framer, bytes + at, size - at, now_us, &frame);
+        if (frame.kind != WH_FRAME_NONE) {
+            take_frame(controller, &frame);
+        }
+    } while (frame.kind != WH_FRAME_NONE && may_hear(controller->host));
+    return at;
+}
+
+/* Feeds a line with chaos: chaos changes whole frames, then the controller hears the bytes that are left. */
+static size_t feed_chaos(wh_controller_t *controller, const uint8_t *bytes, size_t size, int64_t now_us) {
+    wh_frame_t frame = {.kind = WH_FRAME_GOOD};
+    size_t at = 0;
+    while (frame.kind != WH_FRAME_NONE) {
+        at += wh_framer_feed(&controller->line.before_chaos, bytes + at, size - at, now_us, &frame);
+        if (frame.kind != WH_FRAME_NONE) {
+            wh_controller_enqueue(controller, false, frame.bytes, frame.size, now_us, false);
+        }
+    }
+    return at;
+}
+
+static void hear_due(wh_controller_t *controller, int64_t now_us) {
+    wh_frame_t frame;
+    if (wh_framer_wait(&controller->line.before_chaos, now_us, &frame)) {
+        wh_controller_enqueue(controller, false, frame.bytes, frame.size, now_us, false);
+    }
+    while (may_hear(controller->host)) {
+        wh_sent_frame_t *sent = wh_sent_take_due(&controller->line.in, now_us);
+        if (!sent) {
+            break;
+        }
+        for (size_t at = 0; at < sent->size;) { /* these bytes are heard whole */
+            at += feed_bytes(controller, sent->bytes + at, sent->size - at, now_us);
+        }
+        free(sent);
+    }
+}
+
+static void read_frames(wh_controller_t *controller, int64_t now_us) {
+    const bool has_chaos = wh_chaos_is_on(&controller->dialect.chaos);
+    wh_ring_t *input = &controller->line.port.input;
+    const bool is_paced = controller->dialect.timing.baud > 0;
+    size_t most = is_paced ? wh_pace_take(&controller->line.in_pace, input->count, now_us) : input->count;
+    wh_frame_t frame;
+    for (size_t taken = 1; most > 0 && taken > 0 && may_hear(controller->host); most -= taken) {
+        size_t size = 0;
+        const uint8_t *bytes = wh_ring_front(input, &size);
+        size = size < most ? size : most;
+        taken = (has_chaos ? feed_chaos : feed_bytes)(controller, bytes, size, now_us);
+        wh_ring_drop(input, taken);
+    }
+    hear_due(controller, now_us);
+    if (wh_framer_wait(&controller->line.framer, now_us, &frame)) {
+        take_frame(controller, &frame);
+    }
+}
+
+/* Nothing is on its way to the client or from it, and no answer is to come. */
+static bool owes_nothing(const wh_controller_t *controller) {
+    return !controller->action.is_there && !controller->line.has_gone && !controller->line.out.first &&
+           !controller->line.in.first && controller->line.waiting.count == 0;
+}
+
+/* Reads the bytes of an entry as one frame again. True, with the frame, if they are one. */
+static bool frame_again(wh_controller_t *controller, const wh_transcript_entry_t *entry, size_t *taken,
+                        wh_frame_t *frame) {
+    const int64_t now = wh_host_now(controller->host);
+    const bool timed_out = entry->kind == WH_TRANSCRIPT_TIMED_OUT;
+    const int64_t later = now + controller->dialect.framing.timeout_us;
+    *taken = wh_framer_feed(&controller->line.framer, entry->bytes, entry->size, now, frame);
+    return frame->kind != WH_FRAME_NONE ||
+           (timed_out && wh_framer_wait(&controller->line.framer, later, frame)) ||
+           wh_framer_finish(&controller->line.framer, frame);
+}
+
+/* Hears the frame of a transcript's entry. The bytes behind a line that was too long have no entry: an end
+ * stands for them. */
+static void hear_entry(wh_controller_t *controller, const wh_transcript_entry_t *entry) {
+    const wh_framing_mark_t *end = &controller->dialect.framing.ends[0];
+    size_t at = 0;
+    wh_frame_t frame = {.kind = WH_FRAME_NONE};
+    if (!frame_again(controller, entry, &at, &frame)) {
+        return;
+    }
+    const bool is_over = frame.is_over;
+    const int64_t now = wh_host_now(controller->host);
+    take_frame(controller, &frame);
+    while (at < entry->size && !is_over) { /* such as the second byte of an end */
+        at += wh_framer_feed(&controller->line.framer, entry->bytes + at, entry->size - at, now, &frame);
+    }
+    if (is_over) {
+        (void)wh_framer_feed(&controller->line.framer, end->bytes, end->size, now, &frame);
+    }
+}
+
+/* A port that tells all gives whole frames, and says when a wait is over. */
+static void heed_told(wh_controller_t *controller, unsigned what) {
+    wh_controller_note_going(controller);
+    if ((what & WH_PORT_ELAPSED) != 0) {
+        wh_controller_give_up_waiting(controller);
+    }
+    if ((what & WH_PORT_FRAME) != 0) {
+        hear_entry(controller, controller->line.port.entry);
+    }
+}
+
+static unsigned serve_port(wh_controller_t *controller) {
+    wh_port_t *port = &controller->line.port;
+    wh_frame_t frame;
+    port->slice = wh_session_slice(controller->host->session);
+    const unsigned what = wh_port_serve(port);
+    wh_controller_note_port(controller, what);
+    if (port->tells_all) {
+        heed_told(controller, what);
+        return what;
+    }
+    read_frames(controller, wh_host_now(controller->host));
+    if (!controller->line.has_gone || port->input.count > 0) {
+        return what;
+    }
+    if (wh_framer_finish(&controller->line.framer, &frame)) {
+        take_frame(controller, &frame);
+    }
+    wh_controller_note_going(controller);
+    return what;
+}
+
+/* When a silent client is to be closed; never while a command runs or an answer is on its way. */
+static int64_t idle_due(const wh_controller_t *controller) {
+    const bool counts = controller->line.is_open && controller->dialect.timing.idle_s > 0 &&
+                        wh_port_is_heard(&controller->line.port) && owes_nothing(controller);
+    return counts ? controller->line.heard_us + (int64_t)(controller->dialect.timing.idle_s * 1e6)
+                  : INT64_MAX;
+}
+
+static void end_idle(wh_controller_t *controller) {
+    const wh_port_counters_t *counters = &controller->line.port.counters;
+    const uint64_t heard = counters->received + counters->sent + counters->clients;
+    if (heard != controller->line.heard) {
+        controller->line.heard = heard;
+        controller->line.heard_us = wh_clock_us(CLOCK_MONOTONIC);
+    } else if (idle_due(controller) <= wh_clock_us(CLOCK_MONOTONIC)) {
+        wh_controller_note_port(controller, wh_port_end_idle(&controller->line.port));
+    }
+}
+
+unsigned wh_controller_serve(wh_controller_t *controller) {
+    unsigned what = 0;
+    if (controller->line.is_open) {
+        what = serve_port(controller);
+        end_idle(controller);
+    }
+    if (!controller->line.port.tells_all) {
+        wh_controller_tick(controller);
+    }
+    wh_controller_send_due(controller, wh_host_now(controller->host));
+    if (controller->line.is_open && owes_nothing(controller)) {
+        wh_port_end_done(&controller->line.port);
+    }
+    return what;
+}
+
+int64_t wh_controller_due(const wh_controller_t *controller) {
+    int64_t due = wh_framer_due(&controller->line.framer);
+    const int64_t now = wh_host_now(controller->host);
+    const bool is_open = controller->line.is_open;
+    const int64_t others[] = {controller->line.out.first ? controller->line.out.first->due_us : INT64_MAX,
+                              controller->line.in.first ? controller->line.in.first->due_us : INT64_MAX,
+                              wh_framer_due(&controller->line.before_chaos),
+                              controller->owed.due_us,
+                              idle_due(controller),
+                              controller->line.port.input.count > 0 ? now + 1000 : INT64_MAX,
+                              controller->line.waiting.count > 0 ? now + 1000 : INT64_MAX,
+                              controller->action.is_there ? now + 1000 : INT64_MAX,
+                              is_open && wh_port_asks(&controller->line.port) ? now + WH_PORT_ASK_US
+                                                                              : INT64_MAX,
+                              is_open && controller->line.port.tells_all ? now : INT64_MAX};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
+        due = others[i] < due ? others[i] : due;
+    }
+    return due;
+}

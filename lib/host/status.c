@@ -1,0 +1,94 @@
+#include "status.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "../text/array.h"
+#include "values.h"
+
+bool wh_host_plays_jobs(const wh_host_t *host) {
+    return host->count > 1 || host->controllers[0]->mechanism.name;
+}
+
+int32_t wh_controller_job(const wh_controller_t *controller) {
+    return (int32_t)controller->number + 1;
+}
+
+bool wh_controller_waits(const wh_controller_t *controller) {
+    return controller->action.is_running &&
+           wh_mcs_job_waits(&controller->host->session->mcs, wh_controller_job(controller));
+}
+
+wh_controller_t *wh_host_next_action(const wh_host_t *host) {
+    wh_controller_t *next = NULL;
+    for (size_t i = 0; i < host->count && !host->is_ended; ++i) {
+        wh_controller_t *controller = host->controllers[i];
+        if (controller->action.is_there && !controller->action.is_running &&
+            (!next || controller->action.order < next->action.order)) {
+            next = controller;
+        }
+    }
+    return next;
+}
+
+bool wh_host_is_stopped(const wh_host_t *host) {
+    bool is_any = wh_session_has_stop(host->session);
+    bool is_all = true;
+    for (size_t i = 0; i < host->count; ++i) {
+        const wh_controller_t *controller = host->controllers[i];
+        is_any = is_any || (controller->action.is_running && controller->action.is_stopped);
+        is_all = is_all && (!controller->action.is_running || controller->action.is_stopped);
+    }
+    return is_any && is_all;
+}
+
+/* --------------------------------------------------------------------------------------------------- STATUS */
+
+static const char *spell_line(const char *line, char spelt[2 * WH_DIALECT_LINE_BYTES]) {
+    spelt[0] = '\0';
+    (void)wh_value_spell(line, spelt, (size_t)(2 * WH_DIALECT_LINE_BYTES));
+    return spelt;
+}
+
+/* Its line, or the command that the robot holds. */
+static void put_phase(const wh_controller_t *controller, FILE *out) {
+    const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
+    const wh_mcs_t *mcs = &controller->host->session->mcs;
+    const wh_mcs_held_t *held = is_robot ? wh_mcs_find_held(mcs, controller->mechanism.index) : NULL;
+    const size_t last = controller->action.lines.count - 1;
+    const size_t at = controller->action.line_number < last ? controller->action.line_number : last;
+    char spelt[2 * WH_DIALECT_LINE_BYTES];
+    if (controller->action.is_there) {
+        (void)fprintf(out, "phase=running command=%s", spell_line(controller->action.lines.lines[at], spelt));
+    } else if (held) {
+        (void)fprintf(out, "phase=held command=%s stop=%s", spell_line(held->command, spelt), held->phase);
+    } else {
+        (void)fprintf(out, "phase=idle");
+    }
+}
+
+static void put_failed(const wh_controller_t *controller, FILE *out) {
+    char spelt[2 * WH_DIALECT_LINE_BYTES];
+    (void)fprintf(out, " error=%d", (int)controller->action.failed);
+    if (controller->action.failed != WH_OK) {
+        (void)fprintf(out, " error_name=%s error_command=%s", wh_status_name(controller->action.failed),
+                      spell_line(controller->action.failed_line, spelt));
+    }
+}
+
+/* The running command and the last failure are the controller's; the text between them is the cell's. */
+void wh_controller_describe(const wh_controller_t *controller, char text[WH_MCS_DESCRIPTION_BYTES]) {
+    char *whole = controller->host->texts->own_status;
+    wh_mcs_describe(&controller->host->session->mcs, text);
+    const char *begin = strstr(text, " seq=");
+    const char *end = begin ? strstr(begin, " error=") : NULL;
+    if (!wh_host_plays_jobs(controller->host) || !end) {
+        return;
+    }
+    FILE *out = wh_memory_need(fmemopen(whole, WH_MCS_DESCRIPTION_BYTES, "w"));
+    put_phase(controller, out);
+    (void)fprintf(out, "%.*s", (int)(end - begin), begin);
+    put_failed(controller, out);
+    (void)fclose(out);
+    memcpy(text, whole, WH_MCS_DESCRIPTION_BYTES);
+}

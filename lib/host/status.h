@@ -1,0 +1,26 @@
+/* Questions about what runs, waits and is held. They change nothing. */
+#ifndef WH_HOST_STATUS_H
+#define WH_HOST_STATUS_H
+
+#include "state.h"
+
+/* True if ports move side by side: there are several, or the one is not the cell's. */
+bool wh_host_plays_jobs(const wh_host_t *host);
+
+/* The number of a controller's job is one more than its port's. */
+int32_t wh_controller_job(const wh_controller_t *controller);
+
+/* The action that was accepted first and has not begun; null: none. */
+wh_controller_t *wh_host_next_action(const wh_host_t *host);
+
+/* True if the running action waits for something that another port has. */
+bool wh_controller_waits(const wh_controller_t *controller);
+
+/* True if all running actions were stopped. */
+bool wh_host_is_stopped(const wh_host_t *host);
+
+/* Like wh_mcs_describe, but with several controllers the running command and the last failure are this
+ * controller's own. */
+void wh_controller_describe(const wh_controller_t *controller, char text[WH_MCS_DESCRIPTION_BYTES]);
+
+#endif

@@ -1,0 +1,531 @@
+#include "flow_plan.h"
+
+#include <lauxlib.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../layout/layout_internal.h"
+#include "../layout/layout_tool.h"
+#include "../text/array.h"
+#include "../text/nearest.h"
+
+#define END                                                                                                  \
+    { NULL, NULL, NULL, false }
+#define NAME_SIZE 64
+
+/* The longest time of a flow, s: ten years. */
+#define LONGEST 3.2e8
+
+/* The most wafers of a flow. */
+#define MOST_WAFERS 1000000
+
+const wh_reader_field_t wh_flow_fields[] = {
+    {"lots", "waferhand.lot[]", "the lots", true},
+    {"routes", "table<string, waferhand.route>", "their routes by name", true},
+    {"rule", "\"backward\"|\"swap\"|\"first_come\"|\"longest_wait\"|waferhand.lists",
+     "how robots choose; backward", false},
+    {"until_s", "number", "s: the flow is cut there", false},
+    {"down", "waferhand.down[]", "stations that fail for a while", false},
+    {"takt", "number", "s: the least time between two wafers' starts", false},
+    {"safe", "boolean", "false: rules may begin transfers after which wafers could block each other", false},
+    {"late", "\"fail\"|\"tell\"", "a stay beyond a station's window fails the run, or is told alone; fail",
+     false},
+    END};
+
+const wh_reader_field_t wh_flow_lot_fields[] = {
+    {"name", "string", "its wafers are NAME.1, NAME.2, ...; without one W1, W2, ...", false},
+    {"wafers", "waferhand.lot_wafers", "{ STATION, FIRST SLOT, LAST SLOT }", true},
+    {"route", "string", "the route's name; the only one", false},
+    {"arrives", "number", "s; 0", false},
+    {"priority", "integer", "the higher one wins ties; 0", false},
+    {"back", "string", "the station where each wafer ends in a slot of its number", false},
+    {"dummy", "boolean", "true: its wafers are moved and not counted", false},
+    END};
+
+const wh_reader_field_t wh_flow_step_fields[] = {
+    {"process", "number", "s, in place of the station's", false},
+    {"hot", "boolean", "true: the second arm alone takes from it", false},
+    END};
+
+const wh_reader_field_t wh_flow_down_fields[] = {
+    {"at", "number", "s", true}, {"seconds", "number", "s", true}, END};
+
+const wh_reader_field_t wh_flow_route_fields[] = {
+    {"partial", "table<integer, integer>", "by step: places that stay empty", false}, END};
+const wh_reader_field_t wh_flow_list_fields[] = {
+    {"order", "table<string, string[][]>", "each robot's transfers in order", true}, END};
+
+static int64_t read_us(wh_reader_t *reader, const char *field, double fallback) {
+    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, LONGEST));
+}
+
+/* ------------------------------------------------------------------------------------------------- readers */
+
+/* How many entries the table at which the reader is has, beside the known fields. Others are refused. */
+static size_t count_entries(wh_reader_t *reader, const wh_reader_field_t *known) {
+    lua_State *L = reader->L;
+    const size_t count = lua_rawlen(L, -1);
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        bool is_good =
+            lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 && (size_t)lua_tointeger(L, -2) <= count;
+        char field[80] = "an entry", names[200] = "";
+        for (size_t i = 0; known[i].name; ++i) {
+            const size_t used = strlen(names);
+            (void)snprintf(names + used, sizeof names - used, " %s", known[i].name);
+            is_good = is_good ||
+                      (lua_type(L, -2) == LUA_TSTRING && strcmp(lua_tostring(L, -2), known[i].name) == 0);
+        }
+        if (!is_good) {
+            if (lua_type(L, -2) == LUA_TSTRING) {
+                (void)snprintf(field, sizeof field, "%.60s", lua_tostring(L, -2));
+            }
+            wh_reader_fail(reader, field, "entries 1, 2, ... and the fields%s", names);
+        }
+    }
+    return count;
+}
+
+/* The text that is entry `index` of the table at which the reader is, "" if there is none; refused if it is
+ * something else. */
+static const char *entry(wh_reader_t *reader, size_t index, char text[NAME_SIZE]) {
+    char field[32];
+    size_t length = 0;
+    (void)snprintf(field, sizeof field, "[%zu]", index);
+    const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
+    const char *name = type == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : "";
+    if (type != LUA_TNIL && (length == 0 || length >= NAME_SIZE || !wh_reader_is_plain(name, length))) {
+        wh_reader_fail(reader, field, "a name of 1 to %d bytes", NAME_SIZE - 1);
+    }
+    (void)snprintf(text, NAME_SIZE, "%s", name);
+    lua_pop(reader->L, 1);
+    return text;
+}
+
+static int32_t find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
+                            const char *name) {
+    const int32_t found = wh_flow_station_named(tool, name);
+    if (found == WH_FLOW_NONE) {
+        const char **names = lua_newuserdatauv(reader->L, tool->station_count * sizeof *names, 0);
+        for (size_t i = 0; i < tool->station_count; ++i) {
+            names[i] = tool->stations[i].name;
+        }
+        char meant[WH_NEAREST_TEXT];
+        const char *nearest = wh_text_nearest(name, names, tool->station_count);
+        wh_reader_refuse(reader, field, name, "a station of the layout%s",
+                         wh_text_did_you_mean(meant, "; ", "", nearest));
+    }
+    return found;
+}
+
+/* -------------------------------------------------------------------------------------------------- routes */
+
+/* A name, as wh_layout_read_keys reads them. */
+typedef struct {
+    char name[NAME_SIZE];
+} named_t;
+
+static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step,
+                        const char *field, const char *name) {
+    const int32_t station = find_station(reader, tool, field, name);
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (step->stations[i] == station) {
+            wh_reader_refuse(reader, field, name, "each station once in a step");
+        }
+    }
+    step->stations = realloc(step->stations, (step->station_count + 1) * sizeof *step->stations);
+    step->stations = wh_memory_need(step->stations);
+    step->stations[step->station_count++] = station;
+}
+
+static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t index, wh_flow_step_t *step) {
+    char name[NAME_SIZE], field[32];
+    (void)snprintf(field, sizeof field, "[%zu]", index);
+    step->process_us = WH_FLOW_NONE;
+    const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
+    lua_pop(reader->L, 1);
+    if (type == LUA_TSTRING) {
+        add_station(reader, tool, step, field, entry(reader, index, name));
+        return;
+    }
+    if (!wh_reader_enter_item(reader, (lua_Integer)index)) {
+        wh_reader_fail(reader, field, "a station's name, or { STATION, STATION, process = }");
+    }
+    const size_t count = count_entries(reader, wh_flow_step_fields);
+    for (size_t i = 1; i <= count; ++i) {
+        (void)snprintf(field, sizeof field, "[%zu]", i);
+        add_station(reader, tool, step, field, entry(reader, i, name));
+    }
+    if (count == 0) {
+        wh_reader_fail(reader, NULL, "at least one station");
+    }
+    step->process_us = wh_reader_has(reader, "process") ? read_us(reader, "process", 0) : WH_FLOW_NONE;
+    step->second_arm = wh_reader_boolean(reader, "hot", false);
+    wh_reader_leave(reader);
+}
+
+/* partial = { [2] = 1 }: step 2 keeps one place empty. */
+static void read_partial(wh_reader_t *reader, wh_flow_route_t *route) {
+    if (!wh_reader_enter(reader, "partial")) {
+        return;
+    }
+    lua_State *L = reader->L;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        int is_step = 0, is_count = 0;
+        const lua_Integer step = lua_tointegerx(L, -2, &is_step), count = lua_tointegerx(L, -1, &is_count);
+        if (!is_step || step < 1 || (size_t)step >= route->step_count || !is_count || count < 0 ||
+            count > 1000) {
+            wh_reader_fail(reader, NULL, "[STEP] = PLACES, with steps from 1 to %d",
+                           (int)route->step_count - 1);
+        }
+        route->steps[step].kept_empty = (int32_t)count;
+    }
+    wh_reader_leave(reader);
+}
+
+static int32_t add_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan,
+                         const char *name) {
+    plan->routes = realloc(plan->routes, (plan->route_count + 1) * sizeof *plan->routes);
+    plan->routes = wh_memory_need(plan->routes);
+    wh_flow_route_t *route = &plan->routes[plan->route_count++];
+    *route = (wh_flow_route_t){.name = wh_text_copy(name)};
+    (void)wh_reader_enter(reader, "routes");
+    if (!wh_reader_enter(reader, name)) {
+        wh_reader_refuse(reader, name, NULL, "a route: { STATION, STATION, ... }");
+    }
+    const size_t count = count_entries(reader, wh_flow_route_fields);
+    if (count == 0) {
+        wh_reader_fail(reader, NULL, "at least one step");
+    }
+    route->steps = wh_array_new(count + 2, sizeof *route->steps);
+    route->step_count = 1;
+    for (size_t i = 1; i <= count; ++i) {
+        read_step(reader, tool, i, &route->steps[route->step_count++]);
+    }
+    read_partial(reader, route);
+    wh_reader_leave(reader);
+    wh_reader_leave(reader);
+    return (int32_t)plan->route_count - 1;
+}
+
+/* ---------------------------------------------------------------------------------------------------- lots */
+
+/* A lot's part of the plan, before lots are put in order. */
+typedef struct {
+    wh_flow_lot_t lot;
+    int32_t station, first, last, back;
+    char name[NAME_SIZE], route[NAME_SIZE];
+    size_t index;
+} lot_t;
+
+static int32_t whole_entry(wh_reader_t *reader, int32_t index, int32_t least, int32_t most,
+                           const char *what) {
+    char field[16];
+    int is_whole = 0;
+    (void)snprintf(field, sizeof field, "[%d]", (int)index);
+    lua_rawgeti(reader->L, -1, index);
+    const lua_Integer value = lua_tointegerx(reader->L, -1, &is_whole);
+    if (!is_whole || value < least || value > most) {
+        wh_reader_fail(reader, field, "%s, from %d to %d", what, (int)least, (int)most);
+    }
+    lua_pop(reader->L, 1);
+    return (int32_t)value;
+}
+
+static void read_wafers(wh_reader_t *reader, const wh_flow_tool_t *tool, lot_t *lot) {
+    char name[NAME_SIZE];
+    if (!wh_reader_enter(reader, "wafers")) {
+        wh_reader_refuse(reader, "wafers", NULL, "{ STATION, FIRST SLOT, LAST SLOT }");
+    }
+    if (wh_reader_list(reader) != 3) {
+        wh_reader_fail(reader, NULL, "{ STATION, FIRST SLOT, LAST SLOT }");
+    }
+    lot->station = find_station(reader, tool, "[1]", entry(reader, 1, name));
+    const int32_t slots = tool->stations[lot->station].slots;
+    lot->first = whole_entry(reader, 2, 1, slots, "a slot");
+    lot->last = whole_entry(reader, 3, lot->first, slots, "a slot not below the first");
+    wh_reader_leave(reader);
+}
+
+/* The name of the only route, or an error. */
+static void read_route_name(wh_reader_t *reader, const named_t *routes, size_t route_count,
+                            char name[NAME_SIZE]) {
+    if (route_count == 1 && !wh_reader_has(reader, "route")) {
+        (void)snprintf(name, NAME_SIZE, "%s", routes[0].name);
+        return;
+    }
+    wh_reader_text(reader, "route", NULL, name, NAME_SIZE);
+    for (size_t i = 0; i < route_count; ++i) {
+        if (strcmp(routes[i].name, name) == 0) {
+            return;
+        }
+    }
+    wh_reader_refuse(reader, "route", name, "the name of one of the routes");
+}
+
+static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const named_t *routes,
+                     size_t route_count, lot_t *lot) {
+    wh_reader_refuse_unknown(reader, wh_flow_lot_fields);
+    if (wh_reader_has(reader, "name")) {
+        wh_reader_text(reader, "name", NULL, lot->name, sizeof lot->name);
+    }
+    read_wafers(reader, tool, lot);
+    read_route_name(reader, routes, route_count, lot->route);
+    lot->lot.arrives_us = read_us(reader, "arrives", 0);
+    lot->lot.priority = wh_reader_whole(reader, "priority", 0, -1000, 1000);
+    lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
+    lot->back = WH_FLOW_NONE;
+    if (wh_reader_has(reader, "back")) {
+        char back[NAME_SIZE];
+        wh_reader_text(reader, "back", NULL, back, sizeof back);
+        lot->back = find_station(reader, tool, "back", back);
+        if (tool->stations[lot->back].slots < lot->last) {
+            wh_reader_refuse(reader, "back", back, "a station with at least %d slots", (int)lot->last);
+        }
+    }
+}
+
+static int by_arrival(const void *a, const void *b) {
+    const lot_t *one = a, *other = b;
+    if (one->lot.arrives_us != other->lot.arrives_us) {
+        return one->lot.arrives_us < other->lot.arrives_us ? -1 : 1;
+    }
+    if (one->lot.priority != other->lot.priority) {
+        return one->lot.priority > other->lot.priority ? -1 : 1;
+    }
+    return one->index < other->index ? -1 : 1;
+}
+
+static void add_wafers(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const lot_t *lot, size_t index) {
+    for (int32_t slot = lot->first; slot <= lot->last; ++slot) {
+        char name[2 * NAME_SIZE];
+        const size_t number = plan->wafer_count++;
+        if (plan->lots[index].name[0] != '\0') {
+            (void)snprintf(name, sizeof name, "%s.%d", plan->lots[index].name, (int)(slot - lot->first + 1));
+        } else {
+            (void)snprintf(name, sizeof name, "W%zu", number + 1);
+        }
+        plan->wafers[number] = (wh_flow_wafer_t){
+            .name = wh_text_copy(name),
+            .lot = (int32_t)index,
+            .home = tool->stations[lot->station].first_place + slot - 1,
+            .back =
+                lot->back == WH_FLOW_NONE ? WH_FLOW_NONE : tool->stations[lot->back].first_place + slot - 1,
+            .back_station = WH_FLOW_NONE};
+    }
+}
+
+/* Routes are in the order in which lots use them. */
+static void take_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan, lot_t lots[],
+                       size_t index) {
+    for (size_t i = 0; i < index; ++i) {
+        if (strcmp(lots[i].route, lots[index].route) == 0) {
+            lots[index].lot.route = lots[i].lot.route;
+            return;
+        }
+    }
+    lots[index].lot.route = add_route(reader, tool, plan, lots[index].route);
+}
+
+static void take_lots(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const lot_t lots[], size_t count,
+                      size_t wafers) {
+    plan->lots = wh_array_new(count, sizeof *plan->lots);
+    plan->wafers = wh_array_new(wafers, sizeof *plan->wafers);
+    for (size_t i = 0; i < count; ++i) {
+        plan->lots[i] = lots[i].lot;
+        plan->lots[i].name = wh_text_copy(lots[i].name);
+        plan->lot_count = i + 1;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        plan->lots[i].first_wafer = plan->wafer_count;
+        plan->lots[i].wafer_count = (size_t)(lots[i].last - lots[i].first + 1);
+        add_wafers(tool, plan, &lots[i], i);
+    }
+}
+
+static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
+    size_t route_count = 0, wafers = 0;
+    if (!wh_reader_enter(reader, "routes")) {
+        wh_reader_refuse(reader, "routes", NULL, "a table of routes by name");
+    }
+    const named_t *routes = wh_layout_read_keys(reader, 1000, sizeof *routes, "routes", &route_count);
+    wh_reader_leave(reader);
+    if (!wh_reader_enter(reader, "lots")) {
+        wh_reader_refuse(reader, "lots", NULL, "a list of lots");
+    }
+    const size_t count = wh_reader_list(reader);
+    lot_t *lots = lua_newuserdatauv(reader->L, (count + 1) * sizeof *lots, 0);
+    memset(lots, 0, (count + 1) * sizeof *lots);
+    lua_insert(reader->L, -2); /* below the table being read */
+    for (size_t i = 0; i < count; ++i) {
+        (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
+        read_lot(reader, tool, routes, route_count, &lots[i]);
+        lots[i].index = i;
+        wafers += (size_t)(lots[i].last - lots[i].first + 1);
+        wh_reader_leave(reader);
+    }
+    if (count == 0 || wafers > MOST_WAFERS) {
+        wh_reader_fail(reader, NULL, "1 to %d wafers in lots", MOST_WAFERS);
+    }
+    wh_reader_leave(reader);
+    lua_insert(reader->L, -2); /* the table on top of the lots */
+    for (size_t i = 0; i < count; ++i) {
+        take_route(reader, tool, plan, lots, i);
+    }
+    qsort(lots, count, sizeof *lots, by_arrival);
+    take_lots(tool, plan, lots, count, wafers);
+    lua_remove(reader->L, -2);
+}
+
+/* ---------------------------------------------------------------------------------------------------- rule */
+
+static int32_t find_wafer(wh_reader_t *reader, const wh_flow_plan_t *plan, const char *name) {
+    for (size_t i = 0; i < plan->wafer_count; ++i) {
+        if (strcmp(plan->wafers[i].name, name) == 0) {
+            return (int32_t)i;
+        }
+    }
+    wh_reader_refuse(reader, "[3]", name, "a wafer of the lots by name");
+}
+
+/* { "LLA", "PM1" }, { "PM2", "keep" }, { "keep", "PM3", "W3" }, { "pump", "LLA", "vacuum" } */
+static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+                      wh_flow_line_t *line) {
+    char first[NAME_SIZE], second[NAME_SIZE], third[NAME_SIZE];
+    const size_t count = wh_reader_list(reader);
+    if (count < 2 || count > 3) {
+        wh_reader_fail(reader, NULL, "{ FROM, TO }, with a wafer's name if another than the first is meant");
+    }
+    (void)entry(reader, 1, first);
+    (void)entry(reader, 2, second);
+    (void)entry(reader, 3, third);
+    *line = (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
+    if (strcmp(first, "pump") == 0) {
+        line->what = WH_FLOW_PUMP;
+        line->to = find_station(reader, tool, "[2]", second);
+        line->side = strcmp(third, "vacuum") == 0 ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE;
+        if (!tool->stations[line->to].is_lock ||
+            (line->side == WH_FLOW_ATMOSPHERE && strcmp(third, "atmosphere") != 0)) {
+            wh_reader_fail(reader, NULL, "{ \"pump\", LOAD LOCK, \"vacuum\" } or \"atmosphere\"");
+        }
+        return;
+    }
+    const bool brings = strcmp(first, "keep") == 0, keeps = strcmp(second, "keep") == 0;
+    line->what = brings ? WH_FLOW_BRING : keeps ? WH_FLOW_KEEP : WH_FLOW_TRANSFER;
+    if (brings && keeps) {
+        wh_reader_fail(reader, NULL, "one \"keep\" in a line");
+    }
+    line->from = brings ? WH_FLOW_NONE : find_station(reader, tool, "[1]", first);
+    line->to = keeps ? WH_FLOW_NONE : find_station(reader, tool, "[2]", second);
+    line->wafer = third[0] == '\0' ? WH_FLOW_NONE : find_wafer(reader, plan, third);
+}
+
+static void check_served(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot,
+                         const wh_flow_line_t *line) {
+    const int32_t both[] = {line->from, line->to};
+    for (size_t i = 0; i < 2; ++i) {
+        if (both[i] != WH_FLOW_NONE && line->what != WH_FLOW_PUMP &&
+            !tool->serves[wh_flow_of(tool, robot, both[i])]) {
+            wh_reader_refuse(reader, i == 0 ? "[1]" : "[2]", tool->stations[both[i]].name,
+                             "a station that %s serves", tool->robots[robot].name);
+        }
+    }
+}
+
+static void read_list(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+                      int32_t robot) {
+    wh_flow_list_t *list = &plan->lists[robot];
+    const size_t count = wh_reader_list(reader);
+    for (size_t i = 0; i < count; ++i) {
+        list->lines = wh_array_grow(list->lines, list->count, &list->capacity, sizeof *list->lines);
+        (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
+        read_line(reader, tool, plan, &list->lines[i]);
+        check_served(reader, tool, robot, &list->lines[i]);
+        list->count = i + 1;
+        wh_reader_leave(reader);
+    }
+}
+
+static void read_lists(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
+    size_t count = 0;
+    plan->rule = WH_FLOW_LISTS;
+    plan->lists = wh_array_new(tool->robot_count, sizeof *plan->lists);
+    (void)wh_reader_open(reader, "rule", wh_flow_list_fields);
+    if (!wh_reader_enter(reader, "order")) {
+        wh_reader_refuse(reader, "order", NULL, "each robot's transfers in order, by its name");
+    }
+    const named_t *robots = wh_layout_read_keys(reader, 1000, sizeof *robots, "robots", &count);
+    for (size_t i = 0; i < count; ++i) {
+        const int32_t robot = wh_flow_robot_named(tool, robots[i].name);
+        if (robot == WH_FLOW_NONE) {
+            wh_reader_refuse(reader, robots[i].name, NULL, "robots of the layout by name");
+        }
+        if (wh_reader_enter(reader, robots[i].name)) {
+            read_list(reader, tool, plan, robot);
+            wh_reader_leave(reader);
+        }
+    }
+    wh_reader_leave(reader);
+    wh_reader_leave(reader);
+}
+
+static void read_rule(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
+    static const char *const rules[] = {"backward", "swap", "first_come", "longest_wait", NULL};
+    const int type = wh_reader_push(reader, "rule");
+    lua_pop(reader->L, 1);
+    if (type == LUA_TTABLE) {
+        read_lists(reader, tool, plan);
+    } else {
+        plan->rule = (wh_flow_rule_t)wh_reader_choice(reader, "rule", 0, rules);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- whole */
+
+static int by_begin(const void *a, const void *b) {
+    const wh_flow_down_t *one = a, *other = b;
+    return one->at_us < other->at_us ? -1 : one->at_us > other->at_us ? 1 : one->station - other->station;
+}
+
+static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
+    if (!wh_reader_enter(reader, "down")) {
+        return;
+    }
+    const size_t count = wh_reader_list(reader);
+    plan->downs = wh_array_new(count + 1, sizeof *plan->downs);
+    for (size_t i = 0; i < count; ++i) {
+        char name[NAME_SIZE];
+        (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
+        if (count_entries(reader, wh_flow_down_fields) != 1) {
+            wh_reader_fail(reader, NULL, "{ STATION, at = , seconds = }");
+        }
+        wh_flow_down_t *down = &plan->downs[plan->down_count];
+        down->station = find_station(reader, tool, "[1]", entry(reader, 1, name));
+        down->at_us = read_us(reader, "at", NAN);
+        down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, LONGEST));
+        ++plan->down_count;
+        wh_reader_leave(reader);
+    }
+    qsort(plan->downs, plan->down_count, sizeof *plan->downs, by_begin);
+    wh_reader_leave(reader);
+}
+
+void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *flow) {
+    static const char *const lates[] = {"fail", "tell", NULL};
+    wh_flow_plan_t *plan = &flow->plan;
+    wh_reader_refuse_unknown(reader, wh_flow_fields);
+    read_lots(reader, tool, plan);
+    read_rule(reader, tool, plan);
+    read_downs(reader, tool, plan);
+    plan->until_us = wh_reader_has(reader, "until_s") ? read_us(reader, "until_s", 0) : WH_FLOW_NEVER;
+    plan->takt_us = read_us(reader, "takt", 0);
+    plan->is_safe = wh_reader_boolean(reader, "safe", true);
+    flow->is_lateness_told = wh_reader_choice(reader, "late", 0, lates) == 1;
+    char *problem = wh_flow_plan_finish(plan, tool);
+    if (problem) {
+        lua_pushfstring(reader->L, "%s: %s", reader->file, problem);
+        free(problem);
+        (void)lua_error(reader->L);
+    }
+}

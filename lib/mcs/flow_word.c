@@ -1,0 +1,140 @@
+/* flow: a script's lots through a tool of times alone. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../script/wh_module_values.h"
+#include "../text/array.h"
+#include "flow_plan.h"
+#include "native.h"
+
+static double seconds(int64_t us) {
+    return (double)us / 1e6;
+}
+
+static void set_seconds(lua_State *L, const char *name, int64_t us) {
+    if (us != WH_FLOW_NEVER) {
+        lua_pushnumber(L, seconds(us));
+        lua_setfield(L, -2, name);
+    }
+}
+
+/* Each wafer's stay that was longer than its station's window. */
+static void push_breaches(lua_State *L, const wh_flow_figures_t *figures) {
+    lua_createtable(L, (int)figures->breach_count, 0);
+    for (size_t i = 0; i < figures->breach_count; ++i) {
+        const wh_flow_breach_t *breach = &figures->breaches[i];
+        lua_createtable(L, 0, 4);
+        wh_lua_set_text(L, "wafer", figures->plan->wafers[breach->wafer].name);
+        wh_lua_set_text(L, "station", figures->tool->stations[breach->station].name);
+        set_seconds(L, "done_s", breach->done_us);
+        set_seconds(L, "stay_s", breach->taken_us - breach->done_us);
+        set_seconds(L, "window_s", breach->window_us);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* By name, the share of the time in each class. */
+static void push_shares(lua_State *L, const int64_t times_us[], const char *const names[], size_t count,
+                        int64_t all_us) {
+    lua_createtable(L, 0, (int)count);
+    for (size_t i = 0; i < count; ++i) {
+        lua_pushnumber(L, all_us > 0 ? (double)times_us[i] / (double)all_us : 0);
+        lua_setfield(L, -2, names[i]);
+    }
+}
+
+static void push_all_shares(lua_State *L, const wh_flow_figures_t *figures) {
+    const wh_flow_tool_t *tool = figures->tool;
+    lua_newtable(L);
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        push_shares(L, figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, figures->end_us);
+        lua_setfield(L, -2, tool->robots[r].name);
+    }
+    lua_setfield(L, -2, "robots");
+    lua_newtable(L);
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        push_shares(L, figures->stations[s], wh_flow_station_class_names, WH_FLOW_STATION_CLASSES,
+                    figures->end_us * tool->stations[s].slots);
+        lua_setfield(L, -2, tool->stations[s].name);
+    }
+    lua_setfield(L, -2, "stations");
+}
+
+/* The word's result. */
+static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
+    static const char *const ends[] = {"done", "stuck", "broken", "cut"};
+    const wh_flow_result_t *result = &figures->result;
+    lua_createtable(L, 0, 10);
+    wh_lua_set_text(L, "end", ends[result->end]);
+    set_seconds(L, "makespan_s", result->makespan_us);
+    wh_lua_set_integer(L, "wafers", (int64_t)result->over);
+    if (result->period > 0) {
+        lua_pushnumber(L, seconds(result->cycle_us) / result->period);
+        lua_setfield(L, -2, "cycle_s");
+        wh_lua_set_integer(L, "period", result->period);
+        lua_pushnumber(L, 3600 * result->period / seconds(result->cycle_us));
+        lua_setfield(L, -2, "per_hour");
+    }
+    if (result->why) {
+        wh_lua_set_text(L, "why", result->why);
+    }
+    set_seconds(L, "longest_stay_s", figures->longest_stay_us);
+    push_breaches(L, figures);
+    lua_setfield(L, -2, "stays");
+    push_all_shares(L, figures);
+}
+
+/* A flow that did not end well, and stays that were too long, fail the run as expectations do. */
+static void judge(wh_mcs_t *mcs, const wh_flow_t *flow) {
+    const wh_flow_figures_t *figures = &flow->figures;
+    wh_record_t *record = mcs->recorder.record;
+    char text[600];
+    static const char *const words[] = {"", "STUCK: ", "", "cut at until_s: "};
+    if (figures->result.end != WH_FLOW_DONE) {
+        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.500s", words[figures->result.end],
+                       figures->result.why ? figures->result.why : "wafers are still on their way");
+        wh_record_add_expectation(record, flow->line, text, figures->result.end == WH_FLOW_CUT);
+    }
+    for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
+        const wh_flow_breach_t *breach = &figures->breaches[i];
+        (void)snprintf(text, sizeof text, "%s out of %s at most %.6g s after its process; it stayed %.6g s",
+                       figures->plan->wafers[breach->wafer].name,
+                       figures->tool->stations[breach->station].name, seconds(breach->window_us),
+                       seconds(breach->taken_us - breach->done_us));
+        wh_record_add_expectation(record, flow->line, text, false);
+    }
+}
+
+/* native.flow(description): plays it and returns its figures. */
+static int play_flow(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_record_t *record = mcs->recorder.record;
+    wh_reader_t reader;
+    const wh_flow_tool_t *tool = mcs->layout->tool;
+    if (!tool) {
+        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                            "flow: this cell's robots have axes (expected robots of kind \"timed\")");
+    }
+    if (record->flow) {
+        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                            "flow: there was one before (expected one in a run)");
+    }
+    if (!lua_istable(L, 1)) {
+        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                            "flow: a table was expected, as in flow { lots = ... }");
+    }
+    lua_settop(L, 1);
+    char where[300];
+    record->flow = wh_array_new(1, sizeof *record->flow);
+    record->flow->tool = tool;
+    record->flow->line = wh_sandbox_line(L, mcs->script);
+    (void)snprintf(where, sizeof where, "%.200s:%d: flow", mcs->script, record->flow->line);
+    wh_reader_start(&reader, L, where);
+    wh_flow_read(&reader, tool, record->flow);
+    wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
+    judge(mcs, record->flow);
+    push_result(L, &record->flow->figures);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_flow_functions[] = {{"flow", play_flow}, {NULL, NULL}};

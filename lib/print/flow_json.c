@@ -1,0 +1,114 @@
+/* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, wafers, cycle_s, period, per_hour,
+ * longest_stay_s, robots and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays
+ * (beyond their windows), visits (each wafer's, by the end of placing), doings (pumps, vents, cleans and failures of
+ * stations, by their ends). */
+#include "record_print.h"
+
+#include <math.h>
+
+#include "../text/json.h"
+
+static json_t *seconds(int64_t us) {
+    return us == WH_FLOW_NEVER ? json_null() : wh_json_real((double)us / 1e6);
+}
+
+static json_t *shares(const int64_t times_us[], const char *const names[], size_t count, double all_us) {
+    json_t *object = json_object();
+    for (size_t i = 0; i < count; ++i) {
+        wh_json_put(object, names[i], wh_json_real(all_us > 0 ? (double)times_us[i] / all_us : 0));
+    }
+    return object;
+}
+
+static json_t *robot(const void *subject, size_t r) {
+    const wh_flow_figures_t *figures = subject;
+    return wh_json_add(
+        json_object(), "name shares", wh_json_text(figures->tool->robots[r].name),
+        shares(figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, (double)figures->end_us),
+        NULL);
+}
+
+static json_t *blocked_by(const wh_flow_figures_t *figures, size_t s) {
+    const wh_flow_tool_t *tool = figures->tool;
+    json_t *object = json_object();
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        const int64_t us = figures->blocked_by_robot[s * tool->robot_count + r];
+        if (us > 0) {
+            wh_json_put(object, tool->robots[r].name, seconds(us));
+        }
+    }
+    for (size_t other = 0; other < tool->station_count; ++other) {
+        const int64_t us = figures->blocked_by_station[s * tool->station_count + other];
+        if (us > 0) {
+            wh_json_put(object, tool->stations[other].name, seconds(us));
+        }
+    }
+    return object;
+}
+
+static json_t *station(const void *subject, size_t s) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_station_t *of = &figures->tool->stations[s];
+    json_t *object = wh_json_set(json_object(), "name %s slots %d placed %lld", of->name, (int)of->slots,
+                                 (long long)figures->placed[s]);
+    return wh_json_add(object, "shares blocked_by",
+                       shares(figures->stations[s], wh_flow_station_class_names, WH_FLOW_STATION_CLASSES,
+                              (double)figures->end_us * of->slots),
+                       blocked_by(figures, s), NULL);
+}
+
+static json_t *breach(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_breach_t *of = &figures->breaches[i];
+    return wh_json_set(json_object(), "wafer %s station %s done_s %g stay_s %g window_s %g",
+                       figures->plan->wafers[of->wafer].name, figures->tool->stations[of->station].name,
+                       (double)of->done_us / 1e6, (double)(of->taken_us - of->done_us) / 1e6,
+                       (double)of->window_us / 1e6);
+}
+
+static json_t *visit(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_tool_t *tool = figures->tool;
+    const wh_flow_visit_t *of = &figures->visits[i];
+    json_t *object = wh_json_set(
+        json_object(), "wafer %s step %d robot %s arm %d from %s from_slot %d to %s to_slot %d",
+        figures->plan->wafers[of->wafer].name, (int)of->step, tool->robots[of->robot].name, (int)of->arm + 1,
+        tool->stations[tool->place_stations[of->from]].name, (int)wh_flow_slot(tool, of->from),
+        tool->stations[tool->place_stations[of->place]].name, (int)wh_flow_slot(tool, of->place));
+    return wh_json_add(object, "pick_s picked_s place_s placed_s process_s done_s", seconds(of->pick_us),
+                       seconds(of->picked_us), seconds(of->place_us), seconds(of->placed_us),
+                       seconds(of->process_us), seconds(of->done_us), NULL);
+}
+
+static json_t *doing(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_doing_t *of = &figures->doings[i];
+    const char *what = of->kind == WH_FLOW_EVENT_CLEAN  ? "clean"
+                       : of->kind == WH_FLOW_EVENT_DOWN ? "down"
+                       : of->side == WH_FLOW_VACUUM     ? "pump"
+                                                        : "vent";
+    return wh_json_set(json_object(), "station %s slot %lld what %s begin_s %g end_s %g",
+                       figures->tool->stations[of->station].name,
+                       of->place == WH_FLOW_NONE ? WH_JSON_NONE
+                                                 : (long long)wh_flow_slot(figures->tool, of->place),
+                       what, (double)of->begin_us / 1e6, (double)of->end_us / 1e6);
+}
+
+json_t *wh_flow_to_json(const wh_flow_t *flow) {
+    static const char *const ends[] = {"done", "stuck", "broken", "cut"};
+    const wh_flow_figures_t *figures = &flow->figures;
+    const wh_flow_result_t *result = &figures->result;
+    const double cycle_s = result->period > 0 ? (double)result->cycle_us / 1e6 / result->period : (double)NAN;
+    json_t *object = wh_json_set(
+        json_object(), "line %d end %s why %s wafers %lld makespan_s %g cycle_s %g period %lld per_hour %g",
+        flow->line, ends[result->end], result->why, (long long)result->over,
+        (double)result->makespan_us / 1e6, cycle_s,
+        result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
+    return wh_json_add(object, "longest_stay_s robots stations stays visits doings",
+                       seconds(figures->longest_stay_us),
+                       wh_json_list(robot, figures, figures->tool->robot_count),
+                       wh_json_list(station, figures, figures->tool->station_count),
+                       wh_json_list(breach, figures, figures->breach_count),
+                       wh_json_list(visit, figures, figures->visit_count),
+                       wh_json_list(doing, figures, figures->doing_count), NULL);
+}

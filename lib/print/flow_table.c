@@ -1,0 +1,149 @@
+/* A flow: its rate first, then where the time of robots and stations went, and stays beyond windows. */
+#include <stdio.h>
+
+#include "../text/array.h"
+#include "print_internal.h"
+
+/* The most breaches of windows that are listed. */
+#define LISTED 20
+
+static double seconds(int64_t us) {
+    return (double)us / 1e6;
+}
+
+static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_result_t *result = &figures->result;
+    char count[WH_PRINT_NUMBER_SIZE];
+    if (result->period > 0) {
+        const double cycle_s = seconds(result->cycle_us) / result->period;
+        fprintf(printer->out, "%.1f wafers per hour, steady: one in %.6g s", 3600 / cycle_s, cycle_s);
+        if (result->period > 1) {
+            fprintf(printer->out, ", the same every %d wafers", (int)result->period);
+        }
+    } else {
+        fprintf(printer->out, "no steady cycle: the wafers' ends do not repeat within their middle third");
+    }
+    fprintf(printer->out, "\n%s wafers at their ends in %.6f s, with start and run-out",
+            wh_print_count(count, (int64_t)result->over), seconds(result->makespan_us));
+    if (result->over > 0 && result->makespan_us > 0) {
+        fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(result->makespan_us));
+    }
+    fputc('\n', printer->out);
+}
+
+/* The classes that have any time, as columns in percent. */
+static size_t name_columns(wh_grid_t *grid, const int64_t sums[], const char *const names[], size_t count,
+                           size_t columns[]) {
+    size_t used = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (sums[i] > 0) {
+            char heading[64], words[48];
+            wh_text_words(words, sizeof words, names[i]);
+            (void)snprintf(heading, sizeof heading, "%s %%{1}", words);
+            wh_grid_columns(grid, heading);
+            columns[used++] = i;
+        }
+    }
+    return used;
+}
+
+static void print_robots(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_tool_t *tool = figures->tool;
+    int64_t sums[WH_FLOW_ROBOT_CLASSES] = {0};
+    size_t columns[WH_FLOW_ROBOT_CLASSES];
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        for (size_t i = 0; i < WH_FLOW_ROBOT_CLASSES; ++i) {
+            sums[i] += figures->robots[r][i];
+        }
+    }
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "robot");
+    const size_t used = name_columns(grid, sums, wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, columns);
+    for (size_t r = 0; r < tool->robot_count && figures->end_us > 0; ++r) {
+        wh_grid_named_row(grid, tool->robots[r].name);
+        for (size_t i = 0; i < used; ++i) {
+            wh_grid_number(grid, 1 + i, WH_INK_PLAIN,
+                           100 * (double)figures->robots[r][columns[i]] / (double)figures->end_us);
+        }
+    }
+    wh_print_titled(printer, "Robots", grid);
+}
+
+/* The robot or station for which done wafers of a station waited longest; null if they did not wait. */
+static const char *blocker_of(const wh_flow_figures_t *figures, size_t station) {
+    const wh_flow_tool_t *tool = figures->tool;
+    const char *name = NULL;
+    int64_t most = 0;
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        const int64_t us = figures->blocked_by_robot[station * tool->robot_count + r];
+        if (us > most) {
+            most = us;
+            name = tool->robots[r].name;
+        }
+    }
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        const int64_t us = figures->blocked_by_station[station * tool->station_count + s];
+        if (us > most) {
+            most = us;
+            name = tool->stations[s].name;
+        }
+    }
+    return name;
+}
+
+static void print_stations(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_tool_t *tool = figures->tool;
+    int64_t sums[WH_FLOW_STATION_CLASSES] = {0};
+    size_t columns[WH_FLOW_STATION_CLASSES];
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        for (size_t i = 0; i < WH_FLOW_STATION_CLASSES; ++i) {
+            sums[i] += figures->stations[s][i];
+        }
+    }
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "station;placed{0}");
+    const size_t used =
+        name_columns(grid, sums, wh_flow_station_class_names, WH_FLOW_STATION_CLASSES, columns);
+    wh_grid_columns(grid, "blocked most by");
+    for (size_t s = 0; s < tool->station_count && figures->end_us > 0; ++s) {
+        const double all = (double)figures->end_us * tool->stations[s].slots;
+        wh_grid_named_row(grid, tool->stations[s].name);
+        wh_grid_number(grid, 1, WH_INK_PLAIN, (double)figures->placed[s]);
+        for (size_t i = 0; i < used; ++i) {
+            wh_grid_number(grid, 2 + i, WH_INK_PLAIN, 100 * (double)figures->stations[s][columns[i]] / all);
+        }
+        const char *blocker = blocker_of(figures, s);
+        if (blocker) {
+            wh_grid_text(grid, 2 + used, WH_INK_PLAIN, "%s", blocker);
+        }
+    }
+    wh_print_titled(printer, "Stations", grid);
+}
+
+static void print_breaches(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1,
+                                  "wafer;station;done at s{3,6};stay s{3,6};window s{3,6};too long s{3,6}");
+    for (size_t i = 0; i < figures->breach_count && i < LISTED; ++i) {
+        const wh_flow_breach_t *breach = &figures->breaches[i];
+        const int64_t stay_us = breach->taken_us - breach->done_us;
+        const double values[] = {seconds(breach->done_us), seconds(stay_us), seconds(breach->window_us),
+                                 seconds(stay_us - breach->window_us)};
+        wh_grid_named_row(grid, figures->plan->wafers[breach->wafer].name);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", figures->tool->stations[breach->station].name);
+        wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
+    }
+    wh_print_titled(printer, "Stays beyond their windows", grid);
+    if (figures->breach_count > LISTED) {
+        fprintf(printer->out, "and %zu more\n", figures->breach_count - LISTED);
+    }
+}
+
+void wh_print_flow(const wh_printer_t *printer) {
+    const wh_flow_t *flow = printer->record->flow;
+    if (!flow || !flow->figures.tool) {
+        return;
+    }
+    wh_print_title(printer, "Flow");
+    print_rate(printer, &flow->figures);
+    print_robots(printer, &flow->figures);
+    print_stations(printer, &flow->figures);
+    print_breaches(printer, &flow->figures);
+}

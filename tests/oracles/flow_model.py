@@ -1,0 +1,421 @@
+#!/usr/bin/env python3
+"""A slow, plain model of flows of wafers through a tool of timed robots, written from the rules alone. It looks at every robot,
+place and lock again at every instant. FLOW_CHOICES.md lists where the rules leave a choice, and which one was taken.
+
+    result = run(tool, flow)
+
+All times are whole microseconds. A tool is
+    {"robots":   [{"name", "arms": 1, "at": station, "pick", "place", "move", "swap": None}],
+     "serves":   {robot: [station, ...]},
+     "stations": [{"name", "slots": 1, "process": None, "window": None,
+                   "clean": None | {"after": k or None, "seconds", "empty": True, "idle": None},
+                   "pump": None | {"down", "up", "empty_down", "empty_up"}, "state": "vacuum" | "atmosphere",
+                   "sides": {robot: "vacuum" | "atmosphere"}, "ways": {slot: "in" | "out"},
+                   "doors": None | {robot: {"open", "close"}}, "load_port": False}]}
+pick and place are a number or {station: number}, move a number or {(from, to): number}, swap None, a number or {station: number}.
+A flow is
+    {"lots":   [{"name", "wafers": [(name, station, slot), ...], "route", "arrives": 0, "priority": 0, "back": None, "dummy": False}],
+     "routes": {name: {"steps": [{"stations": [...], "process": None, "hot": False}], "partial": {step: places kept empty}}},
+     "rule":   "backward" | "swap" | "first_come" | "longest_wait" | {"order": {robot: [action, ...]}} | function(view, robot),
+     "until": None, "down": [{"station", "at", "seconds": None for ever}], "takt": 0, "safe": True}
+An action is (from, to), (from, to, wafer), (from, "keep"), ("keep", to), ("keep", to, wafer) or ("pump", station, state). A result is
+    {"state": "done" | "STUCK" | "until" | "refused", "cause", "circle": [names], "makespan", "cycle": None | (time, k), "why",
+     "wafers": {name: [row, ...]}, "stays": [(wafer, station, over)], "robots": {name: {class: time}}, "pumps": [(station, to, begin, end)],
+     "cleans": [(station, slot, begin, end)], "lost": [wafers in failed stations]}
+and a row is (robot, arm, from station, from slot, pick begin, pick end, to station, to slot, place begin, place end, process begin,
+process end)."""
+import sys
+
+import flow_figures
+import flow_locks
+import flow_orders
+from flow_parts import Refused, Robot, Station, Wafer
+from flow_rules import SHIPPED
+
+
+class Model:
+    def __init__(self, tool, flow):
+        self.flow, self.now = flow, 0
+        self.stations = {given["name"]: Station(given) for given in tool["stations"]}
+        self.robots = sorted((Robot(given, tool["serves"][given["name"]]) for given in tool["robots"]), key=lambda robot: robot.name)
+        self.rule = flow.get("rule") or "backward"
+        self.safe = flow.get("safe", True) and self.rule in SHIPPED
+        self.takt, self.last_start = flow.get("takt") or 0, None
+        self.instants = set()   # times at which something changes by itself
+        self.stays, self.pumps, self.cleans = [], [], []
+        self.routes, self.wafers = [], []
+        self.common = {(a, b): [robot for robot in self.robots if {a, b} <= robot.serves] for a in self.stations for b in self.stations}
+        self.relaxed = False
+        self.by_hand = flow_orders.pumped_by_hand(self.rule)
+        for down in flow.get("down") or []:
+            end = None if down["seconds"] is None else down["at"] + down["seconds"]
+            self.stations[down["station"]].down.append((down["at"], end))
+            self.instants |= {down["at"]} | ({end} if end is not None else set())
+        self.read_lots()
+
+    def read_lots(self):
+        lots = sorted(enumerate(self.flow["lots"]), key=lambda pair: (pair[1].get("arrives", 0), -pair[1].get("priority", 0), pair[0]))
+        for _, lot in lots:
+            for name, station, slot in lot["wafers"]:
+                self.wafers.append(Wafer(name, lot, len(self.wafers), self.stations[station].places[slot - 1]))
+            self.instants.add(lot.get("arrives", 0))
+        for lot in self.flow["lots"]:
+            if lot["route"] not in self.routes:
+                self.routes.append(lot["route"])
+        for wafer in self.wafers:
+            wafer.steps = [([wafer.home], 0, False), *map(self.read_step, self.flow["routes"][wafer.route]["steps"])]
+            back = wafer.lot.get("back")
+            if back and {place.station.name for place in wafer.steps[-1][0]} == {back}:
+                wafer.steps.pop()
+            if back:
+                wafer.steps.append(([self.stations[back].places[wafer.home.slot - 1]], 0, False))
+
+    def read_step(self, step):
+        places = [place for name in step["stations"] for place in self.stations[name].places]
+        return places, step.get("process"), step.get("hot", False)
+
+    # ----------------------------------------------------------------------------------------------------------- steps
+    def following(self, wafer, number, here=None):
+        """The step after this one, without those whose stations have all failed, and without one behind them in whose place it lies
+        already (`here`). None behind the last."""
+        here, out = [wafer.place] if here is None else here, False
+        for after in range(number + 1, len(wafer.steps)):
+            places = wafer.steps[after][0]
+            failed = all(place.station.failed_at(self.now) for place in places)
+            if not failed and not (out and any(place in here for place in places)):
+                return after
+            out = out or failed
+        return None
+
+    def count(self, wafer, number, by=None, without=None):
+        """How many wafers of its route count in a step, and how many may: rule 12. Others' wafers and what is down take places away.
+        With `by`, picks that have begun and end by then have ended."""
+
+        def gone(place):
+            return by is not None and place.leaves is not None and place.leaves <= by
+        mine = [each for each in self.wafers if each.route == wafer.route and not each.ended and (
+            each.toward == number or each.place and each.step == number and not gone(each.place))]
+        taken = down = 0
+        for place in wafer.steps[number][0]:
+            inside = [each for each in (place.wafer, place.coming) if each and not (each is place.wafer and gone(place))]
+            taken += bool(inside) and not any(each in mine for each in inside)
+            down += not inside and place.station.down_at(self.now)
+        kept = max(down, self.partial(wafer, number))   # what is down is kept empty
+        return len([each for each in mine if each is not without]), len(wafer.steps[number][0]) - taken - kept
+
+    def partial(self, wafer, number):
+        return (self.flow["routes"][wafer.route].get("partial") or {}).get(number, 0)
+
+    # ----------------------------------------------------------------------------------------------------------- times
+    def pressure_from(self, station, robot):
+        """When its pressure is right for the robot; None if nobody knows."""
+        side = station.sides.get(robot.name)
+        if not station.pump or side is None:
+            return self.now
+        if station.turning:
+            return station.turning[1] if station.turning[0] == side else None
+        return self.now if station.state == side else None
+
+    def clean_due(self, place):
+        """The wafer that leaves now leaves it to be cleaned."""
+        clean = place.station.clean
+        return bool(clean and clean.get("empty", True) and clean.get("after") and place.count + 1 >= clean["after"])
+
+    def placing_from(self, robot, place, arrival):
+        """When placing can begin, as far as anybody knows; None if nobody does."""
+        station = place.station
+        pressure, clean = self.pressure_from(station, robot), place.clean_end or 0
+        if pressure is None:
+            return None
+        if place.leaves is not None and self.clean_due(place):
+            begin = station.up_from(place.leaves + place.closing)
+            clean = begin + station.clean["seconds"] if begin is not None else 0
+        begin = station.up_from(max(arrival, pressure, clean, place.leaves or 0, station.busy_until))
+        return None if begin is None else begin + station.door(robot)[0]
+
+    def picking_from(self, robot, wafer, arrival):
+        """When its pick (its door, if any) can begin, the destination apart; None if nobody knows."""
+        place = wafer.place
+        pressure = self.pressure_from(place.station, robot)
+        if pressure is None or wafer.done is None:
+            return None
+        takt = self.last_start + self.takt if wafer.step == 0 and self.last_start is not None else 0
+        return place.station.up_from(max(arrival, wafer.done, pressure, place.station.busy_until, takt))
+
+    def arrival(self, robot, station):
+        return self.now + robot.move(robot.at, station.name)
+
+    # ---------------------------------------------------------------------------------------------------- destinations
+    def may_enter(self, robot, place, wafer):
+        """It serves the place, its slot is for this way, nobody else is under way to it, and it is not down."""
+        return self.enters(robot, place) and place.coming in (None, wafer) and not place.station.down_at(self.now)
+
+    def enters(self, robot, place):
+        way = place.station.ways.get(place.slot)
+        right = not way or way == ("in" if place.station.sides.get(robot.name) == "atmosphere" else "out")
+        return place.station.name in robot.serves and right
+
+    def destinations(self, robot, wafer, number, start, begin):
+        """Places of step `number` that are or will be empty (rule 4) if the robot begins to take the wafer from `start` at `begin`,
+        best first (rule 7). `start` None: it is aboard. `begin` None: nobody knows when."""
+        found = []
+        for index, place in enumerate(wafer.steps[number][0]):
+            if not self.may_enter(robot, place, wafer):
+                continue
+            arrival = begin
+            if begin is not None:
+                arrival += robot.move(start.station.name if start else robot.at, place.station.name)
+                arrival += start.station.door(robot)[0] + robot.seconds("pick", start.station.name) if start else 0
+            ready = None if arrival is None else arrival + place.station.door(robot)[0]
+            if place.wafer is None or place.leaves is not None and (ready is None or place.leaves <= ready):
+                placing = self.placing_from(robot, place, self.now if arrival is None else arrival)
+                since = place.empty_since if place.leaves is None else place.leaves
+                found.append(((placing is None, placing or 0, since, index), place, ready))
+        found.sort(key=lambda each: each[0])
+        return [place for _, place, ready in found if self.has_room(wafer, number, ready)]
+
+    def has_room(self, wafer, number, ready):
+        if not self.partial(wafer, number):
+            return True
+        count, may = self.count(wafer, number, by=ready if ready is not None else 1 << 62, without=wafer)
+        return count < may
+
+    def carries(self, robot, wafer):
+        """The robot serves the wafer's place and a place of the step behind."""
+        after = self.following(wafer, wafer.step)
+        return wafer.place is not None and after is not None and wafer.place.station.name in robot.serves and any(
+            place.station.name in robot.serves for place in wafer.steps[after][0])
+
+    # ---------------------------------------------------------------------------------------------------- what is begun
+    def go(self, robot, station):
+        """Begins to move, unless it is there; True if it does."""
+        seconds = robot.move(robot.at, station.name)
+        if robot.at == station.name:
+            return False
+
+        def arrive():
+            robot.at = station.name
+        robot.intervals.append(("moving loaded" if robot.held() else "moving empty", self.now, self.now + seconds))
+        robot.doing = (self.now + seconds, arrive)
+        return True
+
+    def access(self, robot, station, kind, seconds):
+        """The station is taken by an opening door, the pick, place or swap, and a shutting door. Returns begin, end and shut."""
+        opening, closing = station.door(robot)
+        begin, end = self.now + opening, self.now + opening + seconds
+        if opening:
+            robot.intervals.append(("door", self.now, begin))
+            self.instants.add(begin)
+        robot.intervals.append((kind, begin, end))
+        station.busy_until = end + closing
+        return begin, end, end + closing
+
+    def free(self, robot, station):
+        """Pick, place or swap may begin there now, the place itself apart."""
+        return robot.at == station.name and station.busy_until <= self.now and not station.down_at(self.now) and (
+            self.pressure_from(station, robot) == self.now and not station.turning)
+
+    def start_row(self, robot, wafer, arm, place, begin, end):
+        wafer.rows.append([robot.name, arm + 1, place.station.name, place.slot, begin, end] + [None] * 6)
+        ready = wafer.rows[-2][11] if len(wafer.rows) > 1 else wafer.done
+        window = place.station.window
+        if window is not None and wafer.step > 0 and begin - ready > window:
+            self.stays.append((wafer.name, place.station.name, begin - ready - window))
+        if wafer.step == 0:
+            self.last_start = self.now
+
+    def pick(self, robot, wafer, destination):
+        """Destination None: it is kept, or the rule swap decides when it is aboard."""
+        place, number = wafer.place, self.following(wafer, wafer.step)
+        arm = robot.free_arm(wafer.steps[wafer.step][2])
+        if arm is None:
+            raise Refused(f"{robot.name}: no arm is free for {wafer.name}")
+        begin, end, shut = self.access(robot, place.station, "picking", robot.seconds("pick", place.station.name))
+        self.start_row(robot, wafer, arm, place, begin, end)
+        place.leaves, place.closing = end, shut - end
+        wafer.begun = self.now
+        if destination:
+            wafer.toward, wafer.destination, destination.coming = number, destination, wafer
+
+        def picked():
+            due = self.clean_due(place)
+            place.wafer = place.leaves = None
+            place.count, place.empty_since, place.idle_from = place.count + 1, end, end
+            if due:
+                self.start_clean(place, shut)
+            wafer.place, wafer.robot, robot.arms[arm] = None, robot, wafer
+            wafer.kept = None if destination else end
+        robot.doing = (end, picked)
+
+    def start_clean(self, place, time):
+        begin = place.station.up_from(time)
+        if begin is None:
+            return
+        place.clean_end, place.count, place.idle_from = begin + place.station.clean["seconds"], 0, None
+        self.cleans.append((place.station.name, place.slot, begin, place.clean_end))
+
+    def put(self, robot, wafer, place, begin, end, shut):
+        """What its placing will have done: known as soon as it has begun."""
+        number = wafer.toward
+        process = wafer.steps[number][1]
+        process = place.station.process or 0 if process is None else process
+        ready = place.station.up_from(shut)
+        wafer.rows[-1][6:] = [place.station.name, place.slot, begin, end, ready, None if ready is None else ready + process]
+        wafer.done = None if ready is None else ready + process
+        clean = place.station.clean
+        if clean and not clean.get("empty", True) and clean.get("after") and place.count + 1 >= clean["after"] and wafer.done is not None:
+            self.cleans.append((place.station.name, place.slot, wafer.done, wafer.done + clean["seconds"]))
+            wafer.done, place.count = wafer.done + clean["seconds"], -1
+
+        def placed():
+            robot.arms[robot.arms.index(wafer)] = None
+            wafer.place, place.wafer, place.coming = place, wafer, None
+            wafer.robot = wafer.toward = wafer.destination = wafer.kept = None
+            wafer.step, wafer.entered, place.filling = number, end, False
+            wafer.ended = self.following(wafer, number) is None
+        return placed
+
+    def place(self, robot, wafer, place):
+        begin, end, shut = self.access(robot, place.station, "placing", robot.seconds("place", place.station.name))
+        if wafer.toward is None:
+            wafer.toward = self.following(wafer, wafer.step)
+        wafer.destination, place.coming, place.filling = place, wafer, True
+        robot.doing = (end, self.put(robot, wafer, place, begin, end, shut))
+
+    def swap(self, robot, wafer, place, heading):
+        """Places the wafer and takes what lies there. Its next place is decided when it is aboard; until then it counts at `heading`."""
+        other, arm = place.wafer, robot.free_arm(place.wafer.steps[place.wafer.step][2])
+        begin, end, shut = self.access(robot, place.station, "swapping", robot.seconds("swap", place.station.name))
+        self.start_row(robot, other, arm, place, begin, end)
+        other.begun, other.toward, other.heading = self.now, self.following(other, other.step), heading
+        wafer.destination, place.coming, place.filling = place, wafer, True
+        place.count += 1
+        placed = self.put(robot, wafer, place, begin, end, shut)
+
+        def swapped():
+            other.place, other.robot, other.kept = None, robot, end
+            placed()
+            robot.arms[arm] = other
+        robot.doing = (end, swapped)
+
+    def turn(self, station, state):
+        empty = not any(place.wafer for place in station.places)
+        down = state == "vacuum"
+        seconds = station.pump["down" if down else "up"]
+        if empty and station.pump.get("empty_down" if down else "empty_up") is not None:
+            seconds = station.pump["empty_down" if down else "empty_up"]
+        station.turning = (state, self.now + seconds)
+        self.pumps.append((station.name, state, self.now, self.now + seconds))
+
+    # ------------------------------------------------------------------------------------------------------ an instant
+    def end_all(self):
+        for station in self.stations.values():
+            if station.turning and station.turning[1] <= self.now:
+                station.state, station.turning = station.turning[0], None
+            for place in station.places:
+                if place.clean_end is not None and place.clean_end <= self.now:
+                    place.clean_end = None
+        for robot in self.robots:
+            if robot.doing and robot.doing[0] <= self.now:
+                finish, robot.doing = robot.doing[1], None
+                finish()
+        for wafer in self.wafers:
+            if wafer.entered is None and wafer.lot.get("arrives", 0) <= self.now and not wafer.rows:
+                if wafer.home.wafer or wafer.home.coming:
+                    raise Refused(f"{wafer.name}: {wafer.home.station.name} slot {wafer.home.slot} is not empty")
+                wafer.place, wafer.home.wafer, wafer.entered, wafer.done = wafer.home, wafer, self.now, self.now
+            if wafer.place and not wafer.ended and wafer.place.station.failed_at(self.now):
+                wafer.ended = wafer.lost = True
+            wafer.ended = wafer.ended or wafer.lies() and self.following(wafer, wafer.step) is None
+
+    def begin_all(self):
+        """Cleans after idle time, and pumps; processes and cleans that are due were begun with what ended."""
+        for station in self.stations.values():
+            idle = (station.clean or {}).get("idle")
+            for place in station.places:
+                if idle is not None and self.idle_due(place) is not None and self.idle_due(place) <= self.now:
+                    self.start_clean(place, self.now)
+            if station.pump and not station.turning and station.busy_until <= self.now and station.name not in self.by_hand:
+                side = flow_locks.wanted_side(self, station)
+                if side and side != station.state and not station.down_at(self.now):
+                    self.turn(station, side)
+
+    def idle_due(self, place):
+        """When a clean after idle time is due, None if none is: once for each stretch without a wafer."""
+        if place.wafer or place.filling or place.idle_from is None or place.clean_end or not (place.station.clean or {}).get("idle"):
+            return None
+        return place.station.up_from(place.idle_from + place.station.clean["idle"])
+
+    def ask_all(self):
+        begun = True
+        while begun:
+            begun = False
+            for robot in self.robots:
+                if robot.doing is None and flow_orders.ask(self, robot):
+                    begun = True
+
+    def ask_relaxed(self):
+        """Nobody can go on: shipped rules do without the conditions that only make a robot wait for more wafers to come."""
+        self.relaxed = self.rule in SHIPPED
+        begun = self.relaxed and any(flow_orders.ask(self, robot) for robot in self.robots)
+        self.relaxed = False
+        return begun
+
+    def next_instant(self):
+        times = {time for time in self.instants if time > self.now}
+        times |= {robot.doing[0] for robot in self.robots if robot.doing}
+        times |= {wafer.done for wafer in self.wafers if wafer.place and not wafer.ended and wafer.done is not None}
+        for station in self.stations.values():
+            times |= {station.busy_until} | ({station.turning[1]} if station.turning else set())
+            times |= {time for place in station.places for time in (place.clean_end, self.idle_due(place)) if time is not None}
+        if self.last_start is not None and any(wafer.step == 0 and wafer.lies() for wafer in self.wafers):
+            times.add(self.last_start + self.takt)
+        return min((time for time in times if time > self.now), default=None)
+
+    def run(self):
+        until = self.flow.get("until")
+        while True:
+            while True:
+                self.end_all()
+                self.begin_all()
+                self.ask_all()
+                if not any(robot.doing and robot.doing[0] <= self.now for robot in self.robots):
+                    break
+            if all(wafer.ended for wafer in self.wafers):
+                return "done"
+            after = self.next_instant()
+            if after is None and self.ask_relaxed():
+                after = self.next_instant()
+            if after is None:
+                return "STUCK"
+            if until is not None and after > until:
+                return "until"
+            for robot in self.robots:
+                if robot.doing is None:
+                    robot.intervals.append((robot.told or "waiting for wafer", self.now, after))
+            self.now = after
+
+
+def run(tool, flow):
+    model, cause = None, None
+    try:
+        model = Model(tool, flow)
+        state = model.run()
+    except Refused as refused:
+        state, cause = "refused", str(refused)
+    if model is None:
+        return {"state": state, "cause": cause}
+    counted = [wafer for wafer in model.wafers if wafer.ended and not wafer.lost and not wafer.lot.get("dummy")]
+    ends = sorted(wafer.rows[-1][9] for wafer in counted if wafer.rows)
+    placings = [row[9] for wafer in model.wafers for row in wafer.rows if row[9] is not None and row[9] <= model.now]
+    makespan = max(placings, default=0)
+    cycle, why = flow_figures.steady_cycle(ends)
+    return {"state": state, "cause": cause, "circle": flow_figures.circle(model) if state == "STUCK" else [], "makespan": makespan,
+            "cycle": cycle, "why": why, "wafers": {wafer.name: [tuple(row) for row in wafer.rows] for wafer in model.wafers},
+            "lost": [wafer.name for wafer in model.wafers if wafer.lost], "stays": model.stays, "robots": flow_figures.split(model, makespan),
+            "pumps": model.pumps, "cleans": model.cleans}
+
+
+if __name__ == "__main__":
+    import flow_tables
+    sys.exit(flow_tables.main(sys.argv[1:]))

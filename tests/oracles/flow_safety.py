@@ -1,0 +1,63 @@
+"""Which transfers are safe (rule 11)."""
+
+
+def place_is_mine(place):
+    """It is empty, or being emptied: the robot that is under way to it no longer chooses."""
+    return place.wafer is None or place.leaves is not None
+
+
+def swappable(model, robot, other):
+    return other.lies() and not other.ended and model.carries(robot, other)
+
+
+def safe_after(model, moves):
+    """One after another each wafer inside can go to its route's end alone, once the moved ones lie where they go: {wafer: (place, step)}."""
+    where, inside = {}, []
+    for wafer in model.wafers:
+        place, step = wafer.place, wafer.step
+        if wafer.toward is not None:
+            place, step = wafer.destination or wafer.heading, wafer.toward
+        place, step = moves.get(wafer, (place, step))
+        if place is not None:
+            where.setdefault(place, []).append(wafer)
+        if not wafer.ended and step > 0 and place is not None:
+            inside.append((wafer, place, step))
+    while inside:
+        for each in inside:
+            end = way_out(model, where, *each)
+            if end is not None:
+                break
+        else:
+            return False
+        wafer, place, _ = each
+        where[place].remove(wafer)
+        where.setdefault(end, []).append(wafer)
+        inside.remove(each)
+    return True
+
+
+def way_out(model, where, wafer, place, step):
+    """Where the wafer's route ends if it goes alone through places with room, None if it cannot."""
+    reached = [place]
+    number = model.following(wafer, step, reached)
+    while number is not None:
+        room = {}
+        for to in wafer.steps[number][0]:   # one place of a station stands for all
+            if to.station not in room and not to.station.failed_at(model.now) and is_free(where, to, wafer):
+                if any(model.enters(robot, to) for start in reached for robot in model.common[start.station.name, to.station.name]):
+                    room[to.station] = to
+        if not room or not has_room(model, where, wafer, number):
+            return None
+        reached = list(room.values())
+        number = model.following(wafer, number, reached)
+    return reached[0]
+
+
+def is_free(where, place, wafer):
+    return all(other is wafer for other in where.get(place, ()))
+
+
+def has_room(model, where, wafer, number):
+    """A step of which places are kept empty (rule 12) has room only beside those."""
+    kept = model.partial(wafer, number)
+    return not kept or sum(is_free(where, to, wafer) for to in wafer.steps[number][0]) > kept

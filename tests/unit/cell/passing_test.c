@@ -1,0 +1,218 @@
+/* Held wafers that go through slots, against a plain model of planes. */
+#include <math.h>
+
+#include "support/station.h"
+
+enum { WAFERS = 2, GRIPPERS = 3, EVENTS = GRIPPERS * WH_EVENTS_PER_GRIPPER };
+
+static struct {
+    wh_grasp_t table;
+    wh_wafer_t wafers[WAFERS];
+    wh_gripper_t grippers[GRIPPERS];
+    wh_gripper_input_t inputs[GRIPPERS];
+    wh_event_t events[EVENTS];
+    wh_event_list_t list;
+    wh_passing_t passing[GRIPPERS];
+} scene;
+
+/* Gripper 0 holds wafer 0, whose centre is there. */
+static void hold(const wh_pose_t *at) {
+    memset(&scene, 0, sizeof scene);
+    scene.wafers[0].base_from_wafer = *at;
+    scene.wafers[1].base_from_wafer = wh_test_at(0, 5000, 0);
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {scene.wafers, WAFERS, scene.grippers, GRIPPERS, NULL, 0};
+    assert_int_equal(wh_grasp_init(&scene.table, &config, &storage), WH_OK);
+    for (int g = 0; g < GRIPPERS; ++g) {
+        scene.inputs[g] =
+            (wh_gripper_input_t){.base_from_gripper = wh_test_at(0, 9000, 0), .valve = WH_VALVE_CLOSED};
+    }
+    scene.inputs[0] = (wh_gripper_input_t){.base_from_gripper = *at, .valve = WH_VALVE_OPEN};
+    scene.list = (wh_event_list_t){scene.events, EVENTS, 0};
+    assert_int_equal(wh_grasp_step(&scene.table, scene.inputs, &scene.list), WH_OK);
+    assert_int_equal(scene.grippers[0].wafer, 0);
+}
+
+/* The gripper goes there in one slice; returns how many wafers it pushed through. */
+static size_t go(const wh_pose_t *to, int32_t valve) {
+    scene.inputs[0].base_from_gripper = *to;
+    scene.inputs[0].valve = valve;
+    const bool passes = wh_cell_begin_passing(&cell, &scene.table, scene.inputs, scene.passing);
+    assert_int_equal(wh_grasp_step(&scene.table, scene.inputs, &scene.list), WH_OK);
+    const size_t before = scene.list.count;
+    if (passes) {
+        wh_cell_end_passing(&cell, &scene.table, scene.passing, &scene.list);
+    }
+    return scene.list.count - before;
+}
+
+static wh_pose_t over_slot(int slot, double dx, double dz) {
+    wh_pose_t pose = wh_station_slot(&stations[0], slot);
+    pose.r.x += (wh_real_t)dx;
+    pose.r.z += (wh_real_t)dz;
+    return pose;
+}
+
+static void a_wafer_is_pushed_through_once(void **state) {
+    (void)state;
+    const wh_pose_t above = over_slot(2, 0, 3);
+    size_t told = 0;
+    hold(&above);
+    for (int slice = 1; slice <= 60; ++slice) {
+        const wh_pose_t to = over_slot(2, 0, 3 - 0.1 * slice);
+        const size_t pushed = go(&to, WH_VALVE_OPEN);
+        told += pushed;
+        if (pushed > 0) {
+            const wh_event_t *said = &scene.events[scene.list.count - 1];
+            assert_int_equal(said->kind, WH_EVENT_PUSHED_THROUGH);
+            assert_int_equal(said->wafer, 0);
+            assert_int_equal(said->gripper, 0);
+            assert_int_equal(said->slice, scene.table.slice);
+            assert_near(said->limit, 0.5, 0);
+            assert_true(said->value > said->limit && said->value < 0.6 + 1e-3);
+        }
+    }
+    assert_int_equal(told, 1);
+}
+
+/* The slice in which the valve closes counts, and so does a jump of any size. */
+static void a_release_and_a_jump_count(void **state) {
+    (void)state;
+    const wh_pose_t above = over_slot(1, 0, 0.1), below = over_slot(1, 0, -0.7),
+                    floor = over_slot(1, 0, -300);
+    hold(&above);
+    assert_int_equal(go(&below, WH_VALVE_CLOSED), 1);
+    hold(&above);
+    assert_int_equal(go(&floor, WH_VALVE_OPEN), 1);
+}
+
+static void what_passes_nothing(void **state) {
+    (void)state;
+    const wh_pose_t above = over_slot(1, 0, 0.1), within = over_slot(1, 0, -0.4),
+                    aside = over_slot(1, 51, 0.1), below = over_slot(1, 51, -3), under = over_slot(1, 0, -3);
+    hold(&above); /* less than projz below, there a support stops it */
+    assert_int_equal(go(&within, WH_VALVE_OPEN), 0);
+    hold(&aside); /* beside the slot */
+    assert_int_equal(go(&below, WH_VALVE_OPEN), 0);
+    hold(&below); /* sideways */
+    assert_int_equal(go(&under, WH_VALVE_OPEN), 0);
+    hold(&above); /* its own chuck */
+    stations[0].chuck = 0;
+    assert_int_equal(go(&under, WH_VALVE_OPEN), 0);
+    stations[0].chuck = 1; /* another's */
+    hold(&above);
+    assert_int_equal(go(&under, WH_VALVE_OPEN), 1);
+    stations[0].chuck = WH_NONE;
+}
+
+/* Up through the ledges of the slot above, once; not in its own slot, nor beside it, nor on its own chuck. */
+static void a_wafer_is_pushed_up_through_a_slot(void **state) {
+    (void)state;
+    const wh_pose_t own = over_slot(1, 0, 0);
+    size_t told = 0;
+    hold(&own);
+    for (int slice = 1; slice <= 200; ++slice) {
+        const wh_pose_t to = over_slot(1, 0, 0.1 * slice);
+        const size_t pushed = go(&to, WH_VALVE_OPEN);
+        told += pushed;
+        if (pushed > 0) {
+            const wh_event_t *said = &scene.events[scene.list.count - 1];
+            assert_int_equal(said->kind, WH_EVENT_PUSHED_THROUGH);
+            assert_near(said->limit, 1, 0);
+            assert_true(said->value <= said->limit && said->value > 0.8);
+        }
+    }
+    assert_int_equal(told, (size_t)(20 / stations[0].pitch));
+    const wh_pose_t under = over_slot(1, 0, -3), aside = over_slot(1, 51, -3), over = over_slot(1, 51, 1);
+    hold(&under);
+    assert_int_equal(go(&own, WH_VALVE_OPEN), 1);
+    hold(&aside);
+    assert_int_equal(go(&over, WH_VALVE_OPEN), 0);
+    stations[0].chuck = 0;
+    hold(&under);
+    assert_int_equal(go(&own, WH_VALVE_OPEN), 0);
+    stations[0].chuck = WH_NONE;
+}
+
+/* A slice with a long way aside is judged where the wafer passes the plane, not where it ends. */
+static void a_slanting_way_is_judged_at_the_plane(void **state) {
+    (void)state;
+    const wh_pose_t above = over_slot(1, 0, 1), far = over_slot(1, 80, -9), near = over_slot(1, 0, -1),
+                    aside = over_slot(1, 120, 0);
+    hold(&above); /* over the slot at the plane, beside it at the end */
+    assert_int_equal(go(&far, WH_VALVE_OPEN), 1);
+    hold(&aside); /* beside it at the plane, over it at the end */
+    assert_int_equal(go(&near, WH_VALVE_OPEN), 0);
+}
+
+static void numbers_that_are_none_pass_nothing(void **state) {
+    (void)state;
+    const wh_pose_t above = over_slot(1, 0, 0.1);
+    wh_passing_t passing = {7, 8, 9, false};
+    for (int axis = 0; axis < 3; ++axis) {
+        wh_pose_t bad = over_slot(1, 0, -3);
+        (&bad.r.x)[axis] = (wh_real_t)NAN;
+        assert_false(wh_cell_passes(&cell, 0, &above, &bad, &passing));
+        assert_false(wh_cell_passes(&cell, 0, &bad, &above, &passing));
+    }
+    assert_int_equal(passing.station, 8);
+}
+
+/* A wafer face down lies on its front: at height 0 its frame is a thickness above. */
+static void a_wafer_face_down(void **state) {
+    (void)state;
+    wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false};
+    cell.thickness = WH_REAL(0.775);
+    wh_pose_t above = over_slot(1, 0, 0.775), next = over_slot(1, 0, 0.775 - 0.51);
+    above.R = next.R = wh_mat3_from_rpy_deg(180, 0, 0);
+    assert_true(wh_cell_passes(&cell, 0, &above, &next, &passing));
+    assert_int_equal(passing.slot, 1);
+    next = over_slot(1, 0, 0.775 - 0.49);
+    next.R = above.R;
+    assert_false(wh_cell_passes(&cell, 0, &above, &next, &passing));
+    cell.thickness = 0;
+}
+
+/* A number that float has, too, and no plane. */
+static double height_below(double most) {
+    return floor(wh_test_uniform(-1, 1) * most * 64) / 64;
+}
+
+/* A way in random steps passes as many planes as a list of them says, wherever its slices end. */
+static void random_ways_pass_what_a_list_of_planes_says(void **state) {
+    (void)state;
+    for (int round = 0; round < 2000; ++round) {
+        double height = 30.0078125 + height_below(50);
+        wh_pose_t at = over_slot(1, 0, height);
+        wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false};
+        for (int slice = 0; slice < 20; ++slice) {
+            height += height_below(4) - 0.25;
+            const wh_pose_t next = over_slot(1, 0, height);
+            const bool goes_up = next.r.z > at.r.z;
+            int32_t first = 0;
+            for (int32_t slot = 1; slot <= stations[0].slots; ++slot) {
+                const wh_real_t plane = wh_station_slot(&stations[0], slot).r.z - cell.tolerance.projz;
+                first = at.r.z >= plane && next.r.z < plane ? slot : first;
+                const wh_real_t rising = plane - cell.tolerance.projz;
+                first = at.r.z < rising && next.r.z >= rising && first == 0 ? slot : first;
+            }
+            assert_int_equal(wh_cell_passes(&cell, 0, &at, &next, &passing), first > 0);
+            assert_true(first == 0 || (passing.slot == first && passing.goes_up == goes_up));
+            at = next;
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(a_wafer_is_pushed_through_once, set_up),
+        cmocka_unit_test_setup(a_release_and_a_jump_count, set_up),
+        cmocka_unit_test_setup(what_passes_nothing, set_up),
+        cmocka_unit_test_setup(a_wafer_is_pushed_up_through_a_slot, set_up),
+        cmocka_unit_test_setup(a_slanting_way_is_judged_at_the_plane, set_up),
+        cmocka_unit_test_setup(numbers_that_are_none_pass_nothing, set_up),
+        cmocka_unit_test_setup(a_wafer_face_down, set_up),
+        cmocka_unit_test_setup(random_ways_pass_what_a_list_of_planes_says, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
