@@ -222,8 +222,9 @@ static void push_kinds(lua_State *L, const checked_t *checked) {
     }
 }
 
-/* { kind = , wafer = , gripper = , last = , list = }: the existing names of each, as keys, the end of the run,
- * and what makes a list of a table. It is called `events` until the function of that name has taken it. */
+/* { kind = , wafer = , gripper = , last = , list = }: the existing names of each, as keys, the end of the
+ * run, and what makes a list of a table. It is called `events` until the function of that name has taken
+ * it. */
 static void push_names(lua_State *L, const checked_t *checked) {
     const wh_layout_t *layout = checked->run.cell.layout;
     lua_createtable(L, 0, 3);

@@ -31,8 +31,9 @@ typedef struct {
 /* --layout, --run and --set, into a wh_log_arguments_t; the log is the subcommand's operand. */
 extern const wh_option_t wh_log_options[];
 
-/* Reads the run (wh_log_run_read), with a listener or null; of several runs standard error says which one it
- * is. False, and standard error says why, if there is nothing to show. To be closed in any case, and freed. */
+/* Reads the run (wh_log_run_read), with a listener or null; of several runs standard error says which one
+ * it is. False, and standard error says why, if there is nothing to show. To be closed in any case, and
+ * freed. */
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
                            wh_log_run_t *run);
 

@@ -129,15 +129,15 @@ bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, cons
 void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_settle);
 
-/* True if a wafer that `gripper` holds goes through a slot between the two poses, however far they are apart:
- * down, for a support would have taken it at the plane, or up, for the ledges are in its way. The centre of
- * the face that looks at the slot then passes the height tolerance.projz below its plane, or on the way up
- * twice that. At that instant of a straight way it is over the slot as wh_cell_locate has it: by projxy, and by
- * planar with the tilt of `next`. A wafer that goes up and stops with its other face within the ledges is not
- * told. The first slot on the way counts. The chuck that holds the wafer is no support. `passing`, but for
- * `wafer`, then says where; else it is unchanged. Arguments are not checked; numbers that are not finite give
- * false. Cost: 6 products for each station, with a thickness 9 more; wh_station_measure for each plane that is
- * passed, up to the first. */
+/* True if a wafer that `gripper` holds goes through a slot between the two poses, however far they are
+ * apart: down, for a support would have taken it at the plane, or up, for the ledges are in its way. The
+ * centre of the face that looks at the slot then passes the height tolerance.projz below its plane, or on
+ * the way up twice that. At that instant of a straight way it is over the slot as wh_cell_locate has it:
+ * by projxy, and by planar with the tilt of `next`. A wafer that goes up and stops with its other face
+ * within the ledges is not told. The first slot on the way counts. The chuck that holds the wafer is no
+ * support. `passing`, but for `wafer`, then says where; else it is unchanged. Arguments are not checked;
+ * numbers that are not finite give false. Cost: 6 products for each station, with a thickness 9 more;
+ * wh_station_measure for each plane that is passed, up to the first. */
 bool wh_cell_passes(const wh_cell_t *cell, int32_t gripper, const wh_pose_t *base_from_wafer,
                     const wh_pose_t *next, wh_passing_t *passing) WH_SYMBOL(wh_cell_passes);
 

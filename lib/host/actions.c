@@ -8,7 +8,7 @@
 #include "status.h"
 #include "telling.h"
 
-/* ---------------------------------------------------------------------------------------------------- clock */
+/* -------------------------------------------------------------------------------------------------- clock */
 
 void wh_host_begin_clock(wh_host_t *host, wh_controller_t *controller) {
     const wh_session_t *session = host->session;
@@ -20,7 +20,7 @@ void wh_host_begin_clock(wh_host_t *host, wh_controller_t *controller) {
     host->clock.slice = wh_session_slice(session);
 }
 
-/* ------------------------------------------------------------------------------------------------- stopping */
+/* ----------------------------------------------------------------------------------------------- stopping */
 
 void wh_controller_end_job(wh_controller_t *controller, wh_status_t status, const char *why) {
     wh_mcs_end_job(&controller->host->session->mcs, wh_controller_job(controller), status, why);
@@ -72,7 +72,7 @@ void wh_host_heed_stop(wh_host_t *host, wh_status_t status) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- ending */
+/* ------------------------------------------------------------------------------------------------- ending */
 
 void wh_controller_end(wh_controller_t *controller, wh_status_t number, const char *text, double seconds) {
     wh_host_t *host = controller->host;

@@ -11,7 +11,7 @@ static void note_line(const wh_controller_t *controller, wh_transcript_kind_t ki
     wh_host_note(controller->host, controller, kind, bytes, size);
 }
 
-/* ---------------------------------------------------------------------------------------- frames on the way */
+/* -------------------------------------------------------------------------------------- frames on the way */
 
 /* Frames leave in the order in which they were made. */
 static void append_frame(wh_sent_t *sent, const uint8_t *bytes, size_t size, int64_t due_us) {
@@ -70,7 +70,7 @@ void wh_sent_drop(wh_sent_t *sent) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- clients */
+/* ------------------------------------------------------------------------------------------------ clients */
 
 void wh_controller_forget_client(wh_controller_t *controller) {
     (void)wh_framer_init(&controller->line.framer, &controller->dialect.framing);
@@ -103,7 +103,7 @@ void wh_controller_note_port(wh_controller_t *controller, unsigned what) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- sending */
+/* ------------------------------------------------------------------------------------------------ sending */
 
 /* Puts bytes onto the line if it has a pace, else sends them. */
 static void send_bytes(wh_controller_t *controller, const uint8_t *bytes, size_t size) {

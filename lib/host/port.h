@@ -102,8 +102,8 @@ bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t sec
  * nothing is left behind. */
 bool wh_port_open_pty(wh_port_t *port, const char *link, char problem[WH_PORT_PROBLEM_BYTES]);
 
-/* The host's side of a transcript, for the controller of this name. Entries are handed out in their order among
- * all its ports, each at its slice and once all answers before it have been compared. */
+/* The host's side of a transcript, for the controller of this name. Entries are handed out in their order
+ * among all its ports, each at its slice and once all answers before it have been compared. */
 void wh_port_open_transcript(wh_port_t *port, wh_transcript_t *transcript, const char *name);
 
 /* Closes the client and the port and removes the link, if it is still this port's. May be called twice; not

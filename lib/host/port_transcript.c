@@ -3,28 +3,16 @@
 
 #include "port_internal.h"
 
-/* The event of its port that an entry of the host's side is. */
+/* By an entry's kind, the event of its port. Entries of the controller's side have none. */
+static const unsigned events[] = {
+    [WH_TRANSCRIPT_SAID] = WH_PORT_FRAME,      [WH_TRANSCRIPT_TIMED_OUT] = WH_PORT_FRAME,
+    [WH_TRANSCRIPT_CAME] = WH_PORT_CAME,       [WH_TRANSCRIPT_WENT] = WH_PORT_WENT,
+    [WH_TRANSCRIPT_ELAPSED] = WH_PORT_ELAPSED, [WH_TRANSCRIPT_STOPPED] = WH_PORT_ENDED,
+    [WH_TRANSCRIPT_HALTED] = WH_PORT_HALTED,
+};
+
 static unsigned event_of(wh_transcript_kind_t kind) {
-    switch (kind) {
-    case WH_TRANSCRIPT_SAID:
-    case WH_TRANSCRIPT_TIMED_OUT:
-        return WH_PORT_FRAME;
-    case WH_TRANSCRIPT_CAME:
-        return WH_PORT_CAME;
-    case WH_TRANSCRIPT_WENT:
-        return WH_PORT_WENT;
-    case WH_TRANSCRIPT_ELAPSED:
-        return WH_PORT_ELAPSED;
-    case WH_TRANSCRIPT_STOPPED:
-        return WH_PORT_ENDED;
-    case WH_TRANSCRIPT_HALTED:
-        return WH_PORT_HALTED;
-    case WH_TRANSCRIPT_HEARD: /* these are the controller's */
-    case WH_TRANSCRIPT_CLOCK:
-    case WH_TRANSCRIPT_ENDED:
-        break;
-    }
-    return 0;
+    return (size_t)kind < sizeof events / sizeof events[0] ? events[kind] : 0;
 }
 
 /* Hands out the next entry of the host's side, if it is this port's. */

@@ -190,21 +190,29 @@ unsigned wh_controller_serve(wh_controller_t *controller) {
     return what;
 }
 
+static int64_t frame_due(const wh_sent_t *sent) {
+    return sent->first ? sent->first->due_us : INT64_MAX;
+}
+
+static int64_t port_due(const wh_port_t *port, int64_t now) {
+    if (port->tells_all) {
+        return now;
+    }
+    return wh_port_asks(port) ? now + WH_PORT_ASK_US : INT64_MAX;
+}
+
 int64_t wh_controller_due(const wh_controller_t *controller) {
-    int64_t due = wh_framer_due(&controller->line.framer);
+    const wh_port_line_t *line = &controller->line;
+    int64_t due = wh_framer_due(&line->framer);
     const int64_t now = wh_host_now(controller->host);
-    const bool is_open = controller->line.is_open;
-    const int64_t others[] = {controller->line.out.first ? controller->line.out.first->due_us : INT64_MAX,
-                              controller->line.in.first ? controller->line.in.first->due_us : INT64_MAX,
-                              wh_framer_due(&controller->line.before_chaos),
+    const bool is_busy = line->port.input.count > 0 || line->waiting.count > 0 || controller->action.is_there;
+    const int64_t others[] = {frame_due(&line->out),
+                              frame_due(&line->in),
+                              wh_framer_due(&line->before_chaos),
                               controller->owed.due_us,
                               idle_due(controller),
-                              controller->line.port.input.count > 0 ? now + 1000 : INT64_MAX,
-                              controller->line.waiting.count > 0 ? now + 1000 : INT64_MAX,
-                              controller->action.is_there ? now + 1000 : INT64_MAX,
-                              is_open && wh_port_asks(&controller->line.port) ? now + WH_PORT_ASK_US
-                                                                              : INT64_MAX,
-                              is_open && controller->line.port.tells_all ? now : INT64_MAX};
+                              is_busy ? now + 1000 : INT64_MAX,
+                              line->is_open ? port_due(&line->port, now) : INT64_MAX};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         due = others[i] < due ? others[i] : due;
     }

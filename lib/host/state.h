@@ -1,4 +1,5 @@
-/* The data of a host and its controllers: what the files of this room share, in the order that README.md says.
+/* The data of a host and its controllers: what the files of this room share, in the order that README.md
+ * says.
  *
  * Memory: about 150 kB for each port, beside its dialect's.
  */

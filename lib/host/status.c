@@ -42,7 +42,7 @@ bool wh_host_is_stopped(const wh_host_t *host) {
     return is_any && is_all;
 }
 
-/* --------------------------------------------------------------------------------------------------- STATUS */
+/* ------------------------------------------------------------------------------------------------- STATUS */
 
 static const char *spell_line(const char *line, char spelt[2 * WH_DIALECT_LINE_BYTES]) {
     spelt[0] = '\0';

@@ -12,7 +12,7 @@
 #include "line.h"
 #include "status.h"
 
-/* --------------------------------------------------------------------------------------------------- bodies */
+/* ------------------------------------------------------------------------------------------------- bodies */
 
 static void say_mistake(wh_controller_t *controller, const char *message) {
     ++controller->counters.mistakes;
@@ -120,7 +120,7 @@ void wh_controller_tell_again(wh_controller_t *controller, const wh_reply_t *rep
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- replies */
+/* ------------------------------------------------------------------------------------------------ replies */
 
 /* Tells the host of this error, or of none. The error counts as shown if a frame went out and all frames came
  * through whole. */

@@ -125,7 +125,8 @@ void wh_transcript_close(wh_transcript_t *transcript);
  * entry =: ask for nothing behind it before it was compared. */
 const wh_transcript_entry_t *wh_transcript_next(wh_transcript_t *transcript, int64_t slice);
 
-/* Likewise, if that entry is this port's, all answers before it have been compared, and none was different. */
+/* Likewise, if that entry is this port's, all answers before it have been compared, and none was
+ * different. */
 const wh_transcript_entry_t *wh_transcript_next_at(wh_transcript_t *transcript, int64_t slice,
                                                    const char *port);
 

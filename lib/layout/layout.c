@@ -249,8 +249,8 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
-/* A cell of times alone has no places: what else a layout has is that of a table with neither stations nor robots
- * of its own. It is left on top of the stack. */
+/* A cell of times alone has no places: what else a layout has is that of a table with neither stations nor
+ * robots of its own. It is left on top of the stack. */
 static void stand_in(wh_reader_t *reader, wh_layout_t *layout) {
     lua_State *L = reader->L;
     layout->tool = wh_layout_read_tool(reader);

@@ -1,5 +1,5 @@
-/* Given numbers that are valid and look as if they were in another unit: in radians, in metres, or per metre. The rows of
- * layout_fields.c say where they may stand and in which unit. */
+/* Given numbers that are valid and look as if they were in another unit: in radians, in metres, or per
+ * metre. The rows of layout_fields.c say where they may stand and in which unit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,8 +12,8 @@
 
 #define CLASS "waferhand."
 
-/* An angle this near to a multiple of 30 or 45 degrees in radians was probably meant in radians. Numbers of a quarter
- * turn and more are often given with two digits. */
+/* An angle this near to a multiple of 30 or 45 degrees in radians was probably meant in radians. Numbers
+ * of a quarter turn and more are often given with two digits. */
 #define NEAR_RAD 1e-3
 #define NEAR_ROUNDED 2e-3
 
@@ -24,7 +24,8 @@
 /* All sizes of a body in metres are below this, mm. */
 #define SMALL_BODY 2
 
-/* No wafer robot is so many times slower than usual. Radians are a 57th of the degrees, metres a thousandth of the mm. */
+/* No wafer robot is so many times slower than usual. Radians are a 57th of the degrees, metres a
+ * thousandth of the mm. */
 #define SLOW_TURNING 50
 #define SLOW_STRAIGHT 100
 

@@ -38,9 +38,9 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
 
-/* Stations that are given by `axes`. At a station: true if slot 1's place is, which waits for the grippers, and
- * nothing else says it. At a station or at a robot's part of it: refuses what does not go with `axes`. Then,
- * behind the grippers: the places; and the grippers at stations, where these now stand. */
+/* Stations that are given by `axes`. At a station: true if slot 1's place is, which waits for the
+ * grippers, and nothing else says it. At a station or at a robot's part of it: refuses what does not go
+ * with `axes`. Then, behind the grippers: the places; and the grippers at stations, where these now stand. */
 bool wh_layout_is_taught(wh_reader_t *reader, const wh_layout_t *layout);
 void wh_layout_check_taught(wh_reader_t *reader);
 void wh_layout_read_taught(wh_reader_t *reader, wh_layout_t *layout);

@@ -102,6 +102,22 @@ static void read_taught(wh_reader_t *reader, const wh_station_t *place, wh_layou
     }
 }
 
+/* Refuses names in `by` that no robot has, and a table without any. */
+static void check_by(wh_reader_t *reader, const wh_layout_t *layout) {
+    size_t count = 0;
+    const wh_layout_robot_t *said =
+        wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof *said, "robots", &count);
+    for (size_t i = 0; i < count; ++i) {
+        if (wh_layout_find_robot(layout, said[i].name) == WH_NONE) {
+            lua_pushstring(reader->L, said[i].name);
+            wh_reader_fail(reader, NULL, "robots of this layout by name");
+        }
+    }
+    if (count == 0) {
+        wh_reader_fail(reader, NULL, "at least one robot by name");
+    }
+}
+
 /* `by`: without it any robot may come. */
 static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     wh_layout_station_t *station = &layout->stations[s];
@@ -109,17 +125,8 @@ static void read_by(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
     wh_layout_refuse_field(reader, "rail", "nothing: with several robots `by` says it of each");
     wh_layout_refuse_field(reader, "elbow", "nothing: with several robots `by` says it of each");
     const bool is_said = wh_reader_enter(reader, "by");
-    size_t count = 0;
-    const wh_layout_robot_t *said =
-        is_said ? wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof *said, "robots", &count) : NULL;
-    for (size_t i = 0; i < count; ++i) {
-        if (wh_layout_find_robot(layout, said[i].name) == WH_NONE) {
-            lua_pushstring(reader->L, said[i].name);
-            wh_reader_fail(reader, NULL, "robots of this layout by name");
-        }
-    }
-    if (is_said && count == 0) {
-        wh_reader_fail(reader, NULL, "at least one robot by name");
+    if (is_said) {
+        check_by(reader, layout);
     }
     for (size_t r = 0; r < layout->robot_count; ++r) {
         const wh_layout_robot_t *robot = &layout->robots[r];

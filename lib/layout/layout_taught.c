@@ -62,18 +62,9 @@ typedef struct {
     wh_elbow_t elbow;
 } taught_t;
 
-/* Reads `axes` of the table at which the reader is. The other axes of the robot stand at home, its blade lies
- * face up. */
-static taught_t read_axes(wh_reader_t *reader, const wh_layout_t *layout, int32_t gripper, wh_elbow_t usual) {
-    const wh_machine_t *machine = &layout->machine;
-    size_t first = 0;
-    const wh_carrier_t *arm = machine->carrier ? wh_machine_arm(machine, (size_t)gripper, &first) : NULL;
-    wh_real_t axes[WH_AXES];
-    wh_pose_t poses[WH_GRIPPERS];
-    taught_t taught = {.rail = 0, .elbow = usual};
-    wh_machine_home(machine, axes);
-    (void)wh_reader_open(reader, "axes", wh_layout_axes_fields);
-    refuse_others(reader, arm);
+/* The robot's own axes, as far as `axes` gives them; others keep their value, a blade lies face up. */
+static void read_own(wh_reader_t *reader, const wh_machine_t *machine, const wh_carrier_t *arm, size_t first,
+                     wh_real_t axes[]) {
     for (size_t own = 0; own < axes_of(arm); ++own) {
         const char *name = field_of(arm, own);
         if (name) {
@@ -81,16 +72,41 @@ static taught_t read_axes(wh_reader_t *reader, const wh_layout_t *layout, int32_
         } else if (arm && arm->axes[own] == WH_CHAIN_FLIP) {
             axes[first + own] = 0;
         }
-        if (arm && arm->axes[own] == WH_CHAIN_RAIL) {
-            taught.rail = axes[first + own];
+    }
+}
+
+/* Where the rail stands, or 0. */
+static double rail_of(const wh_carrier_t *arm, const wh_real_t own_axes[]) {
+    for (size_t own = 0; arm && own < axes_of(arm); ++own) {
+        if (arm->axes[own] == WH_CHAIN_RAIL) {
+            return own_axes[own];
         }
     }
-    const wh_real_t bent = axes[first + WH_AXIS_R];
-    if (arm && arm->chain.kind == WH_CHAIN_SCARA && wh_real_abs(bent) > 0) {
-        taught.elbow = bent < 0 ? WH_ELBOW_LEFT : WH_ELBOW_RIGHT;
+    return 0;
+}
+
+/* The elbow to which the forearm is bent; a stretched one is the usual. */
+static wh_elbow_t elbow_of(const wh_carrier_t *arm, wh_real_t bent, wh_elbow_t usual) {
+    if (!arm || arm->chain.kind != WH_CHAIN_SCARA || !(wh_real_abs(bent) > 0)) {
+        return usual;
     }
+    return bent < 0 ? WH_ELBOW_LEFT : WH_ELBOW_RIGHT;
+}
+
+/* Reads `axes` of the table at which the reader is. The other axes of the robot stand at home. */
+static taught_t read_axes(wh_reader_t *reader, const wh_layout_t *layout, int32_t gripper, wh_elbow_t usual) {
+    const wh_machine_t *machine = &layout->machine;
+    size_t first = 0;
+    const wh_carrier_t *arm = machine->carrier ? wh_machine_arm(machine, (size_t)gripper, &first) : NULL;
+    wh_real_t axes[WH_AXES];
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_machine_home(machine, axes);
+    (void)wh_reader_open(reader, "axes", wh_layout_axes_fields);
+    refuse_others(reader, arm);
+    read_own(reader, machine, arm, first, axes);
     wh_machine_grippers(machine, axes, poses);
-    taught.base_from_slot = poses[gripper];
+    const taught_t taught = {poses[gripper], rail_of(arm, axes + first),
+                             elbow_of(arm, axes[first + WH_AXIS_R], usual)};
     if (taught.base_from_slot.R.m[2][2] < WH_REAL(0.7)) {
         wh_reader_fail(reader, NULL, "axes at which the gripper is tilted by less than 45 degrees");
     }

@@ -21,9 +21,9 @@ typedef struct {
 /* Room for the reason of wh_links_reach. */
 #define WH_LINKS_BYTES 80
 
-/* False if two links of a polar arm do not reach its wrist at the axes `to`, which are not all as in `from`:
- * of the first such arm `reason` says it. Arms whose robot keeps its axes are not asked. A SCARA is refused by
- * its inverse. Cost: that of wh_arm_place_carrier for each arm. */
+/* False if two links of a polar arm do not reach its wrist at the axes `to`, which are not all as in
+ * `from`: of the first such arm `reason` says it. Arms whose robot keeps its axes are not asked. A SCARA
+ * is refused by its inverse. Cost: that of wh_arm_place_carrier for each arm. */
 bool wh_links_reach(const wh_layout_t *layout, const wh_real_t from[], const wh_real_t to[],
                     char reason[WH_LINKS_BYTES]);
 

@@ -294,17 +294,41 @@ static void put_forearm(char text[WH_TRAVEL_BYTES], const alone_t *alone, wh_sta
     put_end_of_bend(text, share, wh_vec3_norm(travel), wh_deg_from_rad(forearm));
 }
 
+/* Without a gripper, the first robot's only arm. */
+static wh_mount_t mount_of(const wh_machine_t *machine, int32_t gripper) {
+    static const wh_mount_t usual = {0};
+    return gripper == WH_NONE ? usual : machine->mounts[gripper];
+}
+
+/* Tells each axis of the robot whose travel ends on the line. Returns the share of the line up to the first of
+ * these ends, or 2. */
+static wh_real_t put_axes(char text[WH_TRAVEL_BYTES], const wh_machine_t *machine, int32_t gripper,
+                          const wh_real_t from_q[], const wh_vec3_t *travel, const planned_t *line) {
+    const wh_mount_t mount = mount_of(machine, gripper);
+    wh_real_t first = 2;
+    alone_t alone;
+    set_travel_of(&alone, machine, mount.robot, NO_AXIS);
+    for (int32_t axis = 0; axis < (int32_t)alone.count; ++axis) {
+        set_travel_of(&alone, machine, mount.robot, axis);
+        const wh_real_t share = find_end(&alone.machine, mount.arm == 1, from_q, travel);
+        if (share <= 1) {
+            put_axis(text, machine, alone.first + (size_t)axis, farthest(&alone.machine, line, axis));
+            first = share < first ? share : first;
+        }
+    }
+    return first;
+}
+
 void wh_travel_say_line(const wh_layout_t *layout, int32_t gripper, const wh_real_t from_q[],
                         const wh_vec3_t *travel, char text[WH_TRAVEL_BYTES]) {
     const wh_machine_t *machine = &layout->machine;
-    const bool is_second = gripper != WH_NONE && machine->mounts[gripper].arm == 1;
+    const wh_mount_t mount = mount_of(machine, gripper);
+    const bool is_second = mount.arm == 1;
     const double length = wh_vec3_norm(travel);
-    wh_real_t first = 2;
     planned_t line;
     alone_t alone;
     text[0] = '\0';
-    const size_t robot = gripper == WH_NONE ? 0 : machine->mounts[gripper].robot;
-    set_travel_of(&alone, machine, robot, NO_AXIS);
+    set_travel_of(&alone, machine, mount.robot, NO_AXIS);
     from_q += alone.first;
     const wh_status_t status = plan(&alone.machine, is_second, from_q, travel, 1, &line);
     if (is_of_travel(status) && is_scara(&alone.machine)) {
@@ -316,16 +340,11 @@ void wh_travel_say_line(const wh_layout_t *layout, int32_t gripper, const wh_rea
             length);
         return;
     }
-    for (int32_t axis = 0; status == WH_OK && axis < (int32_t)alone.count; ++axis) {
-        set_travel_of(&alone, machine, robot, axis);
-        const wh_real_t share = find_end(&alone.machine, is_second, from_q, travel);
-        if (share <= 1) {
-            put_axis(text, machine, alone.first + (size_t)axis, farthest(&alone.machine, &line, axis));
-            first = share < first ? share : first;
-        }
+    if (status != WH_OK) {
+        return;
     }
+    const double first = (double)put_axes(text, machine, gripper, from_q, travel, &line);
     if (text[0]) {
-        put(text, "; the line of %.7g mm comes to an end of travel after %.3f mm", length,
-            (double)first * length);
+        put(text, "; the line of %.7g mm comes to an end of travel after %.3f mm", length, first * length);
     }
 }

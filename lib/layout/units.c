@@ -1,5 +1,5 @@
-/* Tells of valid numbers that look as if they were given in another unit: those that layout_guesses.c found, and
- * a cell in metres. */
+/* Tells of valid numbers that look as if they were given in another unit: those that layout_guesses.c
+ * found, and a cell in metres. */
 #include "feasibility_internal.h"
 
 /* A cell whose stations are all nearer to base than this was probably meant in metres, mm. */

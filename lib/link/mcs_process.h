@@ -1,16 +1,16 @@
 /* Motion control as a process: a client for the slices, which also tells everybody about its commands.
  *
- * It serves as the partners of a run (mcs/partners.h): connect opens the client once the layout is known, tell
- * publishes the commands on WAFERHAND_MCS. Requests from others wait until a session has time for them. Three
- * are answered at once, also while a command runs:
+ * It serves as the partners of a run (mcs/partners.h): connect opens the client once the layout is known,
+ * tell publishes the commands on WAFERHAND_MCS. Requests from others wait until a session has time for
+ * them. Three are answered at once, also while a command runs:
  *
  *   STOP     the command that runs, and the requests that wait, end with WH_STATUS_STOPPED; with the name
  *            of a mechanism behind it: the command that has it, and no other
  *   STATUS   the text of wh_mcs_describe
  *   VERSION  the program's
  *
- * A script refuses other requests: WH_STATUS_BUSY. In a script STOP ends the command that runs; between two
- * commands it ends the next one.
+ * A script refuses other requests: WH_STATUS_BUSY. In a script STOP ends the command that runs; between
+ * two commands it ends the next one.
  */
 #ifndef WH_LINK_MCS_PROCESS_H
 #define WH_LINK_MCS_PROCESS_H

@@ -39,8 +39,9 @@ typedef struct {
 wh_log_head_t wh_log_head(wh_log_t *log);
 
 /* Opens the named files, and after each one the later parts of its recording that exist. False, and the
- * file and the reason in `message`, if a named file cannot be read, is named twice, is a copy of another one's
- * part of a recording, or there are too many. Close it in either case. Cost: two events of each file are read. */
+ * file and the reason in `message`, if a named file cannot be read, is named twice, is a copy of another
+ * one's part of a recording, or there are too many. Close it in either case. Cost: two events of each file
+ * are read. */
 bool wh_log_files_open(wh_log_files_t *files, const wh_log_names_t *names,
                        char message[WH_LOG_FILES_MESSAGE]);
 

@@ -142,8 +142,8 @@ typedef struct {
 typedef void wh_replay_listener_t(void *user, const waferhand_command *command,
                                   const waferhand_state *message);
 
-/* Gets a slice within a block in place of the other listener: the server's own state, whose hash was compared,
- * valid until the call returns. */
+/* Gets a slice within a block in place of the other listener: the server's own state, whose hash was
+ * compared, valid until the call returns. */
 typedef void wh_replay_stepped_t(void *user, const waferhand_command *command,
                                  const wh_protocol_server_t *server);
 

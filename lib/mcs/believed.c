@@ -151,11 +151,12 @@ static int find_shift(lua_State *L) {
     return 1;
 }
 
-/* native.slot(station, slot, dx, dy, dz, turn, robot, shift, undrawn): { x, y, z, dir_x, dir_y, heading } of
- * the gripper there, displaced in the slot's axes (mm) and turned about its z (degrees); of a station that a
- * host has moved by `shift`, see native.shift. The way in, projected to horizontal, is beside the taught one
- * and goes the same way: it is not turned. In a trial a robot was taught it elsewhere, unless `undrawn`, or the
- * layout's reach is judged: a draw does not make a layout unfit, but fails the command that goes there. */
+/* native.slot(station, slot, dx, dy, dz, turn, robot, shift, undrawn): { x, y, z, dir_x, dir_y, heading }
+ * of the gripper there, displaced in the slot's axes (mm) and turned about its z (degrees); of a station
+ * that a host has moved by `shift`, see native.shift. The way in, projected to horizontal, is beside the
+ * taught one and goes the same way: it is not turned. In a trial a robot was taught it elsewhere, unless
+ * `undrawn`, or the layout's reach is judged: a draw does not make a layout unfit, but fails the command
+ * that goes there. */
 static int find_believed_slot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);

@@ -174,8 +174,8 @@ static int expect_condition(lua_State *L) {
     return 0;
 }
 
-/* native.imply(ok, text): what a command implies. If it is met, only studies count it, and the script does not
- * pay for the text: its command paid for a longer one. */
+/* native.imply(ok, text): what a command implies. If it is met, only studies count it, and the script does
+ * not pay for the text: its command paid for a longer one. */
 static int add_implied(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;

@@ -28,7 +28,8 @@ typedef enum {
     WH_DECISION_HELD,   /* the wafer that gripper `index` holds */
     WH_DECISION_HOLDER, /* the gripper that holds wafer `index` */
     WH_DECISION_CLAIM,  /* claim number `index`: the result of wh_decisions_judge */
-    /* Slot number `index`: 1 if the wafer that was put there, or taken from there, wh_decisions_is_elsewhere. */
+    /* Slot number `index`: 1 if the wafer that was put there, or taken from there,
+     * wh_decisions_is_elsewhere. */
     WH_DECISION_PUT,
     WH_DECISION_GET
 } wh_decisions_kind_t;
@@ -114,8 +115,8 @@ void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *c
 void wh_decisions_asked(wh_decisions_t *decisions, wh_decisions_kind_t kind,
                         const wh_decisions_asked_t *asked, bool is_elsewhere);
 
-/* A robot asked where this station is; the place of this wafer was read. Whoever reads the decisions then knows
- * what the run had to do with. */
+/* A robot asked where this station is; the place of this wafer was read. Whoever reads the decisions then
+ * knows what the run had to do with. */
 void wh_decisions_visit(wh_decisions_t *decisions, int32_t station, int32_t robot);
 void wh_decisions_look(wh_decisions_t *decisions, int32_t wafer);
 

@@ -65,8 +65,8 @@ static bool is_near(const wh_cell_t *cell, const wh_station_t *station, const wh
            beyond <= 2 * cell->tolerance.projz + reach + SURE;
 }
 
-/* True if one of the station's planes, less projz or twice that, lies between the lowest and the highest place
- * of a wafer that does not turn. */
+/* True if one of the station's planes, less projz or twice that, lies between the lowest and the highest
+ * place of a wafer that does not turn. */
 static bool is_between(const wh_cell_t *cell, const wh_station_t *station, const wh_decisions_way_t *way,
                        const wh_vec3_t *gripper_from_wafer, double slack) {
     const wh_vec3_t up = wh_mat3_column(&station->base_from_station.R, 2);

@@ -339,7 +339,7 @@ static void take_lots(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const lo
     }
     for (size_t i = 0; i < count; ++i) {
         plan->lots[i].first_wafer = plan->wafer_count;
-        plan->lots[i].wafer_count = (size_t)(lots[i].last - lots[i].first + 1);
+        plan->lots[i].wafer_count = (size_t)lots[i].last - (size_t)lots[i].first + 1;
         add_wafers(tool, plan, &lots[i], i);
     }
 }

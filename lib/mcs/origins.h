@@ -1,7 +1,7 @@
 /* Where the wafers lay that grippers hold: for a GET that takes the wafer of another slot.
  *
- * It follows the cell by the states, slice by slice: before a slice nobody knows which wafer is taken in it, and
- * after it the wafer has moved with its gripper. It allocates nothing.
+ * It follows the cell by the states, slice by slice: before a slice nobody knows which wafer is taken in
+ * it, and after it the wafer has moved with its gripper. It allocates nothing.
  */
 #ifndef WH_MCS_ORIGINS_H
 #define WH_MCS_ORIGINS_H

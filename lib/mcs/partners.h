@@ -1,4 +1,5 @@
-/* The other partners of a run, which motion control calls: a link to a simulator elsewhere, and who hears of it. */
+/* The other partners of a run, which motion control calls: a link to a simulator elsewhere, and who hears
+ * of it. */
 #ifndef WH_MCS_PARTNERS_H
 #define WH_MCS_PARTNERS_H
 

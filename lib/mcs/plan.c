@@ -37,8 +37,8 @@ static bool is_of_another_blade(lua_State *L, const wh_mcs_t *mcs, int32_t gripp
     return is_another;
 }
 
-/* Within a command: refuses axes at which a robot's links would not reach. All stations are looked at before a
- * run. */
+/* Within a command: refuses axes at which a robot's links would not reach. All stations are looked at
+ * before a run. */
 static void check_links(lua_State *L, wh_mcs_t *mcs, int32_t gripper, const wh_real_t from[],
                         const wh_real_t to[]) {
     char reason[WH_LINKS_BYTES];

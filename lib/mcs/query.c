@@ -223,8 +223,8 @@ static int judge_put(lua_State *L) {
     return 1 + push_place(L, mcs, place);
 }
 
-/* native.was_elsewhere(gripper, station, slot): after a GET there, true if the wafer that the gripper holds lay
- * in another slot; then, for messages, the wafer's name, the name of the station and the slot. */
+/* native.was_elsewhere(gripper, station, slot): after a GET there, true if the wafer that the gripper
+ * holds lay in another slot; then, for messages, the wafer's name, the name of the station and the slot. */
 static int judge_get(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_decisions_asked_t get = {.wafer = WH_NONE, .gripper = wh_mcs_index(L, 1, mcs->state.gripper_count)};

@@ -2,20 +2,21 @@
  *
  * The tables come in this order; empty ones are left out: the script, its tolerance, and the errors of the
  * cell; the commands, each with the wafers that it took and the values (2)-(5) of each pick beside their
- * limits; the messages of failed commands; each hand-over as the chuck saw it; misses and complaints in plain
- * words; where the wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour;
- * and the verdict.
+ * limits; the messages of failed commands; each hand-over as the chuck saw it; misses and complaints in
+ * plain words; where the wafers are, and which of them a gripper carries tilted; the expectations; wafers
+ * per hour; and the verdict.
  *
  * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have enough decimals that rounding
  * never moves them onto a limit or across it; offsets show 1e-9 mm. Equal records give equal bytes, except
  * for the wall time in the last lines. Nothing is cut off at any width.
  *
- * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if a
- * log does not show it, and if no command came), nothing_moved (true, only when no command came), failure
- * (only when the run ended in one), errors (only when the cell was given some: [NAME.FIELD=VALUE]), log (only
- * when the run was read from one: { verdict, reason (null if it is the same), id (16 hex digits; null: it is
- * no recording of ours), part, is_part (true, only when other parts were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s,
- * wall_s, hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
+ * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if
+ * a log does not show it, and if no command came), nothing_moved (true, only when no command came),
+ * failure (only when the run ended in one), errors (only when the cell was given some:
+ * [NAME.FIELD=VALUE]), log (only when the run was read from one: { verdict, reason (null if it is the
+ * same), id (16 hex digits; null: it is no recording of ours), part, is_part (true, only when other parts
+ * were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s, wall_s,
+ * hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
  *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
  *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
  *                 a row), cycle (which of the marked ones it is, from 1; null: none is), first_command (its

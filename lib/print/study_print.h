@@ -20,8 +20,8 @@
  *                 elsewhere (trials that leave it anywhere else; the figures are of the others), count, and
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
- *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with failing most strongly first: kind
- *                 (wafer, station, gripper, vacuum, rim, beam), of (a name; null: of all), what, unit, width,
+ *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with
+ *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam), of (a name; null: of all), what, unit, width,
  *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }.
  *                 Each is { r, low, high }, a correlation with its interval (study/relations.h), or null: not
  *                 determined
@@ -33,8 +33,8 @@
  *                 beam { name, dx, dy, late_s }, of each valve { gripper, slices }, which act so late; only
  *                 of what is drawn.
  *                 Failed trials come first, then the farther off.
- * Equal studies give equal bytes, whatever threads, ranks and interruptions they had; a number read back is
- * the same double.
+ * Equal studies give equal bytes, whatever threads, ranks and interruptions they had; a number read back
+ * is the same double.
  */
 #ifndef WH_PRINT_STUDY_PRINT_H
 #define WH_PRINT_STUDY_PRINT_H
@@ -61,11 +61,12 @@ int wh_study_print_json(const wh_study_result_t *result, FILE *out);
 /* The object that wh_study_print_json prints. */
 json_t *wh_study_to_json(const wh_study_result_t *result);
 
-/* Each trial as a line of CSV, by RFC 4180 but with lines that end with a line feed. The tally has the lines
- * of all trials. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations were
- * missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off mm; of
- * each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the trial drew,
- * of each error whose width is not 0, told as a cause or not. Numbers read back as the same double. 0, or -1 if writing failed. */
+/* Each trial as a line of CSV, by RFC 4180 but with lines that end with a line feed. The tally has the
+ * lines of all trials. Columns: trial; ok, whole and ended, 1 or 0 as of the JSON; how many expectations
+ * were missed, commands ended with an error, events of the cell were complaints, wafers are elsewhere; off
+ * mm; of each wafer dX, dY, dz (mm) and tilt (deg) in its slot, empty if it is elsewhere; and what the
+ * trial drew, of each error whose width is not 0, told as a cause or not. Numbers read back as the same
+ * double. 0, or -1 if writing failed. */
 int wh_study_print_csv(const wh_study_result_t *result, FILE *out);
 
 /* An expectation's text without what was found. Writes at most `size` bytes. */

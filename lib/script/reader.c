@@ -324,15 +324,19 @@ static const wh_reader_field_t *find_row(const wh_reader_t *reader, const char *
 /* In a cell nothing is longer in metres. */
 #define MOST_METRES 2
 
-/* Appends a question to the text of what was expected, if the number would be within its limits in another unit. */
+/* Appends a question to the text of what was expected, if the number would be within its limits in another
+ * unit. */
 static void ask_unit(const wh_reader_t *reader, const char *field, double value, double min, double max,
                      char *expected, size_t size) {
     const wh_reader_field_t *row = find_row(reader, field);
-    const bool is_angle = row && strstr(row->text, "degrees") && !strstr(row->text, "degrees or mm");
-    const bool is_length = row && strncmp(row->text, "mm", 2) == 0 && value < MOST_METRES;
+    if (!row) {
+        return;
+    }
+    const bool is_angle = strstr(row->text, "degrees") && !strstr(row->text, "degrees or mm");
+    const bool is_length = strncmp(row->text, "mm", 2) == 0 && value < MOST_METRES;
     const double meant = value * (is_angle ? 180 / (double)WH_PI : 1000);
     const size_t used = strlen(expected);
-    if ((is_angle || is_length) && value < min && meant >= min && meant <= max) {
+    if ((is_angle || is_length) && meant >= min && meant <= max) {
         snprintf(expected + used, size - used, "; is that %s? Then it is %.6g",
                  is_angle ? "radians" : "metres", meant);
     }

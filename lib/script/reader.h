@@ -27,8 +27,8 @@ typedef struct {
     const char *file;
     char path[256]; /* of the table being read, such as stations.A; cut if longer */
     size_t lengths[WH_READER_DEPTH];
-    const wh_reader_field_t
-        *known[WH_READER_DEPTH + 1]; /* by depth, the fields' rows; null: they have none */
+    /* By depth, the fields' rows; null: they have none. */
+    const wh_reader_field_t *known[WH_READER_DEPTH + 1];
     size_t depth;
 } wh_reader_t;
 
@@ -76,7 +76,8 @@ int wh_reader_push(const wh_reader_t *reader, const char *field);
 bool wh_reader_has(const wh_reader_t *reader, const char *field);
 
 /* A finite number from min to max, ends included. An absent field gives `fallback`, or an error if that is
- * NaN. Where the row's unit is mm or degrees, and the number would fit as metres or radians, the error asks. */
+ * NaN. Where the row's unit is mm or degrees, and the number would fit as metres or radians, the error
+ * asks. */
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max);
 

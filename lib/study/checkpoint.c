@@ -246,20 +246,31 @@ static bool are_rows_possible(const wh_tally_rows_t *rows, uint64_t trials) {
     return possible;
 }
 
-/* True if so many trials can have these counts. Else the check was made of what is no result. */
-static bool is_possible(const wh_study_t *study, const wh_tally_t *tally) {
-    bool possible = tally->met <= tally->trials && tally->ended <= tally->trials &&
-                    tally->whole <= tally->trials && are_rows_possible(&tally->expectations, tally->trials) &&
-                    are_rows_possible(&tally->errors, tally->trials);
+static bool are_events_possible(const wh_tally_t *tally) {
+    bool possible = true;
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &tally->events[kind];
         possible = possible && event->trials <= tally->trials && event->trials <= event->total;
     }
+    return possible;
+}
+
+static bool are_wafers_possible(const wh_tally_t *tally) {
+    bool possible = true;
     for (size_t w = 0; w < tally->wafer_count; ++w) {
         const wh_tally_wafer_t *wafer = &tally->wafers[w];
         possible = possible && wafer->elsewhere <= tally->trials &&
                    wafer->of[0].count <= tally->trials - wafer->elsewhere;
     }
+    return possible;
+}
+
+/* True if so many trials can have these counts. Else the check was made of what is no result. */
+static bool is_possible(const wh_study_t *study, const wh_tally_t *tally) {
+    bool possible = tally->met <= tally->trials && tally->ended <= tally->trials &&
+                    tally->whole <= tally->trials && are_rows_possible(&tally->expectations, tally->trials) &&
+                    are_rows_possible(&tally->errors, tally->trials) && are_events_possible(tally) &&
+                    are_wafers_possible(tally);
     for (size_t i = 0; i < tally->worst_count; ++i) {
         possible = possible && tally->worst[i].trial < study->trials;
     }

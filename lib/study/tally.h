@@ -90,8 +90,9 @@ void wh_tally_sort(wh_tally_t *tally);
 /* True if the row is to be printed: an implied expectation is told once a trial did not meet it. */
 bool wh_tally_is_told(const wh_tally_row_t *row);
 
-/* The row of the key's line, place and kind, made if there is none; `text` is kept if this trial is the lowest that has it. Errors of
- * other commands in the same line, as a loop makes them, have rows of their own. */
+/* The row of the key's line, place and kind, made if there is none; `text` is kept if this trial is the
+ * lowest that has it. Errors of other commands in the same line, as a loop makes them, have rows of their
+ * own. */
 wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, const wh_tally_row_t *key, const char *text,
                              uint64_t named);
 

@@ -23,8 +23,9 @@ typedef struct {
 typedef struct wh_grid wh_grid_t;
 
 /* A table without rows; its first `keys` columns begin each part. `columns` has their headings, separated
- * by ';'; null: none yet. "{3}" or "{3,6}" after a heading makes it a column of numbers, aligned right, with these least
- * and most decimals. A '+' before it keeps the column next to the one before if a part has room for both.
+ * by ';'; null: none yet. "{3}" or "{3,6}" after a heading makes it a column of numbers, aligned right,
+ * with these least and most decimals. A '+' before it keeps the column next to the one before if a part
+ * has room for both.
  *
  *     wh_grid_t *grid = wh_grid_new(style, 1, "station;x mm{0,6};y mm{0,6};+turned deg{1}");
  */

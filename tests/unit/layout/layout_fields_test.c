@@ -206,32 +206,12 @@ static const char *prepare_axes(const char *path) {
                  "tilt_x = 0, tilt_y = 0 } ";
 }
 
-/* Needs of a field that the base's robot does not meet. */
-static const char *prepare(const char *path) {
-    static const char scara[] = "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { kind "
-                                "= 'SCARA', links = { 450, 450 }, theta = {}, z = {},"
-                                " forearm = {}, yaw = {}, rail = {}, tilt = {}, flip = {} } ";
-    static const char *const others[] = {"robot.forearm",   "robot.rail",      "robot.tilt",
-                                         "robot.flip",      "robot.links",     "robot.elbow",
-                                         "stations.A.rail", "stations.A.elbow"};
+/* A field of a robot with two arms or two wrists, or null if it is none. */
+static const char *prepare_two(const char *path) {
     static const char *const of_two[][2] = {
         {"arm", "cell.robot = { kind = 'TRZ', arms = { {}, {} } }"},
         {"wrist", "cell.robot = { kind = 'SCARA', links = { 450, 450 }, wrists = { {}, {} } }"}};
     static char two[300];
-    const char *const of_file = prepare_urdf(path);
-    if (of_file) {
-        return of_file;
-    }
-    if (strncmp(path, "stations.A.axes", strlen("stations.A.axes")) == 0) {
-        return prepare_axes(path);
-    }
-    if (strcmp(path, "stations.A.via[1].forearm") == 0) {
-        return "cell.stations.A.beams, cell.stations.A.block, cell.stations.A.via[1].r = nil "
-               "cell.robot = { kind = 'SCARA', links = { 450, 450 } } ";
-    }
-    if (strcmp(path, "stations.A.via[1].rail") == 0) {
-        return "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { rail = {} } ";
-    }
     for (size_t i = 0; i < sizeof of_two / sizeof of_two[0]; ++i) {
         char of_robot[40], of_gripper[40];
         (void)snprintf(of_robot, sizeof of_robot, "robot.%ss", of_two[i][0]);
@@ -245,14 +225,55 @@ static const char *prepare(const char *path) {
             return two;
         }
     }
+    return NULL;
+}
+
+static bool begins_with(const char *path, const char *begin) {
+    return strncmp(path, begin, strlen(begin)) == 0;
+}
+
+/* Needs of a field that the base's robot does not meet. */
+static const char *prepare(const char *path) {
+    static const char scara[] = "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { kind "
+                                "= 'SCARA', links = { 450, 450 }, theta = {}, z = {},"
+                                " forearm = {}, yaw = {}, rail = {}, tilt = {}, flip = {} } ";
+    static const char *const others[] = {"robot.forearm",   "robot.rail",      "robot.tilt",
+                                         "robot.flip",      "robot.links",     "robot.elbow",
+                                         "stations.A.rail", "stations.A.elbow"};
+    const char *const of_file = prepare_urdf(path);
+    if (of_file) {
+        return of_file;
+    }
+    if (begins_with(path, "stations.A.axes")) {
+        return prepare_axes(path);
+    }
+    if (strcmp(path, "stations.A.via[1].forearm") == 0) {
+        return "cell.stations.A.beams, cell.stations.A.block, cell.stations.A.via[1].r = nil "
+               "cell.robot = { kind = 'SCARA', links = { 450, 450 } } ";
+    }
+    if (strcmp(path, "stations.A.via[1].rail") == 0) {
+        return "cell.stations.A.beams = nil cell.stations.A.block = nil cell.robot = { rail = {} } ";
+    }
+    const char *const of_two = prepare_two(path);
+    if (of_two) {
+        return of_two;
+    }
     bool is_other = false;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
-        is_other = is_other || strncmp(path, others[i], strlen(others[i])) == 0;
+        is_other = is_other || begins_with(path, others[i]);
     }
     if (is_other) {
         return scara;
     }
     return prepare_body(path);
+}
+
+/* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a SCARA its links, a
+ * URDF its tools, and a station `at` or the axes that its arm has. */
+static bool is_needed_in_turn(const char *path, const char *name) {
+    return begins_with(path, "obstacles") || begins_with(path, "doors") || strcmp(name, "links") == 0 ||
+           begins_with(path, "stations.A.axes.") ||
+           (begins_with(path, "stations.") && strcmp(name, "at") == 0) || begins_with(path, "robot.tool");
 }
 
 static void try_field(const char *in, const wh_reader_field_t *field) {
@@ -264,13 +285,7 @@ static void try_field(const char *in, const wh_reader_field_t *field) {
     (void)snprintf(statement, sizeof statement, "%scell.%s = print", before, path);
     expect_type(field, find_expected(statement, path));
     (void)snprintf(statement, sizeof statement, "%scell.%s = nil", before, path);
-    /* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a
-     * SCARA its links, a URDF its tools, and a station `at` or the axes that its arm has. */
-    const bool is_shape = (strncmp(path, "obstacles", 9) == 0 || strncmp(path, "doors", 5) == 0 ||
-                           strcmp(field->name, "links") == 0 || strncmp(path, "stations.A.axes.", 16) == 0 ||
-                           (strncmp(path, "stations.", 9) == 0 && strcmp(field->name, "at") == 0) ||
-                           strncmp(path, "robot.tool", strlen("robot.tool")) == 0) &&
-                          !field->required;
+    const bool is_shape = !field->required && is_needed_in_turn(path, field->name);
     (void)snprintf(missed, sizeof missed, "cell.lua: %s: nothing ", path);
     const bool is_missed = !is_read(statement) && strncmp(result.message, missed, strlen(missed)) == 0;
     if (!is_shape && is_missed != field->required) {
