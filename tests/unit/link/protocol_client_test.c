@@ -366,6 +366,8 @@ static void a_stop_loses_no_slice(void **state) {
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, stop_and_answer, NULL));
     assert_int_equal(send_slice(1, &answer), WH_OK);
     assert_int_equal(answer.seq, 1);
+    /* On a busy machine the first slice may have been sent twice. */
+    (void)wh_node_drain(&node, 64);
     const uint64_t commands = server.counters.commands;
     assert_int_equal(send_slice(2, &answer), WH_STATUS_STOPPED);
     (void)wh_node_drain(&node, 64);
