@@ -159,7 +159,7 @@ $(COLLISION_SUPPORT): FLAGS = $(COLLISION_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
 # liburdfdom's headers throw.
-$(B)/obj/lib/layout/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
+$(B)/obj/lib/bodies/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
 # Only Eigen's decompositions: under sanitizers they are twenty times the code.
 $(B)/obj/lib/estimate/rows.o: override EXTRA := $(filter-out -fsanitize% -fno-sanitize%,$(EXTRA))
 # The compiler must not replace its pow by the pow that it knows.

@@ -17,6 +17,9 @@ bool wh_layout_has_grips(const wh_layout_t *layout);
 /* True if a gripper has passive pads. */
 bool wh_layout_has_passive(const wh_layout_t *layout);
 
+/* Finds whether wafers may come to lie face down, once robots, stations and wafers are known. */
+void wh_layout_find_faces(wh_layout_t *layout);
+
 /* The number of supports that take wafers over from passive pads: the planes of all slots, chucks included. 0
  * without such pads. */
 size_t wh_layout_count_supports(const wh_layout_t *layout);
@@ -33,6 +36,10 @@ bool wh_layout_has_rims(const wh_layout_t *layout);
 /* A rim as an edge grip meets it: a circle with a notch. Chips, bow and roundings of corners do not count. */
 wh_edge_wafer_t wh_layout_edge_wafer(const wh_rim_t *rim);
 
+/* Why an edge grip cannot take a wafer with this rim, a constant text that says which it takes; null if it can.
+ * `wafer` is wh_layout_edge_wafer of the rim. */
+const char *wh_layout_edge_refuses(const wh_edge_t *edge, const wh_rim_t *rim, const wh_edge_wafer_t *wafer);
+
 /* True if each edge grip of the layout may take a wafer with this rim. */
 bool wh_layout_edges_take(const wh_layout_t *layout, const wh_rim_t *rim);
 
@@ -44,8 +51,9 @@ wh_grips_parts_t wh_layout_grips(const wh_layout_t *layout);
 bool wh_layout_complete_grips(const wh_layout_t *layout, const wh_gripper_t grippers[],
                               wh_physics_state_t *physics);
 
-/* "vacuum", "edge" or "passive". */
+/* "vacuum", "edge" or "passive"; and these words in the order of wh_grip_kind_t, up to a null. */
 const char *wh_layout_grip_name(wh_grip_kind_t kind);
+extern const char *const wh_layout_grip_words[];
 
 /* How many wafers `seen` needs room for: none without grips. */
 size_t wh_layout_seen(const wh_layout_t *layout);

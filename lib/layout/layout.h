@@ -5,19 +5,15 @@
 #ifndef WH_LAYOUT_LAYOUT_H
 #define WH_LAYOUT_LAYOUT_H
 
-#include <lua.h>
-
 #include "../cell/station.h"
 #include "../collision/world.h"
 #include "../flow/tool.h"
 #include "../grasp/grips.h"
 #include "../motion/machine.h"
 #include "../motion/via.h"
-#include "../script/reader.h"
-#include "../script/sandbox.h"
 #include "../sim/physics.h"
 #include "errors.h"
-#include "shapes.h"
+#include "sizes.h"
 
 /* The longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
@@ -214,7 +210,7 @@ typedef struct {
     double dx, dy, late;        /* it truly stands off by this, and both delays are longer by `late` */
 } wh_layout_beam_t;
 
-/* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
+/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h, log/log_layout.h. */
 typedef struct {
     const char *path;        /* as the caller named it */
     char tolerance_name[16]; /* the preset's, or "own" */
@@ -279,44 +275,6 @@ typedef struct {
     const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
     size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
 } wh_layout_t;
-
-/* Reads the table on top of L's stack, which the layout file returned; it stays there. Fills in the defaults
- * and checks all that can be checked without moving: fields, ranges, names, where wafers lie and grippers
- * ride, strokes against slices. Raises a Lua error that names file, field path, value and what was expected.
- * Lua owns the layout's memory; the registry keeps the reference. Cost: linear in wafers, plus a sort. */
-wh_layout_t *wh_layout_read(lua_State *L, const char *path);
-
-/* Runs the file in the sandbox and reads what it returns. Null, and the reason in `result`, if that fails.
- * The layout lives as long as the sandbox. */
-const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
-
-/* A station parameter that is a number, as a layout and as a command may set it. */
-typedef struct {
-    const char *name;
-    double least, most;
-    const char *unit; /* empty: a count */
-} wh_station_range_t;
-
-/* All of them, up to one without a name. `offset` and `release` must also be within the stroke. */
-extern const wh_station_range_t wh_station_ranges[];
-
-/* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
- * reader's errors. `wafers` are the layout's as they lie now, and `first` is the slice that `after = 0`
- * means. */
-wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, const wh_wafer_t wafers[],
-                                int64_t first);
-
-/* Reads the collision world again, for a copy of a layout whose stations stand elsewhere. The layout's table
- * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
-void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell);
-
-/* Moves the collision world without the layout's table, if only stations stand elsewhere. `parts` and `names`
- * are room for the world's parts and one more for each station; they and the copy must outlive the world. */
-void wh_layout_move_world(wh_layout_t *copy, wh_part_t *parts, char (*names)[WH_PART_NAME_SIZE]);
-
-/* Reads `study` from the table on top of the stack and replaces the layout's own. Errors name the script
- * `path`. */
-void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);
 
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
@@ -403,12 +361,5 @@ int32_t wh_layout_find_robot(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_door(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_beam(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name);
-
-/* Counts the parts of stations, robot and grippers. Obstacles are not among them. */
-size_t wh_layout_count_parts(const wh_layout_t *layout);
-
-/* Fills the list with these parts and makes them the layout's world. The list needs room for all of them, and
- * its arrays must outlive the layout. */
-void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list);
 
 #endif

@@ -6,8 +6,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "../bodies/parts.h"
+#include "../bodies/shapes.h"
 #include "../layout/grips.h"
 #include "../link/messages.h"
+#include "../reading/layout_read.h"
 #include "../text/array.h"
 
 /* The defaults of a layout. */
@@ -80,7 +83,7 @@ static void fill_shapes(wh_log_layout_t *made) {
     made->parts = wh_array_new(count, sizeof *made->parts);
     made->names = wh_array_new(count, sizeof *made->names);
     wh_part_list_t list = {made->parts, made->names, 0, count};
-    wh_layout_set_parts(layout, &list);
+    wh_layout_set_parts(layout, &list, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */

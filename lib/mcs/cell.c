@@ -3,10 +3,11 @@
 #include <string.h>
 
 #include "../layout/doors.h"
-#include "../layout/feasibility.h"
-#include "../layout/given.h"
+#include "../layout/reach.h"
+#include "../reading/layout_read.h"
 #include "../script/wh_module_values.h"
 #include "../text/output.h"
+#include "../trial/given.h"
 #include "carrying.h"
 #include "native.h"
 
@@ -264,9 +265,9 @@ static int set_up_cell(lua_State *L) {
 static int find_unreached(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
     const size_t station = (size_t)wh_mcs_index(L, 1, layout->station_count);
-    for (size_t place = 0; place < WH_FEASIBILITY_PLACES; ++place) {
+    for (size_t place = 0; place < WH_REACH_PLACES; ++place) {
         wh_unreached_t unreached;
-        if (!wh_feasibility_reaches(layout, station, place, &unreached)) {
+        if (!wh_layout_reaches(layout, station, place, &unreached)) {
             lua_pushinteger(L, unreached.slot);
             lua_pushfstring(L, "%s%s", unreached.is_before ? "on the way in " : "", unreached.text);
             return 2;

@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "../layout/layout_fields.h"
-#include "../layout/layout_tool.h"
+#include "../reading/layout_fields.h"
+#include "../reading/layout_tool.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "flow_plan.h"

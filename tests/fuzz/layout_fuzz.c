@@ -8,6 +8,7 @@
 #include "layout/layout.h"
 #include "link/messages.h"
 #include "motion/track.h"
+#include "reading/layout_read.h"
 #include "script/sandbox.h"
 #include "sim/simulator.h"
 

@@ -16,6 +16,7 @@
 #include "link/messages.h"
 #include "link/sim_process.h"
 #include "print/record_print.h"
+#include "reading/layout_read.h"
 #include "record/seat.h"
 #include "text/array.h"
 

@@ -9,6 +9,7 @@
 #include "link/messages.h"
 #include "link/protocol_client.h"
 #include "link/protocol_server.h"
+#include "reading/layout_read.h"
 
 typedef void change_t(waferhand_state *message);
 

@@ -6,6 +6,7 @@
 #include "link/messages.h"
 #include "link/protocol_server.h"
 #include "mcs/script_run.h"
+#include "reading/layout_read.h"
 #include "support/server.h"
 
 static wh_sandbox_t *sandbox;

@@ -6,6 +6,7 @@
 #include "layout/layout.h"
 #include "link/recording.h"
 #include "log/reading.h"
+#include "reading/layout_read.h"
 
 #define RUN 4711
 
