@@ -202,7 +202,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(foreach room,link log view study report print app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
+$(filter $(foreach room,wire link log host view study report print app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
@@ -298,7 +298,7 @@ $(LIBRARY_TOGETHER:%=$(B)/%): $(B)/tests/library_tests
 
 # ------------------------------------------------------------------------------------------------- lcm-spy
 # lcm-gen's classes are not clean under javac's warnings, but ours are.
-SPY_SOURCES := $(wildcard lib/link/spy/*.java)
+SPY_SOURCES := $(wildcard lib/spy/*.java)
 LCM_JAR = $(firstword $(wildcard /usr/share/java/lcm.jar /usr/local/share/java/lcm.jar))
 $(B)/spy/types.jar: $(MESSAGES:%=lcm_types/%.lcm) $(SPY_SOURCES) $(B)/messages
 	@echo "  JAVA $@"

@@ -210,7 +210,7 @@ typedef struct {
     double dx, dy, late;        /* it truly stands off by this, and both delays are longer by `late` */
 } wh_layout_beam_t;
 
-/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h, log/log_layout.h. */
+/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h, wire/told_layout.h. */
 typedef struct {
     const char *path;        /* as the caller named it */
     char tolerance_name[16]; /* the preset's, or "own" */

@@ -1,4 +1,4 @@
-#include "log_layout.h"
+#include "told_layout.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -9,9 +9,9 @@
 #include "../bodies/parts.h"
 #include "../bodies/shapes.h"
 #include "../layout/grips.h"
-#include "../link/messages.h"
 #include "../reading/layout_read.h"
 #include "../text/array.h"
+#include "messages.h"
 
 /* The defaults of a layout. */
 #define DIAMETER 300
@@ -19,8 +19,8 @@
 
 /* --------------------------------------------------------------------------------------------------- file */
 
-static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
-                               const wh_log_layout_options_t *options) {
+static const wh_layout_t *load(wh_told_layout_t *made, const char *path,
+                               const wh_told_layout_options_t *options) {
     const wh_sandbox_limits_t limits = {.print_to = stderr};
     wh_sandbox_result_t result;
     struct stat status;
@@ -70,7 +70,7 @@ static void fill_machine(wh_layout_t *layout) {
     machine->axis_count = machine->door_count > 0 ? end : machine->axis_count;
 }
 
-static void fill_shapes(wh_log_layout_t *made) {
+static void fill_shapes(wh_told_layout_t *made) {
     wh_layout_t *layout = made->told;
     wh_robot_t robot;
     wh_robot_default(&robot);
@@ -88,8 +88,8 @@ static void fill_shapes(wh_log_layout_t *made) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
-                        const wh_log_layout_options_t *options) {
+bool wh_told_layout_make(wh_told_layout_t *made, const waferhand_cell *cell,
+                         const wh_told_layout_options_t *options) {
     wh_layout_t *told = wh_link_layout_from_cell(cell);
     if (!told) {
         return false;
@@ -128,7 +128,7 @@ static const char *lacks_contact(int8_t collision, wh_event_kind_t kind) {
                : NULL;
 }
 
-const char *wh_log_layout_lacks(const wh_log_layout_t *made, wh_event_kind_t kind) {
+const char *wh_told_layout_lacks(const wh_told_layout_t *made, wh_event_kind_t kind) {
     if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE) {
         return lacks_contact(made->collision, kind);
     }
@@ -139,7 +139,7 @@ const char *wh_log_layout_lacks(const wh_log_layout_t *made, wh_event_kind_t kin
     return lacks_placing(made->layout, kind);
 }
 
-void wh_log_layout_free(wh_log_layout_t *made) {
+void wh_told_layout_free(wh_told_layout_t *made) {
     wh_link_layout_free(made->told);
     wh_sandbox_free(made->sandbox);
     free(made->parts);

@@ -1,8 +1,8 @@
 /* The file of a recording. Creating it loses no file of others; it is locked, and compressed if its name
  * says so. If it cannot be written or is taken away, standard error says so at once.
  */
-#ifndef WH_LINK_RECORD_FILE_H
-#define WH_LINK_RECORD_FILE_H
+#ifndef WH_LOG_RECORD_FILE_H
+#define WH_LOG_RECORD_FILE_H
 
 #include <limits.h>
 #include <stdbool.h>

@@ -412,3 +412,16 @@ bool wh_recording_close(wh_recording_t *recording) {
     wh_recording_write_note(recording, WH_RECORDING_ENDS);
     return wh_record_file_close(file);
 }
+
+static bool open_for_node(void *user) {
+    return wh_recording_open(user);
+}
+
+static void record_for_node(void *user, const char *channel, const void *data, size_t size) {
+    wh_recording_message(user, channel, data, size);
+}
+
+bool wh_recording_open_node(wh_recording_t *recording, wh_node_t *node, const char *url) {
+    const wh_node_recorder_t recorder = {open_for_node, record_for_node, recording};
+    return wh_node_open(node, url, recording->options.path ? &recorder : NULL);
+}

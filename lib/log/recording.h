@@ -6,13 +6,14 @@
  * that fails says so at once and records no more. The process continues, and wh_recording_close tells of
  * the failure. Nothing here allocates for a slice.
  */
-#ifndef WH_LINK_RECORDING_H
-#define WH_LINK_RECORDING_H
+#ifndef WH_LOG_RECORDING_H
+#define WH_LOG_RECORDING_H
 
 #include <pthread.h>
 
+#include "../link/node.h"
+#include "../wire/slices.h"
 #include "record_file.h"
-#include "slices.h"
 
 /* The longest time that a recorded message may wait, us. */
 #define WH_RECORDING_WAIT_US 100000
@@ -75,6 +76,10 @@ bool wh_recording_open(wh_recording_t *recording);
 /* Records a message that was sent or received, of any kind. With slices it leaves the message out, or makes
  * it part of a block, if that loses nothing. */
 void wh_recording_message(wh_recording_t *recording, const char *channel, const void *data, size_t size);
+
+/* wh_node_open, with this recording as the node's recorder: it is opened, and records all messages sent and
+ * received. Without a path nothing is recorded. */
+bool wh_recording_open_node(wh_recording_t *recording, wh_node_t *node, const char *url);
 
 /* Records a slice without its messages. `told` has the state's valve_told for each of the command's
  * grippers. `missed` and `hash` are the state's; the last argument tells whether it had events. It is only

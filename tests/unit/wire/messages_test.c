@@ -5,8 +5,8 @@
 
 #include "link/protocol_client.h"
 #include "link/sim_process.h"
-#include "link/slices.h"
 #include "mcs/script_run.h"
+#include "wire/slices.h"
 
 static wh_node_t node;
 static wh_protocol_client_t client;

@@ -13,9 +13,9 @@
 #include <zstd.h>
 
 #include "link/protocol_client.h"
-#include "link/recording.h"
 #include "link/sim_process.h"
 #include "log/logfile.h"
+#include "log/recording.h"
 #include "mcs/script_run.h"
 #include "text/output.h"
 
@@ -70,7 +70,7 @@ static void record_all(const char *script) {
     (void)unlink(in_folder("all.log"));
     memset(&record, 0, sizeof record);
     record.options = (wh_recording_options_t){.path = in_folder("all.log"), .program = "test", .all = true};
-    assert_true(wh_node_open(&node, "memq://", &record));
+    assert_true(wh_recording_open_node(&record, &node, "memq://"));
     options.partners.connect = connect;
     assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
     wh_sim_process_close(&simulation);

@@ -1,6 +1,6 @@
 /* Conversion between the library's structs and LCM's messages. Nothing here allocates, unless stated. */
-#ifndef WH_LINK_MESSAGES_H
-#define WH_LINK_MESSAGES_H
+#ifndef WH_WIRE_MESSAGES_H
+#define WH_WIRE_MESSAGES_H
 
 #include <waferhand_cell.h>
 #include <waferhand_centring.h>

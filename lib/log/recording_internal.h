@@ -1,6 +1,6 @@
 /* Shared by recording.c, which decides what is recorded, and recording_parts.c, which writes it. */
-#ifndef WH_LINK_RECORDING_INTERNAL_H
-#define WH_LINK_RECORDING_INTERNAL_H
+#ifndef WH_LOG_RECORDING_INTERNAL_H
+#define WH_LOG_RECORDING_INTERNAL_H
 
 #include "recording.h"
 

@@ -4,8 +4,8 @@
  * slice. lcm_types/format.md describes their bytes. A block stands by itself: decoding one needs no other.
  * Nothing here allocates except wh_slices_decode, which releases its memory again, and liblcm.
  */
-#ifndef WH_LINK_SLICES_H
-#define WH_LINK_SLICES_H
+#ifndef WH_WIRE_SLICES_H
+#define WH_WIRE_SLICES_H
 
 #include <waferhand_recording.h>
 #include <waferhand_slices.h>

@@ -153,7 +153,7 @@ final class ProximityMarks {
             return event;
         }
 
-        /** The check that lib/link/messages.h describes. */
+        /** The check that lib/wire/messages.h describes. */
         private static boolean isSound(ByteBuffer data, int size) {
             final long written = data.getLong(size - CHECK);
             long h = 0x6a09e667f3bcc908L;
