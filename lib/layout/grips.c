@@ -1,8 +1,7 @@
 #include "grips.h"
 
 #include "../math/trig.h"
-
-const char *const wh_layout_grip_words[] = {"vacuum", "edge", "passive", NULL};
+#include "words.h"
 
 const char *wh_layout_grip_name(wh_grip_kind_t kind) {
     return wh_layout_grip_words[kind];

@@ -51,9 +51,8 @@ wh_grips_parts_t wh_layout_grips(const wh_layout_t *layout);
 bool wh_layout_complete_grips(const wh_layout_t *layout, const wh_gripper_t grippers[],
                               wh_physics_state_t *physics);
 
-/* "vacuum", "edge" or "passive"; and these words in the order of wh_grip_kind_t, up to a null. */
+/* "vacuum", "edge" or "passive". */
 const char *wh_layout_grip_name(wh_grip_kind_t kind);
-extern const char *const wh_layout_grip_words[];
 
 /* How many wafers `seen` needs room for: none without grips. */
 size_t wh_layout_seen(const wh_layout_t *layout);

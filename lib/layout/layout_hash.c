@@ -1,5 +1,6 @@
 #include "../math/hash.h"
 #include "grips.h"
+#include "words.h"
 
 static uint64_t hash_text(uint64_t hash, const char *text) {
     for (const char *c = text; *c; ++c) {
@@ -86,8 +87,7 @@ static uint64_t hash_slides(uint64_t hash, const wh_mount_t *mount) {
     if (mount->axis == WH_NONE || mount->kind == WH_MOUNT_CHUCK) {
         return hash;
     }
-    static const char *const words[] = {"chuck", "stage", "pins", "flipper"};
-    hash = hash_text(hash, words[mount->kind]);
+    hash = hash_text(hash, wh_layout_mount_words[mount->kind]);
     hash = hash_reals(hash, (const wh_real_t[]){mount->travel.min, mount->travel.max}, 2);
     return hash_limits(hash, &mount->limits);
 }

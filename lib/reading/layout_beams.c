@@ -4,6 +4,7 @@
 
 #include "../bodies/shapes.h"
 #include "../layout/axes.h"
+#include "../layout/words.h"
 #include "layout_internal.h"
 
 /* Two beams of a station that are nearer to being at the same distance from the way cannot tell which of two
@@ -41,7 +42,6 @@ static double read_across(wh_reader_t *reader, const wh_layout_t *layout, size_t
 }
 
 static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t first) {
-    static const char *const stuck[] = {"no", "dark", "lit", NULL};
     const wh_station_t *place = &layout->places[s];
     wh_layout_beam_t *beam = &layout->beams[layout->beam_count];
     wh_door_beam_t *door = &layout->doors[layout->beam_count];
@@ -49,22 +49,16 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     (void)snprintf(beam->name, sizeof beam->name, "%s.beam%zu", layout->stations[s].name,
                    layout->beam_count - first + 1);
     beam->station = (int32_t)s;
-    beam->x = wh_reader_number(reader, "x", -layout->stations[s].retract / 2, -10000, 10000);
+    wh_reader_scalars(reader, beam);
+    wh_reader_scalar_from(reader, "x", beam, -layout->stations[s].retract / 2);
     beam->y = layout->robot_count > 1 ? read_across_any(reader) : read_across(reader, layout, first);
-    beam->low = wh_reader_number(reader, "low", -30, -1000, 1000);
     const double high = top + 30 > beam->low ? top + 30 : beam->low + 60;
-    beam->high = wh_reader_number(reader, "high", high, beam->low + 1, 1e4);
-    beam->sd = wh_reader_number(reader, "sd", 0, 0, 0.5);
-    beam->dx = wh_reader_number(reader, "dx", 0, -5, 5);
-    beam->dy = wh_reader_number(reader, "dy", 0, -5, 5);
-    beam->delay_on = wh_reader_number(reader, "delay_on", 0, 0, 0.009);
-    beam->delay_off = wh_reader_number(reader, "delay_off", 0, 0, 0.009);
-    beam->late = wh_reader_number(reader, "late", 0, 0, 0.001);
+    wh_reader_scalar_within(reader, "high", beam, high, beam->low + 1, 1e4);
     door->delay_on = beam->delay_on + beam->late;
     door->delay_off = beam->delay_off + beam->late;
     door->jitter = wh_reader_number(reader, "jitter", 0, 0, 0.001);
     door->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
-    door->stuck = (wh_beam_stuck_t)wh_reader_choice(reader, "stuck", 0, stuck);
+    door->stuck = (wh_beam_stuck_t)wh_reader_choice(reader, "stuck", 0, wh_layout_beam_stuck_words);
     wh_layout_place_beam(layout, layout->beam_count);
 }
 

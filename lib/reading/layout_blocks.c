@@ -15,7 +15,6 @@ static void take_vector(const wh_vec3_t *from, double to[3]) {
 /* ---------------------------------------------------------------------------------------------- the probe */
 
 static void read_probe(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
-    static const char *const stuck[] = {"no", "closed", "open", NULL};
     static const wh_vec3_t below = {0, 0, -12};
     wh_layout_probe_t *probe = &layout->probe;
     if (!wh_reader_open(reader, "probe", wh_layout_probe_fields)) {
@@ -38,10 +37,7 @@ static void read_probe(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
             wh_reader_fail(reader, "at", "numbers from -500 to 500 mm");
         }
     }
-    probe->radius = wh_reader_number(reader, "radius", 1.5, 0, 50);
-    probe->noise = wh_reader_number(reader, "noise", WH_REAL(0.005), 0, WH_REAL(0.1));
-    probe->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
-    probe->stuck = (wh_beam_stuck_t)wh_reader_choice(reader, "stuck", 0, stuck);
+    wh_reader_scalars(reader, probe);
     wh_reader_leave(reader);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -14,13 +15,13 @@ static double larger(double a, double b) {
 /* Each default is moved within the limits of the fields before it. */
 static void read_windows(wh_reader_t *reader, wh_edge_t *edge) {
     const double open = -(edge->clearance + 1);
-    edge->retracted =
-        wh_reader_number(reader, "retracted", edge->retracted < open ? edge->retracted : open, -50, open);
-    edge->gripped_from =
-        wh_reader_number(reader, "gripped_from", edge->gripped_from, larger(-5, edge->retracted + 0.001), 5);
-    edge->gripped_to =
-        wh_reader_number(reader, "gripped_to", edge->gripped_from < edge->gripped_to ? edge->gripped_to : 5,
-                         edge->gripped_from, 5);
+    wh_reader_scalar_within(reader, "retracted", edge, edge->retracted < open ? edge->retracted : open, -50,
+                            open);
+    wh_reader_scalar_within(reader, "gripped_from", edge, edge->gripped_from,
+                            larger(-5, edge->retracted + 0.001), 5);
+    wh_reader_scalar_within(reader, "gripped_to", edge,
+                            edge->gripped_from < edge->gripped_to ? edge->gripped_to : 5, edge->gripped_from,
+                            5);
     edge->end = larger(edge->end, edge->gripped_to + 1);
     if (wh_reader_has(reader, "stroke")) {
         edge->end = edge->retracted + wh_reader_number(reader, "stroke", WH_REAL(NAN),
@@ -35,15 +36,10 @@ static void read_edge(wh_reader_t *reader, const wh_layout_t *layout, wh_edge_t 
     *edge = wh_edge_default(radius);
     wh_reader_open_section(reader, "grip", wh_layout_edge_grip_fields);
     (void)wh_reader_choice(reader, "kind", WH_GRIP_EDGE, (const char *const[]){"edge", NULL});
-    edge->rest = wh_reader_number(reader, "rest", edge->rest, 0.1, 20);
-    edge->plunger = wh_reader_number(reader, "plunger", edge->plunger, 0.1, 20);
-    if (wh_reader_has(reader, "alpha")) {
-        edge->alpha = wh_rad_from_deg(wh_reader_number(reader, "alpha", WH_REAL(NAN), 25, 60));
-    }
-    edge->clearance =
-        wh_reader_number(reader, "clearance", edge->clearance < most ? edge->clearance : most, 0, most);
+    wh_reader_scalars(reader, edge);
+    wh_reader_scalar_within(reader, "clearance", edge, edge->clearance < most ? edge->clearance : most, 0,
+                            most);
     read_windows(reader, edge);
-    edge->speed = wh_reader_number(reader, "speed", edge->speed, 0.01, 1e4);
     wh_reader_leave(reader);
 }
 

@@ -3,8 +3,8 @@
 #define WH_READING_LAYOUT_INTERNAL_H
 
 #include "../layout/layout.h"
+#include "../layout/layout_fields.h"
 #include "../script/reader.h"
-#include "layout_fields.h"
 #include "layout_read.h"
 
 /* The path of a file that another one names: relative to that one's folder. */

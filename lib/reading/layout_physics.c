@@ -15,19 +15,16 @@ static wh_vacuum_config_t model_of(int choice) {
 
 /* Each default is moved within the limits of the fields before it, so that no value is changed later. */
 static void read_levels(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
-    vacuum->on = wh_reader_number(reader, "sensor_on", vacuum->on, 0.01, 1);
     const wh_real_t off = vacuum->off < vacuum->on ? vacuum->off : vacuum->on;
-    vacuum->off = wh_reader_number(reader, "sensor_off", off, 0.01, vacuum->on);
+    wh_reader_scalar_within(reader, "sensor_off", vacuum, off, 0.01, vacuum->on);
     const wh_real_t idle = vacuum->idle < vacuum->off ? vacuum->idle : 0;
-    vacuum->idle = wh_reader_number(reader, "idle", idle, 0, vacuum->off - WH_REAL(1e-3));
-    vacuum->release = wh_reader_number(reader, "release", vacuum->release, 0.01, 1);
+    wh_reader_scalar_within(reader, "idle", vacuum, idle, 0, vacuum->off - WH_REAL(1e-3));
 }
 
 static void read_vacuum_table(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
     (void)wh_reader_open(reader, "vacuum", wh_layout_vacuum_fields);
     *vacuum = model_of(wh_reader_choice(reader, "model", 1, models));
-    vacuum->build = wh_reader_number(reader, "build", vacuum->build, 0, 3600);
-    vacuum->vent = wh_reader_number(reader, "vent", vacuum->vent, 0, 3600);
+    wh_reader_scalars(reader, vacuum);
     read_levels(reader, vacuum);
     wh_reader_leave(reader);
 }
@@ -50,10 +47,8 @@ static void read_pads(wh_reader_t *reader, const wh_layout_t *layout, wh_pads_t 
     if (!wh_reader_open(reader, "pads", wh_layout_pads_fields)) {
         return;
     }
-    pads->friction = wh_reader_number(reader, "friction", WH_REAL(NAN), 0, 100);
-    pads->force = wh_reader_number(reader, "force", WH_REAL(NAN), 0, 1e6);
-    pads->mass = wh_reader_number(reader, "mass", mass, 1e-6, 1000);
-    pads->gravity = wh_reader_number(reader, "gravity", 9.81, 0, 1000);
+    wh_reader_scalars(reader, pads);
+    wh_reader_scalar_from(reader, "mass", pads, mass);
     wh_reader_leave(reader);
 }
 

@@ -99,10 +99,9 @@ static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_open_section(reader, "wafer", wh_layout_wafer_size_fields);
     refuse_inches(reader);
-    layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 25, 1000);
+    wh_reader_scalars(reader, layout);
     layout->wafer_thickness =
         wh_layout_sized(reader, layout, "thickness", size_of(layout)->thickness, 0.01, 100);
-    layout->wafer_spread = wh_reader_number(reader, "spread", 0, 0, 2);
     read_notch(reader, layout);
     wh_reader_leave(reader);
 }
@@ -143,14 +142,11 @@ static void check_preset(wh_reader_t *reader, const wh_layout_t *layout) {
 
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     static const char *const names[WH_TOLERANCE_LIMITS] = {"projz", "projxy", "planar"};
-    wh_tolerance_t *tolerance = &layout->grasp.tolerance;
     (void)wh_reader_open(reader, "tolerance", wh_layout_tolerance_fields);
     for (size_t i = 0; i < WH_TOLERANCE_LIMITS; ++i) {
         layout->tolerance_default[i] = !wh_reader_has(reader, names[i]);
     }
-    tolerance->projz = wh_reader_number(reader, names[0], tolerance->projz, 1e-9, 1e6);
-    tolerance->projxy = wh_reader_number(reader, names[1], tolerance->projxy, 1e-6, 1e6);
-    tolerance->planar = wh_reader_number(reader, names[2], tolerance->planar, 0, 0.999999999999);
+    wh_reader_scalars(reader, &layout->grasp.tolerance);
     check_limits(reader, layout);
     wh_reader_leave(reader);
 }
@@ -181,8 +177,7 @@ static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
     layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
     wh_reader_open_section(reader, "near", wh_layout_near_fields);
-    layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);
-    layout->grasp.near_projxy = wh_reader_number(reader, "projxy", layout->grasp.near_projxy, 1e-9, 1e6);
+    wh_reader_scalars(reader, &layout->grasp);
     wh_reader_leave(reader);
 }
 
@@ -197,22 +192,11 @@ static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
     }
 }
 
-/* How a released wafer comes to lie, and the limits above which its place is reported. */
-static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
-    cell->settle = wh_reader_boolean(reader, "settle", false);
-    wh_reader_open_section(reader, "placing", wh_layout_placing_fields);
-    cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
-    cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
-    cell->drop = wh_reader_number(reader, "drop", WH_USUAL_DROP, 0, 1000);
-    wh_reader_leave(reader);
-}
-
-static void read_corrections(wh_reader_t *reader, wh_corrections_t *corrections) {
-    wh_reader_open_section(reader, "corrections", wh_layout_corrections_fields);
-    corrections->x = wh_reader_number(reader, "x", 5, 0, 1000);
-    corrections->y = wh_reader_number(reader, "y", 5, 0, 1000);
-    corrections->z = wh_reader_number(reader, "z", 2.5, 0, 1000);
-    corrections->turn_deg = wh_reader_number(reader, "turn", 5, 0, 180);
+/* A section all of whose fields are scalars. */
+static void read_section(wh_reader_t *reader, const char *field, const wh_reader_field_t *fields,
+                         void *into) {
+    wh_reader_open_section(reader, field, fields);
+    wh_reader_scalars(reader, into);
     wh_reader_leave(reader);
 }
 
@@ -221,29 +205,25 @@ static void read_mapping(wh_reader_t *reader, wh_layout_t *layout) {
     const double diameter = layout->wafer_diameter;
     const double thickness = layout->wafer_thickness;
     wh_reader_open_section(reader, "mapping", wh_layout_mapping_fields);
-    mapping->x = wh_reader_number(reader, "x", 0.6, 0, 0.8);
+    wh_reader_scalars(reader, mapping);
     const double most = sqrt(0.95 - mapping->x * mapping->x); /* inside the rim */
-    mapping->y = wh_reader_number(reader, "y", most < 0.6 ? most : 0.6, 0.1, most);
-    mapping->crossed = wh_reader_number(reader, "crossed", 0.5, 0.01, 0.5);
-    mapping->level = wh_reader_number(reader, "level", 0, 0, diameter);
-    mapping->protruded = wh_reader_number(reader, "protruded", diameter / 10, 0, diameter);
-    mapping->thickest = wh_reader_number(reader, "thickest", 1.5 * thickness, thickness, 1000);
-    mapping->thinnest = wh_reader_number(reader, "thinnest", thickness / 2, 0, thickness);
+    wh_reader_scalar_within(reader, "y", mapping, most < 0.6 ? most : 0.6, 0.1, most);
+    wh_reader_scalar_within(reader, "level", mapping, 0, 0, diameter);
+    wh_reader_scalar_within(reader, "protruded", mapping, diameter / 10, 0, diameter);
+    wh_reader_scalar_within(reader, "thickest", mapping, 1.5 * thickness, thickness, 1000);
+    wh_reader_scalar_within(reader, "thinnest", mapping, thickness / 2, 0, thickness);
     wh_reader_leave(reader);
 }
 
 static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
-    static const char *const checks[] = {"sampled", "swept", NULL};
     layout->grasp = wh_grasp_config_default();
+    wh_reader_scalars(reader, layout);
     read_wafer(reader, layout);
     read_tolerance(reader, layout);
     read_near(reader, layout);
     read_slice(reader, layout);
-    layout->grasp.check =
-        wh_reader_choice(reader, "check", 0, checks) == 0 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT;
-    layout->grasp.seat = wh_reader_boolean(reader, "seat", false);
-    read_placing(reader, &layout->cell);
-    read_corrections(reader, &layout->corrections);
+    read_section(reader, "placing", wh_layout_placing_fields, &layout->cell);
+    read_section(reader, "corrections", wh_layout_corrections_fields, &layout->corrections);
     read_mapping(reader, layout);
 }
 

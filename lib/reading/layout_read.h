@@ -18,16 +18,6 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path);
  * The layout lives as long as the sandbox. */
 const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
 
-/* A station parameter that is a number, as a layout and as a command may set it. */
-typedef struct {
-    const char *name;
-    double least, most;
-    const char *unit; /* empty: a count */
-} wh_station_range_t;
-
-/* All of them, up to one without a name. `offset` and `release` must also be within the stroke. */
-extern const wh_station_range_t wh_station_ranges[];
-
 /* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
  * reader's errors. `wafers` are the layout's as they lie now, and `first` is the slice that `after = 0`
  * means. */

@@ -386,7 +386,6 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     } else {
         read_robot(reader, layout);
     }
-    layout->homed = wh_reader_boolean(reader, "homed", true);
     wh_reader_open_section(reader, "chuck", wh_layout_chuck_fields);
     wh_layout_read_axis_limits(reader, true, &machine->chuck_limits);
     wh_reader_leave(reader);

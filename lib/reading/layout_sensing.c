@@ -10,13 +10,8 @@
  * encoder steps. */
 #define MOST_PASSED (WH_SCAN_SLICE - 2)
 
-/* Required, or with a default, which keeps its bits. */
 static double read_required_angle(wh_reader_t *reader, const char *field) {
     return wh_rad_from_deg(wh_reader_number(reader, field, WH_REAL(NAN), -360, 360));
-}
-
-static double read_angle(wh_reader_t *reader, const char *field, double fallback) {
-    return wh_reader_has(reader, field) ? read_required_angle(reader, field) : fallback;
 }
 
 /* ------------------------------------------------------------------------------------------------ sensors */
@@ -53,34 +48,23 @@ static void read_hidden(wh_reader_t *reader, wh_sensor_t *sensor) {
         wh_arc_t *arc = &sensor->hidden[sensor->hidden_count];
         wh_reader_enter_item(reader, sensor->hidden_count + 1);
         wh_reader_refuse_unknown(reader, wh_layout_arc_fields);
-        arc->from = read_required_angle(reader, "from");
-        arc->width = wh_rad_from_deg(wh_reader_number(reader, "width", WH_REAL(NAN), 0.001, 360));
+        wh_reader_scalars(reader, arc);
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
 }
 
-static void read_errors(wh_reader_t *reader, wh_sensor_error_t *error) {
-    error->offset = wh_reader_number(reader, "offset", 0, -1, 1);
-    error->zero = wh_reader_number(reader, "zero", 0, -1, 1);
-    error->gain = wh_reader_number(reader, "gain", 0, -0.01, 0.01);
-    error->latency = wh_reader_number(reader, "latency", 0, -0.001, 0.001);
-}
-
-static int32_t read_encoder(wh_reader_t *reader, int32_t samples) {
-    const int32_t most = 10000000;
-    const int32_t encoder = wh_reader_whole(reader, "encoder", 0, 0, most);
-    if (encoder != 0 && encoder < samples) {
-        lua_pushinteger(reader->L, encoder);
-        wh_reader_fail(reader, "encoder", "0, or a whole number from samples, %d, to %d", (int)samples,
-                       (int)most);
+static void check_encoder(wh_reader_t *reader, const wh_sensor_t *sensor) {
+    if (sensor->encoder != 0 && sensor->encoder < sensor->samples) {
+        lua_pushinteger(reader->L, sensor->encoder);
+        wh_reader_fail(reader, "encoder", "0, or a whole number from samples, %d, to %d",
+                       (int)sensor->samples, (int)wh_field_find(wh_layout_sensor_fields, "encoder")->most);
     }
-    return encoder;
 }
 
 static void read_believed(wh_reader_t *reader, wh_sensor_error_t *believed) {
     if (wh_reader_open(reader, "believed", wh_layout_believed_fields)) {
-        read_errors(reader, believed);
+        wh_reader_scalars(reader, believed);
         wh_reader_leave(reader);
     }
 }
@@ -89,15 +73,10 @@ static void read_sensor(wh_reader_t *reader, const wh_layout_t *layout, wh_scann
     wh_sensor_t *sensor = &scanner->sensor;
     const double radius = layout->wafer_diameter / 2;
     *sensor = wh_sensor_nominal(radius);
-    sensor->samples = wh_reader_whole(reader, "samples", sensor->samples, 90, WH_SENSOR_SAMPLES);
-    sensor->pixel = wh_reader_number(reader, "pixel", sensor->pixel, 0.001, 0.1);
-    sensor->noise = wh_reader_number(reader, "noise", 0, 0, 0.1);
+    wh_reader_scalars(reader, sensor);
     const double longest = 2 * radius < 100 ? 2 * radius : 100;
-    sensor->length = wh_reader_number(reader, "length", 28 < longest ? 28 : longest, 2, longest);
-    sensor->tilt = wh_rad_from_deg(wh_reader_number(reader, "tilt", 0, -28, 28));
-    sensor->direction = read_angle(reader, "at", 0);
-    read_errors(reader, &sensor->error);
-    sensor->encoder = read_encoder(reader, sensor->samples);
+    wh_reader_scalar_within(reader, "length", sensor, 28 < longest ? 28 : longest, 2, longest);
+    check_encoder(reader, sensor);
     scanner->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
     read_hidden(reader, sensor);
     check_speed(reader, layout, sensor);
@@ -149,11 +128,10 @@ static void read_notch(wh_reader_t *reader, wh_notch_shape_t *notch) {
         return;
     }
     const wh_notch_shape_t usual = wh_rim_nominal(150).notch;
-    notch->direction = read_angle(reader, "at", notch->direction);
-    notch->depth = wh_reader_number(reader, "depth", notch->depth > 0 ? notch->depth : usual.depth, 0, 3);
-    notch->opening = wh_rad_from_deg(wh_reader_number(reader, "angle", 90, 58, 120));
-    notch->bottom = wh_reader_number(reader, "bottom", usual.bottom, 0, 2);
-    notch->corner = wh_reader_number(reader, "corner", usual.corner, 0, 1);
+    wh_reader_scalars(reader, notch);
+    wh_reader_scalar_from(reader, "depth", notch, notch->depth > 0 ? notch->depth : usual.depth);
+    wh_reader_scalar_from(reader, "bottom", notch, usual.bottom);
+    wh_reader_scalar_from(reader, "corner", notch, usual.corner);
     wh_reader_leave(reader);
 }
 
@@ -221,10 +199,7 @@ static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *r
     read_notch(reader, &rim->notch);
     read_flats(reader, rim);
     read_chips(reader, rim);
-    rim->bow = wh_reader_number(reader, "bow", 0, -2, 2);
-    rim->saddle = wh_reader_number(reader, "saddle", 0, -2, 2);
-    rim->saddle_direction = read_angle(reader, "saddle_at", 0);
-    rim->transmission = wh_reader_number(reader, "glass", 0, 0, 0.9);
+    wh_reader_scalars(reader, rim);
     if (wh_rim_validate(rim, &bad) != WH_OK) {
         push_rim_field(reader->L, rim, bad.name);
         wh_reader_fail(reader, bad.name,

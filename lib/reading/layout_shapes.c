@@ -203,21 +203,12 @@ static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, wh_ob
 
 static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
     wh_reader_open_section(reader, "blade", wh_layout_blade_fields);
-    blade->thickness = wh_reader_number(reader, "thickness", blade->thickness, 0.1, 50);
-    blade->half_width = wh_reader_number(reader, "half_width", blade->half_width, 1, 500);
-    blade->finger = wh_reader_number(
-        reader, "finger", blade->finger < blade->half_width ? blade->finger : blade->half_width / 2, 0.1,
-        0.99 * blade->half_width);
-    blade->length = wh_reader_number(reader, "length", blade->length, 1, 1000);
-    blade->palm = wh_reader_number(reader, "palm", blade->palm, blade->finger, 1000);
+    wh_reader_scalars(reader, blade);
+    wh_reader_scalar_within(reader, "finger", blade,
+                            blade->finger < blade->half_width ? blade->finger : blade->half_width / 2, 0.1,
+                            0.99 * blade->half_width);
+    wh_reader_scalar_within(reader, "palm", blade, blade->palm, blade->finger, 1000);
     wh_reader_leave(reader);
-}
-
-/* The reader is at a polar robot's arm. */
-static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
-    arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
-    arm->link = wh_reader_number(reader, "link", arm->link, 10, 5000);
-    arm->right_handed = wh_reader_boolean(reader, "right_handed", arm->right_handed);
 }
 
 /* A SCARA's links are the robot's, and its wrist carries the end-effector's origin. */
@@ -236,7 +227,7 @@ static void read_one_arm(wh_reader_t *reader, wh_layout_t *layout) {
         take_scara(reader, "arm", &layout->carrier.chain, arm);
     } else {
         wh_reader_open_section(reader, "arm", wh_layout_arm_fields);
-        read_arm(reader, arm);
+        wh_reader_scalars(reader, arm);
         wh_reader_leave(reader);
     }
     wh_layout_refuse_field(reader, "arms", "nothing: it is for a layout with several robots; this has `arm`");
@@ -249,7 +240,7 @@ static void read_arm_of(wh_reader_t *reader, wh_layout_t *layout, size_t robot) 
     if (wh_layout_is_scara(layout, robot)) {
         take_scara(reader, of->name, chain, arm);
     } else if (wh_reader_open(reader, of->name, wh_layout_arm_fields)) {
-        read_arm(reader, arm);
+        wh_reader_scalars(reader, arm);
         wh_reader_leave(reader);
     }
 }
@@ -291,29 +282,22 @@ static void read_arms(wh_reader_t *reader, wh_layout_t *layout) {
 
 static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
     wh_reader_open_section(reader, "ledge", wh_layout_ledge_fields);
-    ledge->outer = wh_reader_number(reader, "outer", ledge->outer, 1, 2000);
-    ledge->inner =
-        wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
-                         0.999 * ledge->outer);
-    ledge->thickness = wh_reader_number(reader, "thickness", ledge->thickness, 0.05, 100);
-    ledge->length = wh_reader_number(reader, "length", ledge->length, 0.1, 2000);
+    wh_reader_scalars(reader, ledge);
+    wh_reader_scalar_within(reader, "inner", ledge,
+                            ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
+                            0.999 * ledge->outer);
     wh_reader_leave(reader);
 }
 
 static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
     wh_reader_open_section(reader, "foup", wh_layout_foup_fields);
-    shell->room = wh_reader_number(reader, "room", shell->room, 0.1, 500);
-    shell->wall = wh_reader_number(reader, "wall", shell->wall, 0.1, 100);
-    shell->floor = wh_reader_number(reader, "floor", shell->floor, 1, 500);
-    shell->roof = wh_reader_number(reader, "roof", shell->roof, 1, 500);
+    wh_reader_scalars(reader, shell);
     wh_reader_leave(reader);
 }
 
 static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
     wh_reader_open_section(reader, "chuck", wh_layout_spindle_fields);
-    chuck->radius = wh_reader_number(reader, "radius", chuck->radius, 1, 500);
-    chuck->height = wh_reader_number(reader, "height", chuck->height, 1, 200);
-    chuck->body = wh_reader_number(reader, "body", chuck->body, 1, 1000);
+    wh_reader_scalars(reader, chuck);
     wh_reader_leave(reader);
 }
 

@@ -22,32 +22,6 @@ static double default_pitch(const wh_layout_t *layout, int32_t slots) {
     return pitch > 0 || slots > 1 ? pitch : by_size(layout, 4.76, 6.35, 10);
 }
 
-const wh_station_range_t wh_station_ranges[] = {{"stroke", 0.01, 1000, "mm"},
-                                                {"offset", 0, 1000, "mm"},
-                                                {"retract", 1, 10000, "mm"},
-                                                {"release", -1000, 1000, "mm"},
-                                                {"pickup_speed", 0.001, 10000, "mm/s"},
-                                                {"pickup_acceleration", 0, 1e8, "mm/s^2"},
-                                                {"map_speed", 0.001, 10000, "mm/s"},
-                                                {"vacuum_delay", 0, 3600, "s"},
-                                                {"timeout", 0, 3600, "s"},
-                                                {"wait", 0, 3600, "s"},
-                                                {"retries", 0, 100, ""},
-                                                {NULL, 0, 0, NULL}};
-
-static const wh_station_range_t *find_range(const char *field) {
-    const wh_station_range_t *range = wh_station_ranges;
-    while (strcmp(range->name, field) != 0) {
-        ++range;
-    }
-    return range;
-}
-
-static double read_number(wh_reader_t *reader, const char *field, double fallback) {
-    const wh_station_range_t *range = find_range(field);
-    return wh_reader_number(reader, field, fallback, range->least, range->most);
-}
-
 /* Refuses slots so near to one another that a gripper is ready on the wafers of two at once. */
 static void check_pitch(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place) {
     const double least = 2 * layout->grasp.tolerance.projz;
@@ -112,37 +86,21 @@ static double default_timeout(const wh_vacuum_config_t *vacuum) {
     return slow < least ? least : (slow < 3600 ? slow : 3600);
 }
 
+/* With the default stroke the blade enters about midway between two wafers at the default pitch. */
 static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place,
                        wh_layout_station_t *station) {
-    static const char *const handovers[] = {"new_first", "same_slice", NULL};
     const double lowered = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
-    /* With this stroke the blade enters about midway between two wafers at the default pitch. */
-    station->stroke = read_number(reader, "stroke", by_size(layout, 3, 4, 6));
-    station->offset = wh_reader_number(reader, "offset", station->stroke / 2, 0, station->stroke);
-    station->retract_default = !wh_reader_has(reader, "retract");
-    station->retract = read_number(reader, "retract", 300);
-    station->pickup_speed = read_number(reader, "pickup_speed", 20);
+    wh_reader_scalars(reader, station);
+    wh_reader_scalar_from(reader, "stroke", station, by_size(layout, 3, 4, 6));
+    wh_reader_scalar_within(reader, "offset", station, station->stroke / 2, 0, station->stroke);
     const double bottom = station->offset - station->stroke;
+    wh_reader_scalar_within(reader, "release", station, lowered > bottom ? lowered : bottom, bottom,
+                            station->offset);
+    wh_reader_scalar_from(reader, "timeout", station, default_timeout(&layout->physics.vacuum));
+    station->retract_default = !wh_reader_has(reader, "retract");
     station->release_default = !wh_reader_has(reader, "release");
-    station->release =
-        wh_reader_number(reader, "release", lowered > bottom ? lowered : bottom, bottom, station->offset);
-    station->vacuum_delay = read_number(reader, "vacuum_delay", 0);
-    station->timeout = read_number(reader, "timeout", default_timeout(&layout->physics.vacuum));
-    station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
-                                                                                : WH_HANDOVER_SAME_SLICE;
-    station->pickup_acceleration = read_number(reader, "pickup_acceleration", 0);
-    station->wait = read_number(reader, "wait", 0);
     check_stroke(reader, place, station);
     check_speed(reader, layout, station->pickup_speed);
-}
-
-static void read_checks(wh_reader_t *reader, wh_layout_station_t *station) {
-    static const char *const modes[] = {"both", "get", "put", "none", NULL};
-    station->taught = wh_reader_boolean(reader, "taught", true);
-    station->check = (wh_vacuum_check_t)wh_reader_choice(reader, "vacuum_check", WH_VACUUM_CHECK_BOTH, modes);
-    station->retries = wh_reader_whole(reader, "retries", 0, 0, (int32_t)find_range("retries")->most);
-    station->check_map = wh_reader_boolean(reader, "check_map", false);
-    station->map_speed = read_number(reader, "map_speed", 100);
 }
 
 static int compare_names(const void *a, const void *b) {
@@ -198,7 +156,6 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     station->flipper = kind == 3;
     read_place(reader, layout, station, &layout->places[index]);
     read_moves(reader, layout, &layout->places[index], station);
-    read_checks(reader, station);
     if (station->flipper) {
         wh_layout_refuse_field(reader, "face", "nothing: a flipper turns wafers over");
     }

@@ -2,6 +2,7 @@
  * recognize a notch. */
 #include <math.h>
 
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "feasibility_internal.h"
 
@@ -34,7 +35,6 @@ static void say_missed(wh_feasibility_t *check, const wh_layout_beam_t *beam, si
 }
 
 static void check_beam(wh_feasibility_t *check, size_t b, size_t number) {
-    static const char *const stuck[] = {"no", "dark", "lit"};
     const wh_layout_t *layout = check->layout;
     const wh_layout_beam_t *beam = &layout->beams[b];
     const int32_t slots = layout->places[beam->station].slots;
@@ -48,7 +48,8 @@ static void check_beam(wh_feasibility_t *check, size_t b, size_t number) {
     if (layout->doors[b].stuck != WH_BEAM_WORKS) {
         (void)wh_feasibility_add(check, WH_FINDING_SIGHT, beam->station,
                                  "%s: beams[%zu] is stuck (`stuck = \"%s\"`) and tells of no wafer",
-                                 layout->stations[beam->station].name, number, stuck[layout->doors[b].stuck]);
+                                 layout->stations[beam->station].name, number,
+                                 wh_layout_beam_stuck_words[layout->doors[b].stuck]);
         wh_feasibility_warn(check);
     }
 }

@@ -1,9 +1,13 @@
 /* The lists of fields agree with the reader of layouts. Each field of each table is tried in its
  * place, with a value of no type, and left out; the reader must name it, and expect the type in the
- * list. `waferhand definitions` prints these lists. */
+ * list. `waferhand definitions` prints these lists. Each scalar is also read into its struct and refused
+ * beyond its range; those that a simulator goes by are hashed, sent and restored. */
 #include "support/layout.h"
 
-#include "reading/layout_fields.h"
+#include <math.h>
+
+#include "layout/layout_fields.h"
+#include "wire/messages.h"
 
 /* A cell with every table in it, so that each field has a place. */
 static const char base[] =
@@ -48,7 +52,7 @@ static const char first_fault[] = "fault.gripper";
 /* Room for the path of a field. */
 #define PATH_BYTES 300
 
-static size_t tried;
+static size_t tried, tried_scalars, tried_shared;
 
 /* False if the base, changed by this statement, is refused. */
 static bool is_read(const char *statement) {
@@ -63,6 +67,11 @@ static bool is_read(const char *statement) {
         fail_msg("%s", result.message);
     }
     return wh_sandbox_call(L, 1, 1, &result);
+}
+
+/* The layout that is_read has read. */
+static wh_layout_t *layout_read(void) {
+    return lua_touserdata(wh_sandbox_state(sandbox), -1);
 }
 
 /* The expected type of the field at a path, from the refusal of this statement; in `result`. */
@@ -108,23 +117,25 @@ static void expect_choices(const char *type, const char *expected, bool may_be_m
 }
 
 static void expect_type(const wh_reader_field_t *field, const char *expected) {
+    char type[200];
+    wh_field_type(field, type, sizeof type);
     static const char *const plain[][2] = {
         {"number", "a number from "},         {"integer", "a whole number from "},
         {"table<string, string>", "a table"}, {"boolean", "true or false"},
         {"string", "text of 1 to "},          {"number[]", "a list of t"}};
     const char *wanted = NULL;
-    if (field->type[0] == '"') {
+    if (type[0] == '"') {
         const bool is_kind_of_fault = strstr(expected, "command_lost") != NULL;
-        expect_choices(field->type, expected, is_kind_of_fault);
-        wanted = strstr(field->type, "waferhand.") ? "{" : "\"";
-    } else if (strstr(field->type, "waferhand.")) {
+        expect_choices(type, expected, is_kind_of_fault);
+        wanted = strstr(type, "waferhand.") ? "{" : "\"";
+    } else if (strstr(type, "waferhand.")) {
         wanted = "a table";
     }
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; ++i) {
-        wanted = strcmp(field->type, plain[i][0]) == 0 ? plain[i][1] : wanted;
+        wanted = strcmp(type, plain[i][0]) == 0 ? plain[i][1] : wanted;
     }
     if (!wanted || !strstr(expected, wanted)) {
-        fail_msg("%s: the list says %s, the reader expects %s", field->name, field->type, expected);
+        fail_msg("%s: the list says %s, the reader expects %s", field->name, type, expected);
     }
 }
 
@@ -276,7 +287,145 @@ static bool is_needed_in_turn(const char *path, const char *name) {
            (begins_with(path, "stations.") && strcmp(name, "at") == 0) || begins_with(path, "robot.tool");
 }
 
-static void try_field(const char *in, const wh_reader_field_t *field) {
+/* ------------------------------------------------------------------------------------------------ scalars */
+
+/* Where a layout has the struct of a class; null: it is not looked at, or the layout has none. */
+static void *struct_of(const wh_layout_class_t *class, wh_layout_t *layout) {
+    const struct {
+        const char *class;
+        const void *at;
+    } places[] = {{"layout", layout},
+                  {"wafer_size", layout},
+                  {"tolerance", &layout->grasp.tolerance},
+                  {"near", &layout->grasp},
+                  {"placing", &layout->cell},
+                  {"corrections", &layout->corrections},
+                  {"mapping", &layout->mapping},
+                  {"vacuum", &layout->physics.vacuum},
+                  {"pads", &layout->physics.pads},
+                  {"edge_grip", &layout->grips[3].edge},
+                  {"station", layout->stations},
+                  {"sensor", &layout->scanners[0].sensor},
+                  {"believed", &layout->believed[0]},
+                  {"arc", &layout->scanners[0].sensor.hidden[0]},
+                  {"beam", &layout->beams[0]},
+                  {"probe", &layout->probe},
+                  {"rim", layout->rims ? layout->rims[0] : NULL},
+                  {"rim_notch", layout->rims ? &layout->rims[0]->notch : NULL},
+                  {"blade", &layout->shapes.blade},
+                  {"arm", &layout->shapes.arm},
+                  {"ledge", &layout->shapes.ledge},
+                  {"foup", &layout->shapes.shell},
+                  {"spindle", &layout->shapes.chuck}};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; ++i) {
+        if (strcmp(places[i].class, class->name) == 0) {
+            return (char *)(uintptr_t)places[i].at;
+        }
+    }
+    fail_msg("%s has scalars, and this test does not know where", class->name);
+    return NULL;
+}
+
+/* True if both processes go by the struct: it is hashed, and a cell's message has it. */
+static bool is_shared(const char *class, const char *field) {
+    static const char *const shared[] = {"tolerance", "near",   "placing", "vacuum", "pads",
+                                         "edge_grip", "sensor", "arc",     "rim",    "rim_notch"};
+    bool is = strcmp(class, "layout") == 0 && strcmp(field, "homed") != 0;
+    for (size_t i = 0; i < sizeof shared / sizeof shared[0]; ++i) {
+        is = is || strcmp(class, shared[i]) == 0;
+    }
+    return is;
+}
+
+/* A value of the row as Lua has it. */
+static void put_value(const wh_reader_field_t *row, double value, char *text, size_t size) {
+    if (row->kind == WH_SCALAR_SWITCH) {
+        (void)snprintf(text, size, "%s", value > 0 ? "true" : "false");
+    } else if (row->kind == WH_SCALAR_WORD) {
+        (void)snprintf(text, size, "'%s'", row->words[(size_t)value]);
+    } else {
+        (void)snprintf(text, size,
+                       row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES ? "%.17g" : "%.0f",
+                       value);
+    }
+}
+
+/* The other value of a switch, the next word, or a number: as a first try one a little above this one, then one
+ * below it, then one far above. */
+static double change(const wh_reader_field_t *row, double value, int attempt) {
+    if (row->kind == WH_SCALAR_SWITCH) {
+        return 1 - value;
+    }
+    if (row->kind == WH_SCALAR_WORD) {
+        return row->words[(size_t)value + 1] ? value + 1 : 0;
+    }
+    const bool is_whole = row->kind == WH_SCALAR_WHOLE || row->kind == WH_SCALAR_SEED;
+    const double near = fabs(value) > 0 ? value / 512 : (row->most < 1 ? row->most : 1) / 64;
+    return attempt == 2 ? floor((value + row->most) / 2)
+                        : value + (attempt == 1 ? -1 : 1) * (is_whole ? 1 : near);
+}
+
+/* The value comes back in the layout that the other process makes of the message. */
+static void expect_restored(const wh_layout_class_t *class, const wh_reader_field_t *row, double value) {
+    static wh_link_cell_t room;
+    const wh_link_identity_t identity = {.run = 1};
+    assert_true(wh_link_cell_from_layout(layout_read(), &identity, &room));
+    wh_layout_t *restored = wh_link_layout_from_cell(&room.message);
+    assert_non_null(restored);
+    const double got = wh_field_get(row, struct_of(class, restored));
+    wh_link_layout_free(restored);
+    if (!(fabs(got - value) <= 1e-12 * fabs(value))) {
+        fail_msg("%s.%s: %.17g is sent, and comes back as %.17g", class->name, row->name, value, got);
+    }
+    ++tried_shared;
+}
+
+/* Another value of the field is read into the struct; and where both processes go by it, hashed and sent. */
+static void try_other_value(const wh_layout_class_t *class, const char *path, const char *before,
+                            const wh_reader_field_t *row) {
+    char statement[900];
+    char value[40];
+    assert_true(is_read(before));
+    const uint64_t hash = wh_layout_hash(layout_read());
+    const double usual = wh_field_get(row, struct_of(class, layout_read()));
+    double other = usual;
+    bool good = false;
+    for (int attempt = 0; attempt < 3 && !good; ++attempt) {
+        other = change(row, usual, attempt);
+        put_value(row, other, value, sizeof value);
+        (void)snprintf(statement, sizeof statement, "%scell.%s = %s", before, path, value);
+        good = is_read(statement);
+    }
+    if (!good) {
+        fail_msg("%s: %s", statement, result.message);
+    }
+    const double got = wh_field_get(row, struct_of(class, layout_read()));
+    if (!(fabs(got - other) <= 1e-12 * fabs(other))) {
+        fail_msg("%s: %s is read as %.17g", path, value, got);
+    }
+    if (is_shared(class->name, row->name)) {
+        if (wh_layout_hash(layout_read()) == hash) {
+            fail_msg("%s: the hash does not change with it", path);
+        }
+        expect_restored(class, row, other);
+    }
+    ++tried_scalars;
+}
+
+/* Beyond the row's range a number is refused. */
+static void try_beyond(const char *path, const char *before, const wh_reader_field_t *row) {
+    const double step = row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES ? 1e-6 : 1;
+    const double beyond[] = {row->least - step * (1 + fabs(row->least)),
+                             row->most + step * (1 + fabs(row->most))};
+    for (size_t i = 0; i < 2; ++i) {
+        char statement[900];
+        (void)snprintf(statement, sizeof statement, step < 1 ? "%scell.%s = %.17g" : "%scell.%s = %.0f",
+                       before, path, beyond[i]);
+        (void)find_expected(statement, path);
+    }
+}
+
+static void try_field(const wh_layout_class_t *class, const char *in, const wh_reader_field_t *field) {
     char path[PATH_BYTES];
     char statement[900];
     char missed[PATH_BYTES + 30];
@@ -292,6 +441,12 @@ static void try_field(const char *in, const wh_reader_field_t *field) {
         fail_msg("%s: the list says required: %d; %s", path, (int)field->required, result.message);
     }
     ++tried;
+    if (wh_field_is_number(field)) {
+        try_beyond(path, before, field);
+    }
+    if (field->kind != WH_SCALAR_BY_HAND) {
+        try_other_value(class, path, before, field);
+    }
 }
 
 /* The key of a table's only entry of this class. */
@@ -344,7 +499,7 @@ static void try_class(const char *path, const wh_layout_class_t *class) {
         if (is_of_several(field)) {
             continue;
         }
-        try_field(path, field);
+        try_field(class, path, field);
         join(inner, mend_path(path, field->name), field->name);
         try_tables(inner, field->type);
     }
@@ -368,6 +523,8 @@ static void every_field_of_the_lists_is_read_and_has_its_type(void **state) {
         }
     }
     assert_true(tried >= listed); /* an axis, a cylinder, ... stand in several places */
+    assert_in_range(tried_scalars, 110, listed);
+    assert_in_range(tried_shared, 50, tried_scalars);
 }
 
 static void every_kind_of_fault_is_in_one_list(void **state) {

@@ -1,9 +1,9 @@
 /* Every field that a layout may have: the readers refuse all others by these lists, and `waferhand
  * definitions` writes them for editors. */
-#ifndef WH_READING_LAYOUT_FIELDS_H
-#define WH_READING_LAYOUT_FIELDS_H
+#ifndef WH_LAYOUT_LAYOUT_FIELDS_H
+#define WH_LAYOUT_LAYOUT_FIELDS_H
 
-#include "../script/reader.h"
+#include "../script/field.h"
 #include "../sim/faults.h"
 
 /* The tables of one kind. Types of fields name them as waferhand.NAME. */
