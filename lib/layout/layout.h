@@ -210,7 +210,8 @@ typedef struct {
     double dx, dy, late;        /* it truly stands off by this, and both delays are longer by `late` */
 } wh_layout_beam_t;
 
-/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h, wire/told_layout.h. */
+/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h,
+ * wire/told_layout.h. */
 typedef struct {
     const char *path;        /* as the caller named it */
     char tolerance_name[16]; /* the preset's, or "own" */
@@ -279,8 +280,8 @@ typedef struct {
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
-/* The limits of the way of a wafer on this gripper: mm/s, mm/s^2, mm/s^3 of its centre in base. They are the
- * stricter ones of the gripper's and its robot's limits. Each is 0 if there is no limit. */
+/* The limits of the way of a wafer on this gripper: mm/s, mm/s^2, mm/s^3 of its centre in base. They are
+ * the stricter ones of the gripper's and its robot's limits. Each is 0 if there is no limit. */
 wh_limits_t wh_layout_loaded(const wh_layout_t *layout, size_t gripper);
 
 /* True if there is such a limit for any gripper. */
@@ -313,8 +314,8 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout);
 /* The order that arms a station's beams; count 0 if it has none. */
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
 
-/* The order that arms the beams which a robot passes on its way in. Its count is 0 if the robot passes none,
- * or if beams are not for its kind. */
+/* The order that arms the beams which a robot passes on its way in. Its count is 0 if the robot passes
+ * none, or if beams are not for its kind. */
 wh_latch_order_t wh_layout_beams_of(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* True if a PUT of the robot corrects by what the station's beams say. */
@@ -323,8 +324,8 @@ bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot);
 /* True if the robot can use beams and blocks: see WH_AXES_USUAL. One of several robots may stand anywhere. */
 bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot);
 
-/* How far from the layout's place one of several robots was taught a station, in base, mm. With one robot it
- * is zero. */
+/* How far from the layout's place one of several robots was taught a station, in base, mm. With one robot
+ * it is zero. */
 wh_vec3_t wh_layout_aside(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* The order that arms a face of a station's block; count 0 if it has none. */
@@ -342,9 +343,9 @@ wh_block_face_t wh_layout_block_face(const wh_layout_block_t *block, size_t face
 /* Sets up doors[b] anew, where its station stands. */
 void wh_layout_place_beam(wh_layout_t *layout, size_t b);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
- * sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The path is
- * left out. Cost: linear. */
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults,
+ * edge sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The
+ * path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* 64 bits over what the layout's hash leaves out of a collision check: shapes, the arm, and the limits of

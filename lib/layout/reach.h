@@ -11,8 +11,8 @@ typedef struct {
     char text[80];
 } wh_unreached_t;
 
-/* The number of places that are checked at a station: in its first slot, before it, in its last slot, before
- * that. */
+/* The number of places that are checked at a station: in its first slot, before it, in its last slot,
+ * before that. */
 #define WH_REACH_PLACES 4
 
 /* True if the two links reach there, or if there is no such place. Runs call it before they begin, and so

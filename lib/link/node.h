@@ -53,8 +53,8 @@ static inline bool wh_senders_hear(wh_senders_t *senders, uint64_t sender) {
     return is_new;
 }
 
-/* Records all messages that a node hears and sends: see log/recording.h. `open` is called once LCM is open; if it
- * returns false, it has told why. */
+/* Records all messages that a node hears and sends: see log/recording.h. `open` is called once LCM is
+ * open; if it returns false, it has told why. */
 typedef struct {
     bool (*open)(void *user);
     void (*message)(void *user, const char *channel, const void *data, size_t size);
@@ -79,11 +79,11 @@ struct wh_node {
  * process. Such a URL is of memory or of a file. */
 bool wh_node_reaches_others(const char *url);
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL), and then the recorder, if there
- * is one: it may be null. The recorder's user stays the caller's, who closes it after the node. The node must not
- * be moved afterwards. Returns false, and standard error says why, when LCM cannot open it or the recorder cannot
- * begin; nothing is then open. The reason may be a missing multicast route or a bad URL, and names its origin:
- * --lcm-url or the environment. */
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL), and then the recorder, if
+ * there is one: it may be null. The recorder's user stays the caller's, who closes it after the node. The
+ * node must not be moved afterwards. Returns false, and standard error says why, when LCM cannot open it
+ * or the recorder cannot begin; nothing is then open. The reason may be a missing multicast route or a bad
+ * URL, and names its origin: --lcm-url or the environment. */
 bool wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder);
 
 /* Subscribes one channel, whose name must outlive the node. Returns false if there is no room. */

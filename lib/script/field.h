@@ -1,8 +1,9 @@
 /* A field that tables of one kind may have: one row a fact.
  *
- * Readers refuse all fields that have no row, `waferhand definitions` writes the rows for editors, and whoever
- * shows, sends or checks a struct walks them. A scalar's row also says where its table's struct has it, what it
- * is without the field, and within which limits it is read. This header has no Lua. Nothing here allocates.
+ * Readers refuse all fields that have no row, `waferhand definitions` writes the rows for editors, and
+ * whoever shows, sends or checks a struct walks them. A scalar's row also says where its table's struct
+ * has it, what it is without the field, and within which limits it is read. This header has no Lua.
+ * Nothing here allocates.
  */
 #ifndef WH_SCRIPT_FIELD_H
 #define WH_SCRIPT_FIELD_H
@@ -22,8 +23,8 @@ typedef enum {
     WH_SCALAR_WORD     /* an enumeration: the word's index */
 } wh_scalar_kind_t;
 
-/* A default that follows from other fields, which the reader's code gives; and the value that the struct has
- * before it is read. */
+/* A default that follows from other fields, which the reader's code gives; and the value that the struct
+ * has before it is read. */
 #define WH_FIELD_FOLLOWS ((double)NAN)
 #define WH_FIELD_KEPT ((double)INFINITY)
 

@@ -453,23 +453,29 @@ int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const
 
 /* ------------------------------------------------------------------------------------------------ scalars */
 
-static void read_row(wh_reader_t *reader, const wh_reader_field_t *row, void *into, double fallback,
-                     double least, double most) {
-    const bool is_real = row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES;
-    if (!is_real && isinf(fallback)) {
-        fallback = wh_field_get(row, into);
-    }
-    if (row->kind == WH_SCALAR_SWITCH) {
-        wh_field_set(row, wh_reader_boolean(reader, row->name, fallback > 0) ? 1 : 0, into);
-    } else if (row->kind == WH_SCALAR_WORD) {
-        wh_field_set(row, wh_reader_choice(reader, row->name, (int)fallback, row->words), into);
-    } else if (!is_real) {
-        const int32_t usual = fallback < least ? (int32_t)least - 1 : (int32_t)fallback;
-        wh_field_set(row, wh_reader_whole(reader, row->name, usual, (int32_t)least, (int32_t)most), into);
-    } else if (wh_reader_has(reader, row->name) || isfinite(fallback)) { /* a kept number keeps its bits */
+/* A number; a kept one that the table does not have keeps its bits. */
+static void read_real(wh_reader_t *reader, const wh_reader_field_t *row, void *into, double fallback,
+                      double least, double most) {
+    if (wh_reader_has(reader, row->name) || isfinite(fallback)) {
         wh_field_set(row, wh_reader_number(reader, row->name, fallback, least, most), into);
     } else if (row->required) {
         (void)wh_reader_number(reader, row->name, WH_REAL(NAN), least, most);
+    }
+}
+
+static void read_row(wh_reader_t *reader, const wh_reader_field_t *row, void *into, double fallback,
+                     double least, double most) {
+    if (row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES) {
+        read_real(reader, row, into, fallback, least, most);
+        return;
+    }
+    const int32_t usual = (int32_t)(isinf(fallback) ? wh_field_get(row, into) : fallback);
+    if (row->kind == WH_SCALAR_SWITCH) {
+        wh_field_set(row, wh_reader_boolean(reader, row->name, usual > 0) ? 1 : 0, into);
+    } else if (row->kind == WH_SCALAR_WORD) {
+        wh_field_set(row, wh_reader_choice(reader, row->name, usual, row->words), into);
+    } else {
+        wh_field_set(row, wh_reader_whole(reader, row->name, usual, (int32_t)least, (int32_t)most), into);
     }
 }
 

@@ -27,8 +27,8 @@ typedef struct {
 /* Starts at the table on top of L's stack. `file` must outlive the reader. */
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 
-/* Raises "file: path.field: value (expected ...)" for the value on top of the stack. If `field` is null, the
- * value is the table itself. */
+/* Raises "file: path.field: value (expected ...)" for the value on top of the stack. If `field` is null,
+ * the value is the table itself. */
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
@@ -88,9 +88,9 @@ void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback
  * absent. */
 int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const char *const choices[]);
 
-/* A scalar by its row among the known fields of the table being read, into the struct that the row is about:
- * within the row's range, and without the field the row's default. The other two take another default, and
- * another range. */
+/* A scalar by its row among the known fields of the table being read, into the struct that the row is
+ * about: within the row's range, and without the field the row's default. The other two take another
+ * default, and another range. */
 void wh_reader_scalar(wh_reader_t *reader, const char *field, void *into);
 void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, double fallback);
 void wh_reader_scalar_within(wh_reader_t *reader, const char *field, void *into, double fallback,

@@ -105,8 +105,8 @@ static bool take_edges(const waferhand_cell *cell, wh_layout_t *layout) {
     return sound && taken == cell->edge_count;
 }
 
-/* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the same
- * way. */
+/* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the
+ * same way. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
     physics->slice_s = (wh_real_t)cell->slice_us / 1e6;

@@ -279,8 +279,8 @@ static const char *prepare(const char *path) {
     return prepare_body(path);
 }
 
-/* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a SCARA its links, a
- * URDF its tools, and a station `at` or the axes that its arm has. */
+/* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a SCARA its
+ * links, a URDF its tools, and a station `at` or the axes that its arm has. */
 static bool is_needed_in_turn(const char *path, const char *name) {
     return begins_with(path, "obstacles") || begins_with(path, "doors") || strcmp(name, "links") == 0 ||
            begins_with(path, "stations.A.axes.") ||
@@ -350,8 +350,8 @@ static void put_value(const wh_reader_field_t *row, double value, char *text, si
     }
 }
 
-/* The other value of a switch, the next word, or a number: as a first try one a little above this one, then one
- * below it, then one far above. */
+/* The other value of a switch, the next word, or a number: as a first try one a little above this one,
+ * then one below it, then one far above. */
 static double change(const wh_reader_field_t *row, double value, int attempt) {
     if (row->kind == WH_SCALAR_SWITCH) {
         return 1 - value;
