@@ -213,7 +213,10 @@ typedef struct {
 /* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h,
  * wire/told_layout.h. */
 typedef struct {
-    const char *path;        /* as the caller named it */
+    /* ------------------------------------------------------------------------------------------ the file */
+    const char *path;           /* as the caller named it */
+    const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
+    /* ------------------------------------------------------------------------------- how a run is judged */
     char tolerance_name[16]; /* the preset's, or "own" */
     /* of "own": the layout does not give projz, projxy, planar, and the paper's stands */
     bool tolerance_default[WH_TOLERANCE_LIMITS];
@@ -223,6 +226,9 @@ typedef struct {
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
+    wh_corrections_t corrections; /* the largest ones that a command may ask for */
+    wh_mapping_t mapping;
+    /* --------------------------------------------------------------------------------------- the machine */
     wh_physics_t physics; /* vacuum, pads, faults at the start */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
     bool axes_untold;     /* made of a message, which tells what an axis moves only for doors */
@@ -235,8 +241,7 @@ typedef struct {
     uint8_t carried_by[WH_GRIPPERS]; /* the arm of each gripper, or WH_WORLD_NO_ARM */
     bool homed;                      /* false: commands that rely on the arm's position need a HOME first */
     wh_layout_door_t *door_list;     /* machine.door_count of them, sorted by name */
-    wh_corrections_t corrections;    /* the largest ones that a command may ask for */
-    wh_mapping_t mapping;
+    /* --------------------------------------------------------------------- grippers, stations and wafers */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */
@@ -244,12 +249,14 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
+    /* ----------------------------------------------------------------------------------- faces and grips */
     /* Wafers may come to lie face down: cell.thickness is theirs, and simulators have grips (grips.h). */
     bool has_faces;
     wh_grip_t grips[WH_GRIPPERS];
     const wh_edge_wafer_t *edge_wafers; /* by wafer what edge grips meet; null where there are none */
     const wh_pose_t *supports;          /* the planes that take wafers over from passive pads */
     size_t support_count;
+    /* --------------------------------------------------------------------- beams, probe and edge sensors */
     /* The beams at stations' doors, those of a station one after another, with their electronics as they
      * truly are, and by gripper the blades that break them. */
     wh_layout_beam_t beams[WH_BEAMS];
@@ -264,17 +271,18 @@ typedef struct {
     size_t scanner_count;
     const wh_rim_t *nominal_rim;
     const wh_rim_t *const *rims;
+    /* ----------------------------------------------------------------------------- places and collisions */
     wh_cell_t cell;  /* the places, with the tolerance and how wafers are set down */
     bool collision;  /* check for contact in each slice */
     bool look_ahead; /* and before each command that moves */
     wh_shapes_t shapes;
     wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
+    size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
+    /* --------------------------------------------------------------------- what reports and studies take */
     wh_errors_t *errors;  /* what a study draws; null: no `study` */
     const char **guesses; /* numbers that look as if they were in another unit: field, value, unit; sorted */
     size_t guess_count;
-    const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
-    size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
 } wh_layout_t;
 
 /* Fills in `cell` from the places and the tolerance, which must have been read. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../layout/grips.h"
+#include "members.h"
 #include "messages.h"
 
 static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
@@ -43,50 +44,21 @@ static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
 
 static void put_sensor(const wh_scanner_t *scanner, double hidden[2][WH_SENSOR_ARCS],
                        waferhand_edge_sensor *out) {
-    const wh_sensor_t *sensor = &scanner->sensor;
-    *out = (waferhand_edge_sensor){.gripper = scanner->gripper,
-                                   .seed = (int64_t)scanner->seed,
-                                   .direction = sensor->direction,
-                                   .middle = sensor->middle,
-                                   .length = sensor->length,
-                                   .pixel = sensor->pixel,
-                                   .samples = sensor->samples,
-                                   .encoder = sensor->encoder,
-                                   .noise = sensor->noise,
-                                   .tilt = sensor->tilt,
-                                   .offset = sensor->error.offset,
-                                   .zero = sensor->error.zero,
-                                   .gain = sensor->error.gain,
-                                   .latency = sensor->error.latency,
-                                   .hidden_count = sensor->hidden_count,
-                                   .hidden_from = hidden[0],
-                                   .hidden_width = hidden[1]};
-    for (int32_t i = 0; i < sensor->hidden_count; ++i) {
-        hidden[0][i] = sensor->hidden[i].from;
-        hidden[1][i] = sensor->hidden[i].width;
+    wh_members_put(wh_sensor_members, scanner, out);
+    out->hidden_from = hidden[0];
+    out->hidden_width = hidden[1];
+    for (int32_t i = 0; i < scanner->sensor.hidden_count; ++i) {
+        hidden[0][i] = scanner->sensor.hidden[i].from;
+        hidden[1][i] = scanner->sensor.hidden[i].width;
     }
 }
 
 static void put_rim(const wh_rim_t *rim, int32_t wafer, double chips[3][WH_RIM_CHIPS], waferhand_rim *out) {
-    *out = (waferhand_rim){.wafer = wafer,
-                           .radius = rim->radius,
-                           .notch_direction = rim->notch.direction,
-                           .notch_depth = rim->notch.depth,
-                           .notch_opening = rim->notch.opening,
-                           .notch_bottom = rim->notch.bottom,
-                           .notch_corner = rim->notch.corner,
-                           .bow = rim->bow,
-                           .saddle = rim->saddle,
-                           .saddle_direction = rim->saddle_direction,
-                           .transmission = rim->transmission,
-                           .chip_count = rim->chip_count,
-                           .chip_direction = chips[0],
-                           .chip_width = chips[1],
-                           .chip_depth = chips[2]};
-    for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
-        out->flat_direction[i] = rim->flats[i].direction;
-        out->flat_length[i] = rim->flats[i].length;
-    }
+    wh_members_put(wh_rim_members, rim, out);
+    out->wafer = wafer;
+    out->chip_direction = chips[0];
+    out->chip_width = chips[1];
+    out->chip_depth = chips[2];
     for (int32_t i = 0; i < rim->chip_count; ++i) {
         chips[0][i] = rim->chips[i].direction;
         chips[1][i] = rim->chips[i].width;
@@ -94,44 +66,11 @@ static void put_rim(const wh_rim_t *rim, int32_t wafer, double chips[3][WH_RIM_C
     }
 }
 
-static void put_vector(double x, double y, double z, double out[3]) {
-    out[0] = x;
-    out[1] = y;
-    out[2] = z;
-}
-
-static void put_touch(const wh_door_beam_t *door, waferhand_door_beam *out) {
-    const wh_touch_face_t *touch = &door->touch;
-    out->gripper = door->gripper;
-    out->low = 0;
-    out->high = 0;
-    out->reach[0] = touch->along;
-    out->reach[1] = touch->aside;
-    out->ball_radius = touch->radius;
-    out->noise = door->noise;
-    memcpy(out->ball, touch->ball, sizeof out->ball);
-    memcpy(out->point, touch->middle, sizeof out->point);
-    memcpy(out->direction, touch->normal, sizeof out->direction);
-    memcpy(out->edge, touch->edge, sizeof out->edge);
-}
-
 static void put_beam(const wh_layout_t *layout, size_t b, waferhand_door_beam *out) {
     const wh_door_beam_t *door = &layout->doors[b];
-    const wh_beam_t *beam = &door->beam;
-    *out = (waferhand_door_beam){.station = layout->beams[b].station,
-                                 .seed = (int64_t)door->seed,
-                                 .low = beam->low,
-                                 .high = beam->high,
-                                 .delay_on = door->delay_on,
-                                 .delay_off = door->delay_off,
-                                 .jitter = door->jitter,
-                                 .stuck = (int32_t)door->stuck,
-                                 .gripper = WH_NONE};
-    put_vector(beam->x, beam->y, beam->z, out->point);
-    put_vector(beam->ex, beam->ey, beam->ez, out->direction);
-    if (door->kind == WH_DOOR_TOUCH) {
-        put_touch(door, out);
-    }
+    out->station = layout->beams[b].station;
+    out->gripper = WH_NONE;
+    wh_members_put(door->kind == WH_DOOR_TOUCH ? wh_touch_members : wh_light_members, door, out);
 }
 
 static void put_beams(const wh_layout_t *layout, wh_link_cell_t *room) {
@@ -171,11 +110,8 @@ static void put_edges(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
     message->edges = room->edges;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        const wh_edge_t *edge = &layout->grips[g].edge;
         if (layout->grips[g].kind == WH_GRIP_EDGE) {
-            room->edges[message->edge_count++] = (waferhand_edge_grip){
-                edge->radius,    edge->rest,         edge->plunger,    edge->alpha, edge->clearance,
-                edge->retracted, edge->gripped_from, edge->gripped_to, edge->end,   edge->speed};
+            wh_members_put(wh_edge_members, &layout->grips[g].edge, &room->edges[message->edge_count++]);
         }
     }
 }
@@ -194,31 +130,11 @@ static void put_doors(const wh_layout_t *layout, wh_link_cell_t *room) {
     room->message.door_count = (int32_t)machine->door_count;
     room->message.doors = room->doors;
     for (size_t d = 0; d < machine->door_count; ++d) {
-        const wh_door_t *door = &machine->doors[d];
         waferhand_door *out = &room->doors[d];
-        *out = (waferhand_door){.name = wh_link_borrowed(layout->door_list[d].name),
-                                .axis = (int32_t)wh_machine_door_axis(machine, d),
-                                .travel = door->travel,
-                                .open = door->is_open ? 1 : 0,
-                                .speed = door->limits.speed,
-                                .acceleration = door->limits.acceleration,
-                                .jerk = door->limits.jerk};
-        put_vector(door->way.x, door->way.y, door->way.z, out->way);
+        wh_members_put(wh_door_members, &machine->doors[d], out);
+        out->name = wh_link_borrowed(layout->door_list[d].name);
+        out->axis = (int32_t)wh_machine_door_axis(machine, d);
     }
-}
-
-static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
-    message->vacuum_build = physics->vacuum.build;
-    message->vacuum_vent = physics->vacuum.vent;
-    message->vacuum_idle = physics->vacuum.idle;
-    message->vacuum_sensor_on = physics->vacuum.on;
-    message->vacuum_sensor_off = physics->vacuum.off;
-    message->vacuum_release = physics->vacuum.release;
-    message->pads_friction = physics->pads.friction;
-    message->pads_force = physics->pads.force;
-    message->pads_mass = physics->pads.mass;
-    message->pads_gravity = physics->pads.gravity;
-    message->fault_count = (int32_t)physics->fault_count;
 }
 
 static int8_t collision_of(const wh_layout_t *layout) {
@@ -239,25 +155,13 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->run = identity->run;
     message->layout_hash = (int64_t)identity->layout_hash;
     message->layout = wh_link_borrowed(layout->path);
-    message->slice_us = layout->slice_us;
-    message->eps_projz = layout->grasp.tolerance.projz;
-    message->eps_projxy = layout->grasp.tolerance.projxy;
-    message->eps_planar = layout->grasp.tolerance.planar;
-    message->near_projz = layout->grasp.near_projz;
-    message->near_projxy = layout->grasp.near_projxy;
-    message->check = layout->grasp.check == WH_CHECK_SWEPT ? 1 : 0;
-    message->seat = layout->grasp.seat ? 1 : 0;
-    message->settle = layout->cell.settle ? 1 : 0;
-    message->off_centre = layout->cell.off_centre;
-    message->askew = layout->cell.askew;
-    message->drop = layout->cell.drop;
-    message->thickness = layout->cell.thickness;
+    wh_members_put(wh_cell_members, layout, message);
     message->collision = collision_of(layout);
     message->world_hash = (int64_t)wh_layout_world_hash(layout);
     message->gripper_count = (int32_t)layout->machine.gripper_count;
     message->station_count = (int32_t)layout->station_count;
     message->wafer_count = (int32_t)layout->wafer_count;
-    put_physics(&layout->physics, message);
+    message->fault_count = (int32_t)layout->physics.fault_count;
     put_lists(layout, room);
     put_doors(layout, room);
     put_scanning(layout, room);

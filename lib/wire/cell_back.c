@@ -4,6 +4,7 @@
 
 #include "../layout/grips.h"
 #include "../text/array.h"
+#include "members.h"
 #include "messages.h"
 
 static bool take_name(const char *from, char to[WH_NAME_SIZE]) {
@@ -34,23 +35,14 @@ static bool checks_fit(const waferhand_cell *cell) {
            cell->slice_us <= 1000000;
 }
 
+/* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the
+ * same way. */
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
-    wh_grasp_config_t *grasp = &layout->grasp;
-    grasp->tolerance.projz = cell->eps_projz;
-    grasp->tolerance.projxy = cell->eps_projxy;
-    grasp->tolerance.planar = cell->eps_planar;
-    grasp->near_projz = cell->near_projz;
-    grasp->near_projxy = cell->near_projxy;
-    grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
-    grasp->seat = cell->seat != 0;
-    layout->slice_us = cell->slice_us;
-    layout->cell.settle = cell->settle != 0;
-    layout->cell.off_centre = cell->off_centre;
-    layout->cell.askew = cell->askew;
-    layout->cell.drop = cell->drop;
-    layout->cell.thickness = layout->wafer_thickness = cell->thickness;
+    wh_members_take(wh_cell_members, cell, layout);
+    layout->wafer_thickness = cell->thickness;
     layout->has_faces = cell->thickness > 0;
-    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && checks_fit(cell);
+    layout->physics.slice_s = (wh_real_t)cell->slice_us / 1e6;
+    return wh_tolerance_validate(&layout->grasp.tolerance) == WH_OK && checks_fit(cell);
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
@@ -96,24 +88,14 @@ static bool take_edges(const waferhand_cell *cell, wh_layout_t *layout) {
         if (taken == cell->edge_count) {
             return false;
         }
-        const waferhand_edge_grip *in = &cell->edges[taken++];
-        layout->grips[g].edge =
-            (wh_edge_t){in->radius,    in->rest,         in->plunger,    in->alpha, in->clearance,
-                        in->retracted, in->gripped_from, in->gripped_to, in->end,   in->speed};
+        wh_members_take(wh_edge_members, &cell->edges[taken++], &layout->grips[g].edge);
         sound = sound && wh_edge_validate(&layout->grips[g].edge) == WH_OK;
     }
     return sound && taken == cell->edge_count;
 }
 
-/* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the
- * same way. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
-    physics->slice_s = (wh_real_t)cell->slice_us / 1e6;
-    physics->vacuum =
-        (wh_vacuum_config_t){cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
-                             cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
-    physics->pads = (wh_pads_t){cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
     physics->fault_count = (size_t)cell->fault_count;
     for (size_t i = 0; i < physics->fault_count; ++i) {
         physics->faults[i] = wh_link_take_fault(&cell->faults[i]);
@@ -121,42 +103,20 @@ static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     return wh_physics_validate(physics, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
-static wh_scanner_t take_sensor(const waferhand_edge_sensor *in, const wh_layout_t *layout) {
-    wh_scanner_t scanner = {.gripper = in->gripper,
-                            .seed = (uint64_t)in->seed,
-                            .sensor = {.direction = in->direction,
-                                       .middle = in->middle,
-                                       .length = in->length,
-                                       .pixel = in->pixel,
-                                       .samples = in->samples,
-                                       .encoder = in->encoder,
-                                       .noise = in->noise,
-                                       .tilt = in->tilt,
-                                       .error = {in->offset, in->zero, in->gain, in->latency},
-                                       .hidden_count = in->hidden_count}};
+static void take_sensor(const waferhand_edge_sensor *in, const wh_layout_t *layout, wh_scanner_t *scanner) {
+    wh_members_take(wh_sensor_members, in, scanner);
     for (int32_t i = 0; i < in->hidden_count; ++i) {
-        scanner.sensor.hidden[i] = (wh_arc_t){in->hidden_from[i], in->hidden_width[i]};
+        scanner->sensor.hidden[i] = (wh_arc_t){in->hidden_from[i], in->hidden_width[i]};
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
         if (layout->places[s].chuck == in->gripper) {
-            scanner.base_from_station = layout->places[s].base_from_station;
+            scanner->base_from_station = layout->places[s].base_from_station;
         }
     }
-    return scanner;
 }
 
 static void take_rim(const waferhand_rim *in, wh_rim_t *rim) {
-    *rim = (wh_rim_t){.radius = in->radius,
-                      .notch = {in->notch_direction, in->notch_depth, in->notch_opening, in->notch_bottom,
-                                in->notch_corner},
-                      .chip_count = in->chip_count,
-                      .bow = in->bow,
-                      .saddle = in->saddle,
-                      .saddle_direction = in->saddle_direction,
-                      .transmission = in->transmission};
-    for (size_t i = 0; i < WH_RIM_FLATS; ++i) {
-        rim->flats[i] = (wh_flat_shape_t){in->flat_direction[i], in->flat_length[i]};
-    }
+    wh_members_take(wh_rim_members, in, rim);
     for (int32_t i = 0; i < in->chip_count; ++i) {
         rim->chips[i] = (wh_chip_t){in->chip_direction[i], in->chip_width[i], in->chip_depth[i]};
     }
@@ -186,38 +146,15 @@ static bool take_rims(const waferhand_cell *cell, wh_layout_t *layout, const wh_
 static bool take_scanning(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->scanner_count = (size_t)cell->sensor_count;
     for (int32_t i = 0; i < cell->sensor_count; ++i) {
-        layout->scanners[i] = take_sensor(&cell->sensors[i], layout);
+        take_sensor(&cell->sensors[i], layout, &layout->scanners[i]);
     }
     const wh_scanning_t scanning = wh_layout_scanning(layout);
     return wh_scanning_validate(&scanning, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
-static wh_door_beam_t take_touch(const waferhand_door_beam *in) {
-    wh_door_beam_t door = {.seed = (uint64_t)in->seed,
-                           .stuck = (wh_beam_stuck_t)in->stuck,
-                           .kind = WH_DOOR_TOUCH,
-                           .touch = {.along = in->reach[0], .aside = in->reach[1], .radius = in->ball_radius},
-                           .gripper = in->gripper,
-                           .noise = in->noise};
-    memcpy(door.touch.middle, in->point, sizeof door.touch.middle);
-    memcpy(door.touch.normal, in->direction, sizeof door.touch.normal);
-    memcpy(door.touch.edge, in->edge, sizeof door.touch.edge);
-    memcpy(door.touch.ball, in->ball, sizeof door.touch.ball);
-    return door;
-}
-
-static wh_door_beam_t take_beam(const waferhand_door_beam *in) {
-    if (in->gripper != WH_NONE) {
-        return take_touch(in);
-    }
-    const wh_door_beam_t door = {.beam = {in->point[0], in->point[1], in->point[2], in->direction[0],
-                                          in->direction[1], in->direction[2], in->low, in->high},
-                                 .delay_on = in->delay_on,
-                                 .delay_off = in->delay_off,
-                                 .jitter = in->jitter,
-                                 .seed = (uint64_t)in->seed,
-                                 .stuck = (wh_beam_stuck_t)in->stuck};
-    return door;
+static void take_beam(const waferhand_door_beam *in, wh_door_beam_t *door) {
+    door->kind = in->gripper != WH_NONE ? WH_DOOR_TOUCH : WH_DOOR_LIGHT;
+    wh_members_take(door->kind == WH_DOOR_TOUCH ? wh_touch_members : wh_light_members, in, door);
 }
 
 /* Beams come before faces, and both are sorted by station. */
@@ -232,7 +169,7 @@ static bool take_beams(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->beam_count = (size_t)cell->beam_count;
     for (int32_t b = 0; b < cell->beam_count; ++b) {
         const int32_t station = cell->beams[b].station;
-        layout->doors[b] = take_beam(&cell->beams[b]);
+        take_beam(&cell->beams[b], &layout->doors[b]);
         layout->beams[b].station = station;
         sound = sound && wh_is_index(station, layout->station_count) &&
                 (b == 0 || is_behind(&cell->beams[b - 1], &cell->beams[b]));
@@ -263,13 +200,6 @@ static bool take_edge_wafers(wh_layout_t *layout) {
     return sound;
 }
 
-static wh_door_t take_door(const waferhand_door *in) {
-    return (wh_door_t){.way = wh_vec3(in->way[0], in->way[1], in->way[2]),
-                       .travel = in->travel,
-                       .is_open = in->open != 0,
-                       .limits = {in->speed, in->acceleration, in->jerk}};
-}
-
 /* Takes the doors; their axes follow one another, behind those of the robot. */
 static bool take_doors(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_door_t *doors = wh_array_new((size_t)cell->door_count + 1, sizeof *doors);
@@ -280,7 +210,7 @@ static bool take_doors(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->door_list = wh_array_new((size_t)cell->door_count + 1, sizeof *layout->door_list);
     for (int32_t d = 0; sound && d < cell->door_count; ++d) {
         const waferhand_door *in = &cell->doors[d];
-        doors[d] = take_door(in);
+        wh_members_take(wh_door_members, in, &doors[d]);
         sound = take_name(in->name, layout->door_list[d].name) && in->axis == cell->doors[0].axis + d &&
                 in->axis >= WH_ROBOT_AXES && in->axis < WH_AXES && wh_door_validate(&doors[d]) == WH_OK;
         machine->axis_count = (size_t)in->axis + 1;
