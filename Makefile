@@ -62,7 +62,7 @@ run: ## plays the two examples of the paper; installs what is missing for it
 spy: ## opens lcm-spy, with our messages decoded and a view of the proximity check
 	$(NEED) spy
 	$(BUILD) spy
-	@lib/link/spy/start build/spy/types.jar
+	@lib/spy/start build/spy/types.jar
 
 view: all ## shows a cell live in a web browser: fetches Drake's viewer, says what to start beside it
 	$(NEED) run view

@@ -176,7 +176,7 @@ bool wh_broadcast_open(wh_broadcast_t *broadcast, const char *program, const wh_
     broadcast->is_watched = is_lcm || record->all;
     wh_record_arguments_apply(record, program, true, &broadcast->record);
     if ((is_lcm && !wh_node_reaches_others(place)) ||
-        !wh_node_open(&broadcast->node, place, &broadcast->record)) {
+        !wh_recording_open_node(&broadcast->record, &broadcast->node, place)) {
         return false;
     }
     if (!wh_mcs_process_open(&broadcast->control, &broadcast->node, &lockstep)) {

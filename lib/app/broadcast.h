@@ -4,6 +4,7 @@
 #define WH_APP_BROADCAST_H
 
 #include "../link/sim_process.h"
+#include "../log/recording.h"
 #include "../view/view.h"
 #include "connection.h"
 

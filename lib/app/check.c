@@ -212,7 +212,7 @@ static int at(lua_State *L) {
 static void push_kinds(lua_State *L, const checked_t *checked) {
     lua_newtable(L);
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        const char *why = wh_log_layout_lacks(&checked->run.cell, (wh_event_kind_t)kind);
+        const char *why = wh_told_layout_lacks(&checked->run.cell, (wh_event_kind_t)kind);
         if (why) {
             lua_pushstring(L, why);
         } else {

@@ -60,7 +60,8 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
     const char *program = options->program ? options->program : "mcs";
     wh_catch_signals();
     wh_record_arguments_apply(&options->record, program, false, &link->record);
-    if (!wh_node_reaches_others(options->url) || !wh_node_open(&link->node, options->url, &link->record)) {
+    if (!wh_node_reaches_others(options->url) ||
+        !wh_recording_open_node(&link->record, &link->node, options->url)) {
         return false;
     }
     link->node.speaker = program;

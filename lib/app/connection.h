@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include "../link/mcs_process.h"
+#include "../log/recording.h"
 #include "../text/options.h"
 
 /* The ending of the noun behind a count. */

@@ -255,8 +255,8 @@ static void compare_documents(const side_t sides[2], result_t *result) {
 /* Runs of two layouts may be equal, slice by slice, so a difference of the layouts is told first. If a
  * layout's file is missing, its shapes and limits are not known. */
 static void compare_layouts(const side_t sides[2], result_t *result) {
-    const wh_log_layout_t *a = &sides[0].run->cell;
-    const wh_log_layout_t *b = &sides[1].run->cell;
+    const wh_told_layout_t *a = &sides[0].run->cell;
+    const wh_told_layout_t *b = &sides[1].run->cell;
     for (size_t i = 0; i < 2; ++i) {
         if (!sides[i].run->cell.is_whole) {
             fprintf(stderr, "%s: shapes are the defaults of 300 mm wafers: %s\n", sides[i].path,

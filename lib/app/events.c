@@ -88,11 +88,11 @@ static const wh_command_line_t command_line = {
     .check = check};
 
 /* True if the cell has these wafers, and may have events of these kinds; `whose` cell it is. */
-static bool fits(const arguments_t *arguments, const wh_log_layout_t *cell, const char *whose) {
+static bool fits(const arguments_t *arguments, const wh_told_layout_t *cell, const char *whose) {
     for (size_t i = 0; i < arguments->kinds.count; ++i) {
         const char *name = arguments->kinds.items[i];
         for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-            const char *why = wh_log_layout_lacks(cell, (wh_event_kind_t)kind);
+            const char *why = wh_told_layout_lacks(cell, (wh_event_kind_t)kind);
             if (why && strcmp(name, wh_event_name((wh_event_kind_t)kind)) == 0) {
                 fprintf(stderr, "--kind: %s: %s\n", name, why);
                 return false;
@@ -137,7 +137,7 @@ static int print(const arguments_t *arguments, const wh_log_run_t *run) {
     return wh_app_is_printed(status) ? wh_log_arguments_judge(&arguments->log, run) : WH_EXIT_USAGE;
 }
 
-static bool on_cell(void *user, const wh_log_layout_t *cell) {
+static bool on_cell(void *user, const wh_told_layout_t *cell) {
     return fits(user, cell, "simulator");
 }
 

@@ -3,9 +3,9 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "../link/messages.h"
 #include "../link/node.h"
 #include "../record/seat.h"
+#include "../wire/messages.h"
 #include "app.h"
 #include "connection.h"
 
@@ -14,7 +14,7 @@
 
 typedef struct {
     const wh_events_live_t *live;
-    wh_log_layout_t cell;
+    wh_told_layout_t cell;
     wh_link_arrays_t arrays;
     wh_record_t record;
     int64_t run, seq;
@@ -24,14 +24,14 @@ typedef struct {
 
 static void on_cell(void *user, const void *data, size_t size) {
     ear_t *ear = user;
-    const wh_log_layout_options_t nothing = {NULL, NULL, 0};
+    const wh_told_layout_options_t nothing = {NULL, NULL, 0};
     waferhand_cell message;
     if (!wh_link_decode_cell(data, size, &message)) {
         return;
     }
     if (!ear->cell.layout || ear->cell.hash != (uint64_t)message.layout_hash) {
-        wh_log_layout_free(&ear->cell);
-        if (wh_log_layout_make(&ear->cell, &message, &nothing)) {
+        wh_told_layout_free(&ear->cell);
+        if (wh_told_layout_make(&ear->cell, &message, &nothing)) {
             ear->ended = ear->ended || !ear->live->cell(ear->live->user, &ear->cell);
         }
     }
@@ -111,6 +111,6 @@ int wh_events_live(const wh_events_live_t *live) {
     const int status = listen(&node, &ear);
     wh_node_close(&node);
     wh_record_free(&ear.record);
-    wh_log_layout_free(&ear.cell);
+    wh_told_layout_free(&ear.cell);
     return status;
 }

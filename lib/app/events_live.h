@@ -2,13 +2,13 @@
 #ifndef WH_APP_EVENTS_LIVE_H
 #define WH_APP_EVENTS_LIVE_H
 
-#include "../log/log_layout.h"
 #include "../record/record.h"
+#include "../wire/told_layout.h"
 
 typedef struct {
     const char *url; /* null: the default */
     /* A new cell was heard: the first one or another one. False ends it. */
-    bool (*cell)(void *user, const wh_log_layout_t *cell);
+    bool (*cell)(void *user, const wh_told_layout_t *cell);
     /* Another run was heard, also after RESET, RESTORE or UNDO. Runs count from the first one heard, which is
      * not told. `utime` is where the new run goes on. False ends it. */
     bool (*run)(void *user, int64_t number, int64_t utime);

@@ -1,9 +1,10 @@
 /* waferhand layout LAYOUT */
 #include <stdlib.h>
 
-#include "../layout/drawing.h"
-#include "../mcs/survey.h"
+#include "../print/drawing.h"
 #include "../print/layout_print.h"
+#include "../reading/layout_read.h"
+#include "../survey/survey.h"
 #include "../text/array.h"
 #include "apart.h"
 #include "app.h"

@@ -78,7 +78,7 @@ bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_liste
 
 bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks) {
     const wh_log_run_options_t *given = &run->options;
-    const wh_log_layout_t *cell = &run->cell;
+    const wh_told_layout_t *cell = &run->cell;
     for (size_t i = 0; i < given->layout.parameter_count; ++i) {
         const char *assignment = given->layout.parameters[i];
         const int name = (int)strcspn(assignment, "=");

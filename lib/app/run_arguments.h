@@ -3,7 +3,7 @@
 #ifndef WH_APP_RUN_ARGUMENTS_H
 #define WH_APP_RUN_ARGUMENTS_H
 
-#include "../link/recording.h"
+#include "../log/recording.h"
 #include "../mcs/script_run.h"
 #include "../print/record_print.h"
 #include "../report/document.h"

@@ -8,6 +8,7 @@
 
 #include "../link/outputs.h"
 #include "../link/sim_process.h"
+#include "../log/recording.h"
 #include "../text/json.h"
 #include "../text/style.h"
 #include "../view/view.h"
@@ -224,7 +225,7 @@ static int run(arguments_t *arguments) {
     }
     wh_catch_signals();
     wh_record_arguments_apply(&arguments->record, "sim", false, &record);
-    if (!wh_node_reaches_others(arguments->url) || !wh_node_open(&node, arguments->url, &record)) {
+    if (!wh_node_reaches_others(arguments->url) || !wh_recording_open_node(&record, &node, arguments->url)) {
         return WH_EXIT_USAGE;
     }
     node.speaker = "sim";

@@ -83,7 +83,8 @@ BASE := $(SAME_BITS) $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \
         $(if $(WERROR),-Werror) $(SETTINGS)
 LIBRARY_FLAGS := $(if $(GNU),-std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS),$(SETTINGS)) -DWH_BUILDING_LIBRARY
 COLLISION_FLAGS = $(LIBRARY_FLAGS) $(call package_flags,ccd)
-HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
+# A row of a table of fields that is no scalar ends with what a scalar has: all of it zero.
+HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS) -Wno-missing-field-initializers
 
 # Code from lcm-gen is not clean under our warnings. We do not warn about its headers or those of other packages either.
 MESSAGE_FLAGS := -std=c99 -D_GNU_SOURCE -ffile-prefix-map=$(CURDIR)=.
@@ -159,7 +160,7 @@ $(COLLISION_SUPPORT): FLAGS = $(COLLISION_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
 # liburdfdom's headers throw.
-$(B)/obj/lib/layout/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
+$(B)/obj/lib/bodies/urdf_file.o: FLAGS += -fexceptions -frtti $(URDF_FLAGS)
 # Only Eigen's decompositions: under sanitizers they are twenty times the code.
 $(B)/obj/lib/estimate/rows.o: override EXTRA := $(filter-out -fsanitize% -fno-sanitize%,$(EXTRA))
 # The compiler must not replace its pow by the pow that it knows.
@@ -202,7 +203,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(foreach room,link log view study report print app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
+$(filter $(foreach room,wire link log host view study report print app,$(B)/obj/lib/$(room)/%),$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
@@ -298,7 +299,7 @@ $(LIBRARY_TOGETHER:%=$(B)/%): $(B)/tests/library_tests
 
 # ------------------------------------------------------------------------------------------------- lcm-spy
 # lcm-gen's classes are not clean under javac's warnings, but ours are.
-SPY_SOURCES := $(wildcard lib/link/spy/*.java)
+SPY_SOURCES := $(wildcard lib/spy/*.java)
 LCM_JAR = $(firstword $(wildcard /usr/share/java/lcm.jar /usr/local/share/java/lcm.jar))
 $(B)/spy/types.jar: $(MESSAGES:%=lcm_types/%.lcm) $(SPY_SOURCES) $(B)/messages
 	@echo "  JAVA $@"

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "layout_internal.h"
-
 /* The field of each draw. Never renumber fields: the same seeds would then give other trials. */
 static const struct {
     const char *name, *unit;
@@ -60,40 +58,3 @@ void wh_beam_draw_apply(const double drawn[WH_BEAM_DRAWS], wh_layout_t *layout, 
 }
 
 /* --------------------------------------------------------------------------------------------------- read */
-
-/* Refuses a width if a draw could then give a beam values that no beam can have. */
-static void check_width(const wh_reader_t *reader, const wh_layout_t *layout, size_t b, wh_beam_draw_t draw,
-                        const wh_spread_t *spread) {
-    const double reach = wh_spread_reach(spread);
-    const bool down = draws[draw].is_size || wh_beam_draw_fits(draw, &layout->beams[b], -reach);
-    if (spread->width > 0 && !(down && wh_beam_draw_fits(draw, &layout->beams[b], reach))) {
-        lua_pushnumber(reader->L, spread->width);
-        wh_reader_fail(reader, draws[draw].name,
-                       "a width that leaves %s with at most %.6g %s, whatever is drawn: %s of it",
-                       layout->beams[b].name, draws[draw].most, draws[draw].unit,
-                       spread->shape == WH_SHAPE_NORMAL ? "8.6 standard deviations" : "all");
-    }
-}
-
-void wh_layout_read_beam_widths(wh_reader_t *reader, const wh_layout_t *layout, int32_t station,
-                                wh_beam_spreads_t *spreads) {
-    size_t count = 0;
-    for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
-        wh_spread_t *spread = &spreads->of[i];
-        spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, draws[i].name, spread->width, 0, (wh_real_t)draws[i].most);
-    }
-    for (size_t b = 0; b < layout->beam_count; ++b) {
-        const bool is_its = station == WH_NONE || layout->beams[b].station == station;
-        if (!is_its || layout->doors[b].kind != WH_DOOR_LIGHT) {
-            continue;
-        }
-        ++count;
-        for (size_t i = 0; i < WH_BEAM_DRAWS; ++i) {
-            check_width(reader, layout, b, (wh_beam_draw_t)i, &spreads->of[i]);
-        }
-    }
-    if (count == 0) {
-        wh_reader_fail(reader, NULL, "nothing: there are no `beams` that would be off");
-    }
-}

@@ -80,8 +80,9 @@ wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *tri
 bool wh_displacement_is_any(const wh_displacement_t *displacement);
 
 /* The names of a station's errors: x, y, z (mm), roll, pitch, yaw (deg); `axis` from 0 to WH_SPREADS - 1. The
- * name is a constant text. */
+ * name is a constant text. All of them, up to a null. */
 const char *wh_errors_teaching_name(size_t axis);
+extern const char *const wh_errors_teaching_names[];
 wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis);
 
 /* The largest width that is drawn, and the largest error that is given: mm, degrees (a wafer's turn about its

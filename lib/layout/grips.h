@@ -17,12 +17,15 @@ bool wh_layout_has_grips(const wh_layout_t *layout);
 /* True if a gripper has passive pads. */
 bool wh_layout_has_passive(const wh_layout_t *layout);
 
-/* The number of supports that take wafers over from passive pads: the planes of all slots, chucks included. 0
- * without such pads. */
+/* Finds whether wafers may come to lie face down, once robots, stations and wafers are known. */
+void wh_layout_find_faces(wh_layout_t *layout);
+
+/* The number of supports that take wafers over from passive pads: the planes of all slots, chucks
+ * included. 0 without such pads. */
 size_t wh_layout_count_supports(const wh_layout_t *layout);
 
-/* Makes the planes of the layout's places its supports; `supports` has room for their count, and must outlive
- * it. */
+/* Makes the planes of the layout's places its supports; `supports` has room for their count, and must
+ * outlive it. */
 void wh_layout_take_supports(wh_layout_t *layout, wh_pose_t supports[]);
 
 /* True if a gripper has an edge grip; and if anything of the cell meets wafers' true rims: edge sensors,
@@ -32,6 +35,10 @@ bool wh_layout_has_rims(const wh_layout_t *layout);
 
 /* A rim as an edge grip meets it: a circle with a notch. Chips, bow and roundings of corners do not count. */
 wh_edge_wafer_t wh_layout_edge_wafer(const wh_rim_t *rim);
+
+/* Why an edge grip cannot take a wafer with this rim, a constant text that says which it takes; null if it
+ * can. `wafer` is wh_layout_edge_wafer of the rim. */
+const char *wh_layout_edge_refuses(const wh_edge_t *edge, const wh_rim_t *rim, const wh_edge_wafer_t *wafer);
 
 /* True if each edge grip of the layout may take a wafer with this rim. */
 bool wh_layout_edges_take(const wh_layout_t *layout, const wh_rim_t *rim);
@@ -71,8 +78,8 @@ const char *wh_layout_face_of(const wh_pose_t *base_from_wafer);
 wh_face_t wh_layout_face_towards(const wh_layout_t *layout, const wh_pose_t *base_from_wafer,
                                  const wh_pose_t *base_from_gripper);
 
-/* The check of the face that looks at the gripper, by the layout's tolerance: wh_face_measure where the cell
- * has faces, else wh_proximity_measure. */
+/* The check of the face that looks at the gripper, by the layout's tolerance: wh_face_measure where the
+ * cell has faces, else wh_proximity_measure. */
 wh_status_t wh_layout_measure(const wh_layout_t *layout, const wh_pose_t *base_from_wafer,
                               const wh_pose_t *base_from_gripper, wh_proximity_t *result);
 

@@ -5,19 +5,15 @@
 #ifndef WH_LAYOUT_LAYOUT_H
 #define WH_LAYOUT_LAYOUT_H
 
-#include <lua.h>
-
 #include "../cell/station.h"
 #include "../collision/world.h"
 #include "../flow/tool.h"
 #include "../grasp/grips.h"
 #include "../motion/machine.h"
 #include "../motion/via.h"
-#include "../script/reader.h"
-#include "../script/sandbox.h"
 #include "../sim/physics.h"
 #include "errors.h"
-#include "shapes.h"
+#include "sizes.h"
 
 /* The longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
@@ -214,9 +210,13 @@ typedef struct {
     double dx, dy, late;        /* it truly stands off by this, and both delays are longer by `late` */
 } wh_layout_beam_t;
 
-/* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
+/* Nothing in it changes during a run. Whoever made it keeps its memory: reading/layout_read.h,
+ * wire/told_layout.h. */
 typedef struct {
-    const char *path;        /* as the caller named it */
+    /* ------------------------------------------------------------------------------------------ the file */
+    const char *path;           /* as the caller named it */
+    const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
+    /* ------------------------------------------------------------------------------- how a run is judged */
     char tolerance_name[16]; /* the preset's, or "own" */
     /* of "own": the layout does not give projz, projxy, planar, and the paper's stands */
     bool tolerance_default[WH_TOLERANCE_LIMITS];
@@ -226,6 +226,9 @@ typedef struct {
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
+    wh_corrections_t corrections; /* the largest ones that a command may ask for */
+    wh_mapping_t mapping;
+    /* --------------------------------------------------------------------------------------- the machine */
     wh_physics_t physics; /* vacuum, pads, faults at the start */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
     bool axes_untold;     /* made of a message, which tells what an axis moves only for doors */
@@ -238,8 +241,7 @@ typedef struct {
     uint8_t carried_by[WH_GRIPPERS]; /* the arm of each gripper, or WH_WORLD_NO_ARM */
     bool homed;                      /* false: commands that rely on the arm's position need a HOME first */
     wh_layout_door_t *door_list;     /* machine.door_count of them, sorted by name */
-    wh_corrections_t corrections;    /* the largest ones that a command may ask for */
-    wh_mapping_t mapping;
+    /* --------------------------------------------------------------------- grippers, stations and wafers */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */
@@ -247,12 +249,14 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is at the start */
+    /* ----------------------------------------------------------------------------------- faces and grips */
     /* Wafers may come to lie face down: cell.thickness is theirs, and simulators have grips (grips.h). */
     bool has_faces;
     wh_grip_t grips[WH_GRIPPERS];
     const wh_edge_wafer_t *edge_wafers; /* by wafer what edge grips meet; null where there are none */
     const wh_pose_t *supports;          /* the planes that take wafers over from passive pads */
     size_t support_count;
+    /* --------------------------------------------------------------------- beams, probe and edge sensors */
     /* The beams at stations' doors, those of a station one after another, with their electronics as they
      * truly are, and by gripper the blades that break them. */
     wh_layout_beam_t beams[WH_BEAMS];
@@ -267,62 +271,25 @@ typedef struct {
     size_t scanner_count;
     const wh_rim_t *nominal_rim;
     const wh_rim_t *const *rims;
+    /* ----------------------------------------------------------------------------- places and collisions */
     wh_cell_t cell;  /* the places, with the tolerance and how wafers are set down */
     bool collision;  /* check for contact in each slice */
     bool look_ahead; /* and before each command that moves */
     wh_shapes_t shapes;
     wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
+    size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
+    /* --------------------------------------------------------------------- what reports and studies take */
     wh_errors_t *errors;  /* what a study draws; null: no `study` */
     const char **guesses; /* numbers that look as if they were in another unit: field, value, unit; sorted */
     size_t guess_count;
-    const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
-    size_t hung_count; /* how many of the last parts of `world` are obstacles on robot, grippers and doors */
 } wh_layout_t;
-
-/* Reads the table on top of L's stack, which the layout file returned; it stays there. Fills in the defaults
- * and checks all that can be checked without moving: fields, ranges, names, where wafers lie and grippers
- * ride, strokes against slices. Raises a Lua error that names file, field path, value and what was expected.
- * Lua owns the layout's memory; the registry keeps the reference. Cost: linear in wafers, plus a sort. */
-wh_layout_t *wh_layout_read(lua_State *L, const char *path);
-
-/* Runs the file in the sandbox and reads what it returns. Null, and the reason in `result`, if that fails.
- * The layout lives as long as the sandbox. */
-const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
-
-/* A station parameter that is a number, as a layout and as a command may set it. */
-typedef struct {
-    const char *name;
-    double least, most;
-    const char *unit; /* empty: a count */
-} wh_station_range_t;
-
-/* All of them, up to one without a name. `offset` and `release` must also be within the stroke. */
-extern const wh_station_range_t wh_station_ranges[];
-
-/* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
- * reader's errors. `wafers` are the layout's as they lie now, and `first` is the slice that `after = 0`
- * means. */
-wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, const wh_wafer_t wafers[],
-                                int64_t first);
-
-/* Reads the collision world again, for a copy of a layout whose stations stand elsewhere. The layout's table
- * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
-void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell);
-
-/* Moves the collision world without the layout's table, if only stations stand elsewhere. `parts` and `names`
- * are room for the world's parts and one more for each station; they and the copy must outlive the world. */
-void wh_layout_move_world(wh_layout_t *copy, wh_part_t *parts, char (*names)[WH_PART_NAME_SIZE]);
-
-/* Reads `study` from the table on top of the stack and replaces the layout's own. Errors name the script
- * `path`. */
-void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);
 
 /* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
-/* The limits of the way of a wafer on this gripper: mm/s, mm/s^2, mm/s^3 of its centre in base. They are the
- * stricter ones of the gripper's and its robot's limits. Each is 0 if there is no limit. */
+/* The limits of the way of a wafer on this gripper: mm/s, mm/s^2, mm/s^3 of its centre in base. They are
+ * the stricter ones of the gripper's and its robot's limits. Each is 0 if there is no limit. */
 wh_limits_t wh_layout_loaded(const wh_layout_t *layout, size_t gripper);
 
 /* True if there is such a limit for any gripper. */
@@ -355,8 +322,8 @@ wh_latching_t wh_layout_latching(const wh_layout_t *layout);
 /* The order that arms a station's beams; count 0 if it has none. */
 wh_latch_order_t wh_layout_beams_at(const wh_layout_t *layout, size_t station);
 
-/* The order that arms the beams which a robot passes on its way in. Its count is 0 if the robot passes none,
- * or if beams are not for its kind. */
+/* The order that arms the beams which a robot passes on its way in. Its count is 0 if the robot passes
+ * none, or if beams are not for its kind. */
 wh_latch_order_t wh_layout_beams_of(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* True if a PUT of the robot corrects by what the station's beams say. */
@@ -365,8 +332,8 @@ bool wh_layout_centres(const wh_layout_t *layout, size_t station, size_t robot);
 /* True if the robot can use beams and blocks: see WH_AXES_USUAL. One of several robots may stand anywhere. */
 bool wh_layout_is_usual(const wh_layout_t *layout, size_t robot);
 
-/* How far from the layout's place one of several robots was taught a station, in base, mm. With one robot it
- * is zero. */
+/* How far from the layout's place one of several robots was taught a station, in base, mm. With one robot
+ * it is zero. */
 wh_vec3_t wh_layout_aside(const wh_layout_t *layout, size_t station, size_t robot);
 
 /* The order that arms a face of a station's block; count 0 if it has none. */
@@ -384,9 +351,9 @@ wh_block_face_t wh_layout_block_face(const wh_layout_block_t *block, size_t face
 /* Sets up doors[b] anew, where its station stands. */
 void wh_layout_place_beam(wh_layout_t *layout, size_t b);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, edge
- * sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The path is
- * left out. Cost: linear. */
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults,
+ * edge sensors, beams and rims, machine, and the names and places of stations, grippers and wafers. The
+ * path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
 /* 64 bits over what the layout's hash leaves out of a collision check: shapes, the arm, and the limits of
@@ -403,12 +370,5 @@ int32_t wh_layout_find_robot(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_door(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_beam(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name);
-
-/* Counts the parts of stations, robot and grippers. Obstacles are not among them. */
-size_t wh_layout_count_parts(const wh_layout_t *layout);
-
-/* Fills the list with these parts and makes them the layout's world. The list needs room for all of them, and
- * its arrays must outlive the layout. */
-void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef WH_LAYOUT_LAYOUT_FIELDS_H
 #define WH_LAYOUT_LAYOUT_FIELDS_H
 
-#include "../script/reader.h"
+#include "../script/field.h"
 #include "../sim/faults.h"
 
 /* The tables of one kind. Types of fields name them as waferhand.NAME. */

@@ -1,6 +1,6 @@
 #include "../math/hash.h"
 #include "grips.h"
-#include "layout_internal.h"
+#include "words.h"
 
 static uint64_t hash_text(uint64_t hash, const char *text) {
     for (const char *c = text; *c; ++c) {
@@ -87,8 +87,7 @@ static uint64_t hash_slides(uint64_t hash, const wh_mount_t *mount) {
     if (mount->axis == WH_NONE || mount->kind == WH_MOUNT_CHUCK) {
         return hash;
     }
-    static const char *const words[] = {"chuck", "stage", "pins", "flipper"};
-    hash = hash_text(hash, words[mount->kind]);
+    hash = hash_text(hash, wh_layout_mount_words[mount->kind]);
     hash = hash_reals(hash, (const wh_real_t[]){mount->travel.min, mount->travel.max}, 2);
     return hash_limits(hash, &mount->limits);
 }
@@ -242,6 +241,44 @@ static uint64_t hash_grips(uint64_t hash, const wh_layout_t *layout) {
                             hash_text(hash, "grips"));
 }
 
+static uint64_t hash_loaded(uint64_t hash, const wh_layout_t *layout) {
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        const wh_limits_t limits = wh_layout_loaded(layout, g);
+        if (limits.speed > 0 || limits.acceleration > 0 || limits.jerk > 0) {
+            hash = wh_hash_int(wh_hash_word(hash, 'l'), (int32_t)g);
+            hash = wh_hash_real(hash, limits.speed);
+            hash = wh_hash_real(hash, limits.acceleration);
+            hash = wh_hash_real(hash, limits.jerk);
+        }
+    }
+    return hash;
+}
+
+static uint64_t hash_points(uint64_t hash, const wh_layout_vias_t *vias, size_t station, size_t axis_count) {
+    for (size_t i = 0; i < vias->count; ++i) {
+        const wh_layout_via_t *via = &vias->at[i];
+        hash = wh_hash_real(wh_hash_word(hash, station + 1), via->point.blend);
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            hash = wh_hash_real(wh_hash_int(hash, via->is_given[axis] ? 1 : 0), via->point.q[axis]);
+        }
+    }
+    return hash;
+}
+
+/* Hashes the first robot's points like those of a single robot. */
+static uint64_t hash_vias(uint64_t hash, const wh_layout_t *layout) {
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            const wh_layout_vias_t *vias = wh_layout_vias_of(layout, s, r);
+            hash = vias->count > 0 && r > 0 ? wh_hash_word(hash, r) : hash;
+            hash =
+                hash_points(hash, vias, s,
+                            layout->machine.carrier ? layout->robots[r].carrier.axis_count : WH_ROBOT_AXES);
+        }
+    }
+    return hash;
+}
+
 /* Recordings and messages carry this hash: new fields go to the end, and only if they differ from the
  * default. */
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
@@ -265,7 +302,7 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     if (layout->cell.thickness > 0) {
         hash = wh_hash_real(hash_text(hash, "faces"), layout->cell.thickness);
     }
-    hash = wh_layout_hash_loaded(hash, layout);
+    hash = hash_loaded(hash, layout);
     if (layout->scanner_count > 0) {
         const wh_scanning_t scanning = wh_layout_scanning(layout);
         hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
@@ -275,5 +312,5 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
                                 hash_text(hash, "beams"));
     }
-    return wh_layout_hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
+    return hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
 }

@@ -123,12 +123,15 @@ static bool connect_to(wh_node_t *node, const url_t *url) {
     return node->lcm != NULL;
 }
 
-bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
+bool wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder) {
     const url_t asked = url_of(url);
     memset(node, 0, sizeof *node);
     node->receiver.socket = -1;
-    node->record = record && record->options.path ? record : NULL;
-    const bool sound = connect_to(node, &asked) && (!node->record || wh_recording_open(node->record));
+    if (recorder) {
+        node->recorder = *recorder;
+    }
+    const bool sound =
+        connect_to(node, &asked) && (!node->recorder.open || node->recorder.open(node->recorder.user));
     if (!sound) {
         wh_node_close(node);
     }
@@ -136,8 +139,8 @@ bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
 }
 
 static void keep(wh_node_t *node, const char *channel, const void *data, size_t size) {
-    if (node->record) {
-        wh_recording_message(node->record, channel, data, size);
+    if (node->recorder.message) {
+        node->recorder.message(node->recorder.user, channel, data, size);
     }
 }
 

@@ -12,7 +12,6 @@
 #include <stdint.h>
 
 #include "receiver.h"
-#include "recording.h"
 
 /* Nothing leaves the host unless the user asks for another URL. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
@@ -54,16 +53,24 @@ static inline bool wh_senders_hear(wh_senders_t *senders, uint64_t sender) {
     return is_new;
 }
 
+/* Records all messages that a node hears and sends: see log/recording.h. `open` is called once LCM is
+ * open; if it returns false, it has told why. */
+typedef struct {
+    bool (*open)(void *user);
+    void (*message)(void *user, const char *channel, const void *data, size_t size);
+    void *user;
+} wh_node_recorder_t;
+
 struct wh_node {
     const char *speaker; /* who speaks in wh_node_say's lines, such as "sim"; null, as at first: nobody */
     bool log_time;       /* lines begin with the time and a level */
     wh_node_listener_t *listener; /* takes the lines in place of standard error; null: there is none */
     void *listener_user;
-    lcm_t *lcm;             /* sends; receives if the URL is not multicast */
-    wh_receiver_t receiver; /* receives multicast */
-    wh_recording_t *record; /* the caller's; null: not recording */
-    bool interrupted;       /* a signal ended a wait since this was last cleared */
-    uint64_t sender;        /* of the message that is being handled: see wh_received_t */
+    lcm_t *lcm;                  /* sends; receives if the URL is not multicast */
+    wh_receiver_t receiver;      /* receives multicast */
+    wh_node_recorder_t recorder; /* without functions: not recording */
+    bool interrupted;            /* a signal ended a wait since this was last cleared */
+    uint64_t sender;             /* of the message that is being handled: see wh_received_t */
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
     size_t subscriber_count;
 };
@@ -72,13 +79,12 @@ struct wh_node {
  * process. Such a URL is of memory or of a file. */
 bool wh_node_reaches_others(const char *url);
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null
- * and its options have a path, it is opened too, and records all messages sent and received. It stays the
- * caller's, who closes it after the node. The node must not be moved afterwards. Returns false, and
- * standard error says why, when LCM cannot open it or the file cannot be made; nothing is then open. The
- * reason may be a missing multicast route or a bad URL, and names its origin: --lcm-url or the
- * environment. */
-bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL), and then the recorder, if
+ * there is one: it may be null. The recorder's user stays the caller's, who closes it after the node. The
+ * node must not be moved afterwards. Returns false, and standard error says why, when LCM cannot open it
+ * or the recorder cannot begin; nothing is then open. The reason may be a missing multicast route or a bad
+ * URL, and names its origin: --lcm-url or the environment. */
+bool wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder);
 
 /* Subscribes one channel, whose name must outlive the node. Returns false if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);

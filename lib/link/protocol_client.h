@@ -16,7 +16,7 @@
 
 #include <signal.h>
 
-#include "messages.h"
+#include "../wire/messages.h"
 #include "node.h"
 
 /* A simulator that has not answered for this time is called silent, us. */

@@ -14,7 +14,7 @@
 #include "../layout/collision.h"
 #include "../layout/grips.h"
 #include "../sim/simulator.h"
-#include "messages.h"
+#include "../wire/messages.h"
 
 /* The number of recent runs that are remembered, so that their late commands do not start them again. */
 #define WH_SERVER_PAST_RUNS 64

@@ -4,9 +4,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../link/record_file.h"
-#include "../link/slices.h"
 #include "../text/array.h"
+#include "../wire/slices.h"
+#include "record_file.h"
 
 wh_log_head_t wh_log_head(wh_log_t *log) {
     waferhand_recording message;

@@ -269,7 +269,7 @@ static bool find_cell(wh_log_run_t *run, const wh_log_files_t *files) {
         if (strcmp(run->log.channel, WH_CHANNEL_CELL) == 0 &&
             wh_link_decode_cell(run->log.data, run->log.size, &message)) {
             if ((uint64_t)message.layout_hash == run->wanted->layout_hash) {
-                (void)wh_log_layout_make(&run->cell, &message, &run->options.layout);
+                (void)wh_told_layout_make(&run->cell, &message, &run->options.layout);
             }
             (void)waferhand_cell_decode_cleanup(&message);
         }
@@ -532,7 +532,7 @@ void wh_log_run_close(wh_log_run_t *run) {
     wh_signals_close(&run->signals);
     wh_record_free(&run->record);
     free(run->collision.memory);
-    wh_log_layout_free(&run->cell);
+    wh_told_layout_free(&run->cell);
     wh_replay_close(&run->replay);
     wh_log_close(&run->log);
     for (size_t i = 0; i < run->told_count; ++i) {

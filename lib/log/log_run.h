@@ -13,7 +13,7 @@
 #include "../layout/collision.h"
 #include "../record/recorder.h"
 #include "../record/signals.h"
-#include "log_layout.h"
+#include "../wire/told_layout.h"
 #include "reading.h"
 
 #define WH_LOG_NOTE_BYTES 240
@@ -30,7 +30,7 @@ typedef struct {
     size_t then_count;
     bool is_alone; /* only this part of a recording in parts */
     size_t number; /* the number of the run among those with slices, from 1; 0: the last */
-    wh_log_layout_options_t layout;
+    wh_told_layout_options_t layout;
     bool only_slices; /* for the listener and the verdict alone: no record, signals and notes */
     wh_log_run_listener_t *listener; /* null: no listener */
     void *user;
@@ -63,7 +63,7 @@ typedef struct {
     const wh_link_identity_t *wanted;
     wh_log_told_t *told; /* sorted by their slices */
     size_t told_count, told_capacity, told_next;
-    wh_log_layout_t cell;
+    wh_told_layout_t cell;
     wh_recorder_t recorder;
     wh_record_t record;
     wh_state_t state; /* the last one */

@@ -4,7 +4,7 @@
  *
  * A command waits for its state, and a state for its command, at most WH_REPLAY_WINDOW slices: messages may
  * stand in any order. A command is stepped with the valves that were in force by its state (they may have
- * come from outputs.txt). A slice of a block (link/slices.h) is compared by its hash. If commands are not in
+ * come from outputs.txt). A slice of a block (wire/slices.h) is compared by its hash. If commands are not in
  * the log, the replay continues from the next whole state. Each slice is compared once; repeated messages,
  * as over a lossy network, are passed over. For each run the first difference is named, and the differing
  * slices are counted.
@@ -25,7 +25,7 @@
 
 #include "../link/outcome.h"
 #include "../link/protocol_server.h"
-#include "../link/slices.h"
+#include "../wire/slices.h"
 #include "logfile.h"
 
 #define WH_REPLAY_RUNS 256

@@ -3,10 +3,12 @@
 #include <string.h>
 
 #include "../layout/doors.h"
-#include "../layout/feasibility.h"
-#include "../layout/given.h"
+#include "../layout/layout_fields.h"
+#include "../layout/reach.h"
+#include "../reading/layout_read.h"
 #include "../script/wh_module_values.h"
 #include "../text/output.h"
+#include "../trial/given.h"
 #include "carrying.h"
 #include "native.h"
 
@@ -264,9 +266,9 @@ static int set_up_cell(lua_State *L) {
 static int find_unreached(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
     const size_t station = (size_t)wh_mcs_index(L, 1, layout->station_count);
-    for (size_t place = 0; place < WH_FEASIBILITY_PLACES; ++place) {
+    for (size_t place = 0; place < WH_REACH_PLACES; ++place) {
         wh_unreached_t unreached;
-        if (!wh_feasibility_reaches(layout, station, place, &unreached)) {
+        if (!wh_layout_reaches(layout, station, place, &unreached)) {
             lua_pushinteger(L, unreached.slot);
             lua_pushfstring(L, "%s%s", unreached.is_before ? "on the way in " : "", unreached.text);
             return 2;
@@ -275,18 +277,36 @@ static int find_unreached(lua_State *L) {
     return 0;
 }
 
-/* native.ranges(): the station parameters that are numbers, by name: { least, most, unit }. */
+/* Pushes { least, most, unit } of a number, { values } of an enumeration; false for any other field. */
+static bool push_range(lua_State *L, const wh_reader_field_t *row) {
+    char unit[WH_FIELD_UNIT_BYTES];
+    if (wh_field_is_number(row)) {
+        wh_field_unit(row, unit);
+        wh_lua_push_numbers(L, (const wh_real_t[]){row->least, row->most}, 2);
+        lua_pushstring(L, unit);
+        lua_rawseti(L, -2, 3);
+        return true;
+    }
+    if (row->kind == WH_SCALAR_WORD) {
+        lua_createtable(L, 0, 1);
+        lua_newtable(L);
+        for (lua_Integer i = 0; row->words[i]; ++i) {
+            lua_pushstring(L, row->words[i]);
+            lua_rawseti(L, -2, i + 1);
+        }
+        lua_setfield(L, -2, "values");
+        return true;
+    }
+    return false;
+}
+
+/* native.ranges(): the station parameters that a command may set, by name. */
 static int list_ranges(lua_State *L) {
     lua_newtable(L);
-    for (const wh_station_range_t *range = wh_station_ranges; range->name; ++range) {
-        lua_createtable(L, 3, 0);
-        lua_pushnumber(L, range->least);
-        lua_rawseti(L, -2, 1);
-        lua_pushnumber(L, range->most);
-        lua_rawseti(L, -2, 2);
-        lua_pushstring(L, range->unit);
-        lua_rawseti(L, -2, 3);
-        lua_setfield(L, -2, range->name);
+    for (const wh_reader_field_t *row = wh_layout_station_fields; row->name; ++row) {
+        if (push_range(L, row)) {
+            lua_setfield(L, -2, row->name);
+        }
     }
     return 1;
 }

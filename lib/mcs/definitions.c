@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "../layout/layout_fields.h"
-#include "../layout/layout_tool.h"
+#include "../reading/layout_tool.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "flow_plan.h"
@@ -12,9 +12,11 @@
 static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
     lua_newtable(L);
     for (lua_Integer i = 0; fields[i].name; ++i) {
+        char type[200];
         lua_createtable(L, 0, 4);
         wh_lua_set_text(L, "name", fields[i].name);
-        wh_lua_set_text(L, "type", fields[i].type);
+        wh_field_type(&fields[i], type, sizeof type);
+        wh_lua_set_text(L, "type", type);
         wh_lua_set_text(L, "text", fields[i].text);
         wh_lua_set_boolean(L, "required", fields[i].required);
         lua_rawseti(L, -2, i + 1);

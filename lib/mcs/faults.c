@@ -1,6 +1,7 @@
 /* Injected faults: a script's faults go to the simulator with the next slice's command. */
 #include <string.h>
 
+#include "../reading/layout_read.h"
 #include "../script/wh_module_values.h"
 #include "native.h"
 

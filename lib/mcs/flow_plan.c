@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../layout/layout_internal.h"
-#include "../layout/layout_tool.h"
+#include "../reading/layout_internal.h"
+#include "../reading/layout_tool.h"
 #include "../text/array.h"
 #include "../text/nearest.h"
 

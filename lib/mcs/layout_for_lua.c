@@ -1,5 +1,7 @@
 /* A layout as lua/mcs sees it: a table of what motion control may know of the cell. */
 #include "../layout/axes.h"
+#include "../layout/layout_fields.h"
+#include "../layout/words.h"
 #include "../script/wh_module_values.h"
 #include "native.h"
 
@@ -89,24 +91,27 @@ static void push_beams_of(lua_State *L, const wh_layout_t *layout, size_t statio
     lua_setfield(L, -2, "beams");
 }
 
+/* Each scalar of a struct by its field's name; angles in degrees. */
+static void push_scalars(lua_State *L, const wh_reader_field_t *rows, const void *of) {
+    for (const wh_reader_field_t *row = rows; row->name; ++row) {
+        const double value = wh_field_get(row, of);
+        if (row->kind == WH_SCALAR_SWITCH) {
+            wh_lua_set_boolean(L, row->name, value > 0);
+        } else if (row->kind == WH_SCALAR_WORD) {
+            wh_lua_set_text(L, row->name, row->words[(size_t)value]);
+        } else if (row->kind != WH_SCALAR_BY_HAND) {
+            wh_lua_set_number(L, row->name, value);
+        }
+    }
+}
+
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
-    static const char *const modes[] = {"both", "get", "put", "none"};
     lua_createtable(L, 0, 30);
+    push_scalars(L, wh_layout_station_fields, station);
     wh_lua_set_number(L, "pitch", place->pitch);
-    wh_lua_set_number(L, "stroke", station->stroke);
-    wh_lua_set_number(L, "offset", station->offset);
-    wh_lua_set_number(L, "retract", station->retract);
-    wh_lua_set_number(L, "pickup_speed", station->pickup_speed);
-    wh_lua_set_number(L, "pickup_acceleration", station->pickup_acceleration);
-    wh_lua_set_number(L, "release", station->release);
     wh_lua_set_boolean(L, "release_default", station->release_default);
-    wh_lua_set_number(L, "vacuum_delay", station->vacuum_delay);
-    wh_lua_set_number(L, "timeout", station->timeout);
-    wh_lua_set_number(L, "wait", station->wait);
-    wh_lua_set_number(L, "map_speed", station->map_speed);
-    wh_lua_set_number(L, "retries", station->retries);
     wh_lua_set_text(L, "name", station->name);
     wh_lua_set_index(L, "index", (int32_t)index);
     wh_lua_set_integer(L, "slots", place->slots);
@@ -118,8 +123,6 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     push_vias(L, layout, index);
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "flipper", station->flipper);
-    wh_lua_set_boolean(L, "taught", station->taught);
-    wh_lua_set_boolean(L, "check_map", station->check_map);
     if (station->face != WH_STATION_ANY_FACE) {
         wh_lua_set_text(L, "face", wh_layout_face_name(station->face));
     }
@@ -127,8 +130,6 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_number(L, "notch", layout->notch);
     push_beams_of(L, layout, index);
     wh_lua_set_boolean(L, "block", station->block.is_there);
-    wh_lua_set_text(L, "vacuum_check", modes[station->check]);
-    wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
     const wh_scanner_t *scanner = wh_layout_scanner(layout, place->chuck);
     if (scanner) {
         wh_mcs_push_edge_sensor(L, layout, scanner);
@@ -164,8 +165,7 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
         push_edge(L, &layout->grips[g].edge);
     }
     if (wh_mount_axes(mount) > 0 && mount->kind != WH_MOUNT_CHUCK) {
-        static const char *const kinds[] = {"chuck", "stage", "pins", "flipper"};
-        wh_lua_set_text(L, "kind", kinds[mount->kind]);
+        wh_lua_set_text(L, "kind", wh_layout_mount_words[mount->kind]);
         wh_lua_set_number(L, "low", mount->travel.min);
         wh_lua_set_number(L, "high", mount->travel.max);
     }

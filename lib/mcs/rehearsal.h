@@ -11,7 +11,7 @@
 #include "../motion/track.h"
 #include "../record/record.h"
 #include "../sim/slice.h"
-#include "nominal.h"
+#include "../trial/nominal.h"
 
 /* Another task's segment that runs meanwhile. */
 typedef struct {

@@ -8,11 +8,11 @@
 #include "../record/recorder.h"
 #include "../script/sandbox.h"
 #include "../sim/played.h"
-#include "decisions.h"
-#include "origins.h"
+#include "../trial/decisions.h"
+#include "../trial/origins.h"
+#include "../trial/trial_cell.h"
 #include "partners.h"
 #include "rehearsal.h"
-#include "trial_cell.h"
 
 /* The listeners for slices: decisions, recorder, origins, the collected scan, the data of STATUS, a collision
  * check beside a remote simulator, and the run's listener. */

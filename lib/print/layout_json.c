@@ -2,6 +2,8 @@
 
 #include "../layout/axes.h"
 #include "../layout/grips.h"
+#include "../layout/layout_fields.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "../text/json.h"
 #include "layout_print.h"
@@ -110,14 +112,13 @@ static json_t *sensor(const wh_sensor_t *from) {
 }
 
 static json_t *beam(const wh_layout_t *layout, size_t b) {
-    static const char *const stuck[] = {"no", "dark", "lit"};
     const wh_layout_beam_t *from = &layout->beams[b];
     return wh_json_set(json_object(),
                        "x %g y %g low %g high %g delay_on %g delay_off %g jitter %g dx %g dy %g late %g "
                        "stuck %s",
                        from->x, from->y, from->low, from->high, from->delay_on, from->delay_off,
                        layout->doors[b].jitter, from->dx, from->dy, from->late,
-                       stuck[layout->doors[b].stuck]);
+                       wh_layout_beam_stuck_words[layout->doors[b].stuck]);
 }
 
 static json_t *beams_at(const wh_layout_t *layout, size_t s) {
@@ -181,19 +182,27 @@ static json_t *station(const void *subject, size_t i) {
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
+/* Each scalar of a struct by its field's name, in the order of the rows. */
+static json_t *scalars(const wh_reader_field_t *rows, const void *of) {
+    json_t *object = json_object();
+    for (const wh_reader_field_t *row = rows; row->name; ++row) {
+        const double value = wh_field_get(row, of);
+        if (row->kind == WH_SCALAR_SWITCH) {
+            wh_json_put(object, row->name, json_boolean(value > 0));
+        } else if (row->kind == WH_SCALAR_WORD) {
+            wh_json_put(object, row->name, wh_json_text(row->words[(size_t)value]));
+        } else if (row->kind != WH_SCALAR_BY_HAND) {
+            wh_json_put(object, row->name, wh_json_real(value));
+        }
+    }
+    return object;
+}
+
 static json_t *shapes(const wh_shapes_t *from) {
-    json_t *blade = wh_json_set(json_object(), "thickness %g half_width %g finger %g length %g palm %g",
-                                from->blade.thickness, from->blade.half_width, from->blade.finger,
-                                from->blade.length, from->blade.palm);
-    json_t *ledge = wh_json_set(json_object(), "inner %g outer %g thickness %g length %g", from->ledge.inner,
-                                from->ledge.outer, from->ledge.thickness, from->ledge.length);
-    json_t *arm = wh_json_set(json_object(), "reach %g link %g right_handed %i", from->arm.reach,
-                              from->arm.link, from->arm.right_handed);
-    json_t *foup = wh_json_set(json_object(), "room %g wall %g floor %g roof %g", from->shell.room,
-                               from->shell.wall, from->shell.floor, from->shell.roof);
-    json_t *chuck = wh_json_set(json_object(), "radius %g height %g body %g", from->chuck.radius,
-                                from->chuck.height, from->chuck.body);
-    return wh_json_add(json_object(), "blade ledge arm foup chuck", blade, ledge, arm, foup, chuck, NULL);
+    return wh_json_add(
+        json_object(), "blade ledge arm foup chuck", scalars(wh_layout_blade_fields, &from->blade),
+        scalars(wh_layout_ledge_fields, &from->ledge), scalars(wh_layout_arm_fields, &from->arm),
+        scalars(wh_layout_foup_fields, &from->shell), scalars(wh_layout_spindle_fields, &from->chuck), NULL);
 }
 
 static json_t *part(const void *subject, size_t i) {
@@ -322,9 +331,8 @@ static void put_checks(const wh_layout_t *layout, json_t *root) {
                       layout->notch_depth);
     wh_json_put(root, "tolerance", tolerance);
     (void)wh_json_set(root, "check %s slice_s %g seat %i settle %i collision %i",
-                      layout->grasp.check == WH_CHECK_SWEPT ? "swept" : "sampled",
-                      (double)layout->slice_us / 1e6, layout->grasp.seat, layout->cell.settle,
-                      layout->collision);
+                      wh_layout_check_words[layout->grasp.check], (double)layout->slice_us / 1e6,
+                      layout->grasp.seat, layout->cell.settle, layout->collision);
 }
 
 int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "../layout/feasibility.h"
+#include "../survey/feasibility.h"
 #include "../text/style.h"
 
 /* Each returns 0, or -1 if `out` does not take it. */

@@ -1,5 +1,6 @@
 #include "reader.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -314,11 +315,8 @@ static void pop_field(const wh_reader_t *reader, const char *field, bool is_good
 }
 
 static const wh_reader_field_t *find_row(const wh_reader_t *reader, const char *field) {
-    const wh_reader_field_t *row = reader->known[reader->depth];
-    while (row && row->name && strcmp(row->name, field) != 0) {
-        ++row;
-    }
-    return row && row->name ? row : NULL;
+    const wh_reader_field_t *rows = reader->known[reader->depth];
+    return rows ? wh_field_find(rows, field) : NULL;
 }
 
 /* In a cell nothing is longer in metres. */
@@ -451,4 +449,62 @@ int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const
         snprintf(expected + length, sizeof expected - length, "%s\"%s\"", i > 0 ? " or " : "", choices[i]);
     }
     wh_reader_fail(reader, field, "%s", expected);
+}
+
+/* ------------------------------------------------------------------------------------------------ scalars */
+
+/* A number; a kept one that the table does not have keeps its bits. */
+static void read_real(wh_reader_t *reader, const wh_reader_field_t *row, void *into, double fallback,
+                      double least, double most) {
+    if (wh_reader_has(reader, row->name) || isfinite(fallback)) {
+        wh_field_set(row, wh_reader_number(reader, row->name, fallback, least, most), into);
+    } else if (row->required) {
+        (void)wh_reader_number(reader, row->name, WH_REAL(NAN), least, most);
+    }
+}
+
+static void read_row(wh_reader_t *reader, const wh_reader_field_t *row, void *into, double fallback,
+                     double least, double most) {
+    if (row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES) {
+        read_real(reader, row, into, fallback, least, most);
+        return;
+    }
+    const int32_t usual = (int32_t)(isinf(fallback) ? wh_field_get(row, into) : fallback);
+    if (row->kind == WH_SCALAR_SWITCH) {
+        wh_field_set(row, wh_reader_boolean(reader, row->name, usual > 0) ? 1 : 0, into);
+    } else if (row->kind == WH_SCALAR_WORD) {
+        wh_field_set(row, wh_reader_choice(reader, row->name, usual, row->words), into);
+    } else {
+        wh_field_set(row, wh_reader_whole(reader, row->name, usual, (int32_t)least, (int32_t)most), into);
+    }
+}
+
+/* Its row, which must be there. */
+static const wh_reader_field_t *row_of(const wh_reader_t *reader, const char *field) {
+    const wh_reader_field_t *row = find_row(reader, field);
+    WH_ASSERT(row && row->kind != WH_SCALAR_BY_HAND);
+    return row;
+}
+
+void wh_reader_scalar(wh_reader_t *reader, const char *field, void *into) {
+    const wh_reader_field_t *row = row_of(reader, field);
+    read_row(reader, row, into, row->usual, row->least, row->most);
+}
+
+void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, double fallback) {
+    const wh_reader_field_t *row = row_of(reader, field);
+    read_row(reader, row, into, fallback, row->least, row->most);
+}
+
+void wh_reader_scalar_within(wh_reader_t *reader, const char *field, void *into, double fallback,
+                             double least, double most) {
+    read_row(reader, row_of(reader, field), into, fallback, least, most);
+}
+
+void wh_reader_scalars(wh_reader_t *reader, void *into) {
+    for (const wh_reader_field_t *row = reader->known[reader->depth]; row->name; ++row) {
+        if (row->kind != WH_SCALAR_BY_HAND && !isnan(row->usual)) {
+            read_row(reader, row, into, row->usual, row->least, row->most);
+        }
+    }
 }

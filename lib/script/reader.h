@@ -10,17 +10,9 @@
 #include <lua.h>
 
 #include "../math/vector.h"
+#include "field.h"
 
 #define WH_READER_DEPTH 8
-
-/* A field that tables of one kind may have. Readers refuse all others, and `waferhand definitions` writes
- * them for editors, so both use these lists. */
-typedef struct {
-    const char *name; /* null ends a list */
-    const char *type; /* in the Lua language server's notation, such as number or "a"|"b" */
-    const char *text; /* its description, with its unit */
-    bool required;
-} wh_reader_field_t;
 
 typedef struct {
     lua_State *L;
@@ -35,8 +27,8 @@ typedef struct {
 /* Starts at the table on top of L's stack. `file` must outlive the reader. */
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 
-/* Raises "file: path.field: value (expected ...)" for the value on top of the stack. If `field` is null, the
- * value is the table itself. */
+/* Raises "file: path.field: value (expected ...)" for the value on top of the stack. If `field` is null,
+ * the value is the table itself. */
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
@@ -95,5 +87,16 @@ void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback
 /* The index (from 0) of the field's text in a null-terminated list of choices; `fallback` if the field is
  * absent. */
 int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const char *const choices[]);
+
+/* A scalar by its row among the known fields of the table being read, into the struct that the row is
+ * about: within the row's range, and without the field the row's default. The other two take another
+ * default, and another range. */
+void wh_reader_scalar(wh_reader_t *reader, const char *field, void *into);
+void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, double fallback);
+void wh_reader_scalar_within(wh_reader_t *reader, const char *field, void *into, double fallback,
+                             double least, double most);
+
+/* All scalars of the table whose defaults do not follow from other fields. */
+void wh_reader_scalars(wh_reader_t *reader, void *into);
 
 #endif

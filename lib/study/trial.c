@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../bodies/parts.h"
 #include "../layout/doors.h"
 #include "../math/hash.h"
 #include "../text/array.h"

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "../layout/inks.h"
-#include "../link/messages.h"
 #include "../text/array.h"
+#include "../wire/messages.h"
 #include "cell.h"
 
 /* The direction: to the side of the robot's front, and above. */

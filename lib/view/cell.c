@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../bodies/shapes.h"
 #include "../layout/arms.h"
 #include "../layout/inks.h"
 #include "../math/trig.h"

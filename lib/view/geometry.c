@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "../layout/layout.h"
-#include "../link/messages.h"
 #include "../record/quaternion.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
+#include "../wire/messages.h"
 #include "mesh.h"
 
 #define M_PER_MM 1e-3

@@ -4,7 +4,7 @@
  * "station NAME" in the station's frame, "lift", "upper arm", "forearm" and "hand", then grippers, doors
  * and wafers by their names in their own frames. A node's extras are { kind: "base", "obstacle", "station",
  * "link", "gripper", "door" or "wafer", index: from 0 }. Shapes are those of the collision check
- * (layout/shapes.h); wafers have their notch. The nodes have their places before the run. With `animated`
+ * (bodies/shapes.h); wafers have their notch. The nodes have their places before the run. With `animated`
  * an animation "run" moves them, also wafers, to within 0.05 mm plus the error of the signals; links to
  * within 0.5 mm.
  */

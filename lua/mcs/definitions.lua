@@ -38,7 +38,7 @@ return function(native, lookup, targets, words)
   -- A number of a station has its range; commands have that range, too.
   local function with_range(class, field)
     local range = class.name == "station" and ranges[field.name]
-    return range and ("%s; from %.10g to %.10g"):format(field.text, range[1], range[2]) or field.text
+    return range and range[1] and ("%s; from %.10g to %.10g"):format(field.text, range[1], range[2]) or field.text
   end
 
   local function add_layouts()

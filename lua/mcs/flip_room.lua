@@ -18,7 +18,7 @@ return function(native, patterns, lookup, arm, transfer)
     return type(problem) == "table" and problem.text or tostring(problem)
   end
 
-  -- Turns the axis over like FLIP; here and below `cell` is the cell in which lib/mcs/survey.c places the
+  -- Turns the axis over like FLIP; here and below `cell` is the cell in which lib/survey/survey.c places the
   -- robot. If that is refused or the cell complains, calls failed(slot, what, reason) and returns true.
   local function fails(axis, cell, failed, slot, what)
     local good, problem = pcall(function()

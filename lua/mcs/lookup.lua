@@ -11,8 +11,6 @@ return function(native, errors)
   -- The station parameters that a command may set for itself, and other options: { least, most, unit } of a
   -- number; the `values` of another kind, or none for a gripper's name.
   lookup.parameters = native.ranges()
-  lookup.parameters.vacuum_check = { values = { "both", "get", "put", "none" } }
-  lookup.parameters.handover = { values = { "new_first", "same_slice" } }
   lookup.parameters.check_map = { values = { true, false } }
   lookup.options = { gripper = {}, robot = {}, force = { values = { true, false } } }
   -- SWAP takes with the empty gripper and puts with the other one.

@@ -453,7 +453,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   ------------------------------------------------------------------------------------------------ trying out
 
   -- Plays a command like a run, but without the sensors' check for wafers before it; returns the error. Here
-  -- and below `cell` is the cell in which lib/mcs/survey.c places it.
+  -- and below `cell` is the cell in which lib/survey/survey.c places it.
   local function try(word, station, slot, cell, gripper)
     local good, problem = pcall(function()
       gripper = gripper or lookup.station(station).effector

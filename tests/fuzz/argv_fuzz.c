@@ -99,7 +99,7 @@ bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *
 bool __wrap_wh_session_open(wh_session_t *session, const wh_session_options_t *options);
 bool __wrap_wh_dialect_open(wh_dialect_t *dialect, const char *path);
 bool __wrap_wh_transcript_open(wh_transcript_t *transcript, const char *path);
-bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                          size_t count, wh_sandbox_result_t *result);
@@ -276,10 +276,10 @@ bool __wrap_wh_node_reaches_others(const char *url) {
     return true;
 }
 
-bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder) {
     (void)node;
     (void)url;
-    (void)record;
+    (void)recorder;
     reached = true;
     return false;
 }

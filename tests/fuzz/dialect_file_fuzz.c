@@ -11,6 +11,7 @@
 #include "fuzz.h"
 #include "host/dialect.h"
 #include "layout/layout.h"
+#include "reading/layout_read.h"
 
 #define FRAME_END 0x1E
 /* The largest number in an input. */

@@ -20,9 +20,9 @@ static struct {
 } subscriptions[SUBSCRIPTIONS];
 static size_t subscription_count;
 
-bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
+bool wh_node_open(wh_node_t *node, const char *url, const wh_node_recorder_t *recorder) {
     (void)url;
-    (void)record;
+    (void)recorder;
     memset(node, 0, sizeof *node);
     size_t kept = 0;
     for (size_t i = 0; i < subscription_count; ++i) {

@@ -6,10 +6,11 @@
 
 #include "fuzz.h"
 #include "layout/layout.h"
-#include "link/messages.h"
 #include "motion/track.h"
+#include "reading/layout_read.h"
 #include "script/sandbox.h"
 #include "sim/simulator.h"
+#include "wire/messages.h"
 
 #define NAME "layout.lua"
 #define MEMORY ((size_t)2 << 20)

@@ -11,10 +11,10 @@
 
 #include "app/app.h"
 #include "fuzz.h"
-#include "link/slices.h"
 #include "log/log_run.h"
 #include "print/record_print.h"
 #include "report/document.h"
+#include "wire/slices.h"
 
 #define HEADER 28
 

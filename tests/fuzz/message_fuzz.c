@@ -13,11 +13,12 @@
 #include "grasp/restore.h"
 #include "layout/layout.h"
 #include "link/mcs_process.h"
-#include "link/messages.h"
 #include "link/sim_process.h"
 #include "print/record_print.h"
+#include "reading/layout_read.h"
 #include "record/seat.h"
 #include "text/array.h"
+#include "wire/messages.h"
 
 /* ------------------------------------------------------------------------------------------------- datagrams */
 

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bodies/stl.h"
 #include "fuzz.h"
-#include "layout/stl.h"
 
 static bool is_before(const wh_vec3_t *a, const wh_vec3_t *b) {
     if (a->x != b->x) {

@@ -5,7 +5,8 @@
 
 #include "math/trig.h"
 #include "mcs/script_run.h"
-#include "mcs/survey.h"
+#include "reading/layout_read.h"
+#include "survey/survey.h"
 
 #include <unistd.h>
 
@@ -190,7 +191,7 @@ static double room_of_turn(double theta, double turn) {
 }
 
 /* The least room in the axes' travel and of the links on the way into a slot, mm or degrees. It follows the
- * text of motion/robot.h and layout/shapes.h and uses none of their code: a polar robot starts from theta 0,
+ * text of motion/robot.h and bodies/shapes.h and uses none of their code: a polar robot starts from theta 0,
  * and takes the longer way round if it has to. */
 static double room_at(const wh_layout_t *layout, int32_t slot) {
     const wh_pose_t at = wh_station_slot(&layout->places[0], slot);

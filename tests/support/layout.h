@@ -6,6 +6,7 @@
 #include "support/support.h"
 
 #include "layout/layout.h"
+#include "reading/layout_read.h"
 #include "script/sandbox.h"
 
 static wh_sandbox_t *sandbox;

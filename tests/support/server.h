@@ -5,8 +5,8 @@
 
 #include "support/support.h"
 
-#include "link/messages.h"
 #include "link/protocol_server.h"
+#include "wire/messages.h"
 
 enum { TEST_RUN = 4711 };
 

@@ -10,8 +10,8 @@
 #include <string.h>
 #include <sys/socket.h>
 
-#include "link/messages.h"
 #include "link/node.h"
+#include "wire/messages.h"
 
 #define CHANNELS 6
 #define KINDS 7

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "link/messages.h"
 #include "link/node.h"
+#include "wire/messages.h"
 
 #define LOST 30
 #define DOUBLED 10

@@ -4,6 +4,7 @@
 
 #include "host/dialect.h"
 #include "layout/layout.h"
+#include "reading/layout_read.h"
 #include "support/support.h"
 
 #define FRAMING "name = 'n', framing = { ends = { '\\r' } }, other_error = '9',\n"

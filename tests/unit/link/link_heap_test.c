@@ -6,8 +6,8 @@
 #include "support/outputs.h"
 #include "support/server.h"
 
-#include "link/messages.h"
 #include "mcs/script_run.h"
+#include "wire/messages.h"
 
 static wh_protocol_server_t servers[1];
 static unsigned long calls_in_steps;

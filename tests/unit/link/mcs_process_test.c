@@ -7,6 +7,7 @@
 #include "link/mcs_process.h"
 #include "link/sim_process.h"
 #include "mcs/session.h"
+#include "reading/layout_read.h"
 
 static wh_node_t node;
 static wh_mcs_process_t control;

@@ -6,9 +6,10 @@
 #include <time.h>
 
 #include "layout/layout.h"
-#include "link/messages.h"
 #include "link/protocol_client.h"
 #include "link/protocol_server.h"
+#include "reading/layout_read.h"
+#include "wire/messages.h"
 
 typedef void change_t(waferhand_state *message);
 

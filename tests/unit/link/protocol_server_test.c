@@ -3,10 +3,11 @@
 #include "support/support.h"
 
 #include "layout/layout.h"
-#include "link/messages.h"
 #include "link/protocol_server.h"
 #include "mcs/script_run.h"
+#include "reading/layout_read.h"
 #include "support/server.h"
+#include "wire/messages.h"
 
 static wh_sandbox_t *sandbox;
 static const wh_layout_t *paper;

@@ -3,8 +3,8 @@
 
 #include <unistd.h>
 
-#include "link/messages.h"
 #include "support/support.h"
+#include "wire/messages.h"
 
 static wh_log_run_t run;
 static char path[WH_TEST_PATH];

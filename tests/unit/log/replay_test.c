@@ -4,8 +4,9 @@
 #include <unistd.h>
 
 #include "layout/layout.h"
-#include "link/recording.h"
 #include "log/reading.h"
+#include "log/recording.h"
+#include "reading/layout_read.h"
 
 #define RUN 4711
 

@@ -1,0 +1,195 @@
+/* The fields of faults, and of the errors that a study draws. */
+#include "layout_fields_internal.h"
+
+/* ----------------------------------------------------------------------------------------------- faults */
+
+#define OF_EVERY_FAULT                                                                                       \
+    {"after", NUMBER, "s until it begins", false}, {                                                         \
+        "lasting", NUMBER, "s; without it until it is cleared", false                                        \
+    }
+#define GRIPPER                                                                                              \
+    { "gripper", "string", "whose; without it the first on the robot", false }
+#define DOOR                                                                                                 \
+    { "door", "string", "which", true }
+#define WAFER                                                                                                \
+    { "wafer", "string", "which", true }
+
+const wh_reader_field_t wh_layout_fault_of_gripper[] = {
+    {"kind", "\"no_vacuum\"|\"sensor_on\"|\"sensor_off\"|\"valve_stuck\"|\"axis_stopped\"|\"plunger_stuck\"",
+     "what happens: no vacuum; a sensor, a valve, the axes or the plunger of an edge grip are stuck", true},
+    OF_EVERY_FAULT,
+    GRIPPER,
+    END};
+const wh_reader_field_t wh_layout_fault_slow_plunger[] = {
+    {"kind", "\"plunger_slow\"", "the plunger of an edge grip is slow", true},
+    OF_EVERY_FAULT,
+    GRIPPER,
+    {"value", NUMBER, "mm/s: it goes no faster", true},
+    END};
+const wh_reader_field_t wh_layout_fault_slow_vacuum[] = {
+    {"kind", "\"slow_vacuum\"", "the vacuum is slow", true},
+    OF_EVERY_FAULT,
+    GRIPPER,
+    {"value", NUMBER, "s: the time constant upwards", true},
+    END};
+const wh_reader_field_t wh_layout_fault_leak[] = {{"kind", "\"leak\"", "the vacuum leaks", true},
+                                                  OF_EVERY_FAULT,
+                                                  GRIPPER,
+                                                  {"value", NUMBER, "0 to 1: the highest level", true},
+                                                  END};
+const wh_reader_field_t wh_layout_fault_of_command[] = {
+    {"kind", "\"command_lost\"", "all grippers and valves stay as they were", true}, OF_EVERY_FAULT, END};
+const wh_reader_field_t wh_layout_fault_door_stuck[] = {
+    {"kind", "\"door_stuck\"", "a door stays where it is", true}, OF_EVERY_FAULT, DOOR, END};
+const wh_reader_field_t wh_layout_fault_door_slow[] = {{"kind", "\"door_slow\"", "a door is slow", true},
+                                                       OF_EVERY_FAULT,
+                                                       DOOR,
+                                                       {"value", NUMBER, "mm/s: as fast as it goes", true},
+                                                       END};
+#define STATION                                                                                              \
+    { "station", "string", "whose", true }
+#define BEAM                                                                                                 \
+    STATION, {                                                                                               \
+        "beam", "integer", "which of the station's beams, from 1", false                                     \
+    }
+const wh_reader_field_t wh_layout_fault_of_beam[] = {
+    {"kind", "\"beam_dark\"|\"beam_lit\"", "a beam at a door is broken down", true},
+    OF_EVERY_FAULT,
+    BEAM,
+    END};
+const wh_reader_field_t wh_layout_fault_late_beam[] = {
+    {"kind", "\"beam_late\"", "the latches of a beam are late", true},
+    OF_EVERY_FAULT,
+    BEAM,
+    {"value", NUMBER, "s by which they are", true},
+    END};
+const wh_reader_field_t wh_layout_fault_of_probe[] = {
+    {"kind", "\"probe_closed\"|\"probe_open\"", "the switch of the cell's probe is stuck", true},
+    OF_EVERY_FAULT,
+    END};
+const wh_reader_field_t wh_layout_fault_of_edge_sensor[] = {
+    {"kind", "\"edge_sensor_stuck\"|\"edge_sensor_late\"",
+     "the samples of an edge sensor are all the same, or late", true},
+    OF_EVERY_FAULT,
+    STATION,
+    {"value", NUMBER,
+     "stuck: the part of its line that seems to be covered, 0 to 1; late: s by which they are", true},
+    END};
+const wh_reader_field_t wh_layout_fault_missing[] = {
+    {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};
+const wh_reader_field_t wh_layout_fault_doubled[] = {
+    {"kind", "\"wafer_doubled\"", "the wafer lies on another one, in the same slot", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"onto", "string", "the other wafer", true},
+    END};
+const wh_reader_field_t wh_layout_fault_crossed[] = {
+    {"kind", "\"wafer_crossed\"", "one edge lies higher than the other", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"value", NUMBER, "mm by which it does", false},
+    END};
+const wh_reader_field_t wh_layout_fault_shifted[] = {
+    {"kind", "\"wafer_shifted\"", "the wafer is moved, in its own frame", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"dx", NUMBER, "mm", false},
+    {"dy", NUMBER, "mm", false},
+    {"dz", NUMBER, "mm", false},
+    END};
+const wh_reader_field_t wh_layout_fault_tilted[] = {
+    {"kind", "\"wafer_tilted\"", "the wafer is turned, in its own frame", true},
+    OF_EVERY_FAULT,
+    WAFER,
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees", true},
+    END};
+
+const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
+    [WH_FAULT_NO_VACUUM] = wh_layout_fault_of_gripper,
+    [WH_FAULT_SLOW_VACUUM] = wh_layout_fault_slow_vacuum,
+    [WH_FAULT_SENSOR_ON] = wh_layout_fault_of_gripper,
+    [WH_FAULT_SENSOR_OFF] = wh_layout_fault_of_gripper,
+    [WH_FAULT_LEAK] = wh_layout_fault_leak,
+    [WH_FAULT_VALVE_STUCK] = wh_layout_fault_of_gripper,
+    [WH_FAULT_AXIS_STOPPED] = wh_layout_fault_of_gripper,
+    [WH_FAULT_COMMAND_LOST] = wh_layout_fault_of_command,
+    [WH_FAULT_WAFER_MISSING] = wh_layout_fault_missing,
+    [WH_FAULT_WAFER_DOUBLED] = wh_layout_fault_doubled,
+    [WH_FAULT_WAFER_CROSSED] = wh_layout_fault_crossed,
+    [WH_FAULT_WAFER_SHIFTED] = wh_layout_fault_shifted,
+    [WH_FAULT_WAFER_TILTED] = wh_layout_fault_tilted,
+    [WH_FAULT_PLUNGER_STUCK] = wh_layout_fault_of_gripper,
+    [WH_FAULT_PLUNGER_SLOW] = wh_layout_fault_slow_plunger,
+    [WH_FAULT_DOOR_STUCK] = wh_layout_fault_door_stuck,
+    [WH_FAULT_DOOR_SLOW] = wh_layout_fault_door_slow,
+    [WH_FAULT_BEAM_DARK] = wh_layout_fault_of_beam,
+    [WH_FAULT_BEAM_LIT] = wh_layout_fault_of_beam,
+    [WH_FAULT_BEAM_LATE] = wh_layout_fault_late_beam,
+    [WH_FAULT_PROBE_CLOSED] = wh_layout_fault_of_probe,
+    [WH_FAULT_PROBE_OPEN] = wh_layout_fault_of_probe,
+    [WH_FAULT_EDGE_SENSOR_STUCK] = wh_layout_fault_of_edge_sensor,
+    [WH_FAULT_EDGE_SENSOR_LATE] = wh_layout_fault_of_edge_sensor,
+};
+
+/* ---------------------------------------------------------------------------------------------- studies */
+
+#define PLACEMENT_FIELDS                                                                                     \
+    {"dx", NUMBER, "mm, in the slot's frame", false}, {"dy", NUMBER, "mm", false},                           \
+        {"dz", NUMBER, "mm", false}, {"tilt", NUMBER, "degrees, about the slot's x and about its y", false}, \
+        {"turn", NUMBER, "degrees, about z", false}, {                                                       \
+        "shape", SHAPE, "how they are spread", false                                                         \
+    }
+
+#define TEACHING_FIELDS                                                                                      \
+    {"x", NUMBER, "mm, along base's x", false}, {"y", NUMBER, "mm, along base's y", false},                  \
+        {"z", NUMBER, "mm, along base's z", false}, {"roll", NUMBER, "degrees, about base's x", false},      \
+        {"pitch", NUMBER, "degrees, about base's y", false},                                                 \
+        {"yaw", NUMBER, "degrees, about base's z", false}, {                                                 \
+        "shape", SHAPE, "how they are spread", false                                                         \
+    }
+
+const wh_reader_field_t wh_layout_study_fields[] = {
+    {"shape", SHAPE, "how all errors are spread", false},
+    {"placement", "waferhand.placement", "of every wafer in its slot", false},
+    {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
+    {"timing", "waferhand.timing", "of valves and vacuum", false},
+    {"rim", "waferhand.rim_width", "of every wafer's rim, which edge sensors see", false},
+    {"beam", "waferhand.beam_width", "of every beam, beside where it is taken to stand", false},
+    {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
+    {"rims", "table<string, waferhand.rim_width>", "of one wafer's rim alone, by the wafer's name", false},
+    {"beams", "table<string, waferhand.beam_width>", "of one station's beams alone, by its name", false},
+    {"stations", "table<string, waferhand.teaching>", "of one station alone, by name", false},
+    {"grippers", "table<string, waferhand.valve>", "of one gripper's valve alone, by name", false},
+    END};
+
+const wh_reader_field_t wh_layout_placement_fields[] = {PLACEMENT_FIELDS, END};
+const wh_reader_field_t wh_layout_teaching_fields[] = {TEACHING_FIELDS, END};
+const wh_reader_field_t wh_layout_timing_fields[] = {
+    {"valve", NUMBER, "s by which a valve acts late", false},
+    {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};
+const wh_reader_field_t wh_layout_valve_fields[] = {
+    {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
+const wh_reader_field_t wh_layout_rim_width_fields[] = {
+    {"diameter", NUMBER, "mm, of the true diameter", false},
+    {"notch_depth", NUMBER, "mm", false},
+    {"notch_angle", NUMBER, "degrees, between the notch's flanks", false},
+    {"notch_bottom", NUMBER, "mm, of the radius of its bottom", false},
+    {"notch_corner", NUMBER, "mm, of the radii of its corners", false},
+    {"flat", NUMBER, "mm, of the primary flat's length", false},
+    {"second_flat", NUMBER, "mm, of the secondary flat's length", false},
+    {"chip_depth", NUMBER, "mm, of a chip more, somewhere", false},
+    {"chip_width", NUMBER, "mm, of that chip along the rim", false},
+    {"bow", NUMBER, "mm", false},
+    {"saddle", NUMBER, "mm, high in some direction", false},
+    {"glass", NUMBER, "part of the light that comes through", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};
+
+const wh_reader_field_t wh_layout_beam_width_fields[] = {
+    {"dx", NUMBER, "mm by which it stands farther in", false},
+    {"dy", NUMBER, "mm by which it stands to the left", false},
+    {"late", NUMBER, "s by which its latches are late", false},
+    {"shape", SHAPE, "how they are spread", false},
+    END};

@@ -1,0 +1,225 @@
+/* The fields of stations and wafers, and of the sensors there. */
+#include "layout_fields_internal.h"
+
+/* ---------------------------------------------------------------------------------- stations and wafers */
+
+const wh_reader_field_t wh_layout_station_fields[] = {
+    {"kind", "\"slots\"|\"prealigner\"|\"foup\"|\"flipper\"", "what stands there", false},
+    {"at", TRIPLE, "x, y, z in mm, in base: the centre of a wafer's back face in slot 1; or `axes` says it",
+     false},
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees: x is the way in, z goes up through the slots", false},
+    {"axes", "waferhand.axes", "in place of `at` and `rpy`: where the axes stand with the gripper in slot 1",
+     false},
+    {"taught", SWITCH, "false: every command at the station is refused", false,
+     AS_SWITCH(wh_layout_station_t, taught, true)},
+    {"slots", "integer", "how many", false},
+    {"pitch", NUMBER, "mm from slot to slot", false},
+    {"effector", "string", "the gripper that serves it, unless a command names another", false},
+    {"stroke", NUMBER, "mm: the height of the stroke", false,
+     AS_NUMBER(wh_layout_station_t, stroke, 0.01, 1000, FOLLOWS)},
+    {"offset", NUMBER, "mm above the slot at which a GET leaves", false,
+     AS_NUMBER(wh_layout_station_t, offset, 0, 1000, FOLLOWS)},
+    {"retract", NUMBER, "mm before the slot, where the straight way in begins", false,
+     AS_NUMBER(wh_layout_station_t, retract, 1, 10000, 300)},
+    {"pickup_speed", NUMBER, "mm/s: of the strokes", false,
+     AS_NUMBER(wh_layout_station_t, pickup_speed, 0.001, 10000, 20)},
+    {"pickup_acceleration", NUMBER, "mm/s^2: of the strokes; 0: what the axes allow", false,
+     AS_NUMBER(wh_layout_station_t, pickup_acceleration, 0, 1e8, 0)},
+    {"release", NUMBER, "mm above the slot at which a PUT switches the valves", false,
+     AS_NUMBER(wh_layout_station_t, release, -1000, 1000, FOLLOWS)},
+    {"vacuum_delay", NUMBER, "s from the end of the stroke until the sensor is asked", false,
+     AS_NUMBER(wh_layout_station_t, vacuum_delay, 0, 3600, 0)},
+    {"vacuum_check", WORD, "the commands that the sensor decides", false,
+     AS_WORD(wh_layout_station_t, check, WH_VACUUM_CHECK_BOTH, wh_layout_vacuum_check_words)},
+    {"timeout", NUMBER, "s: how long a command waits for the sensor", false,
+     AS_NUMBER(wh_layout_station_t, timeout, 0, 3600, FOLLOWS)},
+    {"retries", "integer", "how often a GET that took nothing tries again", false,
+     AS_WHOLE(wh_layout_station_t, retries, 0, 100, 0)},
+    {"wait", NUMBER, "s: how long the arm stands in the station before the stroke", false,
+     AS_NUMBER(wh_layout_station_t, wait, 0, 3600, 0)},
+    {"map_speed", NUMBER, "mm/s: of the sweep over the slots", false,
+     AS_NUMBER(wh_layout_station_t, map_speed, 0.001, 10000, 100)},
+    {"check_map", SWITCH, "true: GET and PUT want a MAP before them", false,
+     AS_SWITCH(wh_layout_station_t, check_map, false)},
+    {"handover", WORD, "at a chuck: the order of the two valves", false,
+     AS_WORD(wh_layout_station_t, handover, WH_HANDOVER_NEW_FIRST, wh_layout_handover_words)},
+    {"face", "\"up\"|\"down\"", "how wafers must lie there; without it either way", false},
+    {"counts", SWITCH, "true: a wafer that is put here is done, for wafers per hour", false},
+    {"sensor", "waferhand.sensor", "at a prealigner: what sees the wafer's edge", false},
+    {"beams", "waferhand.beam[]", "light at the door, which wafers break on their way", false},
+    {"centre", SWITCH, "true: a PUT corrects by what the beams say of the wafer", false},
+    {"block", "waferhand.block", "what a probe touches to teach the station", false},
+    {"rail", NUMBER, "mm: where the robot's rail stands for it", false},
+    {"elbow", "\"left\"|\"right\"", "the side of a SCARA's elbow there", false},
+    {"door", "string", "the door through which wafers come, by name", false},
+    {"pins", "string", "the pins that lift wafers off its chuck, by name", false},
+    {"via", "waferhand.via[]", "where the arm passes on its way there, and back on its way away", false},
+    {"by", "table<string, waferhand.approach>", "with several robots: those that serve it, by name", false},
+    END};
+
+const wh_reader_field_t wh_layout_approach_fields[] = {
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in base: x is this robot's way in", false},
+    {"at", TRIPLE, "where it was taught slot 1, mm, in base, up to 5 mm beside the station's own `at`",
+     false},
+    {"axes", "waferhand.axes", "where its axes stand with its gripper in slot 1", false},
+    {"rail", NUMBER, "mm: where its rail stands for it", false},
+    {"elbow", "\"left\"|\"right\"", "the side of a SCARA's elbow there", false},
+    {"door", "string", "the door through which it comes, by name", false},
+    {"via", "waferhand.via[]", "where it passes on its way there, and back on its way away", false},
+    END};
+
+const wh_reader_field_t wh_layout_axes_fields[] = {
+    {"theta", NUMBER, "degrees: where the axis stands", false},
+    {"r", NUMBER, "mm, of two arms that of the one that goes there", false},
+    {"forearm", NUMBER, "degrees, of a SCARA", false},
+    {"z", NUMBER, "mm", false},
+    {"yaw", NUMBER, "degrees, of two wrists that of the one that goes there", false},
+    {"rail", NUMBER, "mm", false},
+    {"tilt_x", NUMBER, "degrees", false},
+    {"tilt_y", NUMBER, "degrees", false},
+    END};
+
+const wh_reader_field_t wh_layout_wafer_fields[] = {
+    {"name", "string", "how commands name it", false},
+    {"station", "string", "the station in which it lies", true},
+    {"slot", "integer", "from 1, at the bottom", true},
+    {"dx", NUMBER, "mm off the slot's centre, along its x", false},
+    {"dy", NUMBER, "mm off the slot's centre, along its y", false},
+    {"dz", NUMBER, "mm above the slot", false},
+    {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
+    {"face", "\"up\"|\"down\"", "the way it lies; without it as its station says, else up", false},
+    {"thickness", NUMBER, "mm: what MAP measures; all else goes by that of `wafer`", false},
+    {"rim", "waferhand.rim", "its true rim, which edge sensors and beams see, and edge grips meet", false},
+    END};
+
+/* ------------------------------------------------------------------------- edge sensors, beams and rims */
+
+const wh_reader_field_t wh_layout_via_fields[] = {
+    {"theta", NUMBER,
+     "degrees, of two arms where the one points that goes to the station; an axis that is not given is as in "
+     "front of the station",
+     false},
+    {"r", NUMBER, "mm, of two arms that of the one that goes to the station", false},
+    {"forearm", NUMBER, "degrees, of a SCARA", false},
+    {"z", NUMBER, "mm", false},
+    {"yaw", NUMBER, "degrees, of two wrists that of the one that goes to the station", false},
+    {"rail", NUMBER, "mm", false},
+    {"blend", NUMBER, "mm: how near the arm passes; 0: it stops there", false},
+    END};
+
+const wh_reader_field_t wh_layout_beam_fields[] = {
+    {"x", NUMBER, "mm along the way in from the slot's centre, below 0 before it", false,
+     AS_NUMBER(wh_layout_beam_t, x, -10000, 10000, FOLLOWS)},
+    {"y", NUMBER, "mm across the way, to the left", true,
+     AS_NUMBER(wh_layout_beam_t, y, -10000, 10000, FOLLOWS)},
+    {"low", NUMBER, "mm above slot 1 where it begins", false,
+     AS_NUMBER(wh_layout_beam_t, low, -1000, 1000, -30)},
+    {"high", NUMBER, "mm above slot 1 where it ends", false,
+     AS_NUMBER(wh_layout_beam_t, high, -1000, 1e4, FOLLOWS)},
+    {"sd", NUMBER, "mm: how well x and y are known, standard deviation", false,
+     AS_NUMBER(wh_layout_beam_t, sd, 0, 0.5, 0)},
+    {"delay_on", NUMBER, "s from being broken to the latch", false,
+     AS_NUMBER(wh_layout_beam_t, delay_on, 0, 0.009, 0)},
+    {"delay_off", NUMBER, "s from being free to the latch", false,
+     AS_NUMBER(wh_layout_beam_t, delay_off, 0, 0.009, 0)},
+    {"jitter", NUMBER, "s: standard deviation of both delays", false},
+    {"seed", "integer", "names the jitter, with the number of the arming", false},
+    {"dx", NUMBER, "mm by which it truly stands farther in than motion control believes", false,
+     AS_NUMBER(wh_layout_beam_t, dx, -5, 5, 0)},
+    {"dy", NUMBER, "mm by which it truly stands farther to the left", false,
+     AS_NUMBER(wh_layout_beam_t, dy, -5, 5, 0)},
+    {"late", NUMBER, "s by which both delays are truly longer", false,
+     AS_NUMBER(wh_layout_beam_t, late, 0, 0.001, 0)},
+    {"stuck", "\"no\"|\"dark\"|\"lit\"", "what a beam always says that is broken down", false},
+    END};
+
+const wh_reader_field_t wh_layout_block_fields[] = {
+    {"at", TRIPLE, "x, y, z in mm, in the station's frame: the middle of its upper face", false},
+    {"size", TRIPLE, "mm along the station's x, y and z", false},
+    END};
+
+const wh_reader_field_t wh_layout_probe_fields[] = {
+    {"at", TRIPLE, "x, y, z in mm, in the gripper's frame: the middle of its ball", false},
+    {"radius", NUMBER, "mm: of the ball", false, AS_NUMBER(wh_layout_probe_t, radius, 0, 50, 1.5)},
+    {"noise", NUMBER, "mm: of where a touch closes the switch, standard deviation", false,
+     AS_NUMBER(wh_layout_probe_t, noise, 0, 0.1, 0.005)},
+    {"seed", "integer", "names the noise, with the number of the arming", false,
+     AS_SEED(wh_layout_probe_t, seed)},
+    {"stuck", WORD, "what a switch always says that is broken down", false,
+     AS_WORD(wh_layout_probe_t, stuck, 0, wh_layout_touch_stuck_words)},
+    END};
+
+const wh_reader_field_t wh_layout_sensor_fields[] = {
+    {"samples", "integer", "how many in a turn", false,
+     AS_WHOLE(wh_sensor_t, samples, 90, WH_SENSOR_SAMPLES, KEPT)},
+    {"pixel", NUMBER, "mm: a pixel's length", false, AS_NUMBER(wh_sensor_t, pixel, 0.001, 0.1, KEPT)},
+    {"length", NUMBER, "mm: the line's length", false, AS_NUMBER(wh_sensor_t, length, 2, 100, FOLLOWS)},
+    {"noise", NUMBER, "mm: standard deviation of one sample", false,
+     AS_NUMBER(wh_sensor_t, noise, 0, 0.1, 0)},
+    {"seed", "integer", "names the noise, with the number of the scan", false},
+    {"at", NUMBER, "degrees: where the line points from the chuck's axis, about the station's z", false,
+     AS_DEGREES(wh_sensor_t, direction, -360, 360, 0)},
+    {"encoder", "integer", "counts in a turn of the chuck; 0: no steps", false,
+     AS_WHOLE(wh_sensor_t, encoder, 0, 10000000, 0)},
+    {"offset", NUMBER, "mm by which the line passes the axis, to the left", false,
+     AS_NUMBER(wh_sensor_t, error.offset, -1, 1, 0)},
+    {"zero", NUMBER, "mm by which its inner end is farther out", false,
+     AS_NUMBER(wh_sensor_t, error.zero, -1, 1, 0)},
+    {"gain", NUMBER, "the part of their length by which pixels are longer", false,
+     AS_NUMBER(wh_sensor_t, error.gain, -0.01, 0.01, 0)},
+    {"latency", NUMBER, "s by which a sample is taken later than it is due", false,
+     AS_NUMBER(wh_sensor_t, error.latency, -0.001, 0.001, 0)},
+    {"believed", "waferhand.believed", "what motion control takes these four to be: 0 without it", false},
+    {"tilt", NUMBER, "degrees of its light out of the upright, outwards going up", false,
+     AS_DEGREES(wh_sensor_t, tilt, -28, 28, 0)},
+    {"hidden", "waferhand.arc[]", "arcs of the chuck in which something covers the line", false},
+    END};
+
+const wh_reader_field_t wh_layout_believed_fields[] = {
+    {"offset", NUMBER, "mm", false, AS_NUMBER(wh_sensor_error_t, offset, -1, 1, 0)},
+    {"zero", NUMBER, "mm", false, AS_NUMBER(wh_sensor_error_t, zero, -1, 1, 0)},
+    {"gain", NUMBER, "a part of the pixels' length", false,
+     AS_NUMBER(wh_sensor_error_t, gain, -0.01, 0.01, 0)},
+    {"latency", NUMBER, "s", false, AS_NUMBER(wh_sensor_error_t, latency, -0.001, 0.001, 0)},
+    END};
+
+const wh_reader_field_t wh_layout_arc_fields[] = {
+    {"from", NUMBER, "degrees", true, AS_DEGREES(wh_arc_t, from, -360, 360, KEPT)},
+    {"width", NUMBER, "degrees", true, AS_DEGREES(wh_arc_t, width, 0.001, 360, KEPT)},
+    END};
+
+const wh_reader_field_t wh_layout_rim_fields[] = {
+    {"diameter", NUMBER, "mm", false},
+    {"notch", "waferhand.rim_notch", "the notch", false},
+    {"flats", "waferhand.flat[]", "the flats", false},
+    {"chips", "waferhand.chip[]", "what is broken off", false},
+    {"bow", NUMBER, "mm: how far the rim is above the centre, the same all round", false,
+     AS_NUMBER(wh_rim_t, bow, -2, 2, 0)},
+    {"saddle", NUMBER, "mm: how far the rim is above the centre, twice up and down", false,
+     AS_NUMBER(wh_rim_t, saddle, -2, 2, 0)},
+    {"saddle_at", NUMBER, "degrees: where the saddle is highest", false,
+     AS_DEGREES(wh_rim_t, saddle_direction, -360, 360, 0)},
+    {"glass", NUMBER, "0 to 0.9: the part of the light that comes through", false,
+     AS_NUMBER(wh_rim_t, transmission, 0, 0.9, 0)},
+    END};
+
+const wh_reader_field_t wh_layout_rim_notch_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", false,
+     AS_DEGREES(wh_notch_shape_t, direction, -360, 360, KEPT)},
+    {"depth", NUMBER, "mm; 0: none", false, AS_NUMBER(wh_notch_shape_t, depth, 0, 3, FOLLOWS)},
+    {"angle", NUMBER, "degrees between its flanks", false,
+     AS_DEGREES(wh_notch_shape_t, opening, 58, 120, 90)},
+    {"bottom", NUMBER, "mm: the radius at its bottom", false,
+     AS_NUMBER(wh_notch_shape_t, bottom, 0, 2, FOLLOWS)},
+    {"corner", NUMBER, "mm: the radius where it meets the rim", false,
+     AS_NUMBER(wh_notch_shape_t, corner, 0, 1, FOLLOWS)},
+    END};
+
+const wh_reader_field_t wh_layout_flat_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", true}, {"length", NUMBER, "mm", true}, END};
+
+const wh_reader_field_t wh_layout_chip_fields[] = {
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", true},
+    {"width", NUMBER, "mm along the rim", true},
+    {"depth", NUMBER, "mm", true},
+    END};

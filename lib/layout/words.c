@@ -1,0 +1,11 @@
+#include "words.h"
+
+#include <stddef.h>
+
+const char *const wh_layout_check_words[] = {"sampled", "swept", NULL};
+const char *const wh_layout_handover_words[] = {"new_first", "same_slice", NULL};
+const char *const wh_layout_vacuum_check_words[] = {"both", "get", "put", "none", NULL};
+const char *const wh_layout_beam_stuck_words[] = {"no", "dark", "lit", NULL};
+const char *const wh_layout_touch_stuck_words[] = {"no", "closed", "open", NULL};
+const char *const wh_layout_grip_words[] = {"vacuum", "edge", "passive", NULL};
+const char *const wh_layout_mount_words[] = {"chuck", "stage", "pins", "flipper", NULL};

@@ -1,0 +1,13 @@
+/* The words of a layout's enumerations, each list in the enumeration's order and up to a null. */
+#ifndef WH_LAYOUT_WORDS_H
+#define WH_LAYOUT_WORDS_H
+
+extern const char *const wh_layout_check_words[];        /* wh_check_t */
+extern const char *const wh_layout_handover_words[];     /* wh_handover_t */
+extern const char *const wh_layout_vacuum_check_words[]; /* wh_vacuum_check_t */
+extern const char *const wh_layout_beam_stuck_words[];   /* wh_beam_stuck_t of a beam */
+extern const char *const wh_layout_touch_stuck_words[];  /* wh_beam_stuck_t of a probe */
+extern const char *const wh_layout_grip_words[];         /* wh_grip_kind_t */
+extern const char *const wh_layout_mount_words[];        /* wh_mount_kind_t */
+
+#endif
