@@ -92,6 +92,7 @@ const wh_reader_field_t wh_layout_vacuum_fields[] = {
     {"sensor_on", NUMBER, "0 to 1: the level at which the sensor goes on", false},
     {"sensor_off", NUMBER, "0 to 1: the level below which the sensor goes off", false},
     {"release", NUMBER, "0 to 1: the level below which a closed valve lets go", false},
+    {"debounce", NUMBER, "ms for which the sensor's switch must stand until it is told", false},
     END};
 
 const wh_reader_field_t wh_layout_pads_fields[] = {

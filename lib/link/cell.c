@@ -208,6 +208,7 @@ static void put_doors(const wh_layout_t *layout, wh_link_cell_t *room) {
 }
 
 static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
+    message->slice_us += (int64_t)physics->vacuum.debounce << WH_LINK_DEBOUNCE_SHIFT;
     message->vacuum_build = physics->vacuum.build;
     message->vacuum_vent = physics->vacuum.vent;
     message->vacuum_idle = physics->vacuum.idle;

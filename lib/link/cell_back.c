@@ -24,6 +24,10 @@ static bool is_within(double value, double least, double most) {
     return value >= least && value <= most;
 }
 
+static int64_t slice_us_of(const waferhand_cell *cell) {
+    return cell->slice_us & ((INT64_C(1) << WH_LINK_DEBOUNCE_SHIFT) - 1);
+}
+
 /* True if checks and places have values that a layout's file may give. */
 static bool checks_fit(const waferhand_cell *cell) {
     return is_within(cell->eps_projz, 1e-9, 1e6) && is_within(cell->near_projz, 1e-9, 1e6) &&
@@ -31,7 +35,7 @@ static bool checks_fit(const waferhand_cell *cell) {
            is_within(cell->askew, 0, 10) && is_within(cell->drop, 0, 1e6) &&
            is_within(cell->thickness, 0, WH_FACE_THICKEST) &&
            is_within(cell->collision, WH_LINK_NO_COLLISION, WH_LINK_GAPS) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000;
+           slice_us_of(cell) >= 1 && slice_us_of(cell) <= 1000000;
 }
 
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
@@ -43,7 +47,7 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     grasp->near_projxy = cell->near_projxy;
     grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
     grasp->seat = cell->seat != 0;
-    layout->slice_us = cell->slice_us;
+    layout->slice_us = slice_us_of(cell);
     layout->cell.settle = cell->settle != 0;
     layout->cell.off_centre = cell->off_centre;
     layout->cell.askew = cell->askew;
@@ -109,10 +113,15 @@ static bool take_edges(const waferhand_cell *cell, wh_layout_t *layout) {
  * way. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
-    physics->slice_s = (wh_real_t)cell->slice_us / 1e6;
-    physics->vacuum =
-        (wh_vacuum_config_t){cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
-                             cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
+    const int64_t debounce = cell->slice_us >> WH_LINK_DEBOUNCE_SHIFT;
+    physics->slice_s = (wh_real_t)slice_us_of(cell) / 1e6;
+    physics->vacuum = (wh_vacuum_config_t){.build = cell->vacuum_build,
+                                           .vent = cell->vacuum_vent,
+                                           .idle = cell->vacuum_idle,
+                                           .on = cell->vacuum_sensor_on,
+                                           .off = cell->vacuum_sensor_off,
+                                           .release = cell->vacuum_release,
+                                           .debounce = (int32_t)debounce};
     physics->pads = (wh_pads_t){cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
     physics->fault_count = (size_t)cell->fault_count;
     for (size_t i = 0; i < physics->fault_count; ++i) {
