@@ -300,8 +300,8 @@ static wh_mount_t mount_of(const wh_machine_t *machine, int32_t gripper) {
     return gripper == WH_NONE ? usual : machine->mounts[gripper];
 }
 
-/* Tells each axis of the robot whose travel ends on the line. Returns the share of the line up to the first of
- * these ends, or 2. */
+/* Tells each axis of the robot whose travel ends on the line. Returns the share of the line up to the first
+ * of these ends, or 2. */
 static wh_real_t put_axes(char text[WH_TRAVEL_BYTES], const wh_machine_t *machine, int32_t gripper,
                           const wh_real_t from_q[], const wh_vec3_t *travel, const planned_t *line) {
     const wh_mount_t mount = mount_of(machine, gripper);
