@@ -140,10 +140,17 @@ static bool is_whole(const char *verdict) {
            strcmp(verdict, wh_reading_word(WH_READING_DIFFERS)) == 0;
 }
 
+/* Where a result tells what its log is worth: in the record, in the run of a page's data, or, of `replay`, beside
+ * all else. */
+static const json_t *find_log(const json_t *root) {
+    const json_t *run = json_object_get(root, "run");
+    const json_t *log = json_object_get(json_is_object(run) ? run : root, "log");
+    return json_is_object(log) || json_is_object(run) ? log : root;
+}
+
 /* A result may be that of a log: one that lacks something is never equal to another. */
 static bool is_of_whole_log(const side_t *side) {
-    const json_t *run = json_object_get(side->root, "run");
-    const json_t *log = json_object_get(json_is_object(run) ? run : side->root, "log");
+    const json_t *log = find_log(side->root);
     const char *verdict = json_string_value(json_object_get(log, "verdict"));
     const char *reason = json_string_value(json_object_get(log, "reason"));
     if (verdict && !is_whole(verdict)) {

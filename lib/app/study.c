@@ -39,7 +39,7 @@ static const wh_option_t options[] = {
      "Keep what is done in FILE, and go on from there (default: a place of its own, until the study is done)",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, state)},
     {"require", 0, "RATE",
-     "Exit with 1 unless the success rate is at least RATE, 0 to 1, with 95 % confidence", WH_OPTION_REAL,
+     "Exit with 1 unless the success rate is at least RATE, up to 1, with 95 % confidence", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, require), 0, 1},
     {"worst", 0, "K", "Tell the K worst trials (default 10)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, worst), 0, WH_STUDY_WORST},
@@ -81,6 +81,9 @@ static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->trial != NO_TRIAL) {
         check_one(arguments, state);
+    }
+    if (arguments->require >= 0 && !(arguments->require > 0)) {
+        argp_error(state, "--require: 0 (expected above 0, up to 1: whatever happens keeps 0)");
     }
     const wh_run_files_t *files = &arguments->run.files;
     if ((files->scene || files->document || files->plots) && arguments->trial == NO_TRIAL) {

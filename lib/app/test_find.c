@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,19 +13,60 @@
 /* Folders within folders; deeper ones are refused. */
 #define DEEPEST 64
 
+static char *join(const char *folder, const char *name) {
+    const size_t length = strlen(folder);
+    const size_t room = length + strlen(name) + 2;
+    char *path = wh_array_new(room, 1);
+    (void)snprintf(path, room, "%s%s%s", folder, length > 0 && folder[length - 1] != '/' ? "/" : "", name);
+    return path;
+}
+
+/* A script's own path, its folder's links followed. A link to a script is another script: what its paths are
+ * relative to is another folder. Null if there is no such folder. */
+static char *own_path(const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *folder = wh_text_copy(slash ? path : "./");
+    char real[PATH_MAX];
+    folder[slash ? slash - path + 1 : 2] = '\0';
+    char *own = realpath(folder, real) ? join(real, slash ? slash + 1 : path) : NULL;
+    free(folder);
+    return own;
+}
+
+/* The place of a script among those that are found, or their count. */
+static size_t find_script(const wh_test_found_t *found, const char *own) {
+    size_t i = 0;
+    while (i < found->count && strcmp(found->own[i], own) != 0) {
+        ++i;
+    }
+    return i;
+}
+
 void wh_test_found_add(wh_test_found_t *found, const char *path, bool was_found) {
+    char *own = own_path(path);
+    const size_t place = own ? find_script(found, own) : found->count;
+    ++found->named;
+    if (place < found->count) {
+        found->jobs[place].was_found = found->jobs[place].was_found && was_found;
+        free(own);
+        return;
+    }
+    found->own = wh_array_grow(found->own, found->count, &found->own_capacity, sizeof *found->own);
+    found->own[found->count] = own ? own : wh_text_copy(path);
     found->jobs = wh_array_grow(found->jobs, found->count, &found->capacity, sizeof *found->jobs);
     found->paths = wh_array_grow(found->paths, found->count, &found->path_capacity, sizeof *found->paths);
     found->paths[found->count] = wh_text_copy(path);
     found->jobs[found->count] = (wh_test_job_t){found->paths[found->count], was_found};
-    ++found->count;
+    found->path_count = ++found->count;
 }
 
 void wh_test_found_free(wh_test_found_t *found) {
-    for (size_t i = 0; i < found->count; ++i) {
+    for (size_t i = 0; i < found->path_count; ++i) {
         free(found->paths[i]);
+        free(found->own[i]);
     }
     free(found->paths);
+    free(found->own);
     free(found->jobs);
 }
 
@@ -45,14 +87,6 @@ static int is_shown(const struct dirent *entry) {
 static bool is_lua(const char *name) {
     const size_t length = strlen(name);
     return length > 4 && strcmp(name + length - 4, ".lua") == 0;
-}
-
-static char *join(const char *folder, const char *name) {
-    const size_t length = strlen(folder);
-    const size_t room = length + strlen(name) + 2;
-    char *path = wh_array_new(room, 1);
-    (void)snprintf(path, room, "%s%s%s", folder, length > 0 && folder[length - 1] != '/' ? "/" : "", name);
-    return path;
 }
 
 static bool search(wh_test_found_t *found, const char *folder, int depth);
@@ -97,14 +131,18 @@ bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) {
         if (stat(paths->items[i], &status) != 0) {
             taken = refuse(paths->items[i], strerror(errno));
         } else if (S_ISDIR(status.st_mode)) {
-            const size_t before = found->count;
+            const size_t before = found->named;
             taken = search(found, paths->items[i], 0);
-            if (taken && found->count == before) {
+            if (taken && found->named == before) {
                 taken = refuse(paths->items[i], "no scripts found");
             }
         } else {
             wh_test_found_add(found, paths->items[i], false);
         }
+    }
+    if (taken && found->named > found->count) {
+        fprintf(stderr, "waferhand test: %zu named again (each script is played once)\n",
+                found->named - found->count);
     }
     return taken;
 }

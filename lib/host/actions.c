@@ -42,8 +42,16 @@ void wh_host_release(wh_host_t *host) {
     host->holder = NULL;
 }
 
+/* An entry at the port whose action runs, else at the first one. Before the first port there is none: no
+ * transcript is open yet. */
+static void note_stop(wh_host_t *host, wh_transcript_kind_t kind) {
+    if (host->count > 0) {
+        wh_host_note(host, host->running ? host->running : host->controllers[0], kind, NULL, 0);
+    }
+}
+
 void wh_host_stop(wh_host_t *host) {
-    wh_host_note(host, host->running ? host->running : host->controllers[0], WH_TRANSCRIPT_HALTED, NULL, 0);
+    note_stop(host, WH_TRANSCRIPT_HALTED);
     wh_host_release(host);
     for (size_t i = 0; i < host->count; ++i) {
         wh_controller_t *controller = host->controllers[i];
@@ -60,8 +68,7 @@ void wh_host_stop(wh_host_t *host) {
 void wh_host_end(wh_host_t *host) {
     if (!host->is_ended) {
         host->is_ended = true;
-        wh_host_note(host, host->running ? host->running : host->controllers[0], WH_TRANSCRIPT_STOPPED, NULL,
-                     0);
+        note_stop(host, WH_TRANSCRIPT_STOPPED);
     }
     wh_session_stop(host->session);
 }

@@ -7,7 +7,7 @@
 #include "values.h"
 
 bool wh_host_plays_jobs(const wh_host_t *host) {
-    return host->count > 1 || host->controllers[0]->mechanism.name;
+    return host->count > 1 || (host->count == 1 && host->controllers[0]->mechanism.name);
 }
 
 int32_t wh_controller_job(const wh_controller_t *controller) {

@@ -65,17 +65,40 @@ static void pass_file(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *r
     wh_replay_next_file(replay);
 }
 
-static void take_event(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *replay) {
+static bool is_of_slices(const char *channel) {
+    return strcmp(channel, WH_CHANNEL_SLICES) == 0 || strcmp(channel, WH_CHANNEL_STATE) == 0 ||
+           strcmp(channel, WH_CHANNEL_COMMAND) == 0;
+}
+
+/* Returns true if it is of slices, and sound. */
+static bool take_event(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *replay) {
+    const uint64_t messages = replay->messages;
     wh_log_numbers_take(&reading->numbers, log->number, log->offset);
     replay->at = log->offset;
     replay->file = log->file;
     replay->is_loose = log->is_loose;
     wh_replay_event(replay, log->channel, log->data, log->size);
+    return replay->messages > messages && is_of_slices(log->channel);
+}
+
+/* Notes a file in which no slice is, unless it is a part of a recording that goes on in the next one. Returns
+ * true if the next one need not have a slice. */
+static bool end_file(wh_reading_t *reading, const wh_log_files_t *files, size_t file, bool has_slices,
+                     bool is_cut) {
+    const wh_log_head_t *head = &files->heads[file];
+    const wh_log_head_t *next = file + 1 < files->count ? &files->heads[file + 1] : NULL;
+    const bool goes_on = next && head->is_told && next->is_told && head->id == next->id;
+    if (files->count > 1 && !has_slices && !goes_on) {
+        reading->is_begun_and_cut = reading->is_begun_and_cut || is_cut;
+        reading->barren = reading->barren || is_cut ? reading->barren : files->paths[file];
+    }
+    return has_slices && goes_on;
 }
 
 void wh_reading_replay(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *replay,
                        wh_reading_t *reading) {
     wh_log_result_t result;
+    bool has_slices = false;
     memset(reading, 0, sizeof *reading);
     reading->is_alone = files->is_alone;
     look_ahead(files, log, replay);
@@ -85,11 +108,13 @@ void wh_reading_replay(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *
             note_place(reading->damages, &reading->damage_count,
                        (wh_reading_damage_t){log->offset, log->next, log->file});
         } else if (result == WH_LOG_NEXT_FILE) {
+            has_slices = end_file(reading, files, log->file - 1, has_slices, log->is_cut);
             pass_file(reading, log, replay);
         } else {
-            take_event(reading, log, replay);
+            has_slices = take_event(reading, log, replay) || has_slices;
         }
     }
+    (void)end_file(reading, files, files->count - 1, has_slices, result == WH_LOG_CUT);
     wh_log_numbers_finish(&reading->numbers);
     wh_replay_end(replay);
     reading->events = log->count;
@@ -199,6 +224,9 @@ static bool has_doubtful_slices(const wh_replay_t *replay, char *reason) {
 
 /* True for damage that no network causes. */
 static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
+    if (reading->barren) {
+        return because(reason, "no slice is in %.150s", reading->barren);
+    }
     if (reading->damage_count > 0) {
         return because(reason, "bytes from %" PRIu64 " on are no event", reading->damages[0].from);
     }
@@ -264,7 +292,8 @@ static bool lacks_part(const wh_replay_t *replay, const wh_reading_t *reading, c
 
 /* A file ended within a run, and no later one has the run's end. */
 static bool is_run_left(const wh_replay_t *replay, const wh_reading_t *reading, char *reason) {
-    bool left = reading->cut_count > 0 && replay->run_count > 0 && !replay->runs[0].is_left;
+    bool left = reading->is_begun_and_cut ||
+                (reading->cut_count > 0 && replay->run_count > 0 && !replay->runs[0].is_left);
     for (size_t i = 0; i < replay->run_count; ++i) {
         left = left || (replay->runs[i].is_left && !replay->runs[i].over);
     }

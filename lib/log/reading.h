@@ -24,6 +24,8 @@ typedef struct {
     uint64_t cut_at;
     wh_reading_damage_t cuts[WH_READING_DAMAGES]; /* the earlier files that end like this, and where */
     uint64_t cut_count;                           /* all of them */
+    const char *barren; /* the path of the first of several whole files without a slice of ours; null: none */
+    bool is_begun_and_cut;         /* a file before the last one was cut off before its first slice */
     bool is_compressed;            /* all bytes above are counted decompressed; the next ones are not: */
     uint64_t broken, first_broken; /* the number of damaged stretches of the compressed file, and where the
                                     * first begins */

@@ -16,10 +16,10 @@ typedef struct {
     wh_mcs_seen_t seen;
     wh_origin_t origins[WH_GRIPPERS];
     wh_mcs_held_t held[WH_MCS_ROBOTS];
-    int64_t stop_slice;
-    wh_fault_t faults[WH_FAULTS];
-    size_t fault_count;
-    wh_status_t alarms[WH_MCS_ALARMS];
+    int64_t stop_slice; /* of a STOP that comes at a slice; with it what it stops, and who said it */
+    uint32_t stop_axes;
+    bool is_stop_asked;
+    wh_mcs_armed_t armed;
     int64_t edge_seq; /* of the scans so far: their samples are not kept */
     uint32_t edge_number;
     uint32_t pass_number; /* of the armings of beams so far, likewise */
@@ -39,9 +39,9 @@ static void keep_state(const wh_mcs_t *mcs, saved_t *saved) {
     memcpy(saved->origins, mcs->heard.origins.of, sizeof saved->origins);
     memcpy(saved->held, mcs->held, sizeof saved->held);
     saved->stop_slice = mcs->stop.at_slice;
-    memcpy(saved->faults, mcs->armed.faults, sizeof saved->faults);
-    saved->fault_count = mcs->armed.fault_count;
-    memcpy(saved->alarms, mcs->armed.alarms, sizeof saved->alarms);
+    saved->stop_axes = mcs->stop.slice_axes;
+    saved->is_stop_asked = mcs->stop.is_asked;
+    saved->armed = mcs->armed;
     saved->edge_seq = mcs->measuring.edge.seq;
     saved->edge_number = mcs->measuring.edge.number;
     saved->pass_number = mcs->measuring.pass.number;
@@ -56,9 +56,9 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     wh_origins_look(&mcs->heard.origins, &mcs->state);
     memcpy(mcs->held, saved->held, sizeof mcs->held);
     mcs->stop.at_slice = saved->stop_slice;
-    memcpy(mcs->armed.faults, saved->faults, sizeof mcs->armed.faults);
-    mcs->armed.fault_count = saved->fault_count;
-    memcpy(mcs->armed.alarms, saved->alarms, sizeof mcs->armed.alarms);
+    mcs->stop.slice_axes = saved->stop_axes;
+    mcs->stop.is_asked = saved->is_stop_asked;
+    mcs->armed = saved->armed;
     wh_mcs_free_edge(&mcs->measuring.edge);
     mcs->measuring.edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
     wh_pass_free(&mcs->measuring.pass);
@@ -165,6 +165,16 @@ static bool is_held_otherwise(const saved_t *saved, const wh_mcs_t *mcs) {
     return differs;
 }
 
+/* A free place may still tell the job of its last error. */
+static bool is_armed_otherwise(const wh_mcs_armed_t *saved, const wh_mcs_armed_t *armed) {
+    bool differs = false;
+    for (size_t i = 0; i < WH_MCS_ALARMS; ++i) {
+        differs = differs || saved->alarms[i] != armed->alarms[i] ||
+                  (armed->alarms[i] != WH_OK && saved->alarm_jobs[i] != armed->alarm_jobs[i]);
+    }
+    return differs;
+}
+
 /* native.differs(saved): true if a slice was played since, a fault is on its way, or an armed error or a held
  * command has come or gone. */
 static int differs_from_saved(lua_State *L) {
@@ -172,8 +182,7 @@ static int differs_from_saved(lua_State *L) {
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     lua_pushboolean(L, saved->track.slice != mcs->track.slice ||
                            saved->command.fault_count != mcs->command.fault_count ||
-                           memcmp(saved->alarms, mcs->armed.alarms, sizeof saved->alarms) != 0 ||
-                           is_held_otherwise(saved, mcs));
+                           is_armed_otherwise(&saved->armed, &mcs->armed) || is_held_otherwise(saved, mcs));
     return 1;
 }
 

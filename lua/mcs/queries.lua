@@ -98,12 +98,13 @@ return function(native, lookup)
   -- that hangs above the slot does not lie in it.
   function queries.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
     tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance, { nil, nil, "mm" })
-    if tolerance <= 0 then
-      native.fail("BAD_ARGUMENT", ("tolerance: %s (expected above 0)"):format(tostring(tolerance)))
-    end
     lookup.number("dx", dx)
     lookup.number("dy", dy)
     local index, station = lookup.wafer(wafer), lookup.station(station_name)
+    if tolerance <= 0 or tolerance > station.radius then
+      native.fail("BAD_ARGUMENT", ("tolerance: %.10g mm (expected above 0, up to the wafer's radius of %.10g mm)")
+        :format(tolerance, station.radius))
+    end
     local place = lookup.slot(station, slot)
     local verdict, x, y, z, found, at = native.lies(index, station.index, place, dx, dy, tolerance)
     local text = "%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"

@@ -122,6 +122,40 @@ static void what_moves_at_an_aligner(void **state) {
     ASSERT_DIALOGUE("lua/layouts/calibrate.lua", calibrations);
 }
 
+/* RESTORE and UNDO bring back each armed error for the controller that armed it. */
+static void a_restored_error_waits_for_its_own_controller(void **state) {
+    (void)state;
+    static const struct {
+        int32_t controller;
+        const char *line, *answer;
+    } dialogue[] = {
+        {1, "ALARM 20", "OK fault=17"},
+        {0, "SAVE one", "OK"},
+        {0, "CLEAR 17", "OK"},
+        {2, "ALARM 20", "OK fault=17"},
+        {0, "SAVE two", "OK"},
+        {0, "RESTORE one", "OK"},
+        {2, "HOME", "OK"},
+        {1, "HOME", "ERROR 20 BAD_LIMITS: "},
+        {0, "RESTORE two", "OK"},
+        {1, "HOME", "OK"},
+        {2, "HOME", "ERROR 20 BAD_LIMITS: "},
+        {0, "UNDO", "OK"},
+        {1, "HOME", "OK"},
+        {2, "HOME", "ERROR 20 BAD_LIMITS: "},
+    };
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
+    assert_true(wh_session_open(&session, &options));
+    for (size_t i = 0; i < sizeof dialogue / sizeof dialogue[0]; ++i) {
+        const wh_mcs_asker_t asker = {.controller = dialogue[i].controller};
+        (void)wh_session_execute_for(&session, &asker, dialogue[i].line, answer, sizeof answer);
+        if (strncmp(answer, dialogue[i].answer, strlen(dialogue[i].answer)) != 0) {
+            fail_msg("%zu: %s: answered %s, expected %s", i, dialogue[i].line, answer, dialogue[i].answer);
+        }
+    }
+    wh_session_close(&session);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(status_tells_what_a_completion_told),
@@ -129,6 +163,7 @@ int main(void) {
         cmocka_unit_test(a_stop_that_comes_too_late),
         cmocka_unit_test(a_plunger_that_is_not_open),
         cmocka_unit_test(what_moves_at_an_aligner),
+        cmocka_unit_test(a_restored_error_waits_for_its_own_controller),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
