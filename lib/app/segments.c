@@ -303,14 +303,22 @@ static void write_config(FILE *out, const wh_grasp_config_t *config) {
     fputs("},\n", out);
 }
 
+static void write_vacuum(FILE *out, const wh_vacuum_config_t *v) {
+    const wh_real_t values[] = {v->build, v->vent, v->idle, v->on, v->off, v->release};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
+        fputs(i > 0 ? ", " : "{", out);
+        write_real(out, values[i]);
+    }
+    fprintf(out, ", %" PRId32 "}", v->debounce);
+}
+
 static void write_physics(FILE *out, const wh_physics_t *physics) {
     static const wh_fault_t none = {0};
-    const wh_vacuum_config_t *v = &physics->vacuum;
     const wh_pads_t *pads = &physics->pads;
     fputs("    {", out);
     write_real(out, physics->slice_s);
     fputs(", ", out);
-    write_numbers(out, (const wh_real_t[]){v->build, v->vent, v->idle, v->on, v->off, v->release}, 6);
+    write_vacuum(out, &physics->vacuum);
     fputs(", ", out);
     write_numbers(out, (const wh_real_t[]){pads->friction, pads->force, pads->mass, pads->gravity}, 4);
     for (size_t i = 0; i < physics->fault_count || i == 0; ++i) {

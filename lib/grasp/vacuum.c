@@ -5,13 +5,13 @@
 #define NEAR WH_REAL(1e-4)
 
 wh_vacuum_config_t wh_vacuum_ideal(void) {
-    const wh_vacuum_config_t config = {0, 0, 0, WH_REAL(0.5), WH_REAL(0.5), WH_REAL(0.5)};
+    const wh_vacuum_config_t config = {0, 0, 0, WH_REAL(0.5), WH_REAL(0.5), WH_REAL(0.5), 0};
     return config;
 }
 
 wh_vacuum_config_t wh_vacuum_delayed(void) {
-    const wh_vacuum_config_t config = {WH_REAL(0.05), WH_REAL(0.02), WH_REAL(0.1),
-                                       WH_REAL(0.7),  WH_REAL(0.6),  WH_REAL(0.3)};
+    const wh_vacuum_config_t config = {
+        WH_REAL(0.05), WH_REAL(0.02), WH_REAL(0.1), WH_REAL(0.7), WH_REAL(0.6), WH_REAL(0.3), 0};
     return config;
 }
 
@@ -41,7 +41,8 @@ wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config) {
     if (!is_finite(config)) {
         return WH_STATUS_NOT_FINITE;
     }
-    const bool good = are_thresholds(config) && is_time(config->build) && is_time(config->vent);
+    const bool good = are_thresholds(config) && is_time(config->build) && is_time(config->vent) &&
+                      config->debounce >= 0 && config->debounce <= WH_VACUUM_DEBOUNCE;
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
@@ -51,7 +52,7 @@ wh_vacuum_fault_t wh_vacuum_sound(void) {
 }
 
 wh_vacuum_t wh_vacuum_start(void) {
-    const wh_vacuum_t vacuum = {0, WH_VALVE_CLOSED, false};
+    const wh_vacuum_t vacuum = {0, WH_VALVE_CLOSED, false, 0};
     return vacuum;
 }
 
@@ -81,6 +82,21 @@ int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault
     return holds && vacuum->level >= config->release ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
 }
 
+/* Tells a turn of the switch once it has stood. While it waits, the switch stands otherwise than told, and has
+ * the other threshold. */
+static void tell(const wh_vacuum_config_t *config, wh_vacuum_t *vacuum) {
+    const bool was_on = vacuum->on != (vacuum->waits > 0);
+    const bool is_on = was_on ? vacuum->level >= config->off : vacuum->level >= config->on;
+    if (is_on == vacuum->on) {
+        vacuum->waits = 0;
+    } else if (vacuum->waits < config->debounce) {
+        ++vacuum->waits;
+    } else {
+        vacuum->on = is_on;
+        vacuum->waits = 0;
+    }
+}
+
 bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
                      wh_real_t dt, wh_vacuum_t *vacuum) {
     const bool was_on = vacuum->on;
@@ -90,6 +106,6 @@ bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *
         vacuum->level =
             approach(config, upset, vacuum->level, wanted < upset->full ? wanted : upset->full, dt);
     }
-    vacuum->on = was_on ? vacuum->level >= config->off : vacuum->level >= config->on;
+    tell(config, vacuum);
     return was_on && !vacuum->on && holds && open;
 }

@@ -356,6 +356,9 @@ void wh_layout_place_beam(wh_layout_t *layout, size_t b);
  * path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
+/* The debounce of the vacuum sensors, ms: whole slices. */
+double wh_layout_debounce_ms(const wh_layout_t *layout);
+
 /* 64 bits over what the layout's hash leaves out of a collision check: shapes, the arm, and the limits of
  * gaps; 0: the layout asks for no check. Cost: linear in the parts' points. */
 uint64_t wh_layout_world_hash(const wh_layout_t *layout);

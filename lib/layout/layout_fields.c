@@ -107,6 +107,7 @@ const wh_reader_field_t wh_layout_vacuum_fields[] = {
      AS_NUMBER(wh_vacuum_config_t, off, 0.01, 1, FOLLOWS)},
     {"release", NUMBER, "0 to 1: the level below which a closed valve lets go", false,
      AS_NUMBER(wh_vacuum_config_t, release, 0.01, 1, KEPT)},
+    {"debounce", NUMBER, "ms for which the sensor's switch must stand until it is told", false},
     END};
 
 const wh_reader_field_t wh_layout_pads_fields[] = {

@@ -92,7 +92,7 @@ static const field_t gripper_fields[] = {
     {"the held wafer two slices before", AT(gripper_state, wafer_before[1]), VECTOR},
     {"plunger's phase", AT(gripper_state, grip_phase), INT8},
     {"index of the plunger's wafer", AT(gripper_state, grip_wafer), INT32},
-    {"plunger's way", AT(gripper_state, grip_s), REAL},
+    {"plunger's way or sensor's debounce", AT(gripper_state, grip_s), REAL},
     {"beyond the clearance", AT(gripper_state, grip_excess), REAL},
     {"where the plunger began", AT(gripper_state, grip_begin), PAIR},
     {"where the face lay then", AT(gripper_state, grip_lying), PAIR},

@@ -241,9 +241,13 @@ static json_t *wafer(const void *subject, size_t i) {
                        layout->stations[from->station].name, from->slot);
 }
 
-static json_t *vacuum(const wh_vacuum_config_t *from) {
-    return wh_json_set(json_object(), "build %g vent %g idle %g sensor_on %g sensor_off %g release %g",
-                       from->build, from->vent, from->idle, from->on, from->off, from->release);
+/* The debounce, in ms, stands in it only if there is one. */
+static json_t *vacuum(const wh_layout_t *layout) {
+    const wh_vacuum_config_t *from = &layout->physics.vacuum;
+    json_t *object =
+        wh_json_set(json_object(), "build %g vent %g idle %g sensor_on %g sensor_off %g release %g",
+                    from->build, from->vent, from->idle, from->on, from->off, from->release);
+    return from->debounce > 0 ? wh_json_set(object, "debounce %g", wh_layout_debounce_ms(layout)) : object;
 }
 
 static json_t *pads(const wh_pads_t *from) {
@@ -344,7 +348,7 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
                       wh_json_list(axis, layout, wh_machine_robot_axes(&layout->machine)),
                       wh_json_list(gripper, layout, layout->machine.gripper_count),
                       wh_json_list(station, check, layout->station_count),
-                      wh_json_list(wafer, layout, layout->wafer_count), vacuum(&layout->physics.vacuum),
+                      wh_json_list(wafer, layout, layout->wafer_count), vacuum(layout),
                       pads(&layout->physics.pads), wh_json_list(fault, layout, layout->physics.fault_count),
                       NULL);
     if (layout->machine.door_count > 0) {

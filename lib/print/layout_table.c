@@ -251,6 +251,11 @@ static void print_holding(const listing_t *listing) {
         wh_grid_text(grid, 1, WH_INK_PLAIN, "sensor on at %g, off below %g; lets go below %g", vacuum->on,
                      vacuum->off, vacuum->release);
     }
+    if (vacuum->debounce > 0) {
+        wh_grid_named_row(grid, "sensor");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "tells a level that has stood for %g ms",
+                     wh_layout_debounce_ms(listing->layout));
+    }
     if (pads->mass > 0) {
         wh_grid_named_row(grid, "pads");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "friction %g, %g N of vacuum, a wafer of %.4g kg", pads->friction,

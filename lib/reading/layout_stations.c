@@ -78,11 +78,14 @@ static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const w
     }
 }
 
-/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next
- * gripper. */
-static double default_timeout(const wh_vacuum_config_t *vacuum) {
+/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next gripper, and
+ * its sensor to tell it. */
+static double default_timeout(const wh_physics_t *physics) {
+    const wh_vacuum_config_t *vacuum = &physics->vacuum;
     const double least = 0.25, below_full = vacuum->on < 1 ? 1 - vacuum->on : 1e-3;
-    const double slow = -2 * (vacuum->vent * wh_ln(vacuum->release) + vacuum->build * wh_ln(below_full));
+    const double told = 2 * vacuum->debounce * physics->slice_s;
+    const double slow =
+        told - 2 * (vacuum->vent * wh_ln(vacuum->release) + vacuum->build * wh_ln(below_full));
     return slow < least ? least : (slow < 3600 ? slow : 3600);
 }
 
@@ -96,7 +99,7 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     const double bottom = station->offset - station->stroke;
     wh_reader_scalar_within(reader, "release", station, lowered > bottom ? lowered : bottom, bottom,
                             station->offset);
-    wh_reader_scalar_from(reader, "timeout", station, default_timeout(&layout->physics.vacuum));
+    wh_reader_scalar_from(reader, "timeout", station, default_timeout(&layout->physics));
     station->retract_default = !wh_reader_has(reader, "retract");
     station->release_default = !wh_reader_has(reader, "release");
     check_stroke(reader, place, station);

@@ -26,7 +26,7 @@ static uint64_t hash_physics(uint64_t hash, const wh_simulator_t *simulator) {
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
         hash = wh_hash_real(hash, values[i]);
     }
-    return hash;
+    return vacuum->debounce > 0 ? wh_hash_int(hash, vacuum->debounce) : hash;
 }
 
 static uint64_t hash_cell(uint64_t hash, const wh_cell_t *cell) {

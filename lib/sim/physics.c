@@ -87,15 +87,18 @@ static uint64_t hash_pose(uint64_t hash, const wh_pose_t *pose) {
 
 static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
     const bool holds = gripper->wafer != WH_NONE;
-    return vacuum->command == gripper->valve && vacuum->on == holds && vacuum->level == (holds ? 1 : 0);
+    return vacuum->command == gripper->valve && vacuum->on == holds && vacuum->level == (holds ? 1 : 0) &&
+           vacuum->waits == 0;
 }
 
 static uint64_t hash_vacuum(uint64_t hash, size_t g, const wh_vacuum_t *vacuum) {
     const int32_t head[] = {1, (int32_t)g};
     const int32_t rest[] = {vacuum->command, vacuum->on ? 1 : 0};
     hash = hash_ints(hash, head, 2);
+    const int32_t debounce[] = {8, (int32_t)g, vacuum->waits};
     hash = hash_real(hash, vacuum->level);
-    return hash_ints(hash, rest, 2);
+    hash = hash_ints(hash, rest, 2);
+    return vacuum->waits > 0 ? hash_ints(hash, debounce, 3) : hash;
 }
 
 static uint64_t hash_carry(uint64_t hash, size_t g, const wh_carry_t *carry) {

@@ -4,13 +4,13 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_physics_default             2376   2376    1384   1408
+ *     stack of wh_physics_default             2384   2384    1384   1408
  *     stack of wh_physics_validate              96    208      56    120
  *     stack of wh_physics_state_start          248    240     192    184
  *     stack of wh_physics_state_validate       128    256      88    160
  *     stack of wh_physics_state_sensors         16     20       8     24
- *     stack of wh_physics_state_hash           152    168     144    168
- *     size of wh_physics_t                    2272           1336
+ *     stack of wh_physics_state_hash           152    176     144    176
+ *     size of wh_physics_t                    2280           1336
  *     size of wh_physics_state_t              8016           5264
  */
 #ifndef WH_SIM_PHYSICS_H
@@ -81,7 +81,8 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  * wh_hash_word (math/hash.h) with these words:
  *   - for each gripper whose vacuum is not plain: 1, its index, level, command and on. Vacuum is plain if its
  *     command is the table's valve, and it is at level 1 with the sensor on while the gripper holds a wafer,
- *     or at level 0 with the sensor off while it holds none;
+ *     or at level 0 with the sensor off while it holds none. While the sensor's debounce waits, also 8, its
+ *     index and waits;
  *   - for each gripper with positions known: 2, its index, known, before[0], before[1] and slips;
  *   - for each slot in use: 3, its index, phase, kind, target, other, value, offset, from, until, before,
  *     placed;
@@ -94,7 +95,7 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *   - for each door that is not shut: 7, its index, where its axis is.
  * For a gripper with another grip than vacuum, level, command and on are 0, the valve and the sensor. So a
  * run with ideal vacuum, without pads, faults, scans, beams, edge grips and doors, has the table's hash.
- * Nothing is checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each
+ * Nothing is checked; grippers from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 to 8 words for each
  * gripper with vacuum, 10 for each with positions, 45 for each slot in use, up to 73 for a scan, 11 for
  * beams with three for each latch, up to 16 for each plunger, and 3 for each door.
  */

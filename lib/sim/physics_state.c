@@ -21,7 +21,8 @@ static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
     if (!is_place(&carry->before[0]) || !is_place(&carry->before[1])) {
         return WH_STATUS_NOT_FINITE;
     }
-    const bool good = vacuum->level >= 0 && vacuum->level <= 1 && carry->known >= 0 && carry->known <= 2 &&
+    const bool good = vacuum->level >= 0 && vacuum->level <= 1 && vacuum->waits <= WH_VACUUM_DEBOUNCE &&
+                      carry->known >= 0 && carry->known <= 2 &&
                       (unsigned)state->grips[g].phase <= WH_GRIP_OPENING;
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }

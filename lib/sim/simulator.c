@@ -155,11 +155,11 @@ static bool are_valid(const wh_command_t *command) {
 }
 
 /* True if no fault is in a slot or in the command, and the vacuum is ideal: every level is 0 or 1 at once.
- * The short path then has an equal result. */
+ * The short path then has an equal result. A debounce takes the long one. */
 static bool is_direct(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_vacuum_config_t *vacuum = &simulator->vacuum;
     return simulator->physics.faults.count + command->fault_count == 0 &&
-           vacuum->build + vacuum->vent + vacuum->idle == 0;
+           vacuum->build + vacuum->vent + vacuum->idle == 0 && vacuum->debounce == 0;
 }
 
 static wh_fault_changes_t apply_faults(wh_simulator_t *simulator, const wh_command_t *command) {

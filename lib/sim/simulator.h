@@ -5,13 +5,13 @@
  * (tests/verify/footprint; "sampled" is a step without swept checking; the need of an observer is added to
  * these):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_simulator_init               396    312     260    232
- *     stack of wh_simulator_set_physics        280    272     232    216
- *     stack of wh_simulator_step              1512   1512    1024   1040
- *     stack of wh_simulator_step:sampled      1512   1512    1024   1040
+ *     stack of wh_simulator_init               404    320     268    240
+ *     stack of wh_simulator_set_physics        280    272     232    224
+ *     stack of wh_simulator_step              1520   1520    1024   1040
+ *     stack of wh_simulator_step:sampled      1520   1520    1024   1040
  *     stack of wh_simulator_view                32     36      24     40
- *     stack of wh_simulator_hash               136    160     144    160
- *     size of wh_simulator_t                 22344          14408
+ *     stack of wh_simulator_hash               136    176     144    176
+ *     size of wh_simulator_t                 22352          14408
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H

@@ -193,6 +193,12 @@ static void pass_share(stream_t *stream, share_t *share) {
     pass_int(stream, &share->told);
 }
 
+static void pass_wait(stream_t *stream, wh_vacuum_t *vacuum) {
+    uint64_t word = vacuum->waits;
+    pass_bytes(stream, &word, 2);
+    vacuum->waits = (uint16_t)word;
+}
+
 static void pass_slot(stream_t *stream, wh_fault_slot_t *slot) {
     wh_fault_t *fault = &slot->fault;
     int32_t kind = (int32_t)fault->kind;
@@ -321,10 +327,15 @@ static uint64_t sum_of(const uint8_t bytes[], size_t size) {
 #define MARK UINT64_C(0x50414E534857) /* "WHSNAP", first letter first */
 #define MARK_SIZE 6
 
+static bool has_debounce(const wh_simulator_t *simulator) {
+    return simulator->vacuum.debounce > 0;
+}
+
 /* The number of bytes of a snapshot with this number of fault slots. */
 static size_t size_with(const wh_simulator_t *simulator, size_t slots) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    return WH_SNAPSHOT_SIZE(storage->wafer_count, storage->gripper_count) -
+    const size_t waits = has_debounce(simulator) ? 0 : 2 * storage->gripper_count;
+    return WH_SNAPSHOT_SIZE(storage->wafer_count, storage->gripper_count) - waits -
            (WH_DOORS - numbers_of(simulator->physics.doors.count)) * sizeof(wh_real_t) -
            (37 * sizeof(wh_real_t) + 32) * (WH_FAULTS - slots);
 }
@@ -421,6 +432,14 @@ static void save_grip(stream_t *stream, const wh_grip_state_t *from) {
     pass_grip(stream, &state);
 }
 
+static void save_waits(stream_t *stream, const wh_simulator_t *simulator) {
+    for (size_t g = 0; has_debounce(simulator) && g < simulator->table.storage.gripper_count; ++g) {
+        wh_vacuum_t vacuum;
+        vacuum = simulator->physics.vacuum[g];
+        pass_wait(stream, &vacuum);
+    }
+}
+
 static void save_physics(stream_t *stream, const wh_physics_state_t *physics, size_t gripper_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
@@ -461,6 +480,7 @@ wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], 
     stream_t stream = {bytes, NULL, false};
     save_head(&stream, simulator);
     save_table(&stream, &simulator->table);
+    save_waits(&stream, simulator);
     save_physics(&stream, &simulator->physics, simulator->table.storage.gripper_count);
     uint64_t sum = sum_of(bytes, needed - SUM_SIZE);
     pass_bytes(&stream, &sum, SUM_SIZE);
@@ -497,11 +517,16 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
     return size >= size_with(simulator, 0) ? WH_OK : WH_STATUS_DAMAGED;
 }
 
-static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count, int32_t doors) {
+static void load_physics(stream_t *stream, const wh_simulator_t *simulator, wh_physics_state_t *physics) {
+    const size_t gripper_count = simulator->table.storage.gripper_count;
     wh_physics_state_start(physics, NULL);
+    for (size_t g = 0; has_debounce(simulator) && g < gripper_count; ++g) {
+        pass_wait(stream, &physics->vacuum[g]);
+    }
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
         memset(&share, 0, sizeof share);
+        share.vacuum.waits = physics->vacuum[g].waits;
         pass_share(stream, &share);
         physics->vacuum[g] = share.vacuum;
         physics->carry[g] = share.carry;
@@ -510,7 +535,7 @@ static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t g
     }
     pass_scan(stream, &physics->scan);
     pass_latches(stream, &physics->latches);
-    pass_doors(stream, &physics->doors, doors);
+    pass_doors(stream, &physics->doors, simulator->physics.doors.count);
 }
 
 /* False if the number of bytes does not fit these slots. */
@@ -531,6 +556,10 @@ bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_sta
     const wh_simulator_given_t *given = &simulator->given;
     bool good = (given->scans || state->scan.number == 0) && (given->beams || state->latches.number == 0) &&
                 (size_t)state->doors.count == given->doors.count;
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
+        const bool has_vacuum = (given->no_vacuum >> g & 1U) == 0;
+        good = good && state->vacuum[g].waits <= (has_vacuum ? simulator->vacuum.debounce : 0);
+    }
     for (size_t g = 0; !given->gripping && g < simulator->table.storage.gripper_count; ++g) {
         good = good && state->grips[g].phase == WH_GRIP_OPEN;
     }
@@ -553,7 +582,7 @@ static bool load_state(stream_t *stream, const wh_simulator_t *simulator, size_t
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         pass_gripper(stream, &room->grippers[g]);
     }
-    load_physics(stream, &room->physics, storage->gripper_count, simulator->physics.doors.count);
+    load_physics(stream, simulator, &room->physics);
     return load_faults(stream, &room->physics.faults, simulator, size) && !stream->is_bad &&
            complete_grips(simulator, room) &&
            wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK &&

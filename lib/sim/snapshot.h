@@ -29,18 +29,19 @@ WH_REFUSE_PACKING(snapshot);
 
 /* Goes up when the bytes change. Those of version 4 are read, too: they are of encounters with backs. With
  * more than WH_SNAPSHOT_FEW_DOORS doors the bytes are longer, and of version 6: programs that know only
- * fewer doors refuse them by that number. */
+ * fewer doors refuse them by that number. Where vacuum sensors have a debounce the bytes are longer by 2 for
+ * each gripper; their cell's description has it. */
 #define WH_SNAPSHOT_VERSION 5
 #define WH_SNAPSHOT_BACKS 4
 #define WH_SNAPSHOT_MANY 6
 #define WH_SNAPSHOT_FEW_DOORS 8
 
-/* The most bytes of a snapshot: a constant, for use as an array size. For 25 wafers and 2 grippers 10218 in
- * double, of which 5248 are for faults and 160 for more than 8 doors, and 6082 in float; with the counts of
- * a bare target 10058 and 6002. */
+/* The most bytes of a snapshot: a constant, for use as an array size. For 25 wafers and 2 grippers 10222 in
+ * double, of which 5248 are for faults and 160 for more than 8 doors, and 6086 in float; with the counts of
+ * a bare target 10062 and 6006. */
 #define WH_SNAPSHOT_SIZE(wafer_count, gripper_count)                                                         \
     (1094 + WH_DOORS * sizeof(wh_real_t) + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +            \
-     (57 * sizeof(wh_real_t) + 120) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
+     (57 * sizeof(wh_real_t) + 122) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
 
 /* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and
  * fills the buckets. If the arrays differ from the earlier ones, `observer` is cleared, because its `user`
@@ -61,8 +62,8 @@ size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_sim
 wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity, size_t *size)
     WH_SYMBOL(wh_simulator_save);
 
-/* True if the simulator can have this state, which wh_physics_state_validate has accepted. Without edge
- * sensors there must be no scan, and without beams no latch. There must be as many doors as it has; without
+/* True if the simulator can have this state, which wh_physics_state_validate has accepted. No vacuum sensor
+ * waits longer than the debounce. Without edge sensors there must be no scan, and without beams no latch. There must be as many doors as it has; without
  * other grips all plungers must be open. No argument may be null. Cost: linear in grippers. */
 bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_state_t *state)
     WH_SYMBOL(wh_simulator_may_have);

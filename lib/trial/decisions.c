@@ -435,8 +435,8 @@ static bool agrees_with_entry(player_t *player, const wh_decisions_entry_t *entr
 
 static bool may_skip(const wh_trial_cell_t *trial_cell, const wh_simulator_t *simulator) {
     const wh_physics_t *physics = &trial_cell->layout.physics;
-    return physics->vacuum.build <= 0 && physics->vacuum.vent <= 0 && physics->pads.mass <= 0 &&
-           physics->fault_count == 0 && !simulator->observer.look &&
+    return physics->vacuum.build <= 0 && physics->vacuum.vent <= 0 && physics->vacuum.debounce == 0 &&
+           physics->pads.mass <= 0 && physics->fault_count == 0 && !simulator->observer.look &&
            !wh_layout_has_passive(&trial_cell->layout);
 }
 

@@ -156,6 +156,7 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->layout_hash = (int64_t)identity->layout_hash;
     message->layout = wh_link_borrowed(layout->path);
     wh_members_put(wh_cell_members, layout, message);
+    message->slice_us += (int64_t)layout->physics.vacuum.debounce << WH_LINK_DEBOUNCE_SHIFT;
     message->collision = collision_of(layout);
     message->world_hash = (int64_t)wh_layout_world_hash(layout);
     message->gripper_count = (int32_t)layout->machine.gripper_count;

@@ -25,6 +25,10 @@ static bool is_within(double value, double least, double most) {
     return value >= least && value <= most;
 }
 
+static int64_t slice_us_of(const waferhand_cell *cell) {
+    return cell->slice_us & ((INT64_C(1) << WH_LINK_DEBOUNCE_SHIFT) - 1);
+}
+
 /* True if checks and places have values that a layout's file may give. */
 static bool checks_fit(const waferhand_cell *cell) {
     return is_within(cell->eps_projz, 1e-9, 1e6) && is_within(cell->near_projz, 1e-9, 1e6) &&
@@ -32,7 +36,7 @@ static bool checks_fit(const waferhand_cell *cell) {
            is_within(cell->askew, 0, 10) && is_within(cell->drop, 0, 1e6) &&
            is_within(cell->thickness, 0, WH_FACE_THICKEST) &&
            is_within(cell->collision, WH_LINK_NO_COLLISION, WH_LINK_GAPS) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000;
+           slice_us_of(cell) >= 1 && slice_us_of(cell) <= 1000000;
 }
 
 /* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the
@@ -41,7 +45,9 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_members_take(wh_cell_members, cell, layout);
     layout->wafer_thickness = cell->thickness;
     layout->has_faces = cell->thickness > 0;
-    layout->physics.slice_s = (wh_real_t)cell->slice_us / 1e6;
+    layout->slice_us = slice_us_of(cell);
+    layout->physics.slice_s = (wh_real_t)layout->slice_us / 1e6;
+    layout->physics.vacuum.debounce = (int32_t)(cell->slice_us >> WH_LINK_DEBOUNCE_SHIFT);
     return wh_tolerance_validate(&layout->grasp.tolerance) == WH_OK && checks_fit(cell);
 }
 

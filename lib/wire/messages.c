@@ -161,6 +161,7 @@ static void put_condition(const wh_physics_state_t *condition, size_t g, waferha
     out->valve_told = condition->told[g];
     out->vacuum_level = condition->vacuum[g].level;
     out->vacuum_on = condition->vacuum[g].on ? 1 : 0;
+    out->grip_s = condition->vacuum[g].waits;
     out->slips = condition->carry[g].slips ? 1 : 0;
     out->positions_known = condition->carry[g].known;
     put_vec3(&condition->carry[g].before[0], out->wafer_before[0]);
@@ -315,11 +316,24 @@ static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t
     take_encounter(&in->contest, tolerance, &out->contest);
 }
 
+/* True for a gripper whose plunger is at home, or that has none: its `grip_s` tells how long its vacuum sensor
+ * waits. */
+static bool tells_wait(const waferhand_gripper_state *in) {
+    return in->grip_phase == (int8_t)WH_GRIP_OPEN;
+}
+
+static bool wait_fits(const waferhand_gripper_state *in) {
+    const double slices = in->grip_s;
+    return !tells_wait(in) ||
+           (slices >= 0 && slices <= WH_VACUUM_DEBOUNCE && !(slices > (double)(uint16_t)slices));
+}
+
 static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physics_state_t *condition) {
     condition->vacuum[g].command = in->valve_command;
     condition->told[g] = in->valve_told;
     condition->vacuum[g].level = in->vacuum_level;
     condition->vacuum[g].on = in->vacuum_on != 0;
+    condition->vacuum[g].waits = tells_wait(in) && wait_fits(in) ? (uint16_t)in->grip_s : 0;
     condition->carry[g].slips = in->slips != 0;
     condition->carry[g].known = in->positions_known;
     condition->carry[g].before[0] = take_vec3(in->wafer_before[0]);
@@ -331,7 +345,7 @@ static void take_grip(const waferhand_gripper_state *in, wh_grip_state_t *grip) 
     memset(grip, 0, sizeof *grip);
     grip->phase = (wh_grip_phase_t)in->grip_phase;
     grip->wafer = in->grip_wafer;
-    grip->s = in->grip_s;
+    grip->s = tells_wait(in) ? 0 : in->grip_s;
     grip->excess = in->grip_excess;
     grip->x = in->grip_begin[0];
     grip->y = in->grip_begin[1];
@@ -459,6 +473,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
         take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
         take_condition(&message->grippers[g], (size_t)g, &arrays->physics);
         take_grip(&message->grippers[g], &arrays->physics.grips[g]);
+        sound = wait_fits(&message->grippers[g]) && sound;
     }
     for (int32_t e = 0; e < message->event_count; ++e) {
         take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);

@@ -49,6 +49,9 @@ typedef char wh_link_needs_the_usual_counts[WH_AXES == 32 && WH_GRIPPERS == 16 ?
 #define WH_LINK_LINE 1001
 
 /* waferhand_cell.collision: the simulator's check. */
+/* From this bit on `slice_us` of a cell tells the debounce of vacuum sensors, in slices. */
+#define WH_LINK_DEBOUNCE_SHIFT 32
+
 enum { WH_LINK_NO_COLLISION, WH_LINK_CONTACT, WH_LINK_GAPS };
 
 /* waferhand_mcs.phase. */

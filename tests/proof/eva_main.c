@@ -165,6 +165,7 @@ static void call_vacuum(void) {
     config.on = real;
     config.off = real;
     config.release = real;
+    config.debounce = integer;
     (void)wh_vacuum_validate(any_bool() ? &config : NULL);
     wh_vacuum_fault_t upset = wh_vacuum_sound();
     upset.full = real;
@@ -172,6 +173,7 @@ static void call_vacuum(void) {
     wh_vacuum_t vacuum = wh_vacuum_start();
     vacuum.level = real;
     vacuum.on = any_bool();
+    vacuum.waits = (uint16_t)integer;
     (void)wh_vacuum_before(&config, &upset, integer, any_bool(), real, &vacuum);
     (void)wh_vacuum_after(&config, &upset, any_bool(), real, &vacuum);
 }

@@ -183,7 +183,7 @@ static void call_judge(void) {
 static void fill_physics(wh_physics_t *physics) {
     *physics = wh_physics_default();
     physics->slice_s = real;
-    physics->vacuum = (wh_vacuum_config_t){real, real, real, real, real, real};
+    physics->vacuum = (wh_vacuum_config_t){real, real, real, real, real, real, integer};
     physics->pads = (wh_pads_t){real, real, real, real};
     physics->fault_count = size;
     for (size_t i = 0; i < WH_FAULTS; ++i) {

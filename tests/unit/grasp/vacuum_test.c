@@ -65,6 +65,43 @@ static void what_is_out_of_range_is_refused(void **state) {
     refuse(3, 1, WH_OK);
     refuse(4, 0.7, WH_OK);
     refuse(5, 1, WH_OK);
+    config.debounce = -1;
+    assert_int_equal(wh_vacuum_validate(&config), WH_STATUS_OUT_OF_RANGE);
+    config.debounce = WH_VACUUM_DEBOUNCE + 1;
+    assert_int_equal(wh_vacuum_validate(&config), WH_STATUS_OUT_OF_RANGE);
+    config.debounce = WH_VACUUM_DEBOUNCE;
+    assert_int_equal(wh_vacuum_validate(&config), WH_OK);
+}
+
+/* With an ideal vacuum the switch turns with the wafer, so each slice's switch is known. */
+static void a_turn_of_the_switch_is_told_once_it_has_stood(void **state) {
+    static const char wafers[] = "..######..###.#...##....####"; /* #: one is there */
+    static const char told[] = ".....##################....#";   /* #: the sensor says so */
+    (void)state;
+    config = wh_vacuum_ideal();
+    config.debounce = 3;
+    for (size_t i = 0; i < sizeof wafers - 1; ++i) {
+        (void)slice(OPEN, wafers[i] == '#');
+        assert_int_equal(vacuum.on, told[i] == '#');
+        assert_true(vacuum.waits <= 3);
+    }
+}
+
+/* A level between the thresholds keeps the switch where it stands, also while it waits. */
+static void thresholds_hold_while_it_waits(void **state) {
+    static const struct {
+        double full;
+        bool on;
+    } slices[] = {{0.65, false}, {0.75, false}, {0.65, false}, {0.65, true},
+                  {0.55, true},  {0.65, true},  {0.65, false}, {0.75, false}};
+    (void)state;
+    config.build = config.vent = 0;
+    config.debounce = 2;
+    for (size_t i = 0; i < sizeof slices / sizeof slices[0]; ++i) {
+        upset.full = WH_REAL(slices[i].full);
+        (void)slice(OPEN, true);
+        assert_int_equal(vacuum.on, slices[i].on);
+    }
 }
 
 static void ideal_is_who_holds_and_what_is_commanded(void **state) {
@@ -489,6 +526,8 @@ int main(void) {
         cmocka_unit_test_setup(a_closed_valve_lets_go_below_the_threshold, set_up),
         cmocka_unit_test_setup(nothing_held_is_let_go_at_once, set_up),
         cmocka_unit_test_setup(the_sensor_has_two_thresholds, set_up),
+        cmocka_unit_test_setup(a_turn_of_the_switch_is_told_once_it_has_stood, set_up),
+        cmocka_unit_test_setup(thresholds_hold_while_it_waits, set_up),
         cmocka_unit_test_setup(a_loss_is_told_once, set_up),
         cmocka_unit_test_setup(what_is_no_loss, set_up),
         cmocka_unit_test_setup(a_slow_pump_is_slower_only, set_up),

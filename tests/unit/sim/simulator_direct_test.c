@@ -123,7 +123,7 @@ static void whatever_the_levels_were(void **state) {
         start_both();
         for (int g = 0; g < GRIPPERS; ++g) {
             const wh_vacuum_t odd = {(wh_real_t)wh_test_uniform(0, 1), (int32_t)wh_test_below(2),
-                                     wh_test_below(2) == 0};
+                                     wh_test_below(2) == 0, 0};
             plain.simulator.physics.vacuum[g] = odd;
             faulty.simulator.physics.vacuum[g] = odd;
         }
