@@ -61,7 +61,8 @@ typedef struct {
         double value;
     } * changes;
     size_t change_count, change_capacity;
-    double *values; /* of the slice that was read or asked for last */
+    double *values;     /* of the slice that was read or asked for last */
+    wh_slice_row_t row; /* of the slice that was read last */
     wh_sandbox_t *sandbox;
     size_t expected, unmet;
 } checked_t;
@@ -82,16 +83,18 @@ static void keep(void *user, const wh_layout_t *layout, const double axes[], con
                  uint64_t hash) {
     checked_t *checked = user;
     const size_t count = wh_slice_field_count(layout);
-    double *values = wh_array_new(count, sizeof *values);
     (void)hash;
-    wh_slice_fields(layout, axes, state, values);
+    wh_slice_row_take(&checked->row, layout, axes, state);
+    if (!checked->values) {
+        checked->values = wh_array_new(count, sizeof *checked->values);
+    }
+    const double *values = checked->row.values;
     for (size_t i = 0; i < count; ++i) {
         if (checked->count % KEY == 0 || wh_double_bits(values[i]) != wh_double_bits(checked->values[i])) {
             add_change(checked, i, values[i]);
         }
     }
-    free(checked->values);
-    checked->values = values;
+    memcpy(checked->values, values, count * sizeof *values);
     checked->slices =
         wh_array_grow(checked->slices, checked->count, &checked->capacity, sizeof *checked->slices);
     checked->slices[checked->count].seq = state->seq;
@@ -364,6 +367,7 @@ static void close_checked(checked_t *checked) {
     free(checked->slices);
     free(checked->changes);
     free(checked->values);
+    wh_slice_row_free(&checked->row);
     wh_log_run_close(&checked->run);
 }
 

@@ -80,7 +80,8 @@ static void on_slice(void *user, const wh_layout_t *layout, const double axes[],
 static bool write_rows(table_t *table, FILE *out, wh_log_run_t *run) {
     const arguments_t *arguments = table->arguments;
     table->out = out;
-    (void)setvbuf(out, NULL, _IOFBF, BLOCK);
+    static char block[BLOCK]; /* glibc takes no size without room */
+    (void)setvbuf(out, block, _IOFBF, sizeof block);
     if (!wh_log_arguments_read(&arguments->log, on_slice, table, run) || table->is_refused ||
         !wh_log_window_begins_in(&arguments->window, run)) {
         return false;

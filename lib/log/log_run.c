@@ -122,18 +122,20 @@ static void record_slice(wh_log_run_t *run, int64_t seq, const double axes[], si
     wh_signals_slice(&run->signals, count > 0 ? axes : NULL, count, &run->state);
 }
 
-static void take_slice(wh_log_run_t *run, const waferhand_command *command, const waferhand_state *message) {
+/* Takes the slice of run->state. */
+static void take_slice(wh_log_run_t *run, const waferhand_command *command, int64_t missed, uint64_t hash) {
+    const int64_t seq = run->state.seq;
     double axes[WH_AXES];
     if (!run->has_slices) {
         run->has_slices = true;
-        start(run, message->seq == 1);
+        start(run, seq == 1);
     }
     const bool known = find_axes(run, command, axes);
     const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
-    count_gap(run, message->seq, message->missed);
-    run->hash = (uint64_t)message->hash;
+    count_gap(run, seq, missed);
+    run->hash = hash;
     if (!run->options.only_slices) {
-        record_slice(run, message->seq, axes, known ? (size_t)command->axis_count : 0);
+        record_slice(run, seq, axes, known ? (size_t)command->axis_count : 0);
     }
     if (run->options.listener) {
         run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &run->state,
@@ -141,9 +143,12 @@ static void take_slice(wh_log_run_t *run, const waferhand_command *command, cons
     }
 }
 
+static bool is_near(const wh_vec3_t *r) {
+    return wh_real_abs(r->x) < FARTHEST && wh_real_abs(r->y) < FARTHEST && wh_real_abs(r->z) < FARTHEST;
+}
+
 static bool is_place(const wh_pose_t *pose) {
-    return wh_pose_validate(pose) == WH_OK && wh_real_abs(pose->r.x) < FARTHEST &&
-           wh_real_abs(pose->r.y) < FARTHEST && wh_real_abs(pose->r.z) < FARTHEST;
+    return wh_pose_validate(pose) == WH_OK && is_near(&pose->r);
 }
 
 static bool is_index(int32_t index, size_t count) {
@@ -196,21 +201,48 @@ static void on_state(void *user, const waferhand_command *command, const waferha
         wh_recorder_events(&run->recorder, &run->state);
     }
     if (message->status == WH_OK) {
-        take_slice(run, command, message);
+        take_slice(run, command, message->missed, (uint64_t)message->hash);
     }
 }
 
-/* The replay's other listener, for slices alone: no simulator's own state needs to be checked. */
+/* Rotations of a simulator's own state are sound; its commands may have led anywhere. */
+static bool is_all_near(const wh_state_t *state) {
+    bool near = true;
+    for (size_t g = 0; near && g < state->gripper_count; ++g) {
+        near = is_near(&state->grippers[g].base_from_gripper.r);
+    }
+    for (size_t w = 0; near && w < state->wafer_count; ++w) {
+        near = is_near(&state->wafers[w].base_from_wafer.r);
+    }
+    return near;
+}
+
+/* A slice for the record, from a simulator's own state. What motion control says of the time before the next
+ * slice is of the wafers of this one, so they are kept. */
+static void record_stepped(wh_log_run_t *run, const waferhand_command *command,
+                           const wh_protocol_server_t *server) {
+    const wh_state_t *state = &server->state;
+    wh_log_run_take_told_before(run, state->seq);
+    if (!is_all_near(state)) {
+        return;
+    }
+    run->state = *state;
+    wh_log_run_set_parts(run);
+    wh_recorder_events(&run->recorder, state);
+    take_slice(run, command, server->missed, run->replay.run->hash);
+    memcpy(run->arrays.wafers, state->wafers, state->wafer_count * sizeof *run->arrays.wafers);
+    run->state.wafers = run->arrays.wafers;
+}
+
+/* The replay's other listener. */
 static void on_stepped(void *user, const waferhand_command *command, const wh_protocol_server_t *server) {
     wh_log_run_t *run = user;
-    double axes[WH_AXES];
-    const bool known = find_axes(run, command, axes);
-    const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
-    run->has_slices = true;
-    count_gap(run, server->state.seq, server->missed);
-    run->hash = run->replay.run->hash;
-    run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &server->state,
-                          run->hash);
+    if (!run->options.only_slices) {
+        record_stepped(run, command, server);
+        return;
+    }
+    run->state = server->state;
+    take_slice(run, command, server->missed, run->replay.run->hash);
 }
 
 /* ------------------------------------------------------------------------------- what there is in the log */
@@ -317,7 +349,7 @@ static void follow(wh_log_run_t *run, const wh_log_files_t *files) {
     }
     run->replay.only_run = run->run_count > 1 ? run->wanted->run : 0;
     run->replay.listener = on_state;
-    run->replay.stepped = run->options.only_slices ? on_stepped : NULL;
+    run->replay.stepped = on_stepped;
     run->replay.user = run;
     wh_reading_replay(files, &run->log, &run->replay, &run->reading);
     if (run->run_count == 1) {

@@ -80,6 +80,7 @@ typedef struct {
     wh_log_lane_t lanes[WH_RECORDER_PARTS]; /* once there are tasks, in the order of their first messages */
     size_t lane_count;
     wh_pass_t passes[WH_GRIPPERS]; /* of the grippers that had a wafer when beams were last armed */
+    bool has_passes;               /* there may be some */
     uint32_t pass_number;          /* of that arming */
     wh_run_told_t outcome;
     int32_t last_expectation, last_cycle; /* the highest numbers in the messages */

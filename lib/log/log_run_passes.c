@@ -31,10 +31,11 @@ static bool are_sound(const wh_latches_t *latches, int64_t seq) {
 }
 
 static void drop(wh_log_run_t *run) {
-    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+    for (size_t g = 0; run->has_passes && g < WH_GRIPPERS; ++g) {
         wh_pass_free(&run->passes[g]);
+        memset(&run->passes[g], 0, sizeof run->passes[g]);
     }
-    memset(run->passes, 0, sizeof run->passes);
+    run->has_passes = false;
 }
 
 /* A log does not tell the gripper of a pass: it may be any gripper on a robot that has a wafer. */
@@ -44,6 +45,7 @@ static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
         const bool is_on_robot = layout->machine.mounts[g].axis == WH_NONE;
         if (is_on_robot && run->state.grippers[g].wafer != WH_NONE) {
             const int32_t station = layout->beams[latches->first].station;
+            run->has_passes = true;
             run->passes[g] = (wh_pass_t){.order = {WH_LATCH_ARM, latches->first, latches->count},
                                          .station = station,
                                          .gripper = (int32_t)g,
@@ -58,7 +60,7 @@ static void begin(wh_log_run_t *run, const wh_latches_t *latches) {
 }
 
 static void hear(wh_log_run_t *run) {
-    for (size_t g = 0; g < run->state.gripper_count; ++g) {
+    for (size_t g = 0; run->has_passes && g < run->state.gripper_count; ++g) {
         if (run->passes[g].goes_on) {
             wh_pass_stand(&run->passes[g], run->state.seq, &run->state.grippers[g].base_from_gripper);
             wh_pass_hear(&run->passes[g], &run->state);

@@ -143,20 +143,28 @@ static bool is_near(const wh_proximity_t *measured, const wh_grasp_config_t *gra
     return fabs(measured->dr_proj_z) < WH_SIGNALS_REACH && measured->dr_proj_xy_norm < 2 * grasp->near_projxy;
 }
 
-static void put_gripper(const wh_layout_t *layout, const wh_state_t *state, size_t g, double values[]) {
+/* What the gripper is near to: it changes with its place and with wafers alone. */
+static void put_nearest(const wh_layout_t *layout, const wh_state_t *state, size_t g, double values[]) {
     const int32_t nearest = wh_counterpart(state, g, &layout->cell, NULL, state->wafer_count);
     wh_proximity_t measured;
     const bool is_measured = nearest != WH_NONE &&
                              wh_layout_measure(layout, &state->wafers[nearest].base_from_wafer,
                                                &state->grippers[g].base_from_gripper, &measured) == WH_OK &&
                              is_near(&measured, &layout->grasp);
-    values[0] = state->physics->told[g] == WH_VALVE_OPEN ? 0 : 1;
-    values[1] = state->sensors >> g & 1U;
-    values[2] = state->physics->vacuum[g].level;
     values[3] = is_measured ? nearest : WH_NONE;
     values[4] = is_measured ? fabs(measured.dr_proj_z) : (double)NAN;
     values[5] = is_measured ? measured.dr_proj_xy_norm : (double)NAN;
     values[6] = is_measured ? measured.n1_proj_n2 : (double)NAN;
+}
+
+static void put_gripper(const wh_layout_t *layout, const wh_state_t *state, size_t g, bool is_as_before,
+                        double values[]) {
+    values[0] = state->physics->told[g] == WH_VALVE_OPEN ? 0 : 1;
+    values[1] = state->sensors >> g & 1U;
+    values[2] = state->physics->vacuum[g].level;
+    if (!is_as_before) {
+        put_nearest(layout, state, g, values);
+    }
     if (is_told(layout, WITH_EDGES)) {
         values[7] = layout->grips[g].kind == WH_GRIP_EDGE ? state->physics->grips[g].s : (double)NAN;
     }
@@ -197,22 +205,17 @@ static bool lies_as_before(const wh_wafer_t *wafer, const wh_wafer_t *before) {
     return wafer->holder == WH_NONE && memcmp(wafer, before, sizeof *wafer) == 0;
 }
 
-/* `before`: the wafers of the values that are there; null: none are. */
-static void put_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
-                       const wh_wafer_t *before, double values[]) {
-    for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
-        if (has_axis(layout, axis)) {
-            *values++ = axes ? axes[axis] : (double)NAN;
-        }
-    }
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g, values += of_each_gripper(layout)) {
-        put_gripper(layout, state, g, values);
-    }
+static bool is_as_before(const wh_gripper_t *gripper, const wh_pose_t *before) {
+    return memcmp(&gripper->base_from_gripper, before, sizeof *before) == 0;
+}
+
+static void put_wafers(const wh_layout_t *layout, const wh_state_t *state, const wh_slice_row_t *row,
+                       double values[]) {
     size_t told[OF_WAFER];
     const size_t count = of_each_wafer(layout, told);
     for (size_t w = 0; w < layout->wafer_count; ++w, values += count) {
         double all[OF_WAFER];
-        if (before && lies_as_before(&state->wafers[w], &before[w])) {
+        if (row && lies_as_before(&state->wafers[w], &row->wafers[w])) {
             continue;
         }
         put_wafer(layout, state, &state->wafers[w], all);
@@ -220,6 +223,33 @@ static void put_fields(const wh_layout_t *layout, const double axes[], const wh_
             values[i] = all[told[i]];
         }
     }
+}
+
+/* `row`: of the values that are there; null: none are. */
+static void put_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
+                       const wh_slice_row_t *row, double values[]) {
+    const bool are_wafers_same =
+        row && memcmp(state->wafers, row->wafers, layout->wafer_count * sizeof *row->wafers) == 0;
+    for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
+        if (has_axis(layout, axis)) {
+            *values++ = axes ? axes[axis] : (double)NAN;
+        }
+    }
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g, values += of_each_gripper(layout)) {
+        put_gripper(layout, state, g, are_wafers_same && is_as_before(&state->grippers[g], &row->grippers[g]),
+                    values);
+    }
+    if (!are_wafers_same || row->holds) {
+        put_wafers(layout, state, row, values);
+    }
+}
+
+static bool holds_any(const wh_state_t *state) {
+    bool holds = false;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        holds = holds || state->grippers[g].wafer != WH_NONE;
+    }
+    return holds;
 }
 
 void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
@@ -234,12 +264,16 @@ void wh_slice_row_take(wh_slice_row_t *row, const wh_layout_t *layout, const dou
         row->values = wh_array_new(wh_slice_field_count(layout), sizeof *row->values);
         row->wafers = wh_array_new(layout->wafer_count, sizeof *row->wafers);
     }
-    put_fields(layout, axes, state, is_first ? NULL : row->wafers, row->values);
+    put_fields(layout, axes, state, is_first ? NULL : row, row->values);
     memcpy(row->wafers, state->wafers, layout->wafer_count * sizeof *row->wafers);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        row->grippers[g] = state->grippers[g].base_from_gripper;
+    }
+    row->holds = holds_any(state);
 }
 
 void wh_slice_row_free(wh_slice_row_t *row) {
     free(row->values);
     free(row->wafers);
-    *row = (wh_slice_row_t){NULL, NULL};
+    memset(row, 0, sizeof *row);
 }

@@ -39,11 +39,13 @@ const char *wh_slice_field_word(const wh_layout_t *layout, wh_slice_field_t kind
 void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_state_t *state,
                      double values[]);
 
-/* Likewise for one slice after the other of a run: a wafer that lies as before keeps its values. Zero it to
- * begin with; read `values`, of wh_slice_field_count, after wh_slice_row_take; free it at the end. */
+/* Likewise for one slice after the other of a run: a wafer that lies as before keeps its values, and so
+ * does a gripper that stands as before while all wafers do. Zero it to begin with; read `values`, of wh_slice_field_count, after wh_slice_row_take; free it at the end. */
 typedef struct {
     double *values;     /* null before the first slice */
-    wh_wafer_t *wafers; /* of the slice before */
+    wh_wafer_t *wafers; /* of the slice before, like the following */
+    wh_pose_t grippers[WH_GRIPPERS];
+    bool holds; /* a gripper holds a wafer */
 } wh_slice_row_t;
 
 void wh_slice_row_take(wh_slice_row_t *row, const wh_layout_t *layout, const double axes[],

@@ -106,13 +106,38 @@ static char *put_block(wh_slices_csv_t *csv, size_t first, const double values[]
     return end + block->size;
 }
 
+static char *put_whole(uint64_t number, char *end) {
+    char digits[20];
+    size_t at = sizeof digits;
+    do {
+        digits[--at] = (char)('0' + number % 10);
+        number /= 10;
+    } while (number > 0);
+    memcpy(end, digits + at, sizeof digits - at);
+    return end + (sizeof digits - at);
+}
+
+/* Seconds with the digits of wh_digits: no double is nearer to so few decimals than that of the quotient. */
+static char *put_seconds(int64_t time_us, char *end) {
+    if (time_us < 100 || time_us >= INT64_C(1000000000000000)) {
+        wh_digits((double)time_us / 1e6, end);
+        return end + strlen(end);
+    }
+    uint64_t rest = (uint64_t)time_us % 1000000;
+    end = put_whole((uint64_t)time_us / 1000000, end);
+    if (rest > 0) {
+        *end++ = '.';
+    }
+    for (uint64_t unit = 100000; rest > 0; rest %= unit, unit /= 10) {
+        *end++ = (char)('0' + rest / unit);
+    }
+    return end;
+}
+
 void wh_slices_csv_row(wh_slices_csv_t *csv, int64_t slice, const double values[]) {
-    char *end = csv->row;
-    wh_digits((double)slice, end);
-    end += strlen(end);
+    char *end = put_whole((uint64_t)slice, csv->row);
     *end++ = ',';
-    wh_digits((double)(slice * csv->layout->slice_us) / 1e6, end);
-    end += strlen(end);
+    end = put_seconds(slice * csv->layout->slice_us, end);
     for (size_t i = 0; i < csv->count; i += WH_SLICES_CSV_BLOCK) {
         end = put_block(csv, i, values, end);
     }

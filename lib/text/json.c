@@ -189,8 +189,8 @@ static void write_exact(FILE *out, double value) {
     fputs(digits, out);
 }
 
-/* Writes a number without zeros at the end. Counting in units of the last decimal is faster than printf of
- * a double and gives equal digits. */
+/* Writes a number without zeros at the end. Counting in units of the last decimal is faster than printf and
+ * gives equal digits. */
 static void write_rounded(FILE *out, double value, int decimals) {
     static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
     const double exact = floor(fabs(value) * powers[decimals] + 0.5);
@@ -199,13 +199,22 @@ static void write_rounded(FILE *out, double value, int decimals) {
         return;
     }
     char digits[32];
-    long long units = (long long)exact;
-    const char *sign = value < 0 && units > 0 ? "-" : "";
+    char *first = digits + sizeof digits;
+    uint64_t units = (uint64_t)exact;
+    const bool is_negative = value < 0 && units > 0;
     for (; decimals > 0 && units % 10 == 0; --decimals) {
         units /= 10;
     }
-    const int whole = snprintf(digits, sizeof digits, "%0*lld", decimals + 1, units) - decimals;
-    fprintf(out, "%s%.*s%s%s", sign, whole, digits, decimals > 0 ? "." : "", digits + whole);
+    for (int place = 0; units > 0 || place <= decimals; ++place, units /= 10) {
+        if (place > 0 && place == decimals) {
+            *--first = '.';
+        }
+        *--first = (char)('0' + units % 10);
+    }
+    if (is_negative) {
+        *--first = '-';
+    }
+    (void)fwrite(first, 1, (size_t)(digits + sizeof digits - first), out);
 }
 
 void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact) {

@@ -180,8 +180,8 @@ static wh_compare_t compare(struct wh_log_digest *one, size_t one_count, struct 
     wh_compare_t found;
     const wh_layout_t *layout = read_cell("");
     wh_log_run_t *const both[] = {&runs[0], &runs[1]};
-    const wh_log_digests_t digests[] = {{one, one_count, one_count, {NULL, NULL}},
-                                        {other, other_count, other_count, {NULL, NULL}}};
+    const wh_log_digests_t digests[] = {{one, one_count, one_count, {.values = NULL}},
+                                        {other, other_count, other_count, {.values = NULL}}};
     runs[0].cell.layout = runs[1].cell.layout = layout;
     assert_true(wh_compare_runs(both, digests, &found));
     return found;
