@@ -44,8 +44,19 @@ static void end_at_complaint(void *user, const wh_command_t *command, const wh_s
     }
 }
 
+/* Motion control looks ahead by what it believes: the cell as taught, and which slot has which wafer. A replay
+ * in which it reads what it has read believes the same, so it was refused nothing either. */
+static bool was_refused_ahead(const wh_record_t *record) {
+    bool was = false;
+    for (size_t i = 0; i < record->command_count; ++i) {
+        was = was || record->commands[i].error == WH_STATUS_COLLISION_AHEAD;
+    }
+    return was;
+}
+
 bool wh_budget_has_two_ways(const wh_study_t *study) {
-    return study->layout->collision && !study->layout->look_ahead && !study->decisions.unfit;
+    return study->layout->collision && !study->decisions.unfit &&
+           !(study->layout->look_ahead && was_refused_ahead(&study->nominal.record));
 }
 
 void wh_budget_player_open(wh_budget_player_t *player, const wh_study_t *study) {
