@@ -51,9 +51,9 @@ static const wh_command_line_t command_line = {
     .operands = 2};
 
 /* The fields that do not belong to the run itself: how long it took, where files lie, which program made
- * it. */
-static const char *const aside[] = {"wall_s",  "script", "layout", "title", "reproduce",
-                                    "version", "source", "log",    NULL};
+ * it, and what motion control alone knows. */
+static const char *const aside[] = {"wall_s",  "script", "layout", "title",      "reproduce",
+                                    "version", "source", "log",    "never_came", NULL};
 
 /* The first difference, and those at the end. */
 typedef struct {

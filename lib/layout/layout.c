@@ -14,6 +14,10 @@ static int32_t find(const void *items, size_t count, size_t size, const char *na
     return WH_NONE;
 }
 
+double wh_layout_debounce_ms(const wh_layout_t *layout) {
+    return (double)layout->physics.vacuum.debounce * (double)layout->slice_us / 1000;
+}
+
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name) {
     return find(layout->stations, layout->station_count, sizeof *layout->stations, name);
 }

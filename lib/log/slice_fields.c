@@ -143,7 +143,7 @@ static bool is_near(const wh_proximity_t *measured, const wh_grasp_config_t *gra
     return fabs(measured->dr_proj_z) < WH_SIGNALS_REACH && measured->dr_proj_xy_norm < 2 * grasp->near_projxy;
 }
 
-/* What the gripper is near to: it changes with its place and with wafers alone. */
+/* The nearest wafer: it changes with the place of the gripper and with wafers alone. */
 static void put_nearest(const wh_layout_t *layout, const wh_state_t *state, size_t g, double values[]) {
     const int32_t nearest = wh_counterpart(state, g, &layout->cell, NULL, state->wafer_count);
     wh_proximity_t measured;

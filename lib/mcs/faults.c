@@ -1,8 +1,11 @@
 /* Injected faults: a script's faults go to the simulator with the next slice's command. */
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../reading/layout_read.h"
 #include "../script/wh_module_values.h"
+#include "../text/array.h"
 #include "native.h"
 
 static int64_t next_slice(const wh_mcs_t *mcs) {
@@ -136,6 +139,53 @@ static int disarm_alarm(lua_State *L) {
         mcs->armed.alarms[number - WH_FAULTS - 1] = WH_OK;
     }
     return 0;
+}
+
+/* --------------------------------------------------------------------------------------------- at the end */
+
+static void put_comma(FILE *out) {
+    if (ftell(out) > 0) {
+        fputs(", ", out);
+    }
+}
+
+/* Tells a fault that has not come. One of a wafer waits while a gripper has it. */
+static void put_unbegun(FILE *out, const wh_mcs_t *mcs, size_t slot) {
+    const wh_fault_t *fault = &mcs->armed.faults[slot];
+    const wh_physics_state_t *physics = mcs->state.physics;
+    const bool is_later = fault->from > mcs->track.slice && fault->until > fault->from;
+    if (is_later) {
+        put_comma(out);
+        fprintf(out, "%s (fault %zu, from %.10g s on)", wh_fault_name(fault->kind), slot + 1,
+                (double)(fault->from * mcs->track.slice_us) / 1e6);
+    } else if (wh_fault_is_of_wafer(fault->kind) && fault->from <= mcs->track.slice &&
+               fault->until > mcs->track.slice && physics && slot < physics->faults.count &&
+               physics->faults.slots[slot].phase == WH_FAULT_WAITING) {
+        put_comma(out);
+        fprintf(out, "%s (fault %zu: its wafer was held)", wh_fault_name(fault->kind), slot + 1);
+    }
+}
+
+char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    for (size_t i = 0; i < mcs->armed.fault_count; ++i) {
+        put_unbegun(out, mcs, i);
+    }
+    for (size_t i = 0; i < WH_MCS_ALARMS; ++i) {
+        if (mcs->armed.alarms[i] != WH_OK) {
+            put_comma(out);
+            fprintf(out, "error %d %s (fault %zu: no command that can answer with it)",
+                    (int)mcs->armed.alarms[i], wh_status_name(mcs->armed.alarms[i]), WH_FAULTS + i + 1);
+        }
+    }
+    const bool is_any = ftell(out) > 0;
+    (void)fclose(out);
+    if (!is_any) {
+        free(text);
+    }
+    return is_any ? text : NULL;
 }
 
 /* ----------------------------------------------------------------------------------------------- clearing */

@@ -338,6 +338,10 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         judge_heard(mcs);
     }
     judge_held(mcs);
+    if (!mcs->recorder.record->failure && mcs->layout) {
+        free(mcs->recorder.record->never_came);
+        mcs->recorder.record->never_came = wh_mcs_tell_never_came(mcs);
+    }
     wh_recorder_finish(&mcs->recorder, &end);
     if (mcs->layout) {
         wh_mcs_tell(mcs, WH_MCS_FINISHED, NULL);

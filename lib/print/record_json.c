@@ -435,6 +435,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
         (void)wh_json_set(root, "crowded_slices %lld", (json_int_t)record->crowded);
     }
     wh_json_put(root, "not_looked_for", wh_json_text(record->unlooked));
+    if (record->never_came) {
+        wh_json_put(root, "never_came", wh_json_text(record->never_came));
+    }
     wh_json_put(root, "steady_cycle", steady_cycle(record));
     wh_json_put(root, "throughput", wh_throughput_to_json(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));

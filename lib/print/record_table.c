@@ -408,6 +408,10 @@ static void print_summary(const wh_printer_t *printer) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);
     }
+    if (record->never_came) {
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        fprintf(printer->out, "never came, and so were not tried: %s\n", record->never_came);
+    }
     wh_style_print(printer->style, printer->out, ink, "%s", verdict);
     if (!record->ok) {
         put_reasons(printer);

@@ -71,10 +71,6 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
     read_pads(reader, layout, &layout->physics.pads);
 }
 
-double wh_layout_debounce_ms(const wh_layout_t *layout) {
-    return (double)layout->physics.vacuum.debounce * (double)layout->slice_us / 1000;
-}
-
 /* ------------------------------------------------------------------------------------------------- faults */
 
 /* The longest time of a fault, s. */

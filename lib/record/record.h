@@ -133,6 +133,7 @@ typedef struct {
     wh_station_reach_t *reach; /* layout->station_count of them, from home; null: nothing was rehearsed */
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
     const char *unlooked;      /* says what nobody looked for, a constant text; null: nothing */
+    char *never_came;          /* the faults and errors on purpose that did not come; null: none; owned */
     bool checked;              /* for collisions; then these are the smallest gaps */
     wh_clearance_t clearances[WH_CLEARANCES];
     wh_flow_t *flow;     /* wafers through a tool of times alone; null: none; owned */

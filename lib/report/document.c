@@ -75,13 +75,18 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
 
 /* Behind the notes of a log, or in their place: what nobody looked for. */
 static void put_note(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    const wh_record_t *record = document->record;
+    char note[2000];
     if (i < document->note_count) {
         put_text(text, NULL, document->notes[i]);
-    } else {
-        char note[200];
-        (void)snprintf(note, sizeof note, "%c%s.", 'C', document->record->unlooked + 1);
-        put_text(text, NULL, note);
+        return;
     }
+    if (i == document->note_count && record->unlooked) {
+        (void)snprintf(note, sizeof note, "%c%s.", 'C', record->unlooked + 1);
+    } else {
+        (void)snprintf(note, sizeof note, "Never came, and so were not tried: %s.", record->never_came);
+    }
+    put_text(text, NULL, note);
 }
 
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
@@ -92,8 +97,8 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
     put_text(text, "source", document->source);
-    const size_t unlooked = document->record->unlooked ? 1 : 0;
-    put_each(text, document, "notes", document->note_count + unlooked, put_note);
+    const size_t more = (document->record->unlooked ? 1U : 0U) + (document->record->never_came ? 1U : 0U);
+    put_each(text, document, "notes", document->note_count + more, put_note);
     wh_json_text_value(text, "run", json_incref(document->run));
     put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);

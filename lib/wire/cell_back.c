@@ -44,9 +44,10 @@ static bool checks_fit(const waferhand_cell *cell) {
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_members_take(wh_cell_members, cell, layout);
     layout->wafer_thickness = cell->thickness;
-    layout->slice_us = slice_us_of(cell);
     layout->has_faces = cell->thickness > 0;
+    layout->slice_us = slice_us_of(cell);
     layout->physics.slice_s = (wh_real_t)layout->slice_us / 1e6;
+    layout->physics.vacuum.debounce = (int32_t)(cell->slice_us >> WH_LINK_DEBOUNCE_SHIFT);
     return wh_tolerance_validate(&layout->grasp.tolerance) == WH_OK && checks_fit(cell);
 }
 
@@ -101,7 +102,6 @@ static bool take_edges(const waferhand_cell *cell, wh_layout_t *layout) {
 
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
-    physics->vacuum.debounce = (int32_t)(cell->slice_us >> WH_LINK_DEBOUNCE_SHIFT);
     physics->fault_count = (size_t)cell->fault_count;
     for (size_t i = 0; i < physics->fault_count; ++i) {
         physics->faults[i] = wh_link_take_fault(&cell->faults[i]);

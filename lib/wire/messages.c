@@ -333,7 +333,8 @@ static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physi
     condition->told[g] = in->valve_told;
     condition->vacuum[g].level = in->vacuum_level;
     condition->vacuum[g].on = in->vacuum_on != 0;
-    condition->vacuum[g].waits = tells_wait(in) && wait_fits(in) ? (uint16_t)in->grip_s : 0;
+    const double slices = tells_wait(in) && wait_fits(in) ? in->grip_s : 0;
+    condition->vacuum[g].waits = (uint16_t)slices;
     condition->carry[g].slips = in->slips != 0;
     condition->carry[g].known = in->positions_known;
     condition->carry[g].before[0] = take_vec3(in->wafer_before[0]);

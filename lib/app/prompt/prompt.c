@@ -218,9 +218,23 @@ static void judge_held(wh_prompt_t *prompt) {
     }
 }
 
+/* Faults and errors on purpose that nobody met. */
+static void tell_never_came(wh_prompt_t *prompt) {
+    char *list = wh_mcs_tell_never_came(&prompt->input.session->mcs);
+    if (list) {
+        const size_t size = strlen(list) + 100;
+        char *text = wh_array_new(size, 1);
+        (void)snprintf(text, size, "mcs: never came, and so were not tried: %s", list);
+        wh_prompt_say(prompt, text);
+        free(text);
+        free(list);
+    }
+}
+
 int wh_prompt_run(wh_prompt_t *prompt) {
     const wh_line_event_t event = take_lines(prompt);
     judge_held(prompt);
+    tell_never_came(prompt);
     if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }
