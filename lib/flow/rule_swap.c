@@ -114,20 +114,33 @@ static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place,
     }
 }
 
-/* With a wafer: to an empty place of its next step, else to a full one. It is chosen anew at each instant. */
-static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
-    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+static bool is_full(const wh_flow_place_t *place) {
+    return place->wafer != WH_FLOW_NONE && place->leaving_us == WH_FLOW_NEVER;
+}
+
+/* The place for which the wafer goes on. A full one is chosen anew at each instant; one that is or will be empty is
+ * kept: the transfer into it has begun. */
+static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->heading != WH_FLOW_NONE && state->places[at->heading].coming == wafer) {
+        if (!is_full(&state->places[at->heading])) {
+            return at->heading;
+        }
         state->places[at->heading].coming = WH_FLOW_NONE;
     }
     const wh_flow_target_t target =
         wh_flow_target(state, robot, wafer, state->robots[robot].station, 0, WH_FLOW_NONE);
-    at->heading = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+    return target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+}
+
+/* With a wafer: to an empty place of its next step, else to a full one. */
+static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
+    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    at->heading = choose_place(state, robot, wafer);
     if (at->heading == WH_FLOW_NONE) {
         return 0;
     }
     state->places[at->heading].coming = wafer;
-    at->is_bound = true;
     const int32_t station = state->tool->place_stations[at->heading];
     *order = (wh_flow_order_t){.what = WH_FLOW_BRING,
                                .wafer = wafer,
@@ -135,8 +148,7 @@ static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flo
                                .station = station,
                                .place = at->heading,
                                .onward = WH_FLOW_NONE};
-    if (state->places[at->heading].wafer != WH_FLOW_NONE &&
-        state->places[at->heading].leaving_us == WH_FLOW_NEVER) {
+    if (is_full(&state->places[at->heading])) {
         exchange(state, robot, at->heading, order);
     }
     return 1;

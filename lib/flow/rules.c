@@ -67,14 +67,27 @@ static void open_round(wh_flow_round_t *round, const wh_flow_tool_t *tool, const
     }
 }
 
-/* Marks in `leads` what each station leads to: from each of a step to each of the next. */
-static void lead(const wh_flow_route_t *route, size_t count, bool *leads) {
-    for (size_t k = 1; k + 1 < route->step_count; ++k) {
-        const wh_flow_step_t *step = &route->steps[k], *next = step + 1;
-        for (size_t i = 0; i < step->station_count; ++i) {
-            for (size_t j = 0; j < next->station_count; ++j) {
-                leads[(size_t)step->stations[i] * count + (size_t)next->stations[j]] = true;
-            }
+/* Marks in `leads` that each station of a step leads to each of the next. */
+static void lead(const wh_flow_step_t *step, const wh_flow_step_t *next, size_t count, bool *leads) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        for (size_t j = 0; j < next->station_count; ++j) {
+            leads[(size_t)step->stations[i] * count + (size_t)next->stations[j]] = true;
+        }
+    }
+}
+
+/* By routes and by ways back. */
+static void lead_all(const wh_flow_plan_t *plan, size_t count, bool *leads) {
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        const wh_flow_route_t *route = &plan->routes[i];
+        for (size_t k = 1; k + 1 < route->step_count; ++k) {
+            lead(&route->steps[k], &route->steps[k + 1], count, leads);
+        }
+    }
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        const int32_t last = wh_flow_last_step(plan, w);
+        if (plan->wafers[w].goes_back && last > 1) {
+            lead(wh_flow_step_of(plan, w, last - 1), wh_flow_step_of(plan, w, last), count, leads);
         }
     }
 }
@@ -83,9 +96,7 @@ static void lead(const wh_flow_route_t *route, size_t count, bool *leads) {
 static bool find_circle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
     const size_t count = tool->station_count;
     bool *leads = wh_array_new(count * count, sizeof *leads), found = false;
-    for (size_t i = 0; i < plan->route_count; ++i) {
-        lead(&plan->routes[i], count, leads);
-    }
+    lead_all(plan, count, leads);
     for (size_t by = 0; by < count; ++by) {
         for (size_t from = 0; from < count; ++from) {
             for (size_t to = 0; leads[from * count + by] && to < count; ++to) {

@@ -57,6 +57,7 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
     for (size_t i = 0; i < plan->wafer_count; ++i) {
         state->wafers[i] = (wh_flow_wafer_state_t){.place = WH_FLOW_NONE,
                                                    .robot = WH_FLOW_NONE,
+                                                   .taker = WH_FLOW_NONE,
                                                    .heading = WH_FLOW_NONE,
                                                    .next = WH_FLOW_NONE,
                                                    .before = WH_FLOW_NONE,

@@ -35,6 +35,7 @@ typedef struct {
 
 typedef struct {
     int32_t place, robot, arm; /* where it is; WH_FLOW_NONE else */
+    int32_t taker;             /* the robot that takes it or has it; WH_FLOW_NONE: it lies */
     int32_t step;              /* in which it counts, or from which it comes */
     int64_t entered_us;        /* when it was placed there */
     int64_t done_us;           /* from then on it may be taken; WH_FLOW_NEVER: not known yet */
@@ -42,7 +43,6 @@ typedef struct {
     int32_t next, before;      /* in its step, by the time of entering */
     int32_t heading;           /* swap: the place, perhaps a full one, for which a robot has taken it */
     bool is_counted; /* it counts in the next step already, though its transfer there has not begun */
-    bool is_bound;   /* its place is chosen, by a transfer that has begun or as its robot goes on with it */
     bool is_moving;  /* its transfer has begun */
     bool is_over;
 } wh_flow_wafer_state_t;
@@ -129,7 +129,6 @@ typedef struct wh_flow_state {
     int32_t *heads, *tails; /* by step: the wafers that lie there */
     size_t next_lot, next_down;
     size_t over;           /* wafers at their end */
-    size_t arrived;        /* wafers of lots that are there */
     int64_t next_start_us; /* by takt */
     int64_t last_us;       /* the end of the last placing */
     wh_flow_listener_t listener;

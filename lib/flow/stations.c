@@ -212,18 +212,12 @@ static void want_begun(const wh_flow_state_t *state, int32_t lock, wants_t *want
     const wh_flow_station_t *of = &state->tool->stations[lock];
     for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
         const wh_flow_place_t *place = &state->places[p];
-        if (place->coming == WH_FLOW_NONE || !state->wafers[place->coming].is_bound) {
+        if (place->coming == WH_FLOW_NONE) {
             continue;
         }
-        int32_t robot = state->wafers[place->coming].robot;
-        for (int32_t r = 0; robot == WH_FLOW_NONE && r < (int32_t)state->tool->robot_count; ++r) {
-            robot = state->robots[r].order.wafer == place->coming && state->robots[r].action != WH_FLOW_IDLE
-                        ? r
-                        : robot;
-        }
+        const int32_t robot = state->wafers[place->coming].taker;
         const bool is_empty = place->wafer == WH_FLOW_NONE || place->leaving_us != WH_FLOW_NEVER;
-        if (robot != WH_FLOW_NONE &&
-            (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer)))) {
+        if (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer))) {
             want(wants, state->tool->sides[wh_flow_of(state->tool, robot, lock)],
                  state->wafers[place->coming].done_us);
         }
@@ -330,17 +324,6 @@ static void begin_cleans(wh_flow_state_t *state, int32_t number) {
     plan_cleans(state, number);
 }
 
-static bool can_arrive(const wh_flow_state_t *state, const wh_flow_lot_t *lot) {
-    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
-        const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
-        if (place->coming != WH_FLOW_NONE ||
-            (place->wafer != WH_FLOW_NONE && !state->wafers[place->wafer].is_over)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* True if every wafer of the lot to which this one belongs is at its end. */
 static bool is_lot_over(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
@@ -361,15 +344,15 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         ++state->stations[state->tool->place_stations[wafer->place]].wafers;
         ++state->counts[wh_flow_step_index(state, (int32_t)i, 0)];
         wh_flow_step_enter(state, (int32_t)i);
-        ++state->arrived;
     }
 }
 
-/* Wafers of lots that are over leave the load ports where a lot arrives. */
+/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there or come. */
 static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
-        const int32_t place = state->plan->wafers[i].home, wafer = state->places[place].wafer;
-        if (wafer != WH_FLOW_NONE && !is_lot_over(state, wafer)) {
+        const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
+        if (place->coming != WH_FLOW_NONE ||
+            (place->wafer != WH_FLOW_NONE && !is_lot_over(state, place->wafer))) {
             return false;
         }
     }
@@ -384,21 +367,44 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     return true;
 }
 
+/* A process that would begin from now on begins when the failure is over. */
+static void put_off(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    wh_flow_station_state_t *station = &state->stations[number];
+    station->done_us = WH_FLOW_NEVER;
+    for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
+        const int32_t number_there = state->places[place].wafer;
+        if (number_there == WH_FLOW_NONE || state->wafers[number_there].is_over) {
+            continue;
+        }
+        wh_flow_wafer_state_t *wafer = &state->wafers[number_there];
+        const int64_t lasts_us = wh_flow_process_us(state, number_there, number) + wafer->clean_us;
+        if (lasts_us > 0 && wafer->done_us - lasts_us >= state->now_us) {
+            wafer->done_us = station->down_us + lasts_us;
+        }
+        if (wafer->done_us > state->now_us && wafer->done_us < station->done_us) {
+            station->done_us = wafer->done_us;
+        }
+    }
+}
+
+static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
+    wh_flow_station_state_t *station = &state->stations[down->station];
+    const int64_t until_us = state->now_us + down->for_us;
+    station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
+    station->down_us =
+        station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    put_off(state, down->station);
+}
+
 void wh_flow_stations_begin(wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     while (state->next_lot < plan->lot_count && plan->lots[state->next_lot].arrives_us <= state->now_us &&
-           can_arrive(state, &plan->lots[state->next_lot]) &&
            make_room(state, &plan->lots[state->next_lot])) {
         arrive(state, &plan->lots[state->next_lot++]);
     }
-    for (; state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us;
-         ++state->next_down) {
-        const wh_flow_down_t *down = &plan->downs[state->next_down];
-        wh_flow_station_state_t *station = &state->stations[down->station];
-        const int64_t until_us = state->now_us + down->for_us;
-        station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
-        station->down_us =
-            station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    while (state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us) {
+        begin_down(state, &plan->downs[state->next_down++]);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         if (state->stations[i].has_due || state->stations[i].idle_us <= state->now_us) {

@@ -135,7 +135,7 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
 static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route, int32_t step,
                       int32_t ahead) {
     return state->plan->lots[state->plan->wafers[wafer].lot].route == route &&
-           state->wafers[wafer].step + ahead == step;
+           !state->wafers[wafer].is_over && state->wafers[wafer].step + ahead == step;
 }
 
 wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us) {
@@ -148,17 +148,13 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             const wh_flow_place_t *place = &state->places[p];
             const bool lies = place->wafer != WH_FLOW_NONE && place->leaving_us > at_us;
-            ++room.may;
-            down += is_down && !lies && place->coming == WH_FLOW_NONE;
-            if (place->coming != WH_FLOW_NONE) {
-                const bool is_own = counts_in(state, place->coming, route, number, 1);
-                room.holds += is_own;
-                room.may -= !is_own;
-            } else if (lies && !state->wafers[place->wafer].is_over) {
-                const bool is_own = counts_in(state, place->wafer, route, number, 0);
-                room.holds += is_own;
-                room.may -= !is_own;
-            }
+            const bool is_empty = !lies && place->coming == WH_FLOW_NONE;
+            const int32_t own =
+                (lies && counts_in(state, place->wafer, route, number, 0)) +
+                (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, number, 1));
+            down += is_down && is_empty;
+            room.holds += own;
+            room.may += is_empty || own > 0;
         }
     }
     room.may -= step->kept_empty > down ? step->kept_empty : down;
