@@ -10,13 +10,12 @@ typedef struct {
     size_t station_count;
     int64_t process_us; /* WH_FLOW_NONE: that of the station */
     int32_t kept_empty; /* places of the step that stay empty */
-    int32_t most;       /* wafers that it may hold: all its places but kept_empty */
     bool second_arm;    /* the second arm alone takes out of it */
 } wh_flow_step_t;
 
 typedef struct {
     char *name;
-    wh_flow_step_t *steps; /* steps[0] is unused but for second_arm and most */
+    wh_flow_step_t *steps; /* steps[0] is empty */
     size_t step_count;     /* with step 0 */
     size_t first_step;     /* the index of its step 0 among the steps of all routes */
 } wh_flow_route_t;
@@ -96,10 +95,18 @@ typedef struct {
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* To be called once when all is filled: numbers the steps, and counts what each step may hold. Returns null, or
+/* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or
  * what is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
  * whose places are all kept empty, the same station twice in succession. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
+
+/* True if the step has this station; if the robot serves one of its stations. */
+bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
+bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot);
+
+static inline int32_t wh_flow_priority(const wh_flow_plan_t *plan, int32_t wafer) {
+    return plan->lots[plan->wafers[wafer].lot].priority;
+}
 
 /* The number of the wafer's last step. */
 int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer);

@@ -228,8 +228,7 @@ static void tell_action(const wh_flow_state_t *state, int32_t robot, wh_flow_eve
                                    .other = other,
                                    .place = kind == WH_FLOW_EVENT_PICK ? at->from : at->to,
                                    .station = at->station,
-                                   .from = at->from,
-                                   .is_loaded = is_loaded(at)};
+                                   .from = at->from};
     wh_flow_tell(state, &event);
 }
 

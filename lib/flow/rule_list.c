@@ -5,26 +5,8 @@
 #include "rules.h"
 #include "transfer.h"
 
-static bool has_station(const wh_flow_step_t *step, int32_t station) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (step->stations[i] == station) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool serves_one(const wh_flow_tool_t *tool, int32_t robot, const wh_flow_step_t *step) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (tool->serves[wh_flow_of(tool, robot, step->stations[i])]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool leads_to(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
-    return has_station(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
+    return wh_flow_step_has(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
 }
 
 /* The wafer that a line means, if it lies in the station: the one named, or the first that entered. */
@@ -72,10 +54,10 @@ static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_fl
         for (int32_t k = state->wafers[w].step; k < last; ++k) {
             const bool is_here = k == 0
                                      ? state->tool->place_stations[state->plan->wafers[w].home] == line->from
-                                     : has_station(wh_flow_step_of(state->plan, w, k), line->from);
+                                     : wh_flow_step_has(wh_flow_step_of(state->plan, w, k), line->from);
             const wh_flow_step_t *next = wh_flow_step_of(state->plan, w, k + 1);
-            const bool goes = line->what == WH_FLOW_KEEP ? serves_one(state->tool, robot, next)
-                                                         : has_station(next, line->to);
+            const bool goes = line->what == WH_FLOW_KEEP ? wh_flow_step_is_served(state->tool, next, robot)
+                                                         : wh_flow_step_has(next, line->to);
             if (is_here && goes) {
                 return true;
             }

@@ -15,10 +15,6 @@ static int32_t carried(const wh_flow_robot_state_t *robot) {
     return robot->kept_us[0] <= robot->kept_us[1] ? a : b;
 }
 
-static int32_t priority_of(const wh_flow_state_t *state, int32_t wafer) {
-    return state->plan->lots[state->plan->wafers[wafer].lot].priority;
-}
-
 /* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is done first;
  * then by priority, the later step, the one that entered first. */
 static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, int32_t b) {
@@ -27,10 +23,7 @@ static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, in
     if (a_goes != b_goes || one->done_us != other->done_us) {
         return a_goes != b_goes ? a_goes : one->done_us < other->done_us;
     }
-    if (priority_of(state, a) != priority_of(state, b)) {
-        return priority_of(state, a) > priority_of(state, b);
-    }
-    return one->step != other->step ? one->step > other->step : one->entered_us < other->entered_us;
+    return wh_flow_compare(state, a, b) < 0;
 }
 
 /* The best of the next step's full places, or WH_FLOW_NONE. */
@@ -42,15 +35,14 @@ static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wa
     int32_t best = WH_FLOW_NONE;
     for (size_t i = 0; i < step->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[step->stations[i]];
-        const wh_flow_side_t side = tool->sides[wh_flow_of(tool, robot, step->stations[i])];
+        const size_t of = wh_flow_of(tool, robot, step->stations[i]);
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             const wh_flow_place_t *place = &state->places[p];
-            const wh_flow_side_t slot = tool->slot_sides[p];
-            if (!tool->serves[wh_flow_of(tool, robot, step->stations[i])] || place->wafer == WH_FLOW_NONE ||
+            if (!tool->serves[of] || place->wafer == WH_FLOW_NONE ||
                 (place->coming != WH_FLOW_NONE && place->coming != wafer) ||
                 (end != WH_FLOW_NONE && end != p) ||
                 state->stations[step->stations[i]].down_us != WH_FLOW_NEVER ||
-                (side != WH_FLOW_BOTH && slot != WH_FLOW_BOTH && side != slot)) {
+                !wh_flow_sides_agree(tool->sides[of], tool->slot_sides[p])) {
                 continue;
             }
             if (best == WH_FLOW_NONE || is_before(state, robot, place->wafer, state->places[best].wafer)) {
@@ -91,9 +83,9 @@ int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wa
     return WH_FLOW_NONE;
 }
 
-static bool is_clean_next(const wh_flow_state_t *state, int32_t place) {
-    const wh_flow_station_t *of = &state->tool->stations[state->tool->place_stations[place]];
-    return !of->cleans_full && of->clean_after > 0 && state->places[place].since_clean + 1 >= of->clean_after;
+static bool is_emptied_and_cleaned(const wh_flow_state_t *state, int32_t place) {
+    return !state->tool->stations[state->tool->place_stations[place]].cleans_full &&
+           wh_flow_is_clean_next(state, place);
 }
 
 /* Before a full place: against its wafer, as soon as that is done. A clean that is due comes between. */
@@ -104,7 +96,7 @@ static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place,
         return;
     }
     const int32_t onward = wh_flow_swap_way(state, robot, other, state->now_us);
-    if (onward != WH_FLOW_NONE && is_clean_next(state, place)) {
+    if (onward != WH_FLOW_NONE && is_emptied_and_cleaned(state, place)) {
         order->what = WH_FLOW_KEEP;
         order->wafer = other;
         order->place = onward;
@@ -165,23 +157,21 @@ static bool entered_before(const wh_flow_state_t *state, int32_t a, int32_t b) {
     if (one->entered_us != other->entered_us) {
         return one->entered_us < other->entered_us;
     }
-    return priority_of(state, a) != priority_of(state, b) ? priority_of(state, a) > priority_of(state, b)
-                                                          : a < b;
+    return wh_flow_priority(state->plan, a) != wh_flow_priority(state->plan, b)
+               ? wh_flow_priority(state->plan, a) > wh_flow_priority(state->plan, b)
+               : a < b;
 }
 
 static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
                       found_t *found) {
     const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
-    int32_t left_out = WH_FLOW_NONE;
-    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+    for (int32_t wafer = wh_flow_next_in(state, step, WH_FLOW_NONE); wafer != WH_FLOW_NONE;
+         wafer = wh_flow_next_in(state, step, wafer)) {
         int64_t there_us = 0;
-        if (state->plan->wafers[wafer].lot == left_out || !wh_flow_may_take(state, robot, wafer)) {
+        if (!wh_flow_may_take(state, robot, wafer)) {
             continue;
         }
         found->is_any = true;
-        if (task->step == 0) {
-            left_out = state->plan->wafers[wafer].lot; /* its others want the same places */
-        }
         if (found->wafer != WH_FLOW_NONE && !entered_before(state, wafer, found->wafer)) {
             continue;
         }

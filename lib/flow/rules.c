@@ -5,15 +5,6 @@
 
 #include "../text/array.h"
 
-static bool serves_any(const wh_flow_tool_t *tool, int32_t robot, const int32_t *stations, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        if (tool->serves[wh_flow_of(tool, robot, stations[i])]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Step 0 of a route lies where its lots do. */
 static bool serves_home(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot,
                         int32_t route) {
@@ -32,14 +23,14 @@ static bool empties(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int3
                     int32_t k) {
     const wh_flow_route_t *of = &plan->routes[route];
     const wh_flow_step_t *step = &of->steps[k], *next = step + 1;
-    if (k > 0 && !serves_any(tool, robot, step->stations, step->station_count)) {
+    if (k > 0 && !wh_flow_step_is_served(tool, step, robot)) {
         return false;
     }
     if (k == 0 && !serves_home(tool, plan, robot, route)) {
         return false;
     }
     if ((size_t)k + 1 < of->step_count) {
-        return serves_any(tool, robot, next->stations, next->station_count);
+        return wh_flow_step_is_served(tool, next, robot);
     }
     for (size_t w = 0; w < plan->wafer_count; ++w) {
         if (plan->lots[plan->wafers[w].lot].route == route && plan->wafers[w].goes_back &&

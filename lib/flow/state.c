@@ -114,6 +114,30 @@ void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
     }
 }
 
+int32_t wh_flow_next_in(const wh_flow_state_t *state, size_t step, int32_t wafer) {
+    const wh_flow_plan_t *plan = state->plan;
+    int32_t next = wafer == WH_FLOW_NONE ? state->heads[step] : state->wafers[wafer].next;
+    while (next != WH_FLOW_NONE &&
+           (state->wafers[next].is_moving || (wafer != WH_FLOW_NONE && state->wafers[next].step == 0 &&
+                                              plan->wafers[next].lot == plan->wafers[wafer].lot &&
+                                              wh_flow_end_of(plan, next, 1) == WH_FLOW_NONE))) {
+        next = state->wafers[next].next;
+    }
+    return next;
+}
+
+int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b) {
+    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
+    const int32_t priority = wh_flow_priority(state->plan, a), against = wh_flow_priority(state->plan, b);
+    if (priority != against) {
+        return priority > against ? -1 : 1;
+    }
+    if (one->step != other->step) {
+        return one->step > other->step ? -1 : 1;
+    }
+    return one->entered_us < other->entered_us ? -1 : one->entered_us > other->entered_us ? 1 : 0;
+}
+
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
     const size_t first = state->plan->routes[route].first_step;
     int32_t sum = step > 0 ? -state->leaving[first + (size_t)step - 1] : 0;

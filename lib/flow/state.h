@@ -103,7 +103,6 @@ typedef struct {
     int32_t robot, arm, wafer, other; /* other: what a swap brought in */
     int32_t place, station, from;     /* from: the station that a move comes from */
     int32_t step;
-    bool is_loaded;
     wh_flow_side_t side;
 } wh_flow_event_t;
 
@@ -148,11 +147,26 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);
 void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer);
 
+/* The next wafer behind this one in a step's list, WH_FLOW_NONE for the first, which lies there and nobody has begun to
+ * take. A lot's wafers in their first places want the same: one stands for all, unless each has a place of its own to go
+ * to. */
+int32_t wh_flow_next_in(const wh_flow_state_t *state, size_t step, int32_t wafer);
+
+/* Ties of rules: below 0 if the first wafer wins by priority, the later step, or its entering; above 0 if the other one
+ * does; 0 if neither. */
+int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b);
+
 /* How many wafers of arrived lots are still to come into this step of the route: they are before it. */
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step);
 
 /* The arm that is free to take from the wafer's step, or WH_FLOW_NONE. */
 int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
+
+/* True if a clean by the number of wafers is due when one more has been in the place. */
+static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t place) {
+    const int32_t after = state->tool->stations[state->tool->place_stations[place]].clean_after;
+    return after > 0 && state->places[place].since_clean + 1 >= after;
+}
 
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);

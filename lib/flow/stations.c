@@ -59,8 +59,7 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     }
     const int64_t for_us = wh_flow_process_us(state, wafer, number);
     const wh_flow_station_t *of = &state->tool->stations[number];
-    const bool is_due = of->clean_after > 0 && state->places[at->place].since_clean + 1 >= of->clean_after;
-    at->clean_us = of->cleans_full && is_due ? of->clean_us : 0;
+    at->clean_us = of->cleans_full && wh_flow_is_clean_next(state, at->place) ? of->clean_us : 0;
     const int64_t lasts_us = for_us + at->clean_us;
     const int64_t begin_us = station->down_us != WH_FLOW_NEVER && station->down_us > station->shut_us
                                  ? station->down_us
@@ -79,9 +78,9 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[station];
     wh_flow_place_t *place = &state->places[number];
     --state->stations[station].wafers;
+    const bool is_due = wh_flow_is_clean_next(state, number);
     ++place->since_clean;
     if (is_cleaned(of)) {
-        const bool is_due = of->clean_after > 0 && place->since_clean >= of->clean_after;
         place->is_clean_due = is_due && !of->cleans_full;
         place->since_clean = is_due && of->cleans_full ? 0 : place->since_clean;
         place->idle_us = of->idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + of->idle_us;
@@ -239,11 +238,7 @@ static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer
                        wants_t *lying) {
     const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1);
     const bool is_out = wh_flow_station_of(state, wafer) == lock;
-    bool is_into = false;
-    for (size_t i = 0; i < next->station_count; ++i) {
-        is_into = is_into || next->stations[i] == lock;
-    }
-    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !is_into)) {
+    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !wh_flow_step_has(next, lock))) {
         return;
     }
     for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
@@ -261,14 +256,9 @@ static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer
 
 static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, wants_t *lying) {
     for (size_t step = 0; step < state->plan->step_count; ++step) {
-        int32_t left_out = WH_FLOW_NONE;
-        for (int32_t w = state->heads[step]; w != WH_FLOW_NONE; w = state->wafers[w].next) {
-            if (state->wafers[w].step > 0 || state->plan->wafers[w].lot != left_out) {
-                want_wafer(state, lock, w, able, lying);
-            }
-            if (state->wafers[w].step == 0) {
-                left_out = state->plan->wafers[w].lot; /* its others want the same */
-            }
+        for (int32_t w = wh_flow_next_in(state, step, WH_FLOW_NONE); w != WH_FLOW_NONE;
+             w = wh_flow_next_in(state, step, w)) {
+            want_wafer(state, lock, w, able, lying);
         }
     }
 }

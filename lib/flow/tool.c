@@ -90,13 +90,6 @@ int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name) {
     return WH_FLOW_NONE;
 }
 
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (const char *c = text; *c; ++c) {
-        hash = wh_hash_word(hash, (unsigned char)*c);
-    }
-    return wh_hash_word(hash, 0);
-}
-
 static uint64_t hash_times(uint64_t hash, const int64_t times_us[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         hash = wh_hash_word(hash, (uint64_t)times_us[i]);
@@ -108,7 +101,7 @@ static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
     const int64_t times_us[] = {station->process_us,       station->window_us,       station->clean_us,
                                 station->idle_us,          station->pump_us[0],      station->pump_us[1],
                                 station->empty_pump_us[0], station->empty_pump_us[1]};
-    hash = hash_times(hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
+    hash = hash_times(wh_hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
     hash = wh_hash_int(wh_hash_int(hash, station->slots), station->clean_after);
     hash = wh_hash_int(wh_hash_int(hash, station->is_lock), station->is_load_port);
     hash = wh_hash_int(hash, station->cleans_full);
@@ -121,7 +114,7 @@ uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
         hash = hash_station(hash, &tool->stations[i]);
     }
     for (size_t i = 0; i < tool->robot_count; ++i) {
-        hash = hash_text(hash, tool->robots[i].name);
+        hash = wh_hash_text(hash, tool->robots[i].name);
         hash = wh_hash_int(wh_hash_int(hash, tool->robots[i].arms), tool->robots[i].at);
     }
     hash = hash_times(hash, tool->pick_us, pairs);

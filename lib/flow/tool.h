@@ -76,6 +76,11 @@ static inline int64_t wh_flow_move_us(const wh_flow_tool_t *tool, int32_t robot,
     return from == to ? 0 : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
 }
 
+/* True if a robot of the one side may use what is for the other. */
+static inline bool wh_flow_sides_agree(wh_flow_side_t a, wh_flow_side_t b) {
+    return a == WH_FLOW_BOTH || b == WH_FLOW_BOTH || a == b;
+}
+
 /* The number of the station or robot of this name, or WH_FLOW_NONE. */
 int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name);
 int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name);

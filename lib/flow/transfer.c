@@ -14,10 +14,6 @@ int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t 
                                           : of_step;
 }
 
-static bool has_side(wh_flow_side_t needed, wh_flow_side_t side) {
-    return needed == WH_FLOW_BOTH || side == WH_FLOW_BOTH || needed == side;
-}
-
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const wh_flow_station_state_t *now = &state->stations[station];
     if (now->user != WH_FLOW_NONE || now->shut_us > state->now_us || now->down_us != WH_FLOW_NEVER) {
@@ -25,7 +21,7 @@ bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t stat
     }
     return !state->tool->stations[station].is_lock ||
            (now->pump_us == WH_FLOW_NEVER &&
-            has_side(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
+            wh_flow_sides_agree(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
 }
 
 /* ------------------------------------------------------------------------------------------------- targets */
@@ -42,10 +38,8 @@ static int64_t clean_from(const wh_flow_state_t *state, int32_t place, int64_t *
     if (at->clean_us != WH_FLOW_NEVER) {
         return at->clean_us;
     }
-    const bool is_due =
-        at->is_clean_due || (at->wafer != WH_FLOW_NONE && !station->cleans_full && station->clean_after > 0 &&
-                             at->since_clean + 1 >= station->clean_after);
-    if (!is_due) {
+    if (!at->is_clean_due &&
+        (at->wafer == WH_FLOW_NONE || station->cleans_full || !wh_flow_is_clean_next(state, place))) {
         return *empty_us;
     }
     const wh_flow_station_state_t *now = &state->stations[number]; /* it begins when the door is shut */
@@ -76,9 +70,9 @@ static int64_t open_from(const wh_flow_state_t *state, int32_t robot, int32_t st
         return us;
     }
     if (now->pump_us != WH_FLOW_NEVER) {
-        return has_side(side, now->pump_to) ? later(us, now->pump_us) : WH_FLOW_NEVER;
+        return wh_flow_sides_agree(side, now->pump_to) ? later(us, now->pump_us) : WH_FLOW_NEVER;
     }
-    return has_side(side, now->side) ? us : WH_FLOW_NEVER;
+    return wh_flow_sides_agree(side, now->side) ? us : WH_FLOW_NEVER;
 }
 
 /* The targets of one question, the best first. */
@@ -115,7 +109,7 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
     const int32_t station = state->tool->place_stations[place];
     const size_t of = wh_flow_of(state->tool, robot, station);
     int64_t empty_us = 0;
-    if (!has_side(state->tool->slot_sides[place], state->tool->sides[of]) ||
+    if (!wh_flow_sides_agree(state->tool->slot_sides[place], state->tool->sides[of]) ||
         state->stations[station].down_us != WH_FLOW_NEVER) {
         return;
     }
@@ -232,13 +226,7 @@ bool wh_flow_is_carrier(const wh_flow_state_t *state, int32_t robot, int32_t waf
         !state->tool->serves[wh_flow_of(state->tool, robot, station)]) {
         return false;
     }
-    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, at->step + 1);
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (state->tool->serves[wh_flow_of(state->tool, robot, step->stations[i])]) {
-            return true;
-        }
-    }
-    return false;
+    return wh_flow_step_is_served(state->tool, wh_flow_step_of(state->plan, wafer, at->step + 1), robot);
 }
 
 bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
