@@ -112,7 +112,7 @@ static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *stat
         return;
     }
     figures->longest_stay_us = stay_us > figures->longest_stay_us ? stay_us : figures->longest_stay_us;
-    if (stay_us > window_us) {
+    if (wh_flow_over_window_us(state, stay) > 0) {
         figures->breaches = wh_array_grow(figures->breaches, figures->breach_count, &figures->breach_capacity,
                                           sizeof *figures->breaches);
         figures->breaches[figures->breach_count++] = (wh_flow_breach_t){
@@ -127,22 +127,42 @@ static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
                                                    .step = stay->step + 1,
                                                    .robot = stay->robot,
                                                    .from = stay->place,
+                                                   .place = WH_FLOW_NONE,
                                                    .pick_us = stay->end_us,
+                                                   .picked_us = WH_FLOW_NEVER,
+                                                   .place_us = WH_FLOW_NEVER,
+                                                   .placed_us = WH_FLOW_NEVER,
                                                    .process_us = WH_FLOW_NEVER,
                                                    .done_us = WH_FLOW_NEVER};
 }
 
-static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
+static void keep_visit(measure_t *measure, int32_t wafer) {
     wh_flow_figures_t *figures = measure->figures;
+    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
+                                    sizeof *figures->visits);
+    measure->visits[wafer] = (int32_t)figures->visit_count;
+    figures->visits[figures->visit_count++] = measure->open[wafer];
+}
+
+static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
     wh_flow_visit_t *visit = &measure->open[wafer];
     visit->place = event->place;
     visit->arm = event->arm;
     visit->place_us = event->begin_us;
     visit->placed_us = event->end_us;
-    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
-                                    sizeof *figures->visits);
-    measure->visits[wafer] = (int32_t)figures->visit_count;
-    figures->visits[figures->visit_count++] = *visit;
+    keep_visit(measure, wafer);
+}
+
+/* Those of wafers that are under way when the flow ends. */
+static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        const wh_flow_wafer_state_t *wafer = &state->wafers[w];
+        if (wafer->taker != WH_FLOW_NONE) {
+            measure->open[w].arm =
+                wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
+            keep_visit(measure, w);
+        }
+    }
 }
 
 static void note_process(measure_t *measure, const wh_flow_event_t *event) {
@@ -276,6 +296,9 @@ static void end(void *context, const wh_flow_state_t *state) {
             go_to(measure, state, (int32_t)p, state->now_us,
                   measure->places[p].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
         }
+    }
+    if (measure->open) {
+        keep_open_visits(measure, state);
     }
     measure->figures->end_us = state->now_us;
 }

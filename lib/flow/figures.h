@@ -30,7 +30,7 @@ typedef struct {
 } wh_flow_breach_t;
 
 /* A wafer's visit to a place, from the begin of the transfer there on. Times that have not come are
- * WH_FLOW_NEVER. */
+ * WH_FLOW_NEVER; the place is WH_FLOW_NONE until it lies there. */
 typedef struct {
     int32_t wafer, step, robot, arm, from, place;
     int64_t pick_us, picked_us, place_us, placed_us, process_us, done_us;
@@ -55,7 +55,7 @@ typedef struct {
     size_t *placed;                               /* wafers placed, by station */
     wh_flow_breach_t *breaches;
     size_t breach_count, breach_capacity;
-    wh_flow_visit_t *visits; /* by the end of placing; none if not asked for */
+    wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;

@@ -97,6 +97,11 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
                                   .station = station,
                                   .step = at->step};
     wh_flow_tell(state, &stay);
+    const int64_t over_us = wh_flow_over_window_us(state, &stay);
+    if (over_us > 0) {
+        const wh_flow_problem_t late = {WH_FLOW_LATE, robot, wafer, station, over_us};
+        wh_flow_tell_problem(state, &late);
+    }
 }
 
 static bool begin_pick(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {

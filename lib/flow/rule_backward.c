@@ -29,8 +29,8 @@ static int32_t first_of(const wh_flow_state_t *state, int32_t robot, const wh_fl
     return WH_FLOW_NONE;
 }
 
-int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                         wh_flow_order_t *order) {
+bool wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                          wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];
     for (size_t i = 0; i < round->count; ++i) {
         const size_t at = ((size_t)state->robots[robot].mark + i) % round->count;
@@ -45,8 +45,8 @@ int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *ru
                                        .station = WH_FLOW_NONE,
                                        .place = place,
                                        .mark = (int32_t)((at + 1) % round->count)};
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }

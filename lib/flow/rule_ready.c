@@ -47,19 +47,19 @@ static void look_at_step(const wh_flow_state_t *state, int32_t robot, const wh_f
     }
 }
 
-int wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                      wh_flow_order_t *order) {
+bool wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                       wh_flow_order_t *order) {
     candidate_t best = {WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NEVER, false};
     for (size_t i = 0; i < rules->rounds[robot].count; ++i) {
         look_at_step(state, robot, &rules->rounds[robot].tasks[i], &best);
     }
     if (best.wafer == WH_FLOW_NONE) {
-        return 0;
+        return false;
     }
     *order = (wh_flow_order_t){.what = WH_FLOW_TRANSFER,
                                .wafer = best.wafer,
                                .at = wh_flow_station_of(state, best.wafer),
                                .station = WH_FLOW_NONE,
                                .place = best.place};
-    return 1;
+    return true;
 }

@@ -126,11 +126,11 @@ static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer
 }
 
 /* With a wafer: to an empty place of its next step, else to a full one. */
-static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
+static bool carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
     at->heading = choose_place(state, robot, wafer);
     if (at->heading == WH_FLOW_NONE) {
-        return 0;
+        return false;
     }
     state->places[at->heading].coming = wafer;
     const int32_t station = state->tool->place_stations[at->heading];
@@ -143,7 +143,7 @@ static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flo
     if (is_full(&state->places[at->heading])) {
         exchange(state, robot, at->heading, order);
     }
-    return 1;
+    return true;
 }
 
 /* The find of an empty-handed robot in a step. */
@@ -201,8 +201,8 @@ static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) 
 }
 
 /* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the earliest. */
-static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                wh_flow_order_t *order) {
+static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                 wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];
     found_t found = {WH_FLOW_NONE, WH_FLOW_NONE, false};
     bool is_awaited = false;
@@ -213,7 +213,7 @@ static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int3
         }
     }
     if (found.wafer == WH_FLOW_NONE && is_awaited && !found.is_any) {
-        return 0;
+        return false;
     }
     for (size_t i = round->count; i > 0 && found.wafer == WH_FLOW_NONE;) {
         size_t first = i - 1; /* those of one number stand in the order of their routes */
@@ -231,11 +231,11 @@ static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int3
                                                                  : wh_flow_station_of(state, found.wafer),
                                .station = WH_FLOW_NONE,
                                .place = found.place};
-    return found.wafer == WH_FLOW_NONE ? 0 : 1;
+    return found.wafer != WH_FLOW_NONE;
 }
 
-int wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                     wh_flow_order_t *order) {
+bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                      wh_flow_order_t *order) {
     const int32_t has = carried(&state->robots[robot]);
     return has != WH_FLOW_NONE ? carry_on(state, robot, has, order) : take(state, rules, robot, order);
 }

@@ -121,21 +121,21 @@ void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool) {
     memset(rules, 0, sizeof *rules);
 }
 
-int wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *orders,
-                size_t most) {
+bool wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                 wh_flow_order_t *order) {
     switch (state->plan->rule) {
     case WH_FLOW_BACKWARD:
-        return wh_flow_ask_backward(state, rules, robot, orders);
+        return wh_flow_ask_backward(state, rules, robot, order);
     case WH_FLOW_SWAPPING:
-        return state->tool->robots[robot].arms > 1 ? wh_flow_ask_swap(state, rules, robot, orders)
-                                                   : wh_flow_ask_backward(state, rules, robot, orders);
+        return state->tool->robots[robot].arms > 1 ? wh_flow_ask_swap(state, rules, robot, order)
+                                                   : wh_flow_ask_backward(state, rules, robot, order);
     case WH_FLOW_LISTS:
-        return wh_flow_ask_list(state, robot, orders);
+        return wh_flow_ask_list(state, robot, order);
     case WH_FLOW_OWN:
-        return state->plan->own(state->plan->own_context, state, robot, orders, most);
+        return wh_flow_ask_own(state, robot, order);
     case WH_FLOW_FIRST_COME:
     case WH_FLOW_LONGEST_WAIT:
     default:
-        return wh_flow_ask_ready(state, rules, robot, orders);
+        return wh_flow_ask_ready(state, rules, robot, order);
     }
 }

@@ -171,6 +171,12 @@ static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t p
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
 
+/* How much longer than its station's window a stay lasts from its begin to `end_us`; below 0: it does not. */
+int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay);
+
+/* Tells the plan's own function, if there is one; it may end the flow. */
+void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *problem);
+
 /* Tells the listener, if there is one. */
 void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event);
 

@@ -385,6 +385,8 @@ static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
     put_off(state, down->station);
+    const wh_flow_problem_t fails = {WH_FLOW_FAILS, WH_FLOW_NONE, WH_FLOW_NONE, down->station, down->for_us};
+    wh_flow_tell_problem(state, &fails);
 }
 
 void wh_flow_stations_begin(wh_flow_state_t *state) {

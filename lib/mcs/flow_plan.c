@@ -22,8 +22,10 @@
 const wh_reader_field_t wh_flow_fields[] = {
     {"lots", "waferhand.lot[]", "the lots", true},
     {"routes", "table<string, waferhand.route>", "their routes by name", true},
-    {"rule", "\"backward\"|\"swap\"|\"first_come\"|\"longest_wait\"|waferhand.lists",
+    {"rule", "\"backward\"|\"swap\"|\"first_come\"|\"longest_wait\"|waferhand.lists|fun(tool: table): table?",
      "how robots choose; backward", false},
+    {"on_error", "fun(tool: table, problem: table): string?",
+     "hears of stays beyond windows and of stations that fail; a text that it returns ends the flow", false},
     {"until_s", "number", "s: the flow is cut there", false},
     {"down", "waferhand.down[]", "stations that fail for a while", false},
     {"takt", "number", "s: the least time between two wafers' starts", false},
@@ -390,6 +392,11 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
     read_lots(reader, tool, plan);
     wh_flow_read_rule(reader, tool, plan);
     read_downs(reader, tool, plan);
+    const int on_error = wh_reader_push(reader, "on_error");
+    if (on_error != LUA_TNIL && on_error != LUA_TFUNCTION) {
+        wh_reader_fail(reader, "on_error", "a function of the tool and a problem");
+    }
+    lua_pop(reader->L, 1);
     plan->until_us = wh_reader_has(reader, "until_s") ? read_us(reader, "until_s", 0) : WH_FLOW_NEVER;
     plan->takt_us = read_us(reader, "takt", 0);
     plan->is_safe = wh_reader_boolean(reader, "safe", true);

@@ -103,6 +103,8 @@ void wh_flow_read_rule(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
     lua_pop(reader->L, 1);
     if (type == LUA_TTABLE) {
         read_lists(reader, tool, plan);
+    } else if (type == LUA_TFUNCTION) {
+        plan->rule = WH_FLOW_OWN;
     } else {
         plan->rule = (wh_flow_rule_t)wh_reader_choice(reader, "rule", 0, rules);
     }

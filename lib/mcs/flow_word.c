@@ -4,6 +4,7 @@
 
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "flow_own.h"
 #include "flow_plan.h"
 #include "native.h"
 
@@ -131,7 +132,10 @@ static int play_flow(lua_State *L) {
     (void)snprintf(where, sizeof where, "%.200s:%d: flow", mcs->script, record->flow->line);
     wh_reader_start(&reader, L, where);
     wh_flow_read(&reader, tool, record->flow);
+    wh_flow_own_open(L, tool, &record->flow->plan);
+    const int own = lua_gettop(L);
     wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
+    wh_flow_own_close(L, own, &record->flow->plan);
     judge(mcs, record->flow);
     push_result(L, &record->flow->figures);
     return 1;

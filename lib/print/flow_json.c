@@ -1,6 +1,6 @@
 /* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, wafers, cycle_s, period, per_hour,
  * longest_stay_s, robots and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays
- * (beyond their windows), visits (each wafer's, by the end of placing), doings (pumps, vents, cleans and failures of
+ * (beyond their windows), visits (each wafer's, by the end of placing; at last those under way, with null for what has not come), doings (pumps, vents, cleans and failures of
  * stations, by their ends). */
 #include "record_print.h"
 
@@ -70,11 +70,13 @@ static json_t *visit(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
     const wh_flow_tool_t *tool = figures->tool;
     const wh_flow_visit_t *of = &figures->visits[i];
+    const bool is_there = of->place != WH_FLOW_NONE;
     json_t *object = wh_json_set(
-        json_object(), "wafer %s step %d robot %s arm %d from %s from_slot %d to %s to_slot %d",
+        json_object(), "wafer %s step %d robot %s arm %d from %s from_slot %d to %s to_slot %lld",
         figures->plan->wafers[of->wafer].name, (int)of->step, tool->robots[of->robot].name, (int)of->arm + 1,
         tool->stations[tool->place_stations[of->from]].name, (int)wh_flow_slot(tool, of->from),
-        tool->stations[tool->place_stations[of->place]].name, (int)wh_flow_slot(tool, of->place));
+        is_there ? tool->stations[tool->place_stations[of->place]].name : NULL,
+        is_there ? (long long)wh_flow_slot(tool, of->place) : WH_JSON_NONE);
     return wh_json_add(object, "pick_s picked_s place_s placed_s process_s done_s", seconds(of->pick_us),
                        seconds(of->picked_us), seconds(of->place_us), seconds(of->placed_us),
                        seconds(of->process_us), seconds(of->done_us), NULL);

@@ -81,7 +81,7 @@ def whole(value):
 
 
 def visits_of_program(told):
-    for visit in told["visits"]:
+    for visit in (visit for visit in told["visits"] if visit["placed_s"] is not None):
         yield (visit["wafer"], visit["robot"], visit["from"], visit["from_slot"], whole(visit["pick_s"]), whole(visit["picked_s"]), visit["to"],
                visit["to_slot"], whole(visit["place_s"]), whole(visit["placed_s"]))
 
