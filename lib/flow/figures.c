@@ -32,6 +32,7 @@ typedef struct {
     aside_t *asides;       /* by place */
     int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
     wh_flow_visit_t *open; /* by wafer: the transfer that runs */
+    wh_flow_log_t log;
 } measure_t;
 
 /* ------------------------------------------------------------------------------------------------- stations */
@@ -223,6 +224,9 @@ static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
 static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
     measure_t *measure = context;
     measure->figures->hash = hash_event(measure->figures->hash, event);
+    if (measure->open) {
+        wh_flow_log_add(&measure->log, event);
+    }
     switch (event->kind) {
     case WH_FLOW_EVENT_STAY:
         hear_stay(measure, state, event);
@@ -332,6 +336,8 @@ void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, boo
     }
     const wh_flow_listener_t listener = {&measure, hear, advance, end};
     wh_flow_play(tool, plan, &listener, &figures->result);
+    figures->parts = wh_flow_path(tool, plan, &measure.log, &figures->part_count);
+    free(measure.log.events);
     free(measure.places);
     free(measure.asides);
     free(measure.visits);
@@ -345,6 +351,8 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->blocked_by_station);
     free(figures->placed);
     free(figures->breaches);
+    free(figures->parts);
+    free(figures->gains);
     free(figures->visits);
     free(figures->doings);
     wh_flow_result_close(&figures->result);

@@ -3,7 +3,7 @@
 #ifndef WH_FLOW_FIGURES_H
 #define WH_FLOW_FIGURES_H
 
-#include "flow.h"
+#include "path.h"
 #include "waiting.h"
 
 /* The time of a station's places. */
@@ -59,6 +59,9 @@ typedef struct {
     size_t visit_count, visit_capacity;
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
+    wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
+    size_t part_count;
+    wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
     int64_t longest_stay_us; /* after a process */
     uint64_t hash;           /* of all that was told, in its order */
     int64_t end_us;          /* up to which time is counted: the makespan, or when nobody went on */
@@ -68,6 +71,7 @@ typedef struct {
 typedef struct {
     int line; /* of the script */
     const wh_flow_tool_t *tool;
+    bool has_gains;        /* what less time of each robot and station brings is asked for */
     bool is_lateness_told; /* a stay beyond a window is told, and does not fail the run */
     wh_flow_plan_t plan;
     wh_flow_figures_t figures;

@@ -105,6 +105,18 @@ static void tell_process(const wh_flow_state_t *state, int32_t wafer, int32_t st
     wh_flow_tell(state, &event);
 }
 
+static void tell_clean(const wh_flow_state_t *state, int32_t place, int32_t wafer, int64_t for_us) {
+    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
+                                   .begin_us = state->now_us - for_us,
+                                   .end_us = state->now_us,
+                                   .robot = WH_FLOW_NONE,
+                                   .wafer = wafer,
+                                   .other = WH_FLOW_NONE,
+                                   .place = place,
+                                   .station = state->tool->place_stations[place]};
+    wh_flow_tell(state, &event);
+}
+
 static void end_processes(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[number];
     wh_flow_station_state_t *station = &state->stations[number];
@@ -117,6 +129,9 @@ static void end_processes(wh_flow_state_t *state, int32_t number) {
         const int64_t done_us = state->wafers[wafer].done_us;
         if (done_us == state->now_us) {
             tell_process(state, wafer, number);
+            if (state->wafers[wafer].clean_us > 0) {
+                tell_clean(state, place, wafer, state->wafers[wafer].clean_us);
+            }
         } else if (done_us > state->now_us && done_us < station->done_us) {
             station->done_us = done_us;
         }
@@ -131,15 +146,7 @@ static void end_cleans(wh_flow_state_t *state, int32_t number) {
             place->clean_us = WH_FLOW_NEVER;
             place->since_clean = 0;
             place->is_clean_due = false;
-            const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
-                                           .begin_us = state->now_us - of->clean_us,
-                                           .end_us = state->now_us,
-                                           .robot = WH_FLOW_NONE,
-                                           .wafer = WH_FLOW_NONE,
-                                           .other = WH_FLOW_NONE,
-                                           .place = i,
-                                           .station = number};
-            wh_flow_tell(state, &event);
+            tell_clean(state, i, WH_FLOW_NONE, of->clean_us);
         }
     }
     plan_cleans(state, number);

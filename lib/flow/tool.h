@@ -30,6 +30,7 @@ typedef struct {
         cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
     int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
     bool is_lock, is_load_port;
+    bool is_shortened;                    /* processes of steps, too, take 10 % less: see wh_flow_gains */
     wh_flow_side_t side;                  /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
@@ -62,6 +63,9 @@ typedef struct {
  * station has one slot. Close it in any case. */
 void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count);
 void wh_flow_tool_close(wh_flow_tool_t *tool);
+
+/* A tool of its own, equal to a numbered one. */
+void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool);
 
 /* To be called once after each station has its number of slots: numbers the places. */
 void wh_flow_tool_number(wh_flow_tool_t *tool);

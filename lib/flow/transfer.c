@@ -9,9 +9,11 @@ int64_t wh_flow_pick_us(const wh_flow_state_t *state, int32_t robot, int32_t sta
 
 int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
     const int64_t of_step = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step)->process_us;
-    return state->wafers[wafer].step == 0 ? 0
-           : of_step == WH_FLOW_NONE      ? state->tool->stations[station].process_us
-                                          : of_step;
+    const wh_flow_station_t *of = &state->tool->stations[station];
+    if (state->wafers[wafer].step == 0) {
+        return 0;
+    }
+    return of_step == WH_FLOW_NONE ? of->process_us : of_step - (of->is_shortened ? (of_step + 5) / 10 : 0);
 }
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {

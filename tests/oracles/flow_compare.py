@@ -110,6 +110,9 @@ def compare(program, folder, level, seed):
     ends = {"done": "done", "STUCK": "stuck", "refused": "broken", "until": "cut"}
     if ends[result["state"]] != told["end"]:
         return f"the model ends {result['state']}, the program {told['end']}: {told['why']}"
+    summed = sum(whole(part["seconds"]) for part in told["path"])
+    if summed != whole(told["makespan_s"]):
+        return f"the critical path is {summed} us long, the flow {whole(told['makespan_s'])}"
     return min(((visit[4], visit in model, visit) for visit in model ^ ours), default=None)
 
 

@@ -94,7 +94,7 @@ def look_at_shipped(program, folder, tool, flow):
     return ours["end"], own["end"], own["why"], next((pair for pair in pairs if pair[0] != pair[1]), None)
 
 
-def as_result(told, flow, names):
+def as_result(told, names):
     """As flow_check takes it."""
     back, rows = {ours: name for name, ours in names.items()}, {name: [] for name in names}
     begun = (visit for visit in told["visits"] if visit["picked_s"] is not None)
@@ -115,10 +115,7 @@ def look_at_random(program, folder, tool, flow, seed):
     before = AT_RANDOM.replace("SEED", str(seed)).replace("NAMES", names).replace("GARBAGE", "true" if seed % 3 == 0 else "false")
     flow = {**flow, "rule": "backward", "until": None}
     told, names = play(program, folder, tool, flow, "at_random", before)
-    # the program tells no clean around a wafer; flow_compare looks at those
-    stations = [{**station, "clean": None if (station.get("clean") or {}).get("empty") is False else station.get("clean")}
-                for station in tool["stations"]]
-    found = list(flow_check.look({**tool, "stations": stations}, flow, as_result(told, flow, names)))
+    found = list(flow_check.look(tool, flow, as_result(told, names)))
     if told["end"] not in ("done", "stuck", "broken") or (told["end"] == "broken" and seed % 3):
         found.append(f"it ends {told['end']}: {told['why']}")
     if told["end"] != "done" and not told["why"]:
