@@ -3,8 +3,8 @@
 #define WH_READING_LAYOUT_TOOL_H
 
 #include "../flow/tool.h"
-#include "../script/reader.h"
 #include "../layout/layout.h"
+#include "../script/reader.h"
 
 /* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and others are
  * not. */
