@@ -17,6 +17,10 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
+    {"history", 0, "FILE",
+     "Write each wafer's history in a flow in the words of E90 and E116: JSON lines, or CSV if FILE ends in "
+     ".csv",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 

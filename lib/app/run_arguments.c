@@ -8,6 +8,7 @@
 #include "../layout/axes.h"
 #include "../layout/grips.h"
 #include "../link/outputs.h"
+#include "../print/flow_history.h"
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/array.h"
@@ -218,6 +219,7 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
                                      {"--data", files->document, true},
                                      {"--svg", files->plots, true},
                                      {"--segments", arguments->segments_path, true},
+                                     {"--history", arguments->history_path, true},
                                      {arguments->record_option, record, true},
                                      {"--outputs", arguments->outputs, true}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
@@ -287,6 +289,11 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
+typedef struct {
+    const wh_run_arguments_t *arguments;
+    const wh_flow_figures_t *figures;
+} history_t;
+
 /* The kind of layout whose segments can be written; null if the layout is of that kind. */
 static const char *segments_expect(const wh_layout_t *layout) {
     if (!layout) {
@@ -323,11 +330,29 @@ static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs
     return false;
 }
 
+static bool write_history(void *user, FILE *out) {
+    const wh_run_arguments_t *arguments = ((const history_t *)user)->arguments;
+    const char *end = strrchr(arguments->history_path, '.');
+    return wh_flow_history_write(((const history_t *)user)->figures, end && strcmp(end, ".csv") == 0, out);
+}
+
+/* False, with a message, for a run without what a history tells. */
+static bool has_history(const wh_run_arguments_t *arguments, const wh_record_t *record) {
+    if (!arguments->history_path || record->flow) {
+        return true;
+    }
+    fprintf(stderr, "--history: %s: not written (expected a script with a flow)\n", arguments->history_path);
+    return false;
+}
+
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {&run->mcs, arguments->segments_path};
+    history_t history = {arguments, run->record.flow ? &run->record.flow->figures : NULL};
     return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
+           has_history(arguments, &run->record) &&
+           wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
            wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }
@@ -415,8 +440,9 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
 }
 
 int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
-    const char *const outputs[] = {arguments->files.page, arguments->files.scene, arguments->files.document,
-                                   arguments->files.plots, arguments->segments_path};
+    const char *const outputs[] = {arguments->files.page,     arguments->files.scene,
+                                   arguments->files.document, arguments->files.plots,
+                                   arguments->segments_path,  arguments->history_path};
     const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
     return wh_watch(&options);
 }

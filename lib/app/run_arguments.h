@@ -31,6 +31,7 @@ typedef struct {
     wh_option_list_t errors;   /* that the cell has: of wh_run_error_options */
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
+    const char *history_path;     /* null: not wanted */
     const char *record, *outputs; /* files that others write; null: none */
     const char *record_option;    /* that gave `record` */
     wh_recording_t *recording; /* that goes into `record`: if it does not keep the run, the run has failed; or

@@ -32,6 +32,7 @@ typedef struct {
     aside_t *asides;       /* by place */
     int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
     wh_flow_visit_t *open; /* by wafer: the transfer that runs */
+    wh_flow_log_t log;
 } measure_t;
 
 /* ------------------------------------------------------------------------------------------------- stations */
@@ -112,7 +113,7 @@ static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *stat
         return;
     }
     figures->longest_stay_us = stay_us > figures->longest_stay_us ? stay_us : figures->longest_stay_us;
-    if (stay_us > window_us) {
+    if (wh_flow_over_window_us(state, stay) > 0) {
         figures->breaches = wh_array_grow(figures->breaches, figures->breach_count, &figures->breach_capacity,
                                           sizeof *figures->breaches);
         figures->breaches[figures->breach_count++] = (wh_flow_breach_t){
@@ -127,22 +128,42 @@ static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
                                                    .step = stay->step + 1,
                                                    .robot = stay->robot,
                                                    .from = stay->place,
+                                                   .place = WH_FLOW_NONE,
                                                    .pick_us = stay->end_us,
+                                                   .picked_us = WH_FLOW_NEVER,
+                                                   .place_us = WH_FLOW_NEVER,
+                                                   .placed_us = WH_FLOW_NEVER,
                                                    .process_us = WH_FLOW_NEVER,
                                                    .done_us = WH_FLOW_NEVER};
 }
 
-static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
+static void keep_visit(measure_t *measure, int32_t wafer) {
     wh_flow_figures_t *figures = measure->figures;
+    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
+                                    sizeof *figures->visits);
+    measure->visits[wafer] = (int32_t)figures->visit_count;
+    figures->visits[figures->visit_count++] = measure->open[wafer];
+}
+
+static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t wafer) {
     wh_flow_visit_t *visit = &measure->open[wafer];
     visit->place = event->place;
     visit->arm = event->arm;
     visit->place_us = event->begin_us;
     visit->placed_us = event->end_us;
-    figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
-                                    sizeof *figures->visits);
-    measure->visits[wafer] = (int32_t)figures->visit_count;
-    figures->visits[figures->visit_count++] = *visit;
+    keep_visit(measure, wafer);
+}
+
+/* Those of wafers that are under way when the flow ends. */
+static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        const wh_flow_wafer_state_t *wafer = &state->wafers[w];
+        if (wafer->taker != WH_FLOW_NONE) {
+            measure->open[w].arm =
+                wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
+            keep_visit(measure, w);
+        }
+    }
 }
 
 static void note_process(measure_t *measure, const wh_flow_event_t *event) {
@@ -203,6 +224,9 @@ static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
 static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
     measure_t *measure = context;
     measure->figures->hash = hash_event(measure->figures->hash, event);
+    if (measure->open) {
+        wh_flow_log_add(&measure->log, event);
+    }
     switch (event->kind) {
     case WH_FLOW_EVENT_STAY:
         hear_stay(measure, state, event);
@@ -277,6 +301,9 @@ static void end(void *context, const wh_flow_state_t *state) {
                   measure->places[p].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
         }
     }
+    if (measure->open) {
+        keep_open_visits(measure, state);
+    }
     measure->figures->end_us = state->now_us;
 }
 
@@ -309,6 +336,8 @@ void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, boo
     }
     const wh_flow_listener_t listener = {&measure, hear, advance, end};
     wh_flow_play(tool, plan, &listener, &figures->result);
+    figures->parts = wh_flow_path(tool, plan, &measure.log, &figures->part_count);
+    free(measure.log.events);
     free(measure.places);
     free(measure.asides);
     free(measure.visits);
@@ -322,6 +351,8 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->blocked_by_station);
     free(figures->placed);
     free(figures->breaches);
+    free(figures->parts);
+    free(figures->gains);
     free(figures->visits);
     free(figures->doings);
     wh_flow_result_close(&figures->result);

@@ -3,7 +3,7 @@
 #ifndef WH_FLOW_FIGURES_H
 #define WH_FLOW_FIGURES_H
 
-#include "flow.h"
+#include "path.h"
 #include "waiting.h"
 
 /* The time of a station's places. */
@@ -30,7 +30,7 @@ typedef struct {
 } wh_flow_breach_t;
 
 /* A wafer's visit to a place, from the begin of the transfer there on. Times that have not come are
- * WH_FLOW_NEVER. */
+ * WH_FLOW_NEVER; the place is WH_FLOW_NONE until it lies there. */
 typedef struct {
     int32_t wafer, step, robot, arm, from, place;
     int64_t pick_us, picked_us, place_us, placed_us, process_us, done_us;
@@ -55,10 +55,13 @@ typedef struct {
     size_t *placed;                               /* wafers placed, by station */
     wh_flow_breach_t *breaches;
     size_t breach_count, breach_capacity;
-    wh_flow_visit_t *visits; /* by the end of placing; none if not asked for */
+    wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
+    wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
+    size_t part_count;
+    wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
     int64_t longest_stay_us; /* after a process */
     uint64_t hash;           /* of all that was told, in its order */
     int64_t end_us;          /* up to which time is counted: the makespan, or when nobody went on */
@@ -68,6 +71,7 @@ typedef struct {
 typedef struct {
     int line; /* of the script */
     const wh_flow_tool_t *tool;
+    bool has_gains;        /* what less time of each robot and station brings is asked for */
     bool is_lateness_told; /* a stay beyond a window is told, and does not fail the run */
     wh_flow_plan_t plan;
     wh_flow_figures_t figures;

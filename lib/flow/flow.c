@@ -7,8 +7,9 @@
 #include "robots.h"
 #include "stations.h"
 
-/* How many orders of a rule are looked at. */
-#define ORDERS 16
+/* How often at most all robots are asked at one instant: with times of 0 a rule of one's own may send a robot to and
+ * fro. */
+#define MOST_ROUNDS 100000
 
 /* The user's listener, and the times of the last placings. */
 typedef struct {
@@ -59,19 +60,15 @@ static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, in
     if (state->robots[robot].action != WH_FLOW_IDLE) {
         return false;
     }
-    wh_flow_order_t orders[ORDERS];
-    const int count = wh_flow_ask(state, rules, robot, orders, ORDERS);
+    wh_flow_order_t order;
+    const bool has_wish = wh_flow_ask(state, rules, robot, &order);
     ++*asked;
-    state->robots[robot].has_wish = count > 0;
-    if (count > 0) {
-        state->robots[robot].wish = orders[0];
+    state->robots[robot].has_wish = has_wish;
+    if (!has_wish) {
+        return false;
     }
-    for (int i = 0; i < count && !state->cause; ++i) {
-        if (wh_flow_robot_begin(state, robot, &orders[i])) {
-            return true;
-        }
-    }
-    return false;
+    state->robots[robot].wish = order;
+    return wh_flow_robot_begin(state, robot, &order);
 }
 
 static bool is_any_over(const wh_flow_state_t *state) {
@@ -86,7 +83,11 @@ static bool is_any_over(const wh_flow_state_t *state) {
 /* One instant: all that ends, then what stations begin, then robots, until nobody begins anything; once more if what
  * began takes no time. */
 static void play_instant(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+    int rounds = 0;
     do {
+        if (++rounds > MOST_ROUNDS) {
+            state->cause = wh_text_copy("robots go to and fro at one instant without an end");
+        }
         end_all(state);
         wh_flow_stations_begin(state);
         bool begun = true;

@@ -58,6 +58,24 @@ int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) 
     return step == wh_flow_last_step(plan, wafer) ? plan->wafers[wafer].back : WH_FLOW_NONE;
 }
 
+bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (step->stations[i] == station) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (tool->serves[wh_flow_of(tool, robot, step->stations[i])]) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* ------------------------------------------------------------------------------------------------ finishing */
 
 __attribute__((format(printf, 1, 2))) static char *problem_of(const char *format, ...) {
@@ -72,23 +90,22 @@ __attribute__((format(printf, 1, 2))) static char *problem_of(const char *format
 /* True if a robot carries from this station to one of the step's, from side to side. */
 static bool is_carried(const wh_flow_tool_t *tool, int32_t from, const wh_flow_step_t *step) {
     for (size_t r = 0; r < tool->robot_count; ++r) {
-        for (size_t i = 0; tool->serves[wh_flow_of(tool, (int32_t)r, from)] && i < step->station_count; ++i) {
-            if (tool->serves[wh_flow_of(tool, (int32_t)r, step->stations[i])]) {
-                return true;
-            }
+        if (tool->serves[wh_flow_of(tool, (int32_t)r, from)] &&
+            wh_flow_step_is_served(tool, step, (int32_t)r)) {
+            return true;
         }
     }
     return false;
 }
 
-static char *count_step(wh_flow_step_t *step, const wh_flow_route_t *route, size_t k,
+/* Some of its places are not kept empty. */
+static char *check_step(const wh_flow_step_t *step, const wh_flow_route_t *route, size_t k,
                         const wh_flow_tool_t *tool) {
     int32_t places = 0;
     for (size_t i = 0; i < step->station_count; ++i) {
         places += tool->stations[step->stations[i]].slots;
     }
-    step->most = places - step->kept_empty;
-    return step->most > 0
+    return places > step->kept_empty
                ? NULL
                : problem_of("route %s, step %zu: %d of its %d places are kept empty (expected fewer)",
                             route->name, k, (int)step->kept_empty, (int)places);
@@ -107,11 +124,10 @@ static char *check_way(const wh_flow_tool_t *tool, const wh_flow_route_t *route,
     return NULL;
 }
 
-static char *finish_route(wh_flow_route_t *route, const wh_flow_tool_t *tool) {
+static char *check_route(const wh_flow_route_t *route, const wh_flow_tool_t *tool) {
     char *problem = NULL;
-    route->steps[0].most = INT32_MAX;
     for (size_t k = 1; k < route->step_count && !problem; ++k) {
-        problem = count_step(&route->steps[k], route, k, tool);
+        problem = check_step(&route->steps[k], route, k, tool);
         const wh_flow_step_t *before = &route->steps[k - 1];
         for (size_t i = 0; k > 1 && i < before->station_count && !problem; ++i) {
             problem = check_way(tool, route, &route->steps[k], k, before->stations[i]);
@@ -134,8 +150,7 @@ static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t 
     if (step->station_count == 0) {
         *step = (wh_flow_step_t){.stations = wh_array_new(1, sizeof *step->stations),
                                  .station_count = 1,
-                                 .process_us = WH_FLOW_NONE,
-                                 .most = tool->stations[wafer->back_station].slots};
+                                 .process_us = WH_FLOW_NONE};
         step->stations[0] = wafer->back_station;
     }
 }
@@ -159,7 +174,7 @@ char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     for (size_t i = 0; i < plan->route_count; ++i) {
         plan->routes[i].first_step = plan->step_count;
         plan->step_count += plan->routes[i].step_count + 1;
-        char *problem = finish_route(&plan->routes[i], tool);
+        char *problem = check_route(&plan->routes[i], tool);
         if (problem) {
             return problem;
         }

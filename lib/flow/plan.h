@@ -10,13 +10,12 @@ typedef struct {
     size_t station_count;
     int64_t process_us; /* WH_FLOW_NONE: that of the station */
     int32_t kept_empty; /* places of the step that stay empty */
-    int32_t most;       /* wafers that it may hold: all its places but kept_empty */
     bool second_arm;    /* the second arm alone takes out of it */
 } wh_flow_step_t;
 
 typedef struct {
     char *name;
-    wh_flow_step_t *steps; /* steps[0] is unused but for second_arm and most */
+    wh_flow_step_t *steps; /* steps[0] is empty */
     size_t step_count;     /* with step 0 */
     size_t first_step;     /* the index of its step 0 among the steps of all routes */
 } wh_flow_route_t;
@@ -67,12 +66,27 @@ typedef enum {
 } wh_flow_rule_t;
 
 struct wh_flow_state;
-struct wh_flow_order;
 
-/* A rule of the user's: fills at most `most` orders for the robot, the best one first, and returns their
- * number. A negative number ends the flow; the user knows why. */
+/* How many answers of a rule of the user's are looked at. */
+#define WH_FLOW_ANSWERS 16
+
+/* A rule of the user's: fills at most WH_FLOW_ANSWERS lines (transfers, "keep" and from there) for the robot, the best
+ * one first, and returns their number. The first that can begin as soon as the robot is there is carried out; if none
+ * can, the robot goes ahead to the first. A negative number ends the flow; `why`, by malloc, tells why. */
 typedef int (*wh_flow_own_rule_t)(void *context, const struct wh_flow_state *state, int32_t robot,
-                                  struct wh_flow_order *orders, size_t most);
+                                  wh_flow_line_t lines[], char **why);
+
+/* Something that goes wrong on the way. */
+typedef struct {
+    enum { WH_FLOW_LATE, WH_FLOW_FAILS } what; /* a stay beyond a window; a station fails */
+    int32_t robot, wafer;                      /* of a stay: who takes which; else WH_FLOW_NONE */
+    int32_t station;
+    int64_t us; /* beyond the window; how long it will be down */
+} wh_flow_problem_t;
+
+/* Hears of each problem at its instant. Returns null, or why the flow ends, by malloc. */
+typedef char *(*wh_flow_on_problem_t)(void *context, const struct wh_flow_state *state,
+                                      const wh_flow_problem_t *problem);
 
 typedef struct {
     wh_flow_route_t *routes;
@@ -87,19 +101,28 @@ typedef struct {
     wh_flow_rule_t rule;
     wh_flow_list_t *lists; /* by robot, for WH_FLOW_LISTS */
     wh_flow_own_rule_t own;
-    void *own_context;
-    int64_t until_us; /* WH_FLOW_NEVER: until all wafers are there */
-    int64_t takt_us;  /* the least time between two wafers' starts */
-    bool is_safe;     /* shipped rules leave out transfers after which wafers could block each other */
+    wh_flow_on_problem_t on_problem; /* may be null */
+    void *own_context;               /* of both */
+    int64_t until_us;                /* WH_FLOW_NEVER: until all wafers are there */
+    int64_t takt_us;                 /* the least time between two wafers' starts */
+    bool is_safe; /* shipped rules leave out transfers after which wafers could block each other */
 } wh_flow_plan_t;
 
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* To be called once when all is filled: numbers the steps, and counts what each step may hold. Returns null, or
+/* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or
  * what is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
  * whose places are all kept empty, the same station twice in succession. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
+
+/* True if the step has this station; if the robot serves one of its stations. */
+bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
+bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot);
+
+static inline int32_t wh_flow_priority(const wh_flow_plan_t *plan, int32_t wafer) {
+    return plan->lots[plan->wafers[wafer].lot].priority;
+}
 
 /* The number of the wafer's last step. */
 int32_t wh_flow_last_step(const wh_flow_plan_t *plan, int32_t wafer);

@@ -72,7 +72,7 @@ static void head_for(wh_flow_state_t *state, int32_t wafer, int32_t place) {
 static void reserve(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t place) {
     state->robots[robot].to = place;
     state->places[place].coming = wafer;
-    state->wafers[wafer].is_moving = state->wafers[wafer].is_bound = true;
+    state->wafers[wafer].is_moving = true;
     count_ahead(state, wafer);
 }
 
@@ -80,6 +80,7 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     state->places[at->place].leaving_us = state->now_us + for_us;
     state->robots[robot].from = at->place;
+    state->wafers[wafer].taker = robot;
     ++state->leaving[wh_flow_step_index(state, wafer, at->step)];
     if (at->step == 0 && state->plan->takt_us > 0) {
         state->next_start_us = state->now_us + state->plan->takt_us;
@@ -96,6 +97,11 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
                                   .station = station,
                                   .step = at->step};
     wh_flow_tell(state, &stay);
+    const int64_t over_us = wh_flow_over_window_us(state, &stay);
+    if (over_us > 0) {
+        const wh_flow_problem_t late = {WH_FLOW_LATE, robot, wafer, station, over_us};
+        wh_flow_tell_problem(state, &late);
+    }
 }
 
 static bool begin_pick(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
@@ -117,7 +123,6 @@ static bool begin_pick(wh_flow_state_t *state, int32_t robot, const wh_flow_orde
         reserve(state, robot, order->wafer, to);
     } else {
         head_for(state, order->wafer, order->place);
-        state->wafers[order->wafer].is_bound = order->place != WH_FLOW_NONE && !is_loaded(at);
     }
     at->order = *order;
     at->mark = order->mark;
@@ -164,7 +169,8 @@ static bool begin_swap(wh_flow_state_t *state, int32_t robot, const wh_flow_orde
     at->arm = arm_of(at, order->wafer);
     reserve(state, robot, order->wafer, order->place);
     state->wafers[out].is_moving = true;
-    leave(state, robot, out, time_of(state, robot, WH_FLOW_SWAPS));
+    const int64_t open_us = state->tool->doors[wh_flow_of(state->tool, robot, at->station)].open_us;
+    leave(state, robot, out, open_us + time_of(state, robot, WH_FLOW_SWAPS));
     head_for(state, out, order->onward);
     at->to = order->place;
     enter(state, robot, WH_FLOW_SWAPS, time_of(state, robot, WH_FLOW_SWAPS));
@@ -184,6 +190,7 @@ bool wh_flow_robot_begin(wh_flow_state_t *state, int32_t robot, const wh_flow_or
         return begin_pump(state, robot, order);
     }
     if (state->robots[robot].station != order->at) {
+        state->robots[robot].order = *order;
         go(state, robot, order->at);
         return true;
     }
@@ -226,8 +233,7 @@ static void tell_action(const wh_flow_state_t *state, int32_t robot, wh_flow_eve
                                    .other = other,
                                    .place = kind == WH_FLOW_EVENT_PICK ? at->from : at->to,
                                    .station = at->station,
-                                   .from = at->from,
-                                   .is_loaded = is_loaded(at)};
+                                   .from = at->from};
     wh_flow_tell(state, &event);
 }
 
@@ -252,9 +258,9 @@ static void put_in(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t
     state->robots[robot].arms[put->arm] = WH_FLOW_NONE;
     state->places[number].coming = WH_FLOW_NONE;
     state->places[number].wafer = wafer;
-    put->robot = WH_FLOW_NONE;
+    put->robot = put->taker = WH_FLOW_NONE;
     put->place = number;
-    put->is_moving = put->is_counted = put->is_bound = false;
+    put->is_moving = put->is_counted = false;
     put->heading = WH_FLOW_NONE;
     put->entered_us = state->now_us;
     ++put->step;

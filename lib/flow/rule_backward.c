@@ -14,10 +14,10 @@ static bool is_worth_waiting(const wh_flow_state_t *state, const wh_flow_task_t 
 static int32_t first_of(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
                         int32_t *place) {
     const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
-    int32_t left_out = WH_FLOW_NONE;
-    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+    for (int32_t wafer = wh_flow_next_in(state, step, WH_FLOW_NONE); wafer != WH_FLOW_NONE;
+         wafer = wh_flow_next_in(state, step, wafer)) {
         int64_t there_us = 0;
-        if (state->plan->wafers[wafer].lot == left_out || !wh_flow_may_take(state, robot, wafer)) {
+        if (!wh_flow_may_take(state, robot, wafer)) {
             continue;
         }
         const int64_t begin_us = wh_flow_begin_us(state, robot, wafer, &there_us);
@@ -25,15 +25,12 @@ static int32_t first_of(const wh_flow_state_t *state, int32_t robot, const wh_fl
         if (*place != WH_FLOW_NONE) {
             return wafer;
         }
-        if (task->step == 0) {
-            left_out = state->plan->wafers[wafer].lot; /* its others want the same places */
-        }
     }
     return WH_FLOW_NONE;
 }
 
-int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                         wh_flow_order_t *order) {
+bool wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                          wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];
     for (size_t i = 0; i < round->count; ++i) {
         const size_t at = ((size_t)state->robots[robot].mark + i) % round->count;
@@ -48,8 +45,8 @@ int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *ru
                                        .station = WH_FLOW_NONE,
                                        .place = place,
                                        .mark = (int32_t)((at + 1) % round->count)};
-            return 1;
+            return true;
         }
     }
-    return 0;
+    return false;
 }

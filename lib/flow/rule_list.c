@@ -5,26 +5,8 @@
 #include "rules.h"
 #include "transfer.h"
 
-static bool has_station(const wh_flow_step_t *step, int32_t station) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (step->stations[i] == station) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool serves_one(const wh_flow_tool_t *tool, int32_t robot, const wh_flow_step_t *step) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (tool->serves[wh_flow_of(tool, robot, step->stations[i])]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool leads_to(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
-    return has_station(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
+    return wh_flow_step_has(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
 }
 
 /* The wafer that a line means, if it lies in the station: the one named, or the first that entered. */
@@ -72,10 +54,10 @@ static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_fl
         for (int32_t k = state->wafers[w].step; k < last; ++k) {
             const bool is_here = k == 0
                                      ? state->tool->place_stations[state->plan->wafers[w].home] == line->from
-                                     : has_station(wh_flow_step_of(state->plan, w, k), line->from);
+                                     : wh_flow_step_has(wh_flow_step_of(state->plan, w, k), line->from);
             const wh_flow_step_t *next = wh_flow_step_of(state->plan, w, k + 1);
-            const bool goes = line->what == WH_FLOW_KEEP ? serves_one(state->tool, robot, next)
-                                                         : has_station(next, line->to);
+            const bool goes = line->what == WH_FLOW_KEEP ? wh_flow_step_is_served(state->tool, next, robot)
+                                                         : wh_flow_step_has(next, line->to);
             if (is_here && goes) {
                 return true;
             }
@@ -90,42 +72,44 @@ static bool has_no_arm(const wh_flow_state_t *state, int32_t robot) {
            (state->tool->robots[robot].arms < 2 || at->arms[1] != WH_FLOW_NONE);
 }
 
-static int fail(wh_flow_state_t *state, int32_t robot, int32_t number, const char *why) {
-    char text[200];
-    (void)snprintf(text, sizeof text, "list of %s, line %d: %s", state->tool->robots[robot].name,
-                   (int)number + 1, why);
-    state->cause = wh_text_copy(text);
-    return -1;
-}
-
-int wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order) {
-    const wh_flow_list_t *list = &state->plan->lists[robot];
-    const int32_t number = state->robots[robot].mark;
-    if ((size_t)number >= list->count) {
-        return 0;
-    }
-    const wh_flow_line_t *line = &list->lines[number];
+const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
+                               wh_flow_order_t *order) {
     *order = (wh_flow_order_t){.what = line->what,
                                .wafer = WH_FLOW_NONE,
                                .at = line->from,
                                .station = line->to,
                                .place = WH_FLOW_NONE,
-                               .mark = number + 1,
                                .side = line->side};
     if (line->what == WH_FLOW_BRING) {
         order->at = line->to;
         order->wafer = kept_for(state, robot, line);
-        if (order->wafer == WH_FLOW_NONE) {
-            return fail(state, robot, number, "no wafer on an arm goes there next");
-        }
-    } else if (line->what != WH_FLOW_PUMP) {
+        return order->wafer == WH_FLOW_NONE ? "no wafer on an arm goes there next" : NULL;
+    }
+    if (line->what != WH_FLOW_PUMP) {
         order->wafer = wafer_in(state, robot, line);
         if (order->wafer == WH_FLOW_NONE && !is_possible(state, robot, line)) {
-            return fail(state, robot, number, "no wafer lies there, or will, whose next step it serves");
+            return "no wafer lies there, or will, whose next step it serves";
         }
         if (has_no_arm(state, robot)) {
-            return fail(state, robot, number, "each arm has a wafer");
+            return "each arm has a wafer";
         }
     }
-    return 1;
+    return NULL;
+}
+
+bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order) {
+    const wh_flow_list_t *list = &state->plan->lists[robot];
+    const int32_t number = state->robots[robot].mark;
+    if ((size_t)number >= list->count) {
+        return false;
+    }
+    const char *why = wh_flow_order_line(state, robot, &list->lines[number], order);
+    order->mark = number + 1;
+    if (why) {
+        char text[200];
+        (void)snprintf(text, sizeof text, "list of %s, line %d: %s", state->tool->robots[robot].name,
+                       (int)number + 1, why);
+        state->cause = wh_text_copy(text);
+    }
+    return !why;
 }

@@ -9,20 +9,10 @@ typedef struct {
     bool is_ready;    /* as soon as the robot is there */
 } candidate_t;
 
-static int32_t priority_of(const wh_flow_state_t *state, int32_t wafer) {
-    return state->plan->lots[state->plan->wafers[wafer].lot].priority;
-}
-
-/* Ties: higher priority, the later step, the wafer that entered its place first, the lot's order. */
+/* At last by the lot's order. */
 static bool wins_tie(const wh_flow_state_t *state, int32_t a, int32_t b) {
-    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
-    if (priority_of(state, a) != priority_of(state, b)) {
-        return priority_of(state, a) > priority_of(state, b);
-    }
-    if (one->step != other->step) {
-        return one->step > other->step;
-    }
-    return one->entered_us != other->entered_us ? one->entered_us < other->entered_us : a < b;
+    const int order = wh_flow_compare(state, a, b);
+    return order != 0 ? order < 0 : a < b;
 }
 
 static bool is_better(const wh_flow_state_t *state, const candidate_t *a, const candidate_t *b) {
@@ -39,11 +29,11 @@ static bool is_better(const wh_flow_state_t *state, const candidate_t *a, const 
     return a_us != b_us ? a_us < b_us : wins_tie(state, a->wafer, b->wafer);
 }
 
-/* All wafers of a step; of those in their first places, the first that can go. */
 static void look_at_step(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
                          candidate_t *best) {
     const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
-    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+    for (int32_t wafer = wh_flow_next_in(state, step, WH_FLOW_NONE); wafer != WH_FLOW_NONE;
+         wafer = wh_flow_next_in(state, step, wafer)) {
         if (!wh_flow_may_take(state, robot, wafer)) {
             continue;
         }
@@ -54,25 +44,22 @@ static void look_at_step(const wh_flow_state_t *state, int32_t robot, const wh_f
             candidate.place = wh_flow_safe_place(state, robot, wafer, begin_us, WH_FLOW_NONE);
             *best = candidate.place != WH_FLOW_NONE ? candidate : *best;
         }
-        if (task->step == 0 && best->wafer == wafer) {
-            return;
-        }
     }
 }
 
-int wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                      wh_flow_order_t *order) {
+bool wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                       wh_flow_order_t *order) {
     candidate_t best = {WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NEVER, false};
     for (size_t i = 0; i < rules->rounds[robot].count; ++i) {
         look_at_step(state, robot, &rules->rounds[robot].tasks[i], &best);
     }
     if (best.wafer == WH_FLOW_NONE) {
-        return 0;
+        return false;
     }
     *order = (wh_flow_order_t){.what = WH_FLOW_TRANSFER,
                                .wafer = best.wafer,
                                .at = wh_flow_station_of(state, best.wafer),
                                .station = WH_FLOW_NONE,
                                .place = best.place};
-    return 1;
+    return true;
 }

@@ -15,10 +15,6 @@ static int32_t carried(const wh_flow_robot_state_t *robot) {
     return robot->kept_us[0] <= robot->kept_us[1] ? a : b;
 }
 
-static int32_t priority_of(const wh_flow_state_t *state, int32_t wafer) {
-    return state->plan->lots[state->plan->wafers[wafer].lot].priority;
-}
-
 /* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is done first;
  * then by priority, the later step, the one that entered first. */
 static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, int32_t b) {
@@ -27,10 +23,7 @@ static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, in
     if (a_goes != b_goes || one->done_us != other->done_us) {
         return a_goes != b_goes ? a_goes : one->done_us < other->done_us;
     }
-    if (priority_of(state, a) != priority_of(state, b)) {
-        return priority_of(state, a) > priority_of(state, b);
-    }
-    return one->step != other->step ? one->step > other->step : one->entered_us < other->entered_us;
+    return wh_flow_compare(state, a, b) < 0;
 }
 
 /* The best of the next step's full places, or WH_FLOW_NONE. */
@@ -42,15 +35,14 @@ static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wa
     int32_t best = WH_FLOW_NONE;
     for (size_t i = 0; i < step->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[step->stations[i]];
-        const wh_flow_side_t side = tool->sides[wh_flow_of(tool, robot, step->stations[i])];
+        const size_t of = wh_flow_of(tool, robot, step->stations[i]);
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             const wh_flow_place_t *place = &state->places[p];
-            const wh_flow_side_t slot = tool->slot_sides[p];
-            if (!tool->serves[wh_flow_of(tool, robot, step->stations[i])] || place->wafer == WH_FLOW_NONE ||
+            if (!tool->serves[of] || place->wafer == WH_FLOW_NONE ||
                 (place->coming != WH_FLOW_NONE && place->coming != wafer) ||
                 (end != WH_FLOW_NONE && end != p) ||
                 state->stations[step->stations[i]].down_us != WH_FLOW_NEVER ||
-                (side != WH_FLOW_BOTH && slot != WH_FLOW_BOTH && side != slot)) {
+                !wh_flow_sides_agree(tool->sides[of], tool->slot_sides[p])) {
                 continue;
             }
             if (best == WH_FLOW_NONE || is_before(state, robot, place->wafer, state->places[best].wafer)) {
@@ -91,9 +83,9 @@ int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wa
     return WH_FLOW_NONE;
 }
 
-static bool is_clean_next(const wh_flow_state_t *state, int32_t place) {
-    const wh_flow_station_t *of = &state->tool->stations[state->tool->place_stations[place]];
-    return !of->cleans_full && of->clean_after > 0 && state->places[place].since_clean + 1 >= of->clean_after;
+static bool is_emptied_and_cleaned(const wh_flow_state_t *state, int32_t place) {
+    return !state->tool->stations[state->tool->place_stations[place]].cleans_full &&
+           wh_flow_is_clean_next(state, place);
 }
 
 /* Before a full place: against its wafer, as soon as that is done. A clean that is due comes between. */
@@ -104,7 +96,7 @@ static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place,
         return;
     }
     const int32_t onward = wh_flow_swap_way(state, robot, other, state->now_us);
-    if (onward != WH_FLOW_NONE && is_clean_next(state, place)) {
+    if (onward != WH_FLOW_NONE && is_emptied_and_cleaned(state, place)) {
         order->what = WH_FLOW_KEEP;
         order->wafer = other;
         order->place = onward;
@@ -114,20 +106,33 @@ static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place,
     }
 }
 
-/* With a wafer: to an empty place of its next step, else to a full one. It is chosen anew at each instant. */
-static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
-    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+static bool is_full(const wh_flow_place_t *place) {
+    return place->wafer != WH_FLOW_NONE && place->leaving_us == WH_FLOW_NEVER;
+}
+
+/* The place for which the wafer goes on. A full one is chosen anew at each instant; one that is or will be empty is
+ * kept: the transfer into it has begun. */
+static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->heading != WH_FLOW_NONE && state->places[at->heading].coming == wafer) {
+        if (!is_full(&state->places[at->heading])) {
+            return at->heading;
+        }
         state->places[at->heading].coming = WH_FLOW_NONE;
     }
     const wh_flow_target_t target =
         wh_flow_target(state, robot, wafer, state->robots[robot].station, 0, WH_FLOW_NONE);
-    at->heading = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+    return target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
+}
+
+/* With a wafer: to an empty place of its next step, else to a full one. */
+static bool carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flow_order_t *order) {
+    wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    at->heading = choose_place(state, robot, wafer);
     if (at->heading == WH_FLOW_NONE) {
-        return 0;
+        return false;
     }
     state->places[at->heading].coming = wafer;
-    at->is_bound = true;
     const int32_t station = state->tool->place_stations[at->heading];
     *order = (wh_flow_order_t){.what = WH_FLOW_BRING,
                                .wafer = wafer,
@@ -135,11 +140,10 @@ static int carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_flo
                                .station = station,
                                .place = at->heading,
                                .onward = WH_FLOW_NONE};
-    if (state->places[at->heading].wafer != WH_FLOW_NONE &&
-        state->places[at->heading].leaving_us == WH_FLOW_NEVER) {
+    if (is_full(&state->places[at->heading])) {
         exchange(state, robot, at->heading, order);
     }
-    return 1;
+    return true;
 }
 
 /* The find of an empty-handed robot in a step. */
@@ -153,23 +157,21 @@ static bool entered_before(const wh_flow_state_t *state, int32_t a, int32_t b) {
     if (one->entered_us != other->entered_us) {
         return one->entered_us < other->entered_us;
     }
-    return priority_of(state, a) != priority_of(state, b) ? priority_of(state, a) > priority_of(state, b)
-                                                          : a < b;
+    return wh_flow_priority(state->plan, a) != wh_flow_priority(state->plan, b)
+               ? wh_flow_priority(state->plan, a) > wh_flow_priority(state->plan, b)
+               : a < b;
 }
 
 static void look_into(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
                       found_t *found) {
     const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;
-    int32_t left_out = WH_FLOW_NONE;
-    for (int32_t wafer = state->heads[step]; wafer != WH_FLOW_NONE; wafer = state->wafers[wafer].next) {
+    for (int32_t wafer = wh_flow_next_in(state, step, WH_FLOW_NONE); wafer != WH_FLOW_NONE;
+         wafer = wh_flow_next_in(state, step, wafer)) {
         int64_t there_us = 0;
-        if (state->plan->wafers[wafer].lot == left_out || !wh_flow_may_take(state, robot, wafer)) {
+        if (!wh_flow_may_take(state, robot, wafer)) {
             continue;
         }
         found->is_any = true;
-        if (task->step == 0) {
-            left_out = state->plan->wafers[wafer].lot; /* its others want the same places */
-        }
         if (found->wafer != WH_FLOW_NONE && !entered_before(state, wafer, found->wafer)) {
             continue;
         }
@@ -199,8 +201,8 @@ static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) 
 }
 
 /* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the earliest. */
-static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                wh_flow_order_t *order) {
+static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                 wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];
     found_t found = {WH_FLOW_NONE, WH_FLOW_NONE, false};
     bool is_awaited = false;
@@ -211,7 +213,7 @@ static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int3
         }
     }
     if (found.wafer == WH_FLOW_NONE && is_awaited && !found.is_any) {
-        return 0;
+        return false;
     }
     for (size_t i = round->count; i > 0 && found.wafer == WH_FLOW_NONE;) {
         size_t first = i - 1; /* those of one number stand in the order of their routes */
@@ -229,11 +231,11 @@ static int take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int3
                                                                  : wh_flow_station_of(state, found.wafer),
                                .station = WH_FLOW_NONE,
                                .place = found.place};
-    return found.wafer == WH_FLOW_NONE ? 0 : 1;
+    return found.wafer != WH_FLOW_NONE;
 }
 
-int wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                     wh_flow_order_t *order) {
+bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                      wh_flow_order_t *order) {
     const int32_t has = carried(&state->robots[robot]);
     return has != WH_FLOW_NONE ? carry_on(state, robot, has, order) : take(state, rules, robot, order);
 }

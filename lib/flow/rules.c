@@ -5,15 +5,6 @@
 
 #include "../text/array.h"
 
-static bool serves_any(const wh_flow_tool_t *tool, int32_t robot, const int32_t *stations, size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        if (tool->serves[wh_flow_of(tool, robot, stations[i])]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Step 0 of a route lies where its lots do. */
 static bool serves_home(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot,
                         int32_t route) {
@@ -32,14 +23,14 @@ static bool empties(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int3
                     int32_t k) {
     const wh_flow_route_t *of = &plan->routes[route];
     const wh_flow_step_t *step = &of->steps[k], *next = step + 1;
-    if (k > 0 && !serves_any(tool, robot, step->stations, step->station_count)) {
+    if (k > 0 && !wh_flow_step_is_served(tool, step, robot)) {
         return false;
     }
     if (k == 0 && !serves_home(tool, plan, robot, route)) {
         return false;
     }
     if ((size_t)k + 1 < of->step_count) {
-        return serves_any(tool, robot, next->stations, next->station_count);
+        return wh_flow_step_is_served(tool, next, robot);
     }
     for (size_t w = 0; w < plan->wafer_count; ++w) {
         if (plan->lots[plan->wafers[w].lot].route == route && plan->wafers[w].goes_back &&
@@ -67,14 +58,27 @@ static void open_round(wh_flow_round_t *round, const wh_flow_tool_t *tool, const
     }
 }
 
-/* Marks in `leads` what each station leads to: from each of a step to each of the next. */
-static void lead(const wh_flow_route_t *route, size_t count, bool *leads) {
-    for (size_t k = 1; k + 1 < route->step_count; ++k) {
-        const wh_flow_step_t *step = &route->steps[k], *next = step + 1;
-        for (size_t i = 0; i < step->station_count; ++i) {
-            for (size_t j = 0; j < next->station_count; ++j) {
-                leads[(size_t)step->stations[i] * count + (size_t)next->stations[j]] = true;
-            }
+/* Marks in `leads` that each station of a step leads to each of the next. */
+static void lead(const wh_flow_step_t *step, const wh_flow_step_t *next, size_t count, bool *leads) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        for (size_t j = 0; j < next->station_count; ++j) {
+            leads[(size_t)step->stations[i] * count + (size_t)next->stations[j]] = true;
+        }
+    }
+}
+
+/* By routes and by ways back. */
+static void lead_all(const wh_flow_plan_t *plan, size_t count, bool *leads) {
+    for (size_t i = 0; i < plan->route_count; ++i) {
+        const wh_flow_route_t *route = &plan->routes[i];
+        for (size_t k = 1; k + 1 < route->step_count; ++k) {
+            lead(&route->steps[k], &route->steps[k + 1], count, leads);
+        }
+    }
+    for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
+        const int32_t last = wh_flow_last_step(plan, w);
+        if (plan->wafers[w].goes_back && last > 1) {
+            lead(wh_flow_step_of(plan, w, last - 1), wh_flow_step_of(plan, w, last), count, leads);
         }
     }
 }
@@ -83,9 +87,7 @@ static void lead(const wh_flow_route_t *route, size_t count, bool *leads) {
 static bool find_circle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
     const size_t count = tool->station_count;
     bool *leads = wh_array_new(count * count, sizeof *leads), found = false;
-    for (size_t i = 0; i < plan->route_count; ++i) {
-        lead(&plan->routes[i], count, leads);
-    }
+    lead_all(plan, count, leads);
     for (size_t by = 0; by < count; ++by) {
         for (size_t from = 0; from < count; ++from) {
             for (size_t to = 0; leads[from * count + by] && to < count; ++to) {
@@ -119,21 +121,21 @@ void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool) {
     memset(rules, 0, sizeof *rules);
 }
 
-int wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *orders,
-                size_t most) {
+bool wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                 wh_flow_order_t *order) {
     switch (state->plan->rule) {
     case WH_FLOW_BACKWARD:
-        return wh_flow_ask_backward(state, rules, robot, orders);
+        return wh_flow_ask_backward(state, rules, robot, order);
     case WH_FLOW_SWAPPING:
-        return state->tool->robots[robot].arms > 1 ? wh_flow_ask_swap(state, rules, robot, orders)
-                                                   : wh_flow_ask_backward(state, rules, robot, orders);
+        return state->tool->robots[robot].arms > 1 ? wh_flow_ask_swap(state, rules, robot, order)
+                                                   : wh_flow_ask_backward(state, rules, robot, order);
     case WH_FLOW_LISTS:
-        return wh_flow_ask_list(state, robot, orders);
+        return wh_flow_ask_list(state, robot, order);
     case WH_FLOW_OWN:
-        return state->plan->own(state->plan->own_context, state, robot, orders, most);
+        return wh_flow_ask_own(state, robot, order);
     case WH_FLOW_FIRST_COME:
     case WH_FLOW_LONGEST_WAIT:
     default:
-        return wh_flow_ask_ready(state, rules, robot, orders);
+        return wh_flow_ask_ready(state, rules, robot, order);
     }
 }

@@ -24,19 +24,21 @@ typedef struct {
 void wh_flow_rules_open(wh_flow_rules_t *rules, wh_flow_state_t *state);
 void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool);
 
-/* Fills at most `most` orders for a robot that is free, the best first, and returns their number. An order whose
- * time has not come yet sends the robot ahead. A negative number ends the flow: `state->cause` says why. */
-int wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *orders,
-                size_t most);
-
-/* The rules one by one: 1 and an order, or 0. */
-int wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                         wh_flow_order_t *order);
-int wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                      wh_flow_order_t *order);
+/* Fills the order for a robot that is free. An order whose time has not come yet sends the robot ahead. False if there
+ * is none; the flow ends if then `state->cause` says why. The rules one by one do likewise. */
+bool wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *order);
+bool wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                          wh_flow_order_t *order);
+bool wh_flow_ask_ready(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                       wh_flow_order_t *order);
 /* It fixes where a wafer on an arm goes. */
-int wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
-                     wh_flow_order_t *order);
-int wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
+bool wh_flow_ask_swap(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
+                      wh_flow_order_t *order);
+bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
+bool wh_flow_ask_own(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *order);
+
+/* Fills the order that carries out a line. Null, or why the line can never be carried out. */
+const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
+                               wh_flow_order_t *order);
 
 #endif

@@ -27,9 +27,8 @@ static bool is_carried(const world_t *world, int32_t place) {
     const wh_flow_tool_t *tool = world->state->tool;
     const int32_t to = tool->place_stations[place];
     for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
-        const wh_flow_side_t side = tool->sides[wh_flow_of(tool, r, to)], slot = tool->slot_sides[place];
-        if (!tool->serves[wh_flow_of(tool, r, to)] ||
-            (side != WH_FLOW_BOTH && slot != WH_FLOW_BOTH && side != slot)) {
+        const size_t of = wh_flow_of(tool, r, to);
+        if (!tool->serves[of] || !wh_flow_sides_agree(tool->sides[of], tool->slot_sides[place])) {
             continue;
         }
         for (int32_t from = 0; from < (int32_t)tool->station_count; ++from) {

@@ -57,6 +57,7 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
     for (size_t i = 0; i < plan->wafer_count; ++i) {
         state->wafers[i] = (wh_flow_wafer_state_t){.place = WH_FLOW_NONE,
                                                    .robot = WH_FLOW_NONE,
+                                                   .taker = WH_FLOW_NONE,
                                                    .heading = WH_FLOW_NONE,
                                                    .next = WH_FLOW_NONE,
                                                    .before = WH_FLOW_NONE,
@@ -113,6 +114,39 @@ void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
     }
 }
 
+/* The last wafer of its lot if both are in their first places, else the wafer itself. A lot enters them as one. */
+static int32_t last_of_lot(const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
+    const int32_t last = (int32_t)(lot->first_wafer + lot->wafer_count) - 1;
+    const bool are_there = state->wafers[wafer].step == 0 && state->wafers[last].step == 0 &&
+                           state->wafers[last].place != WH_FLOW_NONE;
+    return are_there && wh_flow_end_of(state->plan, last, 1) == WH_FLOW_NONE ? last : wafer;
+}
+
+int32_t wh_flow_next_in(const wh_flow_state_t *state, size_t step, int32_t wafer) {
+    const wh_flow_plan_t *plan = state->plan;
+    int32_t next = wafer == WH_FLOW_NONE ? state->heads[step] : state->wafers[last_of_lot(state, wafer)].next;
+    while (next != WH_FLOW_NONE &&
+           (state->wafers[next].is_moving || (wafer != WH_FLOW_NONE && state->wafers[next].step == 0 &&
+                                              plan->wafers[next].lot == plan->wafers[wafer].lot &&
+                                              wh_flow_end_of(plan, next, 1) == WH_FLOW_NONE))) {
+        next = state->wafers[next].next;
+    }
+    return next;
+}
+
+int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b) {
+    const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
+    const int32_t priority = wh_flow_priority(state->plan, a), against = wh_flow_priority(state->plan, b);
+    if (priority != against) {
+        return priority > against ? -1 : 1;
+    }
+    if (one->step != other->step) {
+        return one->step > other->step ? -1 : 1;
+    }
+    return one->entered_us < other->entered_us ? -1 : one->entered_us > other->entered_us ? 1 : 0;
+}
+
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step) {
     const size_t first = state->plan->routes[route].first_step;
     int32_t sum = step > 0 ? -state->leaving[first + (size_t)step - 1] : 0;
@@ -141,4 +175,15 @@ void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event) {
     if (state->listener.event) {
         state->listener.event(state->listener.context, state, event);
     }
+}
+
+void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *problem) {
+    if (state->plan->on_problem && !state->cause) {
+        state->cause = state->plan->on_problem(state->plan->own_context, state, problem);
+    }
+}
+
+int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay) {
+    const int64_t window_us = state->tool->stations[stay->station].window_us;
+    return stay->step == 0 || window_us == WH_FLOW_NEVER ? -1 : stay->end_us - stay->begin_us - window_us;
 }

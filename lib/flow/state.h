@@ -35,6 +35,7 @@ typedef struct {
 
 typedef struct {
     int32_t place, robot, arm; /* where it is; WH_FLOW_NONE else */
+    int32_t taker;             /* the robot that takes it or has it; WH_FLOW_NONE: it lies */
     int32_t step;              /* in which it counts, or from which it comes */
     int64_t entered_us;        /* when it was placed there */
     int64_t done_us;           /* from then on it may be taken; WH_FLOW_NEVER: not known yet */
@@ -42,7 +43,6 @@ typedef struct {
     int32_t next, before;      /* in its step, by the time of entering */
     int32_t heading;           /* swap: the place, perhaps a full one, for which a robot has taken it */
     bool is_counted; /* it counts in the next step already, though its transfer there has not begun */
-    bool is_bound;   /* its place is chosen, by a transfer that has begun or as its robot goes on with it */
     bool is_moving;  /* its transfer has begun */
     bool is_over;
 } wh_flow_wafer_state_t;
@@ -103,7 +103,6 @@ typedef struct {
     int32_t robot, arm, wafer, other; /* other: what a swap brought in */
     int32_t place, station, from;     /* from: the station that a move comes from */
     int32_t step;
-    bool is_loaded;
     wh_flow_side_t side;
 } wh_flow_event_t;
 
@@ -129,7 +128,6 @@ typedef struct wh_flow_state {
     int32_t *heads, *tails; /* by step: the wafers that lie there */
     size_t next_lot, next_down;
     size_t over;           /* wafers at their end */
-    size_t arrived;        /* wafers of lots that are there */
     int64_t next_start_us; /* by takt */
     int64_t last_us;       /* the end of the last placing */
     wh_flow_listener_t listener;
@@ -149,14 +147,35 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);
 void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer);
 
+/* The next wafer behind this one in a step's list, WH_FLOW_NONE for the first, which lies there and nobody has begun to
+ * take. A lot's wafers in their first places want the same: one stands for all, unless each has a place of its own to go
+ * to. */
+int32_t wh_flow_next_in(const wh_flow_state_t *state, size_t step, int32_t wafer);
+
+/* Ties of rules: below 0 if the first wafer wins by priority, the later step, or its entering; above 0 if the other one
+ * does; 0 if neither. */
+int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b);
+
 /* How many wafers of arrived lots are still to come into this step of the route: they are before it. */
 int32_t wh_flow_still_to_come(const wh_flow_state_t *state, int32_t route, int32_t step);
 
 /* The arm that is free to take from the wafer's step, or WH_FLOW_NONE. */
 int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
 
+/* True if a clean by the number of wafers is due when one more has been in the place. */
+static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t place) {
+    const int32_t after = state->tool->stations[state->tool->place_stations[place]].clean_after;
+    return after > 0 && state->places[place].since_clean + 1 >= after;
+}
+
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
+
+/* How much longer than its station's window a stay lasts from its begin to `end_us`; below 0: it does not. */
+int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay);
+
+/* Tells the plan's own function, if there is one; it may end the flow. */
+void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *problem);
 
 /* Tells the listener, if there is one. */
 void wh_flow_tell(const wh_flow_state_t *state, const wh_flow_event_t *event);

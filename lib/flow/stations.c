@@ -59,8 +59,7 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     }
     const int64_t for_us = wh_flow_process_us(state, wafer, number);
     const wh_flow_station_t *of = &state->tool->stations[number];
-    const bool is_due = of->clean_after > 0 && state->places[at->place].since_clean + 1 >= of->clean_after;
-    at->clean_us = of->cleans_full && is_due ? of->clean_us : 0;
+    at->clean_us = of->cleans_full && wh_flow_is_clean_next(state, at->place) ? of->clean_us : 0;
     const int64_t lasts_us = for_us + at->clean_us;
     const int64_t begin_us = station->down_us != WH_FLOW_NEVER && station->down_us > station->shut_us
                                  ? station->down_us
@@ -79,9 +78,9 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[station];
     wh_flow_place_t *place = &state->places[number];
     --state->stations[station].wafers;
+    const bool is_due = wh_flow_is_clean_next(state, number);
     ++place->since_clean;
     if (is_cleaned(of)) {
-        const bool is_due = of->clean_after > 0 && place->since_clean >= of->clean_after;
         place->is_clean_due = is_due && !of->cleans_full;
         place->since_clean = is_due && of->cleans_full ? 0 : place->since_clean;
         place->idle_us = of->idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + of->idle_us;
@@ -106,6 +105,18 @@ static void tell_process(const wh_flow_state_t *state, int32_t wafer, int32_t st
     wh_flow_tell(state, &event);
 }
 
+static void tell_clean(const wh_flow_state_t *state, int32_t place, int32_t wafer, int64_t for_us) {
+    const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
+                                   .begin_us = state->now_us - for_us,
+                                   .end_us = state->now_us,
+                                   .robot = WH_FLOW_NONE,
+                                   .wafer = wafer,
+                                   .other = WH_FLOW_NONE,
+                                   .place = place,
+                                   .station = state->tool->place_stations[place]};
+    wh_flow_tell(state, &event);
+}
+
 static void end_processes(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[number];
     wh_flow_station_state_t *station = &state->stations[number];
@@ -118,6 +129,9 @@ static void end_processes(wh_flow_state_t *state, int32_t number) {
         const int64_t done_us = state->wafers[wafer].done_us;
         if (done_us == state->now_us) {
             tell_process(state, wafer, number);
+            if (state->wafers[wafer].clean_us > 0) {
+                tell_clean(state, place, wafer, state->wafers[wafer].clean_us);
+            }
         } else if (done_us > state->now_us && done_us < station->done_us) {
             station->done_us = done_us;
         }
@@ -132,15 +146,7 @@ static void end_cleans(wh_flow_state_t *state, int32_t number) {
             place->clean_us = WH_FLOW_NEVER;
             place->since_clean = 0;
             place->is_clean_due = false;
-            const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_CLEAN,
-                                           .begin_us = state->now_us - of->clean_us,
-                                           .end_us = state->now_us,
-                                           .robot = WH_FLOW_NONE,
-                                           .wafer = WH_FLOW_NONE,
-                                           .other = WH_FLOW_NONE,
-                                           .place = i,
-                                           .station = number};
-            wh_flow_tell(state, &event);
+            tell_clean(state, i, WH_FLOW_NONE, of->clean_us);
         }
     }
     plan_cleans(state, number);
@@ -212,18 +218,12 @@ static void want_begun(const wh_flow_state_t *state, int32_t lock, wants_t *want
     const wh_flow_station_t *of = &state->tool->stations[lock];
     for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
         const wh_flow_place_t *place = &state->places[p];
-        if (place->coming == WH_FLOW_NONE || !state->wafers[place->coming].is_bound) {
+        if (place->coming == WH_FLOW_NONE) {
             continue;
         }
-        int32_t robot = state->wafers[place->coming].robot;
-        for (int32_t r = 0; robot == WH_FLOW_NONE && r < (int32_t)state->tool->robot_count; ++r) {
-            robot = state->robots[r].order.wafer == place->coming && state->robots[r].action != WH_FLOW_IDLE
-                        ? r
-                        : robot;
-        }
+        const int32_t robot = state->wafers[place->coming].taker;
         const bool is_empty = place->wafer == WH_FLOW_NONE || place->leaving_us != WH_FLOW_NEVER;
-        if (robot != WH_FLOW_NONE &&
-            (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer)))) {
+        if (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer))) {
             want(wants, state->tool->sides[wh_flow_of(state->tool, robot, lock)],
                  state->wafers[place->coming].done_us);
         }
@@ -245,11 +245,7 @@ static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer
                        wants_t *lying) {
     const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1);
     const bool is_out = wh_flow_station_of(state, wafer) == lock;
-    bool is_into = false;
-    for (size_t i = 0; i < next->station_count; ++i) {
-        is_into = is_into || next->stations[i] == lock;
-    }
-    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !is_into)) {
+    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !wh_flow_step_has(next, lock))) {
         return;
     }
     for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
@@ -267,14 +263,9 @@ static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer
 
 static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, wants_t *lying) {
     for (size_t step = 0; step < state->plan->step_count; ++step) {
-        int32_t left_out = WH_FLOW_NONE;
-        for (int32_t w = state->heads[step]; w != WH_FLOW_NONE; w = state->wafers[w].next) {
-            if (state->wafers[w].step > 0 || state->plan->wafers[w].lot != left_out) {
-                want_wafer(state, lock, w, able, lying);
-            }
-            if (state->wafers[w].step == 0) {
-                left_out = state->plan->wafers[w].lot; /* its others want the same */
-            }
+        for (int32_t w = wh_flow_next_in(state, step, WH_FLOW_NONE); w != WH_FLOW_NONE;
+             w = wh_flow_next_in(state, step, w)) {
+            want_wafer(state, lock, w, able, lying);
         }
     }
 }
@@ -330,17 +321,6 @@ static void begin_cleans(wh_flow_state_t *state, int32_t number) {
     plan_cleans(state, number);
 }
 
-static bool can_arrive(const wh_flow_state_t *state, const wh_flow_lot_t *lot) {
-    for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
-        const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
-        if (place->coming != WH_FLOW_NONE ||
-            (place->wafer != WH_FLOW_NONE && !state->wafers[place->wafer].is_over)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* True if every wafer of the lot to which this one belongs is at its end. */
 static bool is_lot_over(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
@@ -361,15 +341,15 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         ++state->stations[state->tool->place_stations[wafer->place]].wafers;
         ++state->counts[wh_flow_step_index(state, (int32_t)i, 0)];
         wh_flow_step_enter(state, (int32_t)i);
-        ++state->arrived;
     }
 }
 
-/* Wafers of lots that are over leave the load ports where a lot arrives. */
+/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there or come. */
 static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
-        const int32_t place = state->plan->wafers[i].home, wafer = state->places[place].wafer;
-        if (wafer != WH_FLOW_NONE && !is_lot_over(state, wafer)) {
+        const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
+        if (place->coming != WH_FLOW_NONE ||
+            (place->wafer != WH_FLOW_NONE && !is_lot_over(state, place->wafer))) {
             return false;
         }
     }
@@ -384,21 +364,46 @@ static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     return true;
 }
 
+/* A process that would begin from now on begins when the failure is over. */
+static void put_off(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_t *of = &state->tool->stations[number];
+    wh_flow_station_state_t *station = &state->stations[number];
+    station->done_us = WH_FLOW_NEVER;
+    for (int32_t place = of->first_place; place < of->first_place + of->slots; ++place) {
+        const int32_t number_there = state->places[place].wafer;
+        if (number_there == WH_FLOW_NONE || state->wafers[number_there].is_over) {
+            continue;
+        }
+        wh_flow_wafer_state_t *wafer = &state->wafers[number_there];
+        const int64_t lasts_us = wh_flow_process_us(state, number_there, number) + wafer->clean_us;
+        if (lasts_us > 0 && wafer->done_us - lasts_us >= state->now_us) {
+            wafer->done_us = station->down_us + lasts_us;
+        }
+        if (wafer->done_us > state->now_us && wafer->done_us < station->done_us) {
+            station->done_us = wafer->done_us;
+        }
+    }
+}
+
+static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
+    wh_flow_station_state_t *station = &state->stations[down->station];
+    const int64_t until_us = state->now_us + down->for_us;
+    station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
+    station->down_us =
+        station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    put_off(state, down->station);
+    const wh_flow_problem_t fails = {WH_FLOW_FAILS, WH_FLOW_NONE, WH_FLOW_NONE, down->station, down->for_us};
+    wh_flow_tell_problem(state, &fails);
+}
+
 void wh_flow_stations_begin(wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     while (state->next_lot < plan->lot_count && plan->lots[state->next_lot].arrives_us <= state->now_us &&
-           can_arrive(state, &plan->lots[state->next_lot]) &&
            make_room(state, &plan->lots[state->next_lot])) {
         arrive(state, &plan->lots[state->next_lot++]);
     }
-    for (; state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us;
-         ++state->next_down) {
-        const wh_flow_down_t *down = &plan->downs[state->next_down];
-        wh_flow_station_state_t *station = &state->stations[down->station];
-        const int64_t until_us = state->now_us + down->for_us;
-        station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
-        station->down_us =
-            station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
+    while (state->next_down < plan->down_count && plan->downs[state->next_down].at_us <= state->now_us) {
+        begin_down(state, &plan->downs[state->next_down++]);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         if (state->stations[i].has_due || state->stations[i].idle_us <= state->now_us) {

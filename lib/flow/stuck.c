@@ -28,6 +28,45 @@ static const char *station_name(const wh_flow_state_t *state, int32_t station) {
     return state->tool->stations[station].name;
 }
 
+/* A wafer that stands in the way of this one in a station, or WH_FLOW_NONE: there is room. */
+static int32_t find_other(const wh_flow_state_t *state, int32_t wafer, const wh_flow_station_t *station) {
+    int32_t other = WH_FLOW_NONE;
+    const int32_t end = wh_flow_end_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+        const wh_flow_place_t *place = &state->places[p];
+        const int32_t here = place->wafer != WH_FLOW_NONE ? place->wafer : place->coming;
+        if (end != WH_FLOW_NONE && end != p) {
+            continue;
+        }
+        if (here == WH_FLOW_NONE || here == wafer) {
+            return WH_FLOW_NONE;
+        }
+        other = other == WH_FLOW_NONE ? here : other;
+    }
+    return other;
+}
+
+/* The robot that would carry the wafer, whose arms are all taken, or WH_FLOW_NONE: one of them has a free one. */
+static int32_t find_laden(const wh_flow_state_t *state, int32_t wafer) {
+    int32_t laden = WH_FLOW_NONE;
+    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
+        if (wh_flow_is_carrier(state, r, wafer)) {
+            if (wh_flow_free_arm(state, r, wafer) != WH_FLOW_NONE) {
+                return WH_FLOW_NONE;
+            }
+            laden = r;
+        }
+    }
+    return laden;
+}
+
+static void say_laden(const wh_flow_state_t *state, int32_t robot, text_t *text) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const int32_t has = at->arms[0] != WH_FLOW_NONE ? at->arms[0] : at->arms[1];
+    say(text, ", and for %s, which has %s", state->tool->robots[robot].name,
+        has == WH_FLOW_NONE ? "no arm for it" : state->plan->wafers[has].name);
+}
+
 /* "W2 in X waits for B, where W1 is" */
 static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
@@ -40,12 +79,15 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
     }
     for (size_t i = 0; i < next->station_count; ++i) {
         const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
-        const wh_flow_place_t *place = &state->places[station->first_place];
-        const int32_t other = place->wafer != WH_FLOW_NONE ? place->wafer : place->coming;
+        const int32_t other = find_other(state, wafer, station);
         say(text, "%s%s", i == 0 ? " waits for " : " or ", station->name);
-        if (other != WH_FLOW_NONE && other != wafer) {
+        if (other != WH_FLOW_NONE) {
             say(text, ", where %s is", state->plan->wafers[other].name);
         }
+    }
+    const int32_t laden = at->robot == WH_FLOW_NONE ? find_laden(state, wafer) : WH_FLOW_NONE;
+    if (laden != WH_FLOW_NONE) {
+        say_laden(state, laden, text);
     }
 }
 

@@ -72,6 +72,34 @@ void wh_flow_tool_close(wh_flow_tool_t *tool) {
     memset(tool, 0, sizeof *tool);
 }
 
+static void *copy_of(const void *items, size_t count, size_t size) {
+    void *copy = wh_array_new(count, size);
+    memcpy(copy, items, count * size);
+    return copy;
+}
+
+void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool) {
+    const size_t pairs = tool->robot_count * tool->station_count;
+    *copy = *tool;
+    copy->stations = copy_of(tool->stations, tool->station_count, sizeof *copy->stations);
+    copy->robots = copy_of(tool->robots, tool->robot_count, sizeof *copy->robots);
+    copy->pick_us = copy_of(tool->pick_us, pairs, sizeof *copy->pick_us);
+    copy->place_us = copy_of(tool->place_us, pairs, sizeof *copy->place_us);
+    copy->swap_us = copy_of(tool->swap_us, pairs, sizeof *copy->swap_us);
+    copy->doors = copy_of(tool->doors, pairs, sizeof *copy->doors);
+    copy->serves = copy_of(tool->serves, pairs, sizeof *copy->serves);
+    copy->sides = copy_of(tool->sides, pairs, sizeof *copy->sides);
+    copy->move_us = copy_of(tool->move_us, pairs * tool->station_count, sizeof *copy->move_us);
+    copy->place_stations = copy_of(tool->place_stations, tool->place_count, sizeof *copy->place_stations);
+    copy->slot_sides = copy_of(tool->slot_sides, tool->place_count, sizeof *copy->slot_sides);
+    for (size_t i = 0; i < tool->station_count; ++i) {
+        copy->stations[i].name = wh_text_copy(tool->stations[i].name);
+    }
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        copy->robots[i].name = wh_text_copy(tool->robots[i].name);
+    }
+}
+
 int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name) {
     for (size_t i = 0; i < tool->station_count; ++i) {
         if (strcmp(tool->stations[i].name, name) == 0) {
@@ -90,13 +118,6 @@ int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name) {
     return WH_FLOW_NONE;
 }
 
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (const char *c = text; *c; ++c) {
-        hash = wh_hash_word(hash, (unsigned char)*c);
-    }
-    return wh_hash_word(hash, 0);
-}
-
 static uint64_t hash_times(uint64_t hash, const int64_t times_us[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         hash = wh_hash_word(hash, (uint64_t)times_us[i]);
@@ -108,7 +129,7 @@ static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
     const int64_t times_us[] = {station->process_us,       station->window_us,       station->clean_us,
                                 station->idle_us,          station->pump_us[0],      station->pump_us[1],
                                 station->empty_pump_us[0], station->empty_pump_us[1]};
-    hash = hash_times(hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
+    hash = hash_times(wh_hash_text(hash, station->name), times_us, sizeof times_us / sizeof times_us[0]);
     hash = wh_hash_int(wh_hash_int(hash, station->slots), station->clean_after);
     hash = wh_hash_int(wh_hash_int(hash, station->is_lock), station->is_load_port);
     hash = wh_hash_int(hash, station->cleans_full);
@@ -121,7 +142,7 @@ uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
         hash = hash_station(hash, &tool->stations[i]);
     }
     for (size_t i = 0; i < tool->robot_count; ++i) {
-        hash = hash_text(hash, tool->robots[i].name);
+        hash = wh_hash_text(hash, tool->robots[i].name);
         hash = wh_hash_int(wh_hash_int(hash, tool->robots[i].arms), tool->robots[i].at);
     }
     hash = hash_times(hash, tool->pick_us, pairs);

@@ -30,6 +30,7 @@ typedef struct {
         cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
     int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
     bool is_lock, is_load_port;
+    bool is_shortened;                    /* processes of steps, too, take 10 % less: see wh_flow_gains */
     wh_flow_side_t side;                  /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
@@ -63,6 +64,9 @@ typedef struct {
 void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count);
 void wh_flow_tool_close(wh_flow_tool_t *tool);
 
+/* A tool of its own, equal to a numbered one. */
+void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool);
+
 /* To be called once after each station has its number of slots: numbers the places. */
 void wh_flow_tool_number(wh_flow_tool_t *tool);
 
@@ -74,6 +78,11 @@ static inline size_t wh_flow_of(const wh_flow_tool_t *tool, int32_t robot, int32
 /* How long a robot takes from one station to another; 0 if they are the same one. */
 static inline int64_t wh_flow_move_us(const wh_flow_tool_t *tool, int32_t robot, int32_t from, int32_t to) {
     return from == to ? 0 : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
+}
+
+/* True if a robot of the one side may use what is for the other. */
+static inline bool wh_flow_sides_agree(wh_flow_side_t a, wh_flow_side_t b) {
+    return a == WH_FLOW_BOTH || b == WH_FLOW_BOTH || a == b;
 }
 
 /* The number of the station or robot of this name, or WH_FLOW_NONE. */

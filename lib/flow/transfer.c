@@ -9,13 +9,11 @@ int64_t wh_flow_pick_us(const wh_flow_state_t *state, int32_t robot, int32_t sta
 
 int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
     const int64_t of_step = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step)->process_us;
-    return state->wafers[wafer].step == 0 ? 0
-           : of_step == WH_FLOW_NONE      ? state->tool->stations[station].process_us
-                                          : of_step;
-}
-
-static bool has_side(wh_flow_side_t needed, wh_flow_side_t side) {
-    return needed == WH_FLOW_BOTH || side == WH_FLOW_BOTH || needed == side;
+    const wh_flow_station_t *of = &state->tool->stations[station];
+    if (state->wafers[wafer].step == 0) {
+        return 0;
+    }
+    return of_step == WH_FLOW_NONE ? of->process_us : of_step - (of->is_shortened ? (of_step + 5) / 10 : 0);
 }
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
@@ -25,7 +23,7 @@ bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t stat
     }
     return !state->tool->stations[station].is_lock ||
            (now->pump_us == WH_FLOW_NEVER &&
-            has_side(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
+            wh_flow_sides_agree(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
 }
 
 /* ------------------------------------------------------------------------------------------------- targets */
@@ -42,10 +40,8 @@ static int64_t clean_from(const wh_flow_state_t *state, int32_t place, int64_t *
     if (at->clean_us != WH_FLOW_NEVER) {
         return at->clean_us;
     }
-    const bool is_due =
-        at->is_clean_due || (at->wafer != WH_FLOW_NONE && !station->cleans_full && station->clean_after > 0 &&
-                             at->since_clean + 1 >= station->clean_after);
-    if (!is_due) {
+    if (!at->is_clean_due &&
+        (at->wafer == WH_FLOW_NONE || station->cleans_full || !wh_flow_is_clean_next(state, place))) {
         return *empty_us;
     }
     const wh_flow_station_state_t *now = &state->stations[number]; /* it begins when the door is shut */
@@ -76,9 +72,9 @@ static int64_t open_from(const wh_flow_state_t *state, int32_t robot, int32_t st
         return us;
     }
     if (now->pump_us != WH_FLOW_NEVER) {
-        return has_side(side, now->pump_to) ? later(us, now->pump_us) : WH_FLOW_NEVER;
+        return wh_flow_sides_agree(side, now->pump_to) ? later(us, now->pump_us) : WH_FLOW_NEVER;
     }
-    return has_side(side, now->side) ? us : WH_FLOW_NEVER;
+    return wh_flow_sides_agree(side, now->side) ? us : WH_FLOW_NEVER;
 }
 
 /* The targets of one question, the best first. */
@@ -115,7 +111,7 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
     const int32_t station = state->tool->place_stations[place];
     const size_t of = wh_flow_of(state->tool, robot, station);
     int64_t empty_us = 0;
-    if (!has_side(state->tool->slot_sides[place], state->tool->sides[of]) ||
+    if (!wh_flow_sides_agree(state->tool->slot_sides[place], state->tool->sides[of]) ||
         state->stations[station].down_us != WH_FLOW_NEVER) {
         return;
     }
@@ -135,7 +131,7 @@ static void look_at(const wh_flow_state_t *state, int32_t robot, int32_t place, 
 static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route, int32_t step,
                       int32_t ahead) {
     return state->plan->lots[state->plan->wafers[wafer].lot].route == route &&
-           state->wafers[wafer].step + ahead == step;
+           !state->wafers[wafer].is_over && state->wafers[wafer].step + ahead == step;
 }
 
 wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us) {
@@ -148,17 +144,13 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             const wh_flow_place_t *place = &state->places[p];
             const bool lies = place->wafer != WH_FLOW_NONE && place->leaving_us > at_us;
-            ++room.may;
-            down += is_down && !lies && place->coming == WH_FLOW_NONE;
-            if (place->coming != WH_FLOW_NONE) {
-                const bool is_own = counts_in(state, place->coming, route, number, 1);
-                room.holds += is_own;
-                room.may -= !is_own;
-            } else if (lies && !state->wafers[place->wafer].is_over) {
-                const bool is_own = counts_in(state, place->wafer, route, number, 0);
-                room.holds += is_own;
-                room.may -= !is_own;
-            }
+            const bool is_empty = !lies && place->coming == WH_FLOW_NONE;
+            const int32_t own =
+                (lies && counts_in(state, place->wafer, route, number, 0)) +
+                (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, number, 1));
+            down += is_down && is_empty;
+            room.holds += own;
+            room.may += is_empty || own > 0;
         }
     }
     room.may -= step->kept_empty > down ? step->kept_empty : down;
@@ -236,13 +228,7 @@ bool wh_flow_is_carrier(const wh_flow_state_t *state, int32_t robot, int32_t waf
         !state->tool->serves[wh_flow_of(state->tool, robot, station)]) {
         return false;
     }
-    const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, at->step + 1);
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (state->tool->serves[wh_flow_of(state->tool, robot, step->stations[i])]) {
-            return true;
-        }
-    }
-    return false;
+    return wh_flow_step_is_served(state->tool, wh_flow_step_of(state->plan, wafer, at->step + 1), robot);
 }
 
 bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {

@@ -2,13 +2,6 @@
 #include "grips.h"
 #include "words.h"
 
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (const char *c = text; *c; ++c) {
-        hash = wh_hash_word(hash, (unsigned char)*c);
-    }
-    return wh_hash_word(hash, 0);
-}
-
 static uint64_t hash_reals(uint64_t hash, const wh_real_t reals[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         hash = wh_hash_real(hash, reals[i]);
@@ -36,7 +29,7 @@ static uint64_t hash_second(uint64_t hash, const wh_carrier_t *carrier) {
     if (second) {
         const wh_real_t reals[] = {chain->arm_heading,  chain->height,  chain->home[WH_CHAIN_YAW],
                                    second->arm_heading, second->height, second->home[WH_CHAIN_YAW]};
-        hash = hash_reals(hash_text(hash, "second"), reals, sizeof reals / sizeof reals[0]);
+        hash = hash_reals(wh_hash_text(hash, "second"), reals, sizeof reals / sizeof reals[0]);
     }
     return hash;
 }
@@ -44,7 +37,7 @@ static uint64_t hash_second(uint64_t hash, const wh_carrier_t *carrier) {
 /* Hashes what a robot has beyond the four axes of the usual one. */
 static uint64_t hash_carrier(uint64_t hash, const wh_layout_t *layout) {
     const wh_chain_t *chain = &layout->carrier.chain;
-    hash = wh_hash_int(hash_text(hash, "carrier"), (int32_t)chain->kind);
+    hash = wh_hash_int(wh_hash_text(hash, "carrier"), (int32_t)chain->kind);
     hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
     hash = hash_reals(hash, chain->links, 2);
     for (size_t axis = WH_ROBOT_AXES; axis < layout->carrier.axis_count; ++axis) {
@@ -62,7 +55,7 @@ static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
     for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
         const wh_carrier_t *carrier = &layout->robots[r].carrier;
         const wh_chain_t *chain = &carrier->chain;
-        hash = wh_hash_int(hash_text(hash, layout->robots[r].name), (int32_t)chain->kind);
+        hash = wh_hash_int(wh_hash_text(hash, layout->robots[r].name), (int32_t)chain->kind);
         hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
         hash = hash_reals(hash, chain->links, 2);
         for (size_t axis = 0; axis < carrier->axis_count; ++axis) {
@@ -77,7 +70,7 @@ static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
     for (size_t g = 0; layout->robot_count > 1 && g < layout->machine.gripper_count; ++g) {
         const wh_mount_t *mount = &layout->machine.mounts[g];
         hash = wh_hash_int(hash, mount->robot);
-        hash = mount->arm > 0 ? wh_hash_int(hash_text(hash, "arm"), mount->arm) : hash;
+        hash = mount->arm > 0 ? wh_hash_int(wh_hash_text(hash, "arm"), mount->arm) : hash;
     }
     return hash;
 }
@@ -87,7 +80,7 @@ static uint64_t hash_slides(uint64_t hash, const wh_mount_t *mount) {
     if (mount->axis == WH_NONE || mount->kind == WH_MOUNT_CHUCK) {
         return hash;
     }
-    hash = hash_text(hash, wh_layout_mount_words[mount->kind]);
+    hash = wh_hash_text(hash, wh_layout_mount_words[mount->kind]);
     hash = hash_reals(hash, (const wh_real_t[]){mount->travel.min, mount->travel.max}, 2);
     return hash_limits(hash, &mount->limits);
 }
@@ -105,13 +98,13 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
     }
     for (size_t r = 0; r < layout->robot_count; ++r) {
         const wh_real_t transit = layout->robots[r].transit;
-        hash = transit > 0 ? wh_hash_real(hash_text(hash, "transit"), transit) : hash;
+        hash = transit > 0 ? wh_hash_real(wh_hash_text(hash, "transit"), transit) : hash;
         hash = transit > 0 && r > 0 ? wh_hash_word(hash, r) : hash;
     }
     hash = wh_hash_word(hash, machine->axis_count);
     hash = wh_hash_word(hash, machine->gripper_count);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
-        hash = hash_text(hash, layout->grippers[g].name);
+        hash = wh_hash_text(hash, layout->grippers[g].name);
         hash = wh_hash_int(hash, machine->mounts[g].axis);
         hash = wh_hash_pose(hash, &machine->mounts[g].base_from_station);
         if (machine->mounts[g].is_shifted) {
@@ -119,7 +112,7 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         }
         hash = hash_slides(hash, &machine->mounts[g]);
         if (machine->mounts[g].arm > 0) {
-            hash = wh_hash_int(hash_text(hash, "arm"), machine->mounts[g].arm);
+            hash = wh_hash_int(wh_hash_text(hash, "arm"), machine->mounts[g].arm);
         }
     }
     return hash_robots(hash, layout);
@@ -128,7 +121,7 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
 static uint64_t hash_doors(uint64_t hash, const wh_layout_t *layout) {
     for (size_t d = 0; d < layout->machine.door_count; ++d) {
         const wh_door_t *door = &layout->machine.doors[d];
-        hash = hash_text(hash_text(hash, "door"), layout->door_list[d].name);
+        hash = wh_hash_text(wh_hash_text(hash, "door"), layout->door_list[d].name);
         hash = wh_hash_vec3(hash, &door->way);
         hash = wh_hash_int(wh_hash_real(hash, door->travel), door->is_open ? 1 : 0);
         hash = hash_limits(hash, &door->limits);
@@ -140,7 +133,7 @@ static uint64_t hash_stations(uint64_t hash, const wh_layout_t *layout) {
     hash = wh_hash_word(hash, layout->station_count);
     for (size_t s = 0; s < layout->station_count; ++s) {
         const wh_station_t *place = &layout->places[s];
-        hash = hash_text(hash, layout->stations[s].name);
+        hash = wh_hash_text(hash, layout->stations[s].name);
         hash = wh_hash_pose(hash, &place->base_from_station);
         hash = wh_hash_int(hash, place->slots);
         hash = wh_hash_real(hash, place->pitch);
@@ -169,7 +162,7 @@ static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
     const wh_real_t usual[] = {ideal.build, ideal.vent, ideal.idle, ideal.on, ideal.off, ideal.release};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
         if (values[i] != usual[i]) {
-            hash = wh_hash_real(hash_text(hash, "vacuum"), values[i]);
+            hash = wh_hash_real(wh_hash_text(hash, "vacuum"), values[i]);
             hash = wh_hash_word(hash, i);
         }
     }
@@ -178,7 +171,7 @@ static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
 
 static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {
     if (pads->mass > 0) {
-        hash = hash_text(hash, "pads");
+        hash = wh_hash_text(hash, "pads");
         const wh_real_t reals[] = {pads->friction, pads->force, pads->mass, pads->gravity};
         hash = hash_reals(hash, reals, 4);
     }
@@ -186,7 +179,7 @@ static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {
 }
 
 static uint64_t hash_fault(uint64_t hash, const wh_fault_t *fault) {
-    hash = hash_text(hash, wh_fault_name(fault->kind));
+    hash = wh_hash_text(hash, wh_fault_name(fault->kind));
     hash = wh_hash_int(hash, fault->target);
     hash = wh_hash_int(hash, fault->other);
     hash = wh_hash_real(hash, fault->value);
@@ -238,7 +231,7 @@ static uint64_t hash_grips(uint64_t hash, const wh_layout_t *layout) {
     }
     const wh_grips_parts_t parts = wh_layout_grips(layout);
     return wh_gripping_hash(&parts, layout->machine.gripper_count, layout->wafer_count,
-                            hash_text(hash, "grips"));
+                            wh_hash_text(hash, "grips"));
 }
 
 static uint64_t hash_loaded(uint64_t hash, const wh_layout_t *layout) {
@@ -290,7 +283,7 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     hash = hash_stations(hash, layout);
     hash = wh_hash_word(hash, layout->wafer_count);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        hash = hash_text(hash, layout->wafers[w].name);
+        hash = wh_hash_text(hash, layout->wafers[w].name);
         hash = wh_hash_pose(hash, &layout->start[w].base_from_wafer);
     }
     hash = hash_vacuum(hash, &layout->physics.vacuum);
@@ -300,17 +293,17 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     }
     hash = hash_placing(hash, &layout->cell);
     if (layout->cell.thickness > 0) {
-        hash = wh_hash_real(hash_text(hash, "faces"), layout->cell.thickness);
+        hash = wh_hash_real(wh_hash_text(hash, "faces"), layout->cell.thickness);
     }
     hash = hash_loaded(hash, layout);
     if (layout->scanner_count > 0) {
         const wh_scanning_t scanning = wh_layout_scanning(layout);
-        hash = wh_scanning_hash(&scanning, layout->wafer_count, hash_text(hash, "sensor"));
+        hash = wh_scanning_hash(&scanning, layout->wafer_count, wh_hash_text(hash, "sensor"));
     }
     if (layout->beam_count > 0) {
         const wh_latching_t latching = wh_layout_latching(layout);
         hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
-                                hash_text(hash, "beams"));
+                                wh_hash_text(hash, "beams"));
     }
     return hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
 }

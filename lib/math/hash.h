@@ -50,6 +50,14 @@ static inline uint64_t wh_hash_ints(uint64_t hash, const int32_t values[], size_
     return hash;
 }
 
+/* The bytes of a text, and its end: neighbours in a list of texts cannot run into each other. */
+static inline uint64_t wh_hash_text(uint64_t hash, const char *text) {
+    for (const char *c = text; *c; ++c) {
+        hash = wh_hash_word(hash, (unsigned char)*c);
+    }
+    return wh_hash_word(hash, 0);
+}
+
 static inline uint64_t wh_hash_vec3(uint64_t hash, const wh_vec3_t *v) {
     hash = wh_hash_real(hash, v->x);
     hash = wh_hash_real(hash, v->y);

@@ -9,11 +9,9 @@
 #include "../reading/layout_internal.h"
 #include "../reading/layout_tool.h"
 #include "../text/array.h"
-#include "../text/nearest.h"
 
 #define END                                                                                                  \
     { NULL, NULL, NULL, false }
-#define NAME_SIZE 64
 
 /* The longest time of a flow, s: ten years. */
 #define LONGEST 3.2e8
@@ -24,12 +22,19 @@
 const wh_reader_field_t wh_flow_fields[] = {
     {"lots", "waferhand.lot[]", "the lots", true},
     {"routes", "table<string, waferhand.route>", "their routes by name", true},
-    {"rule", "\"backward\"|\"swap\"|\"first_come\"|\"longest_wait\"|waferhand.lists",
+    {"rule", "\"backward\"|\"swap\"|\"first_come\"|\"longest_wait\"|waferhand.lists|fun(tool: table): table?",
      "how robots choose; backward", false},
+    {"on_error", "fun(tool: table, problem: table): string?",
+     "hears of stays beyond windows and of stations that fail; a text that it returns ends the flow", false},
     {"until_s", "number", "s: the flow is cut there", false},
     {"down", "waferhand.down[]", "stations that fail for a while", false},
     {"takt", "number", "s: the least time between two wafers' starts", false},
     {"safe", "boolean", "false: rules may begin transfers after which wafers could block each other", false},
+    {"gains", "boolean",
+     "true: what 10 % less time of each robot and station brings, by playing the flow once more for each; "
+     "not beside "
+     "a function as rule",
+     false},
     {"late", "\"fail\"|\"tell\"", "a stay beyond a station's window fails the run, or is told alone; fail",
      false},
     END};
@@ -87,48 +92,25 @@ static size_t count_entries(wh_reader_t *reader, const wh_reader_field_t *known)
     return count;
 }
 
-/* The text that is entry `index` of the table at which the reader is, "" if there is none; refused if it is
- * something else. */
-static const char *entry(wh_reader_t *reader, size_t index, char text[NAME_SIZE]) {
+const char *wh_flow_entry(wh_reader_t *reader, size_t index, char text[WH_NAME_SIZE]) {
     char field[32];
     size_t length = 0;
     (void)snprintf(field, sizeof field, "[%zu]", index);
     const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
     const char *name = type == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : "";
-    if (type != LUA_TNIL && (length == 0 || length >= NAME_SIZE || !wh_reader_is_plain(name, length))) {
-        wh_reader_fail(reader, field, "a name of 1 to %d bytes", NAME_SIZE - 1);
+    if (type != LUA_TNIL && (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length))) {
+        wh_reader_fail(reader, field, "a name of 1 to %d bytes", WH_NAME_SIZE - 1);
     }
-    (void)snprintf(text, NAME_SIZE, "%s", name);
+    (void)snprintf(text, WH_NAME_SIZE, "%s", name);
     lua_pop(reader->L, 1);
     return text;
 }
 
-static int32_t find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
-                            const char *name) {
-    const int32_t found = wh_flow_station_named(tool, name);
-    if (found == WH_FLOW_NONE) {
-        const char **names = lua_newuserdatauv(reader->L, tool->station_count * sizeof *names, 0);
-        for (size_t i = 0; i < tool->station_count; ++i) {
-            names[i] = tool->stations[i].name;
-        }
-        char meant[WH_NEAREST_TEXT];
-        const char *nearest = wh_text_nearest(name, names, tool->station_count);
-        wh_reader_refuse(reader, field, name, "a station of the layout%s",
-                         wh_text_did_you_mean(meant, "; ", "", nearest));
-    }
-    return found;
-}
-
 /* -------------------------------------------------------------------------------------------------- routes */
-
-/* A name, as wh_layout_read_keys reads them. */
-typedef struct {
-    char name[NAME_SIZE];
-} named_t;
 
 static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step,
                         const char *field, const char *name) {
-    const int32_t station = find_station(reader, tool, field, name);
+    const int32_t station = wh_timed_find_station(reader, tool, field, name);
     for (size_t i = 0; i < step->station_count; ++i) {
         if (step->stations[i] == station) {
             wh_reader_refuse(reader, field, name, "each station once in a step");
@@ -140,13 +122,13 @@ static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow
 }
 
 static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t index, wh_flow_step_t *step) {
-    char name[NAME_SIZE], field[32];
+    char name[WH_NAME_SIZE], field[32];
     (void)snprintf(field, sizeof field, "[%zu]", index);
     step->process_us = WH_FLOW_NONE;
     const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
     lua_pop(reader->L, 1);
     if (type == LUA_TSTRING) {
-        add_station(reader, tool, step, field, entry(reader, index, name));
+        add_station(reader, tool, step, field, wh_flow_entry(reader, index, name));
         return;
     }
     if (!wh_reader_enter_item(reader, (lua_Integer)index)) {
@@ -155,7 +137,7 @@ static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t in
     const size_t count = count_entries(reader, wh_flow_step_fields);
     for (size_t i = 1; i <= count; ++i) {
         (void)snprintf(field, sizeof field, "[%zu]", i);
-        add_station(reader, tool, step, field, entry(reader, i, name));
+        add_station(reader, tool, step, field, wh_flow_entry(reader, i, name));
     }
     if (count == 0) {
         wh_reader_fail(reader, NULL, "at least one station");
@@ -215,7 +197,7 @@ static int32_t add_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flo
 typedef struct {
     wh_flow_lot_t lot;
     int32_t station, first, last, back;
-    char name[NAME_SIZE], route[NAME_SIZE];
+    char name[WH_NAME_SIZE], route[WH_NAME_SIZE];
     size_t index;
 } lot_t;
 
@@ -234,14 +216,14 @@ static int32_t whole_entry(wh_reader_t *reader, int32_t index, int32_t least, in
 }
 
 static void read_wafers(wh_reader_t *reader, const wh_flow_tool_t *tool, lot_t *lot) {
-    char name[NAME_SIZE];
+    char name[WH_NAME_SIZE];
     if (!wh_reader_enter(reader, "wafers")) {
         wh_reader_refuse(reader, "wafers", NULL, "{ STATION, FIRST SLOT, LAST SLOT }");
     }
     if (wh_reader_list(reader) != 3) {
         wh_reader_fail(reader, NULL, "{ STATION, FIRST SLOT, LAST SLOT }");
     }
-    lot->station = find_station(reader, tool, "[1]", entry(reader, 1, name));
+    lot->station = wh_timed_find_station(reader, tool, "[1]", wh_flow_entry(reader, 1, name));
     const int32_t slots = tool->stations[lot->station].slots;
     lot->first = whole_entry(reader, 2, 1, slots, "a slot");
     lot->last = whole_entry(reader, 3, lot->first, slots, "a slot not below the first");
@@ -249,13 +231,13 @@ static void read_wafers(wh_reader_t *reader, const wh_flow_tool_t *tool, lot_t *
 }
 
 /* The name of the only route, or an error. */
-static void read_route_name(wh_reader_t *reader, const named_t *routes, size_t route_count,
-                            char name[NAME_SIZE]) {
+static void read_route_name(wh_reader_t *reader, const wh_timed_name_t *routes, size_t route_count,
+                            char name[WH_NAME_SIZE]) {
     if (route_count == 1 && !wh_reader_has(reader, "route")) {
-        (void)snprintf(name, NAME_SIZE, "%s", routes[0].name);
+        (void)snprintf(name, WH_NAME_SIZE, "%s", routes[0].name);
         return;
     }
-    wh_reader_text(reader, "route", NULL, name, NAME_SIZE);
+    wh_reader_text(reader, "route", NULL, name, WH_NAME_SIZE);
     for (size_t i = 0; i < route_count; ++i) {
         if (strcmp(routes[i].name, name) == 0) {
             return;
@@ -264,7 +246,7 @@ static void read_route_name(wh_reader_t *reader, const named_t *routes, size_t r
     wh_reader_refuse(reader, "route", name, "the name of one of the routes");
 }
 
-static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const named_t *routes,
+static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_timed_name_t *routes,
                      size_t route_count, lot_t *lot) {
     wh_reader_refuse_unknown(reader, wh_flow_lot_fields);
     if (wh_reader_has(reader, "name")) {
@@ -277,9 +259,9 @@ static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const name
     lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
     lot->back = WH_FLOW_NONE;
     if (wh_reader_has(reader, "back")) {
-        char back[NAME_SIZE];
+        char back[WH_NAME_SIZE];
         wh_reader_text(reader, "back", NULL, back, sizeof back);
-        lot->back = find_station(reader, tool, "back", back);
+        lot->back = wh_timed_find_station(reader, tool, "back", back);
         if (tool->stations[lot->back].slots < lot->last) {
             wh_reader_refuse(reader, "back", back, "a station with at least %d slots", (int)lot->last);
         }
@@ -299,7 +281,7 @@ static int by_arrival(const void *a, const void *b) {
 
 static void add_wafers(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const lot_t *lot, size_t index) {
     for (int32_t slot = lot->first; slot <= lot->last; ++slot) {
-        char name[2 * NAME_SIZE];
+        char name[2 * WH_NAME_SIZE];
         const size_t number = plan->wafer_count++;
         if (plan->lots[index].name[0] != '\0') {
             (void)snprintf(name, sizeof name, "%s.%d", plan->lots[index].name, (int)(slot - lot->first + 1));
@@ -349,7 +331,7 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
     if (!wh_reader_enter(reader, "routes")) {
         wh_reader_refuse(reader, "routes", NULL, "a table of routes by name");
     }
-    const named_t *routes = wh_layout_read_keys(reader, 1000, sizeof *routes, "routes", &route_count);
+    const wh_timed_name_t *routes = wh_layout_read_keys(reader, 1000, sizeof *routes, "routes", &route_count);
     wh_reader_leave(reader);
     if (!wh_reader_enter(reader, "lots")) {
         wh_reader_refuse(reader, "lots", NULL, "a list of lots");
@@ -378,109 +360,6 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
     lua_remove(reader->L, -2);
 }
 
-/* ---------------------------------------------------------------------------------------------------- rule */
-
-static int32_t find_wafer(wh_reader_t *reader, const wh_flow_plan_t *plan, const char *name) {
-    for (size_t i = 0; i < plan->wafer_count; ++i) {
-        if (strcmp(plan->wafers[i].name, name) == 0) {
-            return (int32_t)i;
-        }
-    }
-    wh_reader_refuse(reader, "[3]", name, "a wafer of the lots by name");
-}
-
-/* { "LLA", "PM1" }, { "PM2", "keep" }, { "keep", "PM3", "W3" }, { "pump", "LLA", "vacuum" } */
-static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
-                      wh_flow_line_t *line) {
-    char first[NAME_SIZE], second[NAME_SIZE], third[NAME_SIZE];
-    const size_t count = wh_reader_list(reader);
-    if (count < 2 || count > 3) {
-        wh_reader_fail(reader, NULL, "{ FROM, TO }, with a wafer's name if another than the first is meant");
-    }
-    (void)entry(reader, 1, first);
-    (void)entry(reader, 2, second);
-    (void)entry(reader, 3, third);
-    *line = (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
-    if (strcmp(first, "pump") == 0) {
-        line->what = WH_FLOW_PUMP;
-        line->to = find_station(reader, tool, "[2]", second);
-        line->side = strcmp(third, "vacuum") == 0 ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE;
-        if (!tool->stations[line->to].is_lock ||
-            (line->side == WH_FLOW_ATMOSPHERE && strcmp(third, "atmosphere") != 0)) {
-            wh_reader_fail(reader, NULL, "{ \"pump\", LOAD LOCK, \"vacuum\" } or \"atmosphere\"");
-        }
-        return;
-    }
-    const bool brings = strcmp(first, "keep") == 0, keeps = strcmp(second, "keep") == 0;
-    line->what = brings ? WH_FLOW_BRING : keeps ? WH_FLOW_KEEP : WH_FLOW_TRANSFER;
-    if (brings && keeps) {
-        wh_reader_fail(reader, NULL, "one \"keep\" in a line");
-    }
-    line->from = brings ? WH_FLOW_NONE : find_station(reader, tool, "[1]", first);
-    line->to = keeps ? WH_FLOW_NONE : find_station(reader, tool, "[2]", second);
-    line->wafer = third[0] == '\0' ? WH_FLOW_NONE : find_wafer(reader, plan, third);
-}
-
-static void check_served(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot,
-                         const wh_flow_line_t *line) {
-    const int32_t both[] = {line->from, line->to};
-    for (size_t i = 0; i < 2; ++i) {
-        if (both[i] != WH_FLOW_NONE && line->what != WH_FLOW_PUMP &&
-            !tool->serves[wh_flow_of(tool, robot, both[i])]) {
-            wh_reader_refuse(reader, i == 0 ? "[1]" : "[2]", tool->stations[both[i]].name,
-                             "a station that %s serves", tool->robots[robot].name);
-        }
-    }
-}
-
-static void read_list(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
-                      int32_t robot) {
-    wh_flow_list_t *list = &plan->lists[robot];
-    const size_t count = wh_reader_list(reader);
-    for (size_t i = 0; i < count; ++i) {
-        list->lines = wh_array_grow(list->lines, list->count, &list->capacity, sizeof *list->lines);
-        (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        read_line(reader, tool, plan, &list->lines[i]);
-        check_served(reader, tool, robot, &list->lines[i]);
-        list->count = i + 1;
-        wh_reader_leave(reader);
-    }
-}
-
-static void read_lists(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
-    size_t count = 0;
-    plan->rule = WH_FLOW_LISTS;
-    plan->lists = wh_array_new(tool->robot_count, sizeof *plan->lists);
-    (void)wh_reader_open(reader, "rule", wh_flow_list_fields);
-    if (!wh_reader_enter(reader, "order")) {
-        wh_reader_refuse(reader, "order", NULL, "each robot's transfers in order, by its name");
-    }
-    const named_t *robots = wh_layout_read_keys(reader, 1000, sizeof *robots, "robots", &count);
-    for (size_t i = 0; i < count; ++i) {
-        const int32_t robot = wh_flow_robot_named(tool, robots[i].name);
-        if (robot == WH_FLOW_NONE) {
-            wh_reader_refuse(reader, robots[i].name, NULL, "robots of the layout by name");
-        }
-        if (wh_reader_enter(reader, robots[i].name)) {
-            read_list(reader, tool, plan, robot);
-            wh_reader_leave(reader);
-        }
-    }
-    wh_reader_leave(reader);
-    wh_reader_leave(reader);
-}
-
-static void read_rule(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
-    static const char *const rules[] = {"backward", "swap", "first_come", "longest_wait", NULL};
-    const int type = wh_reader_push(reader, "rule");
-    lua_pop(reader->L, 1);
-    if (type == LUA_TTABLE) {
-        read_lists(reader, tool, plan);
-    } else {
-        plan->rule = (wh_flow_rule_t)wh_reader_choice(reader, "rule", 0, rules);
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------- whole */
 
 static int by_begin(const void *a, const void *b) {
@@ -495,13 +374,13 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
     const size_t count = wh_reader_list(reader);
     plan->downs = wh_array_new(count + 1, sizeof *plan->downs);
     for (size_t i = 0; i < count; ++i) {
-        char name[NAME_SIZE];
+        char name[WH_NAME_SIZE];
         (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
         if (count_entries(reader, wh_flow_down_fields) != 1) {
             wh_reader_fail(reader, NULL, "{ STATION, at = , seconds = }");
         }
         wh_flow_down_t *down = &plan->downs[plan->down_count];
-        down->station = find_station(reader, tool, "[1]", entry(reader, 1, name));
+        down->station = wh_timed_find_station(reader, tool, "[1]", wh_flow_entry(reader, 1, name));
         down->at_us = read_us(reader, "at", NAN);
         down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, LONGEST));
         ++plan->down_count;
@@ -516,11 +395,21 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
     wh_flow_plan_t *plan = &flow->plan;
     wh_reader_refuse_unknown(reader, wh_flow_fields);
     read_lots(reader, tool, plan);
-    read_rule(reader, tool, plan);
+    wh_flow_read_rule(reader, tool, plan);
     read_downs(reader, tool, plan);
+    const int on_error = wh_reader_push(reader, "on_error");
+    if (on_error != LUA_TNIL && on_error != LUA_TFUNCTION) {
+        wh_reader_fail(reader, "on_error", "a function of the tool and a problem");
+    }
+    lua_pop(reader->L, 1);
     plan->until_us = wh_reader_has(reader, "until_s") ? read_us(reader, "until_s", 0) : WH_FLOW_NEVER;
     plan->takt_us = read_us(reader, "takt", 0);
     plan->is_safe = wh_reader_boolean(reader, "safe", true);
+    flow->has_gains = wh_reader_boolean(reader, "gains", false);
+    if (flow->has_gains && plan->rule == WH_FLOW_OWN) {
+        wh_reader_refuse(reader, "gains", NULL,
+                         "a rule by name or lists: a function could answer otherwise each time");
+    }
     flow->is_lateness_told = wh_reader_choice(reader, "late", 0, lates) == 1;
     char *problem = wh_flow_plan_finish(plan, tool);
     if (problem) {

@@ -4,6 +4,7 @@
 
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
+#include "flow_own.h"
 #include "flow_plan.h"
 #include "native.h"
 
@@ -60,6 +61,23 @@ static void push_all_shares(lua_State *L, const wh_flow_figures_t *figures) {
     lua_setfield(L, -2, "stations");
 }
 
+/* The parts of the critical path. */
+static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
+    lua_createtable(L, (int)figures->part_count, 0);
+    for (size_t i = 0; i < figures->part_count; ++i) {
+        const wh_flow_part_t *part = &figures->parts[i];
+        lua_createtable(L, 0, 3);
+        if (part->robot != WH_FLOW_NONE) {
+            wh_lua_set_text(L, "of", figures->tool->robots[part->robot].name);
+        } else if (part->station != WH_FLOW_NONE) {
+            wh_lua_set_text(L, "of", figures->tool->stations[part->station].name);
+        }
+        wh_lua_set_text(L, "what", wh_flow_path_words[part->word]);
+        set_seconds(L, "seconds", part->us);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
 /* The word's result. */
 static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
@@ -81,6 +99,8 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     set_seconds(L, "longest_stay_s", figures->longest_stay_us);
     push_breaches(L, figures);
     lua_setfield(L, -2, "stays");
+    push_path(L, figures);
+    lua_setfield(L, -2, "path");
     push_all_shares(L, figures);
 }
 
@@ -131,7 +151,13 @@ static int play_flow(lua_State *L) {
     (void)snprintf(where, sizeof where, "%.200s:%d: flow", mcs->script, record->flow->line);
     wh_reader_start(&reader, L, where);
     wh_flow_read(&reader, tool, record->flow);
+    wh_flow_own_open(L, tool, &record->flow->plan);
+    const int own = lua_gettop(L);
     wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
+    wh_flow_own_close(L, own, &record->flow->plan);
+    if (record->flow->has_gains) {
+        record->flow->figures.gains = wh_flow_gains(tool, &record->flow->plan);
+    }
     judge(mcs, record->flow);
     push_result(L, &record->flow->figures);
     return 1;

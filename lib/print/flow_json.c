@@ -1,12 +1,15 @@
 /* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, wafers, cycle_s, period, per_hour,
- * longest_stay_s, robots and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays
- * (beyond their windows), visits (each wafer's, by the end of placing), doings (pumps, vents, cleans and failures of
+ * longest_stay_s, path (parts of the critical path, which add up to the makespan, the longest first), gains (what the flow
+ * takes if one robot or station takes 10 % less time), robots and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays
+ * (beyond their windows), visits (each wafer's, by the end of placing; at last those under way, with null for what has not come), doings (pumps, vents, cleans and failures of
  * stations, by their ends). */
 #include "record_print.h"
 
 #include <math.h>
 
 #include "../text/json.h"
+
+static const char *const ends[] = {"done", "stuck", "broken", "cut"};
 
 static json_t *seconds(int64_t us) {
     return us == WH_FLOW_NEVER ? json_null() : wh_json_real((double)us / 1e6);
@@ -70,11 +73,13 @@ static json_t *visit(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
     const wh_flow_tool_t *tool = figures->tool;
     const wh_flow_visit_t *of = &figures->visits[i];
+    const bool is_there = of->place != WH_FLOW_NONE;
     json_t *object = wh_json_set(
-        json_object(), "wafer %s step %d robot %s arm %d from %s from_slot %d to %s to_slot %d",
+        json_object(), "wafer %s step %d robot %s arm %d from %s from_slot %d to %s to_slot %lld",
         figures->plan->wafers[of->wafer].name, (int)of->step, tool->robots[of->robot].name, (int)of->arm + 1,
         tool->stations[tool->place_stations[of->from]].name, (int)wh_flow_slot(tool, of->from),
-        tool->stations[tool->place_stations[of->place]].name, (int)wh_flow_slot(tool, of->place));
+        is_there ? tool->stations[tool->place_stations[of->place]].name : NULL,
+        is_there ? (long long)wh_flow_slot(tool, of->place) : WH_JSON_NONE);
     return wh_json_add(object, "pick_s picked_s place_s placed_s process_s done_s", seconds(of->pick_us),
                        seconds(of->picked_us), seconds(of->place_us), seconds(of->placed_us),
                        seconds(of->process_us), seconds(of->done_us), NULL);
@@ -94,8 +99,30 @@ static json_t *doing(const void *subject, size_t i) {
                        what, (double)of->begin_us / 1e6, (double)of->end_us / 1e6);
 }
 
+static const char *name_of(const wh_flow_tool_t *tool, int32_t robot, int32_t station) {
+    return robot != WH_FLOW_NONE     ? tool->robots[robot].name
+           : station != WH_FLOW_NONE ? tool->stations[station].name
+                                     : NULL;
+}
+
+static json_t *part(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_part_t *of = &figures->parts[i];
+    return wh_json_set(json_object(), "of %s what %s seconds %g share %g",
+                       name_of(figures->tool, of->robot, of->station), wh_flow_path_words[of->word],
+                       (double)of->us / 1e6, (double)of->us / (double)figures->result.makespan_us);
+}
+
+static json_t *gain(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_gain_t *of = &figures->gains[i];
+    const double cycle_s = of->cycle_us > 0 ? of->cycle_us / 1e6 : (double)NAN;
+    return wh_json_set(json_object(), "of %s end %s makespan_s %g cycle_s %g",
+                       name_of(figures->tool, of->robot, of->station), ends[of->end],
+                       (double)of->makespan_us / 1e6, cycle_s);
+}
+
 json_t *wh_flow_to_json(const wh_flow_t *flow) {
-    static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_figures_t *figures = &flow->figures;
     const wh_flow_result_t *result = &figures->result;
     const double cycle_s = result->period > 0 ? (double)result->cycle_us / 1e6 / result->period : (double)NAN;
@@ -104,8 +131,10 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
         flow->line, ends[result->end], result->why, (long long)result->over,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
-    return wh_json_add(object, "longest_stay_s robots stations stays visits doings",
-                       seconds(figures->longest_stay_us),
+    const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
+    return wh_json_add(object, "longest_stay_s path gains robots stations stays visits doings",
+                       seconds(figures->longest_stay_us), wh_json_list(part, figures, figures->part_count),
+                       wh_json_list(gain, figures, gain_count),
                        wh_json_list(robot, figures, figures->tool->robot_count),
                        wh_json_list(station, figures, figures->tool->station_count),
                        wh_json_list(breach, figures, figures->breach_count),

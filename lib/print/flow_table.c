@@ -1,4 +1,5 @@
 /* A flow: its rate first, then where the time of robots and stations went, and stays beyond windows. */
+#include <math.h>
 #include <stdio.h>
 
 #include "../text/array.h"
@@ -118,6 +119,48 @@ static void print_stations(const wh_printer_t *printer, const wh_flow_figures_t 
     wh_print_titled(printer, "Stations", grid);
 }
 
+static const char *name_of(const wh_flow_tool_t *tool, int32_t robot, int32_t station) {
+    return robot != WH_FLOW_NONE     ? tool->robots[robot].name
+           : station != WH_FLOW_NONE ? tool->stations[station].name
+                                     : "-";
+}
+
+static void print_path(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "of;doing;s{3,6};%{1}");
+    for (size_t i = 0; i < figures->part_count && i < LISTED; ++i) {
+        const wh_flow_part_t *part = &figures->parts[i];
+        const double values[] = {seconds(part->us),
+                                 100 * (double)part->us / (double)figures->result.makespan_us};
+        wh_grid_named_row(grid, name_of(figures->tool, part->robot, part->station));
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", wh_flow_path_words[part->word]);
+        wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
+    }
+    wh_print_titled(printer, "Critical path", grid);
+    if (figures->part_count > LISTED) {
+        fprintf(printer->out, "and %zu more\n", figures->part_count - LISTED);
+    }
+}
+
+/* Those alone that change something. */
+static void print_gains(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_tool_t *tool = figures->tool;
+    const wh_flow_result_t *result = &figures->result;
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "10 % less of;makespan s{3,6};less s{3,6};cycle s{3,6}");
+    for (size_t i = 0; figures->gains && i < tool->robot_count + tool->station_count; ++i) {
+        const wh_flow_gain_t *gain = &figures->gains[i];
+        const double cycle_us = result->period > 0 ? (double)result->cycle_us / result->period : -1;
+        if (gain->end != result->end ||
+            (gain->makespan_us == result->makespan_us && fabs(gain->cycle_us - cycle_us) < 1)) {
+            continue;
+        }
+        const double values[] = {seconds(gain->makespan_us), seconds(result->makespan_us - gain->makespan_us),
+                                 gain->cycle_us > 0 ? gain->cycle_us / 1e6 : (double)NAN};
+        wh_grid_named_row(grid, name_of(tool, gain->robot, gain->station));
+        wh_grid_numbers(grid, 1, values, sizeof values / sizeof values[0]);
+    }
+    wh_print_titled(printer, "Gains", grid);
+}
+
 static void print_breaches(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1,
                                   "wafer;station;done at s{3,6};stay s{3,6};window s{3,6};too long s{3,6}");
@@ -145,5 +188,7 @@ void wh_print_flow(const wh_printer_t *printer) {
     print_rate(printer, &flow->figures);
     print_robots(printer, &flow->figures);
     print_stations(printer, &flow->figures);
+    print_path(printer, &flow->figures);
+    print_gains(printer, &flow->figures);
     print_breaches(printer, &flow->figures);
 }

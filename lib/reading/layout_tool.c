@@ -9,15 +9,12 @@
 #include "../text/nearest.h"
 #include "layout_internal.h"
 
-/* The longest time of a station or a robot, s: a week. */
-#define LONGEST 604800.0
-
 int64_t wh_layout_us(double seconds) {
     return (int64_t)llround(seconds * 1e6);
 }
 
-static int64_t read_us(wh_reader_t *reader, const char *field, double fallback) {
-    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, LONGEST));
+int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback) {
+    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
 }
 
 /* --------------------------------------------------------------------------------------------------- kinds */
@@ -57,17 +54,12 @@ bool wh_layout_is_timed(wh_reader_t *reader) {
 
 /* --------------------------------------------------------------------------------------------------- names */
 
-/* A name, as wh_layout_read_keys reads them. */
-typedef struct {
-    char name[WH_NAME_SIZE];
-} name_t;
-
-static const name_t *read_keys(wh_reader_t *reader, const char *what, size_t *count) {
-    return wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof(name_t), what, count);
+const wh_timed_name_t *wh_timed_read_names(wh_reader_t *reader, const char *what, size_t *count) {
+    return wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof(wh_timed_name_t), what, count);
 }
 
-static int32_t find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
-                            const char *name) {
+int32_t wh_timed_find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
+                              const char *name) {
     const int32_t found = wh_flow_station_named(tool, name);
     if (found == WH_FLOW_NONE) {
         const char **names = wh_layout_memory(reader->L, tool->station_count, sizeof *names);
@@ -76,7 +68,7 @@ static int32_t find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, con
         }
         char meant[WH_NEAREST_TEXT];
         const char *nearest = wh_text_nearest(name, names, tool->station_count);
-        wh_reader_refuse(reader, field, name, "a station of this layout%s",
+        wh_reader_refuse(reader, field, name, "a station of the layout%s",
                          wh_text_did_you_mean(meant, "; ", "", nearest));
     }
     return found;
@@ -90,11 +82,11 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
     lua_pop(reader->L, 1);
     if (type == LUA_TTABLE) {
         (void)wh_reader_open(reader, "door", wh_layout_timed_door_fields);
-        door->open_us = read_us(reader, "open", NAN);
-        door->close_us = read_us(reader, "close", NAN);
+        door->open_us = wh_timed_read_us(reader, "open", NAN);
+        door->close_us = wh_timed_read_us(reader, "close", NAN);
         wh_reader_leave(reader);
     } else if (type != LUA_TNIL) {
-        door->open_us = door->close_us = read_us(reader, "door", NAN);
+        door->open_us = door->close_us = wh_timed_read_us(reader, "door", NAN);
     }
 }
 
@@ -106,10 +98,10 @@ static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
         wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
     }
     station->clean_after = wh_reader_whole(reader, "after", 0, 0, 1000000);
-    station->clean_us = read_us(reader, "seconds", NAN);
+    station->clean_us = wh_timed_read_us(reader, "seconds", NAN);
     station->cleans_full = !wh_reader_boolean(reader, "empty", true);
     if (wh_reader_has(reader, "idle")) {
-        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, LONGEST));
+        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
     }
     wh_reader_leave(reader);
 }
@@ -118,12 +110,12 @@ static void read_pump(wh_reader_t *reader, wh_flow_station_t *station) {
     static const char *const states[] = {"atmosphere", "vacuum", NULL};
     station->is_lock = wh_reader_open(reader, "pump", wh_layout_pump_fields);
     if (station->is_lock) {
-        station->pump_us[WH_FLOW_VACUUM] = read_us(reader, "down", NAN);
-        station->pump_us[WH_FLOW_ATMOSPHERE] = read_us(reader, "up", NAN);
+        station->pump_us[WH_FLOW_VACUUM] = wh_timed_read_us(reader, "down", NAN);
+        station->pump_us[WH_FLOW_ATMOSPHERE] = wh_timed_read_us(reader, "up", NAN);
         station->empty_pump_us[WH_FLOW_VACUUM] =
-            read_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
+            wh_timed_read_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
         station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
-            read_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
+            wh_timed_read_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
         wh_reader_leave(reader);
     } else if (wh_reader_has(reader, "state")) {
         wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");
@@ -136,9 +128,9 @@ static void read_station(wh_reader_t *reader, wh_flow_station_t *station) {
     wh_reader_refuse_unknown(reader, wh_layout_timed_station_fields);
     station->is_load_port = wh_reader_choice(reader, "kind", 0, kinds) == 1;
     station->slots = wh_reader_whole(reader, "slots", station->is_load_port ? 25 : 1, 1, 100000);
-    station->process_us = read_us(reader, "process", 0);
+    station->process_us = wh_timed_read_us(reader, "process", 0);
     if (wh_reader_has(reader, "window")) {
-        station->window_us = read_us(reader, "window", 0);
+        station->window_us = wh_timed_read_us(reader, "window", 0);
     }
     read_clean(reader, station);
     read_pump(reader, station);
@@ -242,7 +234,7 @@ static void read_by(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t station) 
         return;
     }
     size_t count = 0;
-    const name_t *names = read_keys(reader, "robots", &count);
+    const wh_timed_name_t *names = wh_timed_read_names(reader, "robots", &count);
     if (count == 0) {
         wh_reader_fail(reader, NULL, "at least one robot by name");
     }
@@ -254,134 +246,6 @@ static void read_by(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t station) 
         }
     }
     wh_reader_leave(reader);
-}
-
-/* --------------------------------------------------------------------------------------------------- robots */
-
-/* A time for each station: a number, or a table with some of them and `default`. */
-static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *field,
-                       double fallback, int64_t times_us[]) {
-    int64_t *own = &times_us[wh_flow_of(tool, robot, 0)];
-    const int type = wh_reader_push(reader, field);
-    lua_pop(reader->L, 1);
-    const bool is_table = type == LUA_TTABLE && wh_reader_enter(reader, field);
-    const double usual = is_table
-                             ? wh_reader_number(reader, "default", isnan(fallback) ? 0 : fallback, 0, LONGEST)
-                             : wh_reader_number(reader, field, fallback, 0, LONGEST);
-    for (size_t s = 0; s < tool->station_count; ++s) {
-        own[s] = wh_layout_us(usual);
-    }
-    if (!is_table) {
-        return;
-    }
-    const bool has_usual = wh_reader_has(reader, "default") || !isnan(fallback);
-    for (size_t s = 0; s < tool->station_count; ++s) {
-        const bool is_needed = !has_usual && tool->serves[wh_flow_of(tool, robot, (int32_t)s)];
-        if (is_needed || wh_reader_has(reader, tool->stations[s].name)) {
-            own[s] = read_us(reader, tool->stations[s].name, NAN);
-        }
-    }
-    size_t count = 0;
-    const name_t *names = read_keys(reader, "stations", &count);
-    for (size_t i = 0; i < count; ++i) {
-        if (strcmp(names[i].name, "default") != 0) {
-            (void)find_station(reader, tool, names[i].name, names[i].name);
-        }
-    }
-    wh_reader_leave(reader);
-}
-
-/* One pair of `move`, named "A>B"; and the way back, unless that is named as well. */
-static void read_pair(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *pair) {
-    char from[WH_NAME_SIZE], to[WH_NAME_SIZE], back[2 * WH_NAME_SIZE];
-    if (sscanf(pair, "%63[^>]>%63[^\n]", from, to) != 2) {
-        wh_reader_refuse(reader, NULL, pair, "a pair of stations, as in [\"A>B\"]");
-    }
-    const size_t a = (size_t)find_station(reader, tool, pair, from),
-                 b = (size_t)find_station(reader, tool, pair, to);
-    const int64_t us = read_us(reader, pair, NAN);
-    tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] = us;
-    (void)snprintf(back, sizeof back, "%s>%s", to, from);
-    if (!wh_reader_has(reader, back)) {
-        tool->move_us[wh_flow_of(tool, robot, (int32_t)b) * tool->station_count + a] = us;
-    }
-}
-
-static void fill_moves(wh_flow_tool_t *tool, int32_t robot, int64_t us) {
-    for (size_t i = 0; i < tool->station_count * tool->station_count; ++i) {
-        tool->move_us[wh_flow_of(tool, robot, 0) * tool->station_count + i] = us;
-    }
-}
-
-static void read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
-    if (wh_reader_push(reader, "move") != LUA_TTABLE) {
-        lua_pop(reader->L, 1);
-        fill_moves(tool, robot, read_us(reader, "move", NAN));
-        return;
-    }
-    lua_pop(reader->L, 1);
-    (void)wh_reader_enter(reader, "move");
-    fill_moves(tool, robot, read_us(reader, "default", NAN));
-    size_t count = 0;
-    const name_t *pairs = read_keys(reader, "pairs of stations", &count);
-    for (size_t i = 0; i < count; ++i) {
-        if (strcmp(pairs[i].name, "default") != 0) {
-            read_pair(reader, tool, robot, pairs[i].name);
-        }
-    }
-    wh_reader_leave(reader);
-}
-
-/* The straight way between the stations' places at the robot's speed. */
-static void fly(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
-    const double speed = wh_reader_number(reader, "speed", NAN, 1e-3, 1e6);
-    for (size_t a = 0; a < tool->station_count; ++a) {
-        for (size_t b = 0; b < tool->station_count; ++b) {
-            const wh_vec3_t way = {at[a].x - at[b].x, at[a].y - at[b].y, at[a].z - at[b].z};
-            const double length = sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
-            tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] =
-                wh_layout_us(length / speed);
-        }
-    }
-}
-
-static void read_stand(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
-    char name[64];
-    int32_t first = 0;
-    while ((size_t)first < tool->station_count && !tool->serves[wh_flow_of(tool, robot, first)]) {
-        ++first;
-    }
-    if ((size_t)first == tool->station_count) {
-        wh_reader_fail(reader, NULL, "a robot that serves a station");
-    }
-    wh_reader_text(reader, "at", tool->stations[first].name, name, sizeof name);
-    tool->robots[robot].at = find_station(reader, tool, "at", name);
-}
-
-static void read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
-    wh_reader_refuse_unknown(reader, wh_layout_timed_robot_fields);
-    tool->robots[robot].arms = wh_reader_whole(reader, "arms", 1, 1, 2);
-    read_stand(reader, tool, robot);
-    read_times(reader, tool, robot, "pick", NAN, tool->pick_us);
-    read_times(reader, tool, robot, "place", NAN, tool->place_us);
-    if (wh_reader_has(reader, "speed")) {
-        if (wh_reader_has(reader, "move")) {
-            wh_reader_refuse(reader, "speed", NULL, "nothing beside `move`");
-        }
-        fly(reader, tool, robot, at);
-    } else {
-        read_moves(reader, tool, robot);
-    }
-    if (wh_reader_has(reader, "swap")) {
-        read_times(reader, tool, robot, "swap", NAN, tool->swap_us);
-        return;
-    }
-    for (size_t s = 0; s < tool->station_count; ++s) {
-        const size_t of = wh_flow_of(tool, robot, (int32_t)s);
-        const size_t away = tool->station_count > 1 ? (s + 1) % tool->station_count : 0;
-        tool->swap_us[of] =
-            tool->pick_us[of] + tool->move_us[of * tool->station_count + away] + tool->place_us[of];
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------ the whole */
@@ -404,18 +268,18 @@ static wh_flow_tool_t *new_tool(lua_State *L) {
 }
 
 static void open_named(wh_reader_t *reader, wh_flow_tool_t *tool, bool is_one) {
-    static const name_t one = {"robot"};
+    static const wh_timed_name_t one = {"robot"};
     size_t robots = 1, stations = 0;
-    const name_t *robot_names = &one;
+    const wh_timed_name_t *robot_names = &one;
     if (!is_one) {
         (void)wh_reader_enter(reader, "robots");
-        robot_names = read_keys(reader, "robots", &robots);
+        robot_names = wh_timed_read_names(reader, "robots", &robots);
         wh_reader_leave(reader);
     }
     if (!wh_reader_enter(reader, "stations")) {
         wh_reader_refuse(reader, "stations", NULL, "a table of stations by name");
     }
-    const name_t *station_names = read_keys(reader, "stations", &stations);
+    const wh_timed_name_t *station_names = wh_timed_read_names(reader, "stations", &stations);
     if (stations == 0) {
         wh_reader_fail(reader, NULL, "at least one station by name");
     }
@@ -494,7 +358,7 @@ const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader) {
         if (!is_one) {
             (void)wh_reader_enter(reader, tool->robots[r].name);
         }
-        read_robot(reader, tool, r, at);
+        wh_timed_read_robot(reader, tool, r, at);
         if (!is_one) {
             wh_reader_leave(reader);
         }

@@ -3,6 +3,7 @@
 #define WH_READING_LAYOUT_TOOL_H
 
 #include "../flow/tool.h"
+#include "../layout/layout.h"
 #include "../script/reader.h"
 
 /* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and others are
@@ -15,6 +16,28 @@ const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader);
 
 /* Whole microseconds of a time in s. */
 int64_t wh_layout_us(double seconds);
+
+/* ---- shared by the files that read such a cell and its flows; each raises the first fault */
+
+/* The longest time of a station or a robot, s: a week. */
+#define WH_TIMED_LONGEST_S 604800.0
+
+typedef struct {
+    char name[WH_NAME_SIZE];
+} wh_timed_name_t;
+
+/* The keys of the table at which the reader is, in the order of their bytes; `what` says what they name. */
+const wh_timed_name_t *wh_timed_read_names(wh_reader_t *reader, const char *what, size_t *count);
+
+/* A time of at most WH_TIMED_LONGEST_S; `fallback` in s, NAN: it must be there. */
+int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback);
+
+/* The number of the station of this name, which stands in this field. */
+int32_t wh_timed_find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *field,
+                              const char *name);
+
+/* `at`: the stations' places, for robots with a speed. */
+void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]);
 
 extern const wh_reader_field_t wh_layout_timed_fields[];
 extern const wh_reader_field_t wh_layout_timed_robot_fields[];

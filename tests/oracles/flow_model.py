@@ -19,7 +19,7 @@ A flow is
      "rule":   "backward" | "swap" | "first_come" | "longest_wait" | {"order": {robot: [action, ...]}} | function(view, robot),
      "until": None, "down": [{"station", "at", "seconds": None for ever}], "takt": 0, "safe": True}
 An action is (from, to), (from, to, wafer), (from, "keep"), ("keep", to), ("keep", to, wafer) or ("pump", station, state). A result is
-    {"state": "done" | "STUCK" | "until" | "refused", "cause", "circle": [names], "makespan", "cycle": None | (time, k), "why",
+    {"state": "done" | "STUCK" | "until" | "refused", "cause", "now", "circle": [names], "makespan", "cycle": None | (time, k), "why",
      "wafers": {name: [row, ...]}, "stays": [(wafer, station, over)], "robots": {name: {class: time}}, "pumps": [(station, to, begin, end)],
      "cleans": [(station, slot, begin, end)], "lost": [wafers in failed stations]}
 and a row is (robot, arm, from station, from slot, pick begin, pick end, to station, to slot, place begin, place end, process begin,
@@ -128,9 +128,9 @@ class Model:
         if pressure is None:
             return None
         if place.leaves is not None and self.clean_due(place):
-            begin = station.up_from(place.leaves + place.closing)
+            begin = station.up_from(place.leaves + place.closing, self.now)
             clean = begin + station.clean["seconds"] if begin is not None else 0
-        begin = station.up_from(max(arrival, pressure, clean, place.leaves or 0, station.busy_until))
+        begin = station.up_from(max(arrival, pressure, clean, place.leaves or 0, station.busy_until), self.now)
         return None if begin is None else begin + station.door(robot)[0]
 
     def picking_from(self, robot, wafer, arrival):
@@ -140,7 +140,7 @@ class Model:
         if pressure is None or wafer.done is None:
             return None
         takt = self.last_start + self.takt if wafer.step == 0 and self.last_start is not None else 0
-        return place.station.up_from(max(arrival, wafer.done, pressure, place.station.busy_until, takt))
+        return place.station.up_from(max(arrival, wafer.done, pressure, place.station.busy_until, takt), self.now)
 
     def arrival(self, robot, station):
         return self.now + robot.move(robot.at, station.name)
@@ -283,11 +283,11 @@ class Model:
         robot.doing = (end, self.put(robot, wafer, place, begin, end, shut))
 
     def swap(self, robot, wafer, place, heading):
-        """Places the wafer and takes what lies there. Its next place is decided when it is aboard; until then it counts at `heading`."""
+        """Places the wafer and takes what lies there, which goes on to `heading`."""
         other, arm = place.wafer, robot.free_arm(place.wafer.steps[place.wafer.step][2])
         begin, end, shut = self.access(robot, place.station, "swapping", robot.seconds("swap", place.station.name))
         self.start_row(robot, other, arm, place, begin, end)
-        other.begun, other.toward, other.heading = self.now, self.following(other, other.step), heading
+        other.begun, other.toward, other.destination, heading.coming = self.now, self.following(other, other.step), heading, other
         wafer.destination, place.coming, place.filling = place, wafer, True
         place.count += 1
         placed = self.put(robot, wafer, place, begin, end, shut)
@@ -367,10 +367,14 @@ class Model:
         times |= {wafer.done for wafer in self.wafers if wafer.place and not wafer.ended and wafer.done is not None}
         for station in self.stations.values():
             times |= {station.busy_until} | ({station.turning[1]} if station.turning else set())
-            times |= {time for place in station.places for time in (place.clean_end, self.idle_due(place)) if time is not None}
+            times |= {place.clean_end for place in station.places if place.clean_end is not None}
         if self.last_start is not None and any(wafer.step == 0 and wafer.lies() for wafer in self.wafers):
             times.add(self.last_start + self.takt)
-        return min((time for time in times if time > self.now), default=None)
+        times = {time for time in times if time > self.now}
+        if times:   # a clean for want of wafers brings nobody further
+            idle = (self.idle_due(place) for station in self.stations.values() for place in station.places)
+            times |= {time for time in idle if time is not None and time > self.now}
+        return min(times, default=None)
 
     def run(self):
         until = self.flow.get("until")
@@ -385,7 +389,7 @@ class Model:
                 return "done"
             after = self.next_instant()
             if after is None and self.ask_relaxed():
-                after = self.next_instant()
+                continue    # others may follow at once (rule 2)
             if after is None:
                 return "STUCK"
             if until is not None and after > until:
@@ -410,7 +414,7 @@ def run(tool, flow):
     placings = [row[9] for wafer in model.wafers for row in wafer.rows if row[9] is not None and row[9] <= model.now]
     makespan = max(placings, default=0)
     cycle, why = flow_figures.steady_cycle(ends)
-    return {"state": state, "cause": cause, "circle": flow_figures.circle(model) if state == "STUCK" else [], "makespan": makespan,
+    return {"state": state, "cause": cause, "now": model.now, "circle": flow_figures.circle(model) if state == "STUCK" else [], "makespan": makespan,
             "cycle": cycle, "why": why, "wafers": {wafer.name: [tuple(row) for row in wafer.rows] for wafer in model.wafers},
             "lost": [wafer.name for wafer in model.wafers if wafer.lost], "stays": model.stays, "robots": flow_figures.split(model, makespan),
             "pumps": model.pumps, "cleans": model.cleans}

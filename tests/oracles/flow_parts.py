@@ -41,10 +41,10 @@ class Station:
     def failed_at(self, time):
         return bool(self.down) and any(begin <= time for begin, end in self.down if end is None)
 
-    def up_from(self, time):
-        """The first time from `time` on at which it is not down; None if there is none."""
+    def up_from(self, time, known=None):
+        """The first time from `time` on at which it is not down; None if there is none. `known`: what begins later is not known yet."""
         while self.down:
-            ends = [end for begin, end in self.down if begin <= time and (end is None or time < end)]
+            ends = [end for begin, end in self.down if begin <= (time if known is None else min(time, known)) and (end is None or time < end)]
             if not ends:
                 return time
             if None in ends:
@@ -97,7 +97,6 @@ class Wafer:
         self.place = None       # where it lies, until the end of the pick
         self.toward = None      # the step to which a transfer has begun
         self.destination = None
-        self.heading = None     # swap: where it would go, before that is decided
         self.robot = None       # who has it aboard
         self.kept = None        # since when it is kept on an arm
         self.entered = self.done = None     # done is known as soon as its placing has begun

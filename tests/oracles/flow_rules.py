@@ -244,8 +244,7 @@ def swap_loaded(model, robot, wafer):
     if target is None:
         return False
     if model.clean_due(place):
-        model.pick(robot, other, None)
-        other.toward, other.heading = model.following(other, other.step), target
+        model.pick(robot, other, target)
     else:
         model.swap(robot, wafer, place, target)
     return True

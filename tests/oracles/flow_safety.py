@@ -16,7 +16,7 @@ def safe_after(model, moves):
     for wafer in model.wafers:
         place, step = wafer.place, wafer.step
         if wafer.toward is not None:
-            place, step = wafer.destination or wafer.heading, wafer.toward
+            place, step = wafer.destination, wafer.toward
         place, step = moves.get(wafer, (place, step))
         if place is not None:
             where.setdefault(place, []).append(wafer)

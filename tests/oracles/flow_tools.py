@@ -12,7 +12,8 @@ import flow_model
 MS = 1000
 LEVELS = ("one robot, one lot, single places", "parallel places, slots, times by station and pair, two arms", "cleans, windows, partial, takt",
           "several robots and shared buffers", "re-entrant and mixed routes, lots that arrive, priorities, back", "doors and locks with pumps",
-          "stations that are down", "lists drawn at random, safe = false", "all together")
+          "stations that are down", "lists drawn at random, safe = false", "all together",
+          "all together in whole seconds: much happens at one instant")
 RULES = ("backward", "first_come", "longest_wait", "swap")
 
 
@@ -28,7 +29,7 @@ class Maker:
 
     def time(self, least, most):
         """Seconds, sometimes whole, sometimes to the millisecond."""
-        return self.draw.randint(least, most) * 1000 * MS if self.draw.random() < 0.5 else self.draw.randint(least * 1000, most * 1000) * MS
+        return self.draw.randint(least, most) * 1000 * MS if self.level > 9 or self.draw.random() < 0.5 else self.draw.randint(least * 1000, most * 1000) * MS
 
     # -------------------------------------------------------------------------------------------------------- the tool
     def make(self):

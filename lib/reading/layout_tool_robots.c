@@ -1,0 +1,133 @@
+/* Robots that are times alone: picks, places and swaps by station, moves by pair or by speed. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "layout_internal.h"
+#include "layout_tool.h"
+
+/* A time for each station: a number, or a table with some of them and `default`. */
+static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *field,
+                       double fallback, int64_t times_us[]) {
+    int64_t *own = &times_us[wh_flow_of(tool, robot, 0)];
+    const int type = wh_reader_push(reader, field);
+    lua_pop(reader->L, 1);
+    const bool is_table = type == LUA_TTABLE && wh_reader_enter(reader, field);
+    const double usual =
+        is_table ? wh_reader_number(reader, "default", isnan(fallback) ? 0 : fallback, 0, WH_TIMED_LONGEST_S)
+                 : wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S);
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        own[s] = wh_layout_us(usual);
+    }
+    if (!is_table) {
+        return;
+    }
+    const bool has_usual = wh_reader_has(reader, "default") || !isnan(fallback);
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        const bool is_needed = !has_usual && tool->serves[wh_flow_of(tool, robot, (int32_t)s)];
+        if (is_needed || wh_reader_has(reader, tool->stations[s].name)) {
+            own[s] = wh_timed_read_us(reader, tool->stations[s].name, NAN);
+        }
+    }
+    size_t count = 0;
+    const wh_timed_name_t *names = wh_timed_read_names(reader, "stations", &count);
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp(names[i].name, "default") != 0) {
+            (void)wh_timed_find_station(reader, tool, names[i].name, names[i].name);
+        }
+    }
+    wh_reader_leave(reader);
+}
+
+/* One pair of `move`, named "A>B"; and the way back, unless that is named as well. */
+static void read_pair(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *pair) {
+    char from[WH_NAME_SIZE], to[WH_NAME_SIZE], back[2 * WH_NAME_SIZE];
+    if (sscanf(pair, "%63[^>]>%63[^\n]", from, to) != 2) {
+        wh_reader_refuse(reader, NULL, pair, "a pair of stations, as in [\"A>B\"]");
+    }
+    const size_t a = (size_t)wh_timed_find_station(reader, tool, pair, from),
+                 b = (size_t)wh_timed_find_station(reader, tool, pair, to);
+    const int64_t us = wh_timed_read_us(reader, pair, NAN);
+    tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] = us;
+    (void)snprintf(back, sizeof back, "%s>%s", to, from);
+    if (!wh_reader_has(reader, back)) {
+        tool->move_us[wh_flow_of(tool, robot, (int32_t)b) * tool->station_count + a] = us;
+    }
+}
+
+static void fill_moves(wh_flow_tool_t *tool, int32_t robot, int64_t us) {
+    for (size_t i = 0; i < tool->station_count * tool->station_count; ++i) {
+        tool->move_us[wh_flow_of(tool, robot, 0) * tool->station_count + i] = us;
+    }
+}
+
+static void read_moves(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
+    if (wh_reader_push(reader, "move") != LUA_TTABLE) {
+        lua_pop(reader->L, 1);
+        fill_moves(tool, robot, wh_timed_read_us(reader, "move", NAN));
+        return;
+    }
+    lua_pop(reader->L, 1);
+    (void)wh_reader_enter(reader, "move");
+    fill_moves(tool, robot, wh_timed_read_us(reader, "default", NAN));
+    size_t count = 0;
+    const wh_timed_name_t *pairs = wh_timed_read_names(reader, "pairs of stations", &count);
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp(pairs[i].name, "default") != 0) {
+            read_pair(reader, tool, robot, pairs[i].name);
+        }
+    }
+    wh_reader_leave(reader);
+}
+
+/* The straight way between the stations' places at the robot's speed. */
+static void fly(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
+    const double speed = wh_reader_number(reader, "speed", NAN, 1e-3, 1e6);
+    for (size_t a = 0; a < tool->station_count; ++a) {
+        for (size_t b = 0; b < tool->station_count; ++b) {
+            const wh_vec3_t way = {at[a].x - at[b].x, at[a].y - at[b].y, at[a].z - at[b].z};
+            const double length = sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+            tool->move_us[wh_flow_of(tool, robot, (int32_t)a) * tool->station_count + b] =
+                wh_layout_us(length / speed);
+        }
+    }
+}
+
+static void read_stand(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot) {
+    char name[64];
+    int32_t first = 0;
+    while ((size_t)first < tool->station_count && !tool->serves[wh_flow_of(tool, robot, first)]) {
+        ++first;
+    }
+    if ((size_t)first == tool->station_count) {
+        wh_reader_fail(reader, NULL, "a robot that serves a station");
+    }
+    wh_reader_text(reader, "at", tool->stations[first].name, name, sizeof name);
+    tool->robots[robot].at = wh_timed_find_station(reader, tool, "at", name);
+}
+
+void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]) {
+    wh_reader_refuse_unknown(reader, wh_layout_timed_robot_fields);
+    tool->robots[robot].arms = wh_reader_whole(reader, "arms", 1, 1, 2);
+    read_stand(reader, tool, robot);
+    read_times(reader, tool, robot, "pick", NAN, tool->pick_us);
+    read_times(reader, tool, robot, "place", NAN, tool->place_us);
+    if (wh_reader_has(reader, "speed")) {
+        if (wh_reader_has(reader, "move")) {
+            wh_reader_refuse(reader, "speed", NULL, "nothing beside `move`");
+        }
+        fly(reader, tool, robot, at);
+    } else {
+        read_moves(reader, tool, robot);
+    }
+    if (wh_reader_has(reader, "swap")) {
+        read_times(reader, tool, robot, "swap", NAN, tool->swap_us);
+        return;
+    }
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        const size_t of = wh_flow_of(tool, robot, (int32_t)s);
+        const size_t away = tool->station_count > 1 ? (s + 1) % tool->station_count : 0;
+        tool->swap_us[of] =
+            tool->pick_us[of] + tool->move_us[of * tool->station_count + away] + tool->place_us[of];
+    }
+}
