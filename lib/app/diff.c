@@ -140,8 +140,8 @@ static bool is_whole(const char *verdict) {
            strcmp(verdict, wh_reading_word(WH_READING_DIFFERS)) == 0;
 }
 
-/* Where a result tells what its log is worth: in the record, in the run of a page's data, or, of `replay`, beside
- * all else. */
+/* Where a result tells what its log is worth: in the record, in the run of a page's data, or, of `replay`,
+ * beside all else. */
 static const json_t *find_log(const json_t *root) {
     const json_t *run = json_object_get(root, "run");
     const json_t *log = json_object_get(json_is_object(run) ? run : root, "log");

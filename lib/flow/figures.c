@@ -35,14 +35,14 @@ typedef struct {
     wh_flow_log_t log;
 } measure_t;
 
-/* ------------------------------------------------------------------------------------------------- stations */
+/* ----------------------------------------------------------------------------------------------- stations */
 
 static void add(measure_t *measure, int32_t station, wh_flow_station_class_t which, int64_t us) {
     measure->figures->stations[station][which] += us;
 }
 
-/* Goes on to `to_us` in one class. Cleans, pumps and failures within count as themselves if `which` is one that
- * gives way to them. */
+/* Goes on to `to_us` in one class. Cleans, pumps and failures within count as themselves if `which` is one
+ * that gives way to them. */
 static void go_to(measure_t *measure, const wh_flow_state_t *state, int32_t number, int64_t to_us,
                   wh_flow_station_class_t which) {
     place_t *place = &measure->places[number];
@@ -121,7 +121,7 @@ static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *stat
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- visits */
+/* ------------------------------------------------------------------------------------------------- visits */
 
 static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
     measure->open[stay->wafer] = (wh_flow_visit_t){.wafer = stay->wafer,
@@ -181,7 +181,7 @@ static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event)
                                                                 event->side, event->begin_us, event->end_us};
 }
 
-/* --------------------------------------------------------------------------------------------------- events */
+/* ------------------------------------------------------------------------------------------------- events */
 
 static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
     account_wafer(measure, state, event->wafer, event->end_us);
@@ -307,7 +307,7 @@ static void end(void *context, const wh_flow_state_t *state) {
     measure->figures->end_us = state->now_us;
 }
 
-/* ---------------------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------------------------- whole */
 
 static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
     const size_t robots = tool->robot_count, stations = tool->station_count;

@@ -1,5 +1,5 @@
-/* Where the time of a flow went: each robot's and each place's, in classes without a rest, so that they add up to the
- * makespan to the microsecond; each wafer's stays; what was waited for. */
+/* Where the time of a flow went: each robot's and each place's, in classes without a rest, so that they
+ * add up to the makespan to the microsecond; each wafer's stays; what was waited for. */
 #ifndef WH_FLOW_FIGURES_H
 #define WH_FLOW_FIGURES_H
 

@@ -7,8 +7,8 @@
 #include "robots.h"
 #include "stations.h"
 
-/* How often at most all robots are asked at one instant: with times of 0 a rule of one's own may send a robot to and
- * fro. */
+/* How often at most all robots are asked at one instant: with times of 0 a rule of one's own may send a
+ * robot to and fro. */
 #define MOST_ROUNDS 100000
 
 /* The user's listener, and the times of the last placings. */
@@ -40,7 +40,7 @@ static void pass_on(void *context, const wh_flow_state_t *state, int64_t to_us) 
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- instants */
+/* ----------------------------------------------------------------------------------------------- instants */
 
 static void end_all(wh_flow_state_t *state) {
     wh_flow_stations_end(state);
@@ -80,8 +80,8 @@ static bool is_any_over(const wh_flow_state_t *state) {
     return false;
 }
 
-/* One instant: all that ends, then what stations begin, then robots, until nobody begins anything; once more if what
- * began takes no time. */
+/* One instant: all that ends, then what stations begin, then robots, until nobody begins anything; once
+ * more if what began takes no time. */
 static void play_instant(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
     int rounds = 0;
     do {
@@ -110,7 +110,8 @@ static int64_t next_instant(const wh_flow_state_t *state) {
     return next_us != WH_FLOW_NEVER && idle_us < next_us ? idle_us : next_us;
 }
 
-/* Nobody can go on: shipped rules are asked once more, without waiting for steps to fill. True if a robot begins. */
+/* Nobody can go on: shipped rules are asked once more, without waiting for steps to fill. True if a robot
+ * begins. */
 static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
     if (state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN) {
         return false;

@@ -1,5 +1,5 @@
-/* Wafers through a tool: plays lots along their routes by events, with robots that are times alone. Nothing is looked
- * at but times: no place, no way, no collision. */
+/* Wafers through a tool: plays lots along their routes by events, with robots that are times alone.
+ * Nothing is looked at but times: no place, no way, no collision. */
 #ifndef WH_FLOW_FLOW_H
 #define WH_FLOW_FLOW_H
 
@@ -22,19 +22,20 @@ typedef struct {
     uint64_t asked; /* how often a rule was asked */
 } wh_flow_result_t;
 
-/* Plays the plan from time 0 to its end. The plan must be finished (wh_flow_plan_finish). The listener, which may be
- * null, hears of each action when it has ended. Cost: for each instant at which something happens, the robots times
- * the steps of the routes; memory does not grow with time. Deterministic. */
+/* Plays the plan from time 0 to its end. The plan must be finished (wh_flow_plan_finish). The listener,
+ * which may be null, hears of each action when it has ended. Cost: for each instant at which something
+ * happens, the robots times the steps of the routes; memory does not grow with time. Deterministic. */
 void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_listener_t *listener,
                   wh_flow_result_t *result);
 void wh_flow_result_close(wh_flow_result_t *result);
 
-/* The steady cycle of placings at the wafers' ends: the least k up to 24 for which `ends[i + k] - ends[i]` is the
- * same to 1 us over the middle third. Returns k, and in `cycle_us` that difference; 0 if there is none. */
+/* The steady cycle of placings at the wafers' ends: the least k up to 24 for which `ends[i + k] - ends[i]`
+ * is the same to 1 us over the middle third. Returns k, and in `cycle_us` that difference; 0 if there is
+ * none. */
 int32_t wh_flow_steady(const int64_t *ends_us, size_t count, int64_t *cycle_us);
 
-/* Why nobody can go on: each wafer that could be taken, what it waits for, and who stands there. The caller frees
- * it. */
+/* Why nobody can go on: each wafer that could be taken, what it waits for, and who stands there. The
+ * caller frees it. */
 char *wh_flow_stuck_text(const wh_flow_state_t *state);
 
 #endif

@@ -141,7 +141,8 @@ static const wh_flow_event_t *find_earlier(const path_t *path, int64_t us) {
     return first > 0 ? &path->log->events[first - 1] : NULL;
 }
 
-/* Goes back over what nothing that ended explains: a door, a lot, takt. Returns the event behind it, or null. */
+/* Goes back over what nothing that ended explains: a door, a lot, takt. Returns the event behind it, or
+ * null. */
 static const wh_flow_event_t *go_back(path_t *path, const wh_flow_event_t *event) {
     const int64_t at_us = event->begin_us;
     const wh_flow_event_t *before = find_shut(path, event);
@@ -200,7 +201,7 @@ wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *p
     return path.parts;
 }
 
-/* --------------------------------------------------------------------------------------------------- gains */
+/* -------------------------------------------------------------------------------------------------- gains */
 
 static void shorten(int64_t times_us[], size_t count) {
     for (size_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-/* The critical path of a flow: what the makespan consists of, from the last placing back to the beginning; and what
- * less time of each robot and station would bring. */
+/* The critical path of a flow: what the makespan consists of, from the last placing back to the beginning;
+ * and what less time of each robot and station would bring. */
 #ifndef WH_FLOW_PATH_H
 #define WH_FLOW_PATH_H
 
@@ -18,7 +18,8 @@ typedef enum {
     WH_FLOW_PATH_DOWN,
     WH_FLOW_PATH_LOT,  /* until a lot arrives */
     WH_FLOW_PATH_TAKT, /* between two wafers' starts */
-    WH_FLOW_PATH_WAIT, /* nothing known ended at the instant at which it goes on, such as a clean for want of wafers */
+    /* Nothing known ended at the instant at which it goes on, such as a clean for want of wafers. */
+    WH_FLOW_PATH_WAIT,
     WH_FLOW_PATH_WORDS
 } wh_flow_path_word_t;
 
@@ -31,8 +32,8 @@ typedef struct {
     int64_t us;
 } wh_flow_part_t;
 
-/* The time that a flow would take if one robot (its moves, picks, places, swaps) or station (its processes, cleans, pumps and
- * doors) took 10 % less time. */
+/* The time that a flow would take if one robot (its moves, picks, places, swaps) or station (its
+ * processes, cleans, pumps and doors) took 10 % less time. */
 typedef struct {
     int32_t robot, station;
     wh_flow_end_t end;
@@ -48,14 +49,15 @@ typedef struct {
 
 void wh_flow_log_add(wh_flow_log_t *log, const wh_flow_event_t *event);
 
-/* The parts, the longest first; they add up to the makespan to the microsecond. The caller frees them. Each instant of
- * the path is the end of what let the next part begin: of the robot's own doing, else of the wafer's process, else of
- * what was at the station, else of anything. Cost: the events of the path, each with its neighbours in time. */
+/* The parts, the longest first; they add up to the makespan to the microsecond. The caller frees them.
+ * Each instant of the path is the end of what let the next part begin: of the robot's own doing, else of
+ * the wafer's process, else of what was at the station, else of anything. Cost: the events of the path,
+ * each with its neighbours in time. */
 wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_log_t *log,
                              size_t *count);
 
-/* Plays the flow once more for each robot, then each station. The caller frees the gains: robot_count + station_count
- * of them. */
+/* Plays the flow once more for each robot, then each station. The caller frees the gains: robot_count +
+ * station_count of them. */
 wh_flow_gain_t *wh_flow_gains(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan);
 
 #endif

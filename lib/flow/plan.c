@@ -76,7 +76,7 @@ bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *st
     return false;
 }
 
-/* ------------------------------------------------------------------------------------------------ finishing */
+/* ---------------------------------------------------------------------------------------------- finishing */
 
 __attribute__((format(printf, 1, 2))) static char *problem_of(const char *format, ...) {
     char text[400];

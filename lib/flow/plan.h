@@ -70,9 +70,10 @@ struct wh_flow_state;
 /* How many answers of a rule of the user's are looked at. */
 #define WH_FLOW_ANSWERS 16
 
-/* A rule of the user's: fills at most WH_FLOW_ANSWERS lines (transfers, "keep" and from there) for the robot, the best
- * one first, and returns their number. The first that can begin as soon as the robot is there is carried out; if none
- * can, the robot goes ahead to the first. A negative number ends the flow; `why`, by malloc, tells why. */
+/* A rule of the user's: fills at most WH_FLOW_ANSWERS lines (transfers, "keep" and from there) for the
+ * robot, the best one first, and returns their number. The first that can begin as soon as the robot is
+ * there is carried out; if none can, the robot goes ahead to the first. A negative number ends the flow;
+ * `why`, by malloc, tells why. */
 typedef int (*wh_flow_own_rule_t)(void *context, const struct wh_flow_state *state, int32_t robot,
                                   wh_flow_line_t lines[], char **why);
 
@@ -111,8 +112,8 @@ typedef struct {
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or
- * what is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
+/* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or what
+ * is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
  * whose places are all kept empty, the same station twice in succession. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 

@@ -4,8 +4,8 @@
 
 #include "state.h"
 
-/* Begins what the order asks of an idle robot: the way to where it must stand, or the pick, placing or swap. False
- * if nothing can begin at this instant. */
+/* Begins what the order asks of an idle robot: the way to where it must stand, or the pick, placing or
+ * swap. False if nothing can begin at this instant. */
 bool wh_flow_robot_begin(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order);
 
 /* Begins the placing for which a robot waits in front of a place. False if it cannot begin yet. */

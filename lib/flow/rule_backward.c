@@ -10,7 +10,8 @@ static bool is_worth_waiting(const wh_flow_state_t *state, const wh_flow_task_t 
     return room.holds >= room.may;
 }
 
-/* The wafer to take out of a step, and its place: the first that entered, but for those for which there is none. */
+/* The wafer to take out of a step, and its place: the first that entered, but for those for which there is
+ * none. */
 static int32_t first_of(const wh_flow_state_t *state, int32_t robot, const wh_flow_task_t *task,
                         int32_t *place) {
     const size_t step = state->plan->routes[task->route].first_step + (size_t)task->step;

@@ -1,5 +1,5 @@
-/* first_come and longest_wait: among the transfers that can begin as soon as the robot is there. If none can, the
- * robot goes ahead to the one that can begin soonest. */
+/* first_come and longest_wait: among the transfers that can begin as soon as the robot is there. If none
+ * can, the robot goes ahead to the one that can begin soonest. */
 #include "rules.h"
 #include "transfer.h"
 

@@ -1,5 +1,6 @@
-/* swap: a robot with two arms takes a wafer, and where its next place is full it exchanges the two, and goes on with
- * what it took until a place was empty. It takes one only if the exchanges that follow lead to an empty place. */
+/* swap: a robot with two arms takes a wafer, and where its next place is full it exchanges the two, and
+ * goes on with what it took until a place was empty. It takes one only if the exchanges that follow lead
+ * to an empty place. */
 #include "rules.h"
 #include "safe.h"
 #include "transfer.h"
@@ -15,8 +16,8 @@ static int32_t carried(const wh_flow_robot_state_t *robot) {
     return robot->kept_us[0] <= robot->kept_us[1] ? a : b;
 }
 
-/* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is done first;
- * then by priority, the later step, the one that entered first. */
+/* True if the first wafer, and not the second, is the one to swap against: the robot carries it on; it is
+ * done first; then by priority, the later step, the one that entered first. */
 static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, int32_t b) {
     const bool a_goes = wh_flow_is_carrier(state, robot, a), b_goes = wh_flow_is_carrier(state, robot, b);
     const wh_flow_wafer_state_t *one = &state->wafers[a], *other = &state->wafers[b];
@@ -110,8 +111,8 @@ static bool is_full(const wh_flow_place_t *place) {
     return place->wafer != WH_FLOW_NONE && place->leaving_us == WH_FLOW_NEVER;
 }
 
-/* The place for which the wafer goes on. A full one is chosen anew at each instant; one that is or will be empty is
- * kept: the transfer into it has begun. */
+/* The place for which the wafer goes on. A full one is chosen anew at each instant; one that is or will be
+ * empty is kept: the transfer into it has begun. */
 static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->heading != WH_FLOW_NONE && state->places[at->heading].coming == wafer) {
@@ -200,7 +201,8 @@ static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) 
                                   state->counts[step] > state->leaving[step]);
 }
 
-/* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the earliest. */
+/* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the
+ * earliest. */
 static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                  wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];

@@ -17,8 +17,8 @@ static bool serves_home(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, 
     return false;
 }
 
-/* True if the robot serves the step's stations and those of the next one; behind the last step lie those to which
- * wafers go back. */
+/* True if the robot serves the step's stations and those of the next one; behind the last step lie those
+ * to which wafers go back. */
 static bool empties(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, int32_t robot, int32_t route,
                     int32_t k) {
     const wh_flow_route_t *of = &plan->routes[route];

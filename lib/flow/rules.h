@@ -19,13 +19,13 @@ typedef struct {
     wh_flow_round_t *rounds; /* by robot */
 } wh_flow_rules_t;
 
-/* Also sets `checks_safety` of the state: shipped rules, if the plan is to be safe and some station leads back to
- * itself. */
+/* Also sets `checks_safety` of the state: shipped rules, if the plan is to be safe and some station leads
+ * back to itself. */
 void wh_flow_rules_open(wh_flow_rules_t *rules, wh_flow_state_t *state);
 void wh_flow_rules_close(wh_flow_rules_t *rules, const wh_flow_tool_t *tool);
 
-/* Fills the order for a robot that is free. An order whose time has not come yet sends the robot ahead. False if there
- * is none; the flow ends if then `state->cause` says why. The rules one by one do likewise. */
+/* Fills the order for a robot that is free. An order whose time has not come yet sends the robot ahead.
+ * False if there is none; the flow ends if then `state->cause` says why. The rules one by one do likewise. */
 bool wh_flow_ask(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot, wh_flow_order_t *order);
 bool wh_flow_ask_backward(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                           wh_flow_order_t *order);

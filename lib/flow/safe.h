@@ -1,4 +1,5 @@
-/* Whether wafers could block each other: rules leave out transfers after which one of them could not go on. */
+/* Whether wafers could block each other: rules leave out transfers after which one of them could not go
+ * on. */
 #ifndef WH_FLOW_SAFE_H
 #define WH_FLOW_SAFE_H
 
@@ -9,10 +10,10 @@ typedef struct {
     int32_t wafer, place;
 } wh_flow_into_t;
 
-/* True if after these transfers each wafer inside could still go to its end, one after another, alone, through places
- * with room. Inside are all that have left their first place, those under way where they go. Wafers that are kept on
- * an arm without a place to go to are left out. Cost: the square of the wafers inside times the places of their
- * routes. */
+/* True if after these transfers each wafer inside could still go to its end, one after another, alone,
+ * through places with room. Inside are all that have left their first place, those under way where they
+ * go. Wafers that are kept on an arm without a place to go to are left out. Cost: the square of the wafers
+ * inside times the places of their routes. */
 bool wh_flow_is_safe(const wh_flow_state_t *state, const wh_flow_into_t into[], size_t count);
 
 #endif

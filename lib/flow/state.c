@@ -114,7 +114,8 @@ void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
     }
 }
 
-/* The last wafer of its lot if both are in their first places, else the wafer itself. A lot enters them as one. */
+/* The last wafer of its lot if both are in their first places, else the wafer itself. A lot enters them as
+ * one. */
 static int32_t last_of_lot(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
     const int32_t last = (int32_t)(lot->first_wafer + lot->wafer_count) - 1;

@@ -1,5 +1,5 @@
-/* A tool at an instant: who is where, what runs, and what is known of its end. The engine alone changes it; rules
- * read it. */
+/* A tool at an instant: who is where, what runs, and what is known of its end. The engine alone changes
+ * it; rules read it. */
 #ifndef WH_FLOW_STATE_H
 #define WH_FLOW_STATE_H
 
@@ -147,13 +147,13 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);
 void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer);
 
-/* The next wafer behind this one in a step's list, WH_FLOW_NONE for the first, which lies there and nobody has begun to
- * take. A lot's wafers in their first places want the same: one stands for all, unless each has a place of its own to go
- * to. */
+/* The next wafer behind this one in a step's list, WH_FLOW_NONE for the first, which lies there and nobody
+ * has begun to take. A lot's wafers in their first places want the same: one stands for all, unless each
+ * has a place of its own to go to. */
 int32_t wh_flow_next_in(const wh_flow_state_t *state, size_t step, int32_t wafer);
 
-/* Ties of rules: below 0 if the first wafer wins by priority, the later step, or its entering; above 0 if the other one
- * does; 0 if neither. */
+/* Ties of rules: below 0 if the first wafer wins by priority, the later step, or its entering; above 0 if
+ * the other one does; 0 if neither. */
 int wh_flow_compare(const wh_flow_state_t *state, int32_t a, int32_t b);
 
 /* How many wafers of arrived lots are still to come into this step of the route: they are before it. */

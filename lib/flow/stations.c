@@ -230,7 +230,8 @@ static void want_begun(const wh_flow_state_t *state, int32_t lock, wants_t *want
     }
 }
 
-/* True if a robot could begin to carry the wafer into or out of the lock but for pressure and where it stands. */
+/* True if a robot could begin to carry the wafer into or out of the lock but for pressure and where it
+ * stands. */
 static bool is_able(const wh_flow_state_t *state, int32_t lock, int32_t robot, int32_t wafer) {
     const int32_t station = wh_flow_station_of(state, wafer);
     if (is_swapping(state, robot)) {
@@ -270,8 +271,9 @@ static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, 
     }
 }
 
-/* The side to which the lock should turn, or that it has: for transfers into it that have begun, else for wafers that
- * could be carried into or out of it, else for those in it; among several the one done longest decides. */
+/* The side to which the lock should turn, or that it has: for transfers into it that have begun, else for
+ * wafers that could be carried into or out of it, else for those in it; among several the one done longest
+ * decides. */
 static wh_flow_side_t turn_to(const wh_flow_state_t *state, int32_t lock) {
     const wh_flow_side_t side = state->stations[lock].side;
     const wh_flow_side_t other = side == WH_FLOW_VACUUM ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
@@ -344,7 +346,8 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     }
 }
 
-/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there or come. */
+/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there or
+ * come. */
 static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
         const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
@@ -415,7 +418,7 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- next */
+/* --------------------------------------------------------------------------------------------------- next */
 
 static int64_t sooner(const wh_flow_state_t *state, int64_t best_us, int64_t us) {
     return us > state->now_us && us < best_us ? us : best_us;

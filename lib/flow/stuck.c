@@ -46,7 +46,8 @@ static int32_t find_other(const wh_flow_state_t *state, int32_t wafer, const wh_
     return other;
 }
 
-/* The robot that would carry the wafer, whose arms are all taken, or WH_FLOW_NONE: one of them has a free one. */
+/* The robot that would carry the wafer, whose arms are all taken, or WH_FLOW_NONE: one of them has a free
+ * one. */
 static int32_t find_laden(const wh_flow_state_t *state, int32_t wafer) {
     int32_t laden = WH_FLOW_NONE;
     for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {

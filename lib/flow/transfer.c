@@ -26,7 +26,7 @@ bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t stat
             wh_flow_sides_agree(state->tool->sides[wh_flow_of(state->tool, robot, station)], now->side));
 }
 
-/* ------------------------------------------------------------------------------------------------- targets */
+/* ------------------------------------------------------------------------------------------------ targets */
 
 /* When the place will be empty and clean, or WH_FLOW_NEVER; `empty_us` is when it will be empty. */
 static int64_t clean_from(const wh_flow_state_t *state, int32_t place, int64_t *empty_us) {
@@ -60,8 +60,8 @@ static int64_t later(int64_t a_us, int64_t b_us) {
     return a_us > b_us ? a_us : b_us;
 }
 
-/* When a robot that is there could begin, as far as the station is concerned; WH_FLOW_NEVER: not known, for a lock has
- * another pressure and does not pump. */
+/* When a robot that is there could begin, as far as the station is concerned; WH_FLOW_NEVER: not known,
+ * for a lock has another pressure and does not pump. */
 static int64_t open_from(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const wh_flow_station_state_t *now = &state->stations[station];
     const size_t of = wh_flow_of(state->tool, robot, station);

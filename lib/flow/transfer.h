@@ -26,34 +26,37 @@ size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafe
 /* When the robot is in front of the wafer, and when its pick could begin then; WH_FLOW_NEVER: not known. */
 int64_t wh_flow_begin_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t *there_us);
 
-/* The best place for a wafer that is picked from `begin_us` on, WH_FLOW_NEVER: not known when; of those after which
- * the tool is safe, if that is checked. `station`: this one alone, or WH_FLOW_NONE. WH_FLOW_NONE: there is none. */
+/* The best place for a wafer that is picked from `begin_us` on, WH_FLOW_NEVER: not known when; of those
+ * after which the tool is safe, if that is checked. `station`: this one alone, or WH_FLOW_NONE.
+ * WH_FLOW_NONE: there is none. */
 int32_t wh_flow_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us,
                            int32_t station);
 
-/* swap: where a robot with two arms would go with a wafer that it takes from `begin_us` on, or WH_FLOW_NONE: the
- * exchanges that follow must end in a place that is or will be empty, and the tool must be safe then. */
+/* swap: where a robot with two arms would go with a wafer that it takes from `begin_us` on, or
+ * WH_FLOW_NONE: the exchanges that follow must end in a place that is or will be empty, and the tool must
+ * be safe then. */
 int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us);
 
-/* How many wafers a step of a route holds, and how many it may: its places without those that hold or await wafers of
- * other steps and routes, and without those kept empty or, if more, those that have failed and are empty. Picks that
- * have begun and end by `at_us` have ended. */
+/* How many wafers a step of a route holds, and how many it may: its places without those that hold or
+ * await wafers of other steps and routes, and without those kept empty or, if more, those that have failed
+ * and are empty. Picks that have begun and end by `at_us` have ended. */
 typedef struct {
     int32_t holds, may;
 } wh_flow_room_t;
 wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t step, int64_t at_us);
 
-/* True if the robot serves the place in which the wafer lies and one of its next step, and nobody has begun to take
- * it. */
+/* True if the robot serves the place in which the wafer lies and one of its next step, and nobody has
+ * begun to take it. */
 bool wh_flow_is_carrier(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
 
-/* True if a robot may take the wafer once it is there and done: it lies in a place that the robot serves, nobody
- * has begun to take it, the robot's arm for it is free, and a place of its next step is served, too. */
+/* True if a robot may take the wafer once it is there and done: it lies in a place that the robot serves,
+ * nobody has begun to take it, the robot's arm for it is free, and a place of its next step is served,
+ * too. */
 bool wh_flow_may_take(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
 
-/* From when on the wafer may be taken: it is done, its station is free, up and at the robot's pressure, and `takt`
- * has run out, as far as what has begun tells. WH_FLOW_NEVER if that is not known: a lock at another pressure that
- * does not pump. */
+/* From when on the wafer may be taken: it is done, its station is free, up and at the robot's pressure,
+ * and `takt` has run out, as far as what has begun tells. WH_FLOW_NEVER if that is not known: a lock at
+ * another pressure that does not pump. */
 int64_t wh_flow_takeable_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer);
 
 /* True if at this instant a robot that stands in front of the station may put its blade in: it is not in use,

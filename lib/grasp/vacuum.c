@@ -82,8 +82,8 @@ int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault
     return holds && vacuum->level >= config->release ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
 }
 
-/* Tells a turn of the switch once it has stood. While it waits, the switch stands otherwise than told, and has
- * the other threshold. */
+/* Tells a turn of the switch once it has stood. While it waits, the switch stands otherwise than told, and
+ * has the other threshold. */
 static void tell(const wh_vacuum_config_t *config, wh_vacuum_t *vacuum) {
     const bool was_on = vacuum->on != (vacuum->waits > 0);
     const bool is_on = was_on ? vacuum->level >= config->off : vacuum->level >= config->on;

@@ -166,7 +166,7 @@ static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
             hash = wh_hash_word(hash, i);
         }
     }
-    return vacuum->debounce > 0 ? wh_hash_int(hash_text(hash, "debounce"), vacuum->debounce) : hash;
+    return vacuum->debounce > 0 ? wh_hash_int(wh_hash_text(hash, "debounce"), vacuum->debounce) : hash;
 }
 
 static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {

@@ -217,8 +217,8 @@ static bool is_all_near(const wh_state_t *state) {
     return near;
 }
 
-/* A slice for the record, from a simulator's own state. Its wafers are kept: motion control's messages of the time
- * before the next slice are about them. */
+/* A slice for the record, from a simulator's own state. Its wafers are kept: motion control's messages of
+ * the time before the next slice are about them. */
 static void record_stepped(wh_log_run_t *run, const waferhand_command *command,
                            const wh_protocol_server_t *server) {
     const wh_state_t *state = &server->state;

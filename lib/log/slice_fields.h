@@ -40,7 +40,8 @@ void wh_slice_fields(const wh_layout_t *layout, const double axes[], const wh_st
                      double values[]);
 
 /* Likewise for one slice after the other of a run: a wafer that lies as before keeps its values, and so
- * does a gripper that stands as before while all wafers do. Zero it to begin with; read `values`, of wh_slice_field_count, after wh_slice_row_take; free it at the end. */
+ * does a gripper that stands as before while all wafers do. Zero it to begin with; read `values`, of
+ * wh_slice_field_count, after wh_slice_row_take; free it at the end. */
 typedef struct {
     double *values;     /* null before the first slice */
     wh_wafer_t *wafers; /* of the slice before, like the following */

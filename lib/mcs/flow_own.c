@@ -1,6 +1,6 @@
-/* The functions of a script are called by wh_flow_play in the middle of its work, so their errors are caught, and
- * raised again when the flow is over. They see the tool by userdata that read the engine's state: no table is built
- * but the list of choices. */
+/* The functions of a script are called by wh_flow_play in the middle of its work, so their errors are
+ * caught, and raised again when the flow is over. They see the tool by userdata that read the engine's
+ * state: no table is built but the list of choices. */
 #include "flow_own.h"
 
 #include <lauxlib.h>
@@ -46,7 +46,8 @@ typedef struct {
     int32_t number;
 } part_t;
 
-/* User values of own_t: parts by kind and number, wafers' and stations' numbers by name, the functions, an error. */
+/* User values of own_t: parts by kind and number, wafers' and stations' numbers by name, the functions, an
+ * error. */
 enum { PARTS = 1, WAFER_NUMBERS, STATION_NUMBERS, RULE, ON_ERROR, FAILURE };
 
 /* Pushes the user value of own_t, which the part keeps alive. */
@@ -87,7 +88,7 @@ static void push_station(lua_State *L, const own_t *own, int32_t station) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- choices */
+/* ------------------------------------------------------------------------------------------------ choices */
 
 static void add_wafer(own_t *own, int32_t wafer) {
     const wh_flow_state_t *state = own->state;
@@ -124,7 +125,7 @@ static void push_choices(lua_State *L, own_t *own) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- fields */
+/* ------------------------------------------------------------------------------------------------- fields */
 
 static bool is(const char *key, const char *name) {
     return strcmp(key, name) == 0;
@@ -366,7 +367,7 @@ static int refuse_change(lua_State *L) {
     return luaL_error(L, "the tool of a flow can be read alone");
 }
 
-/* -------------------------------------------------------------------------------------------------- answers */
+/* ------------------------------------------------------------------------------------------------ answers */
 
 /* The text of entry `number` of the answer on top of the stack, "" if it is nil. It stays on the stack. */
 static const char *push_entry(lua_State *L, int number) {
@@ -446,8 +447,8 @@ static int read_answers(own_t *own, wh_flow_line_t lines[], char **why) {
     return *why ? -1 : count;
 }
 
-/* Calls the function that is a user value, with the tool and the argument on top of the stack, if `arguments` is 2.
- * False if it fails; its error is kept. The result is then on top of the stack. */
+/* Calls the function that is a user value, with the tool and the argument on top of the stack, if
+ * `arguments` is 2. False if it fails; its error is kept. The result is then on top of the stack. */
 static bool call_own(own_t *own, const wh_flow_state_t *state, int32_t robot, int which, int arguments) {
     lua_State *L = own->L;
     own->state = state;
@@ -499,7 +500,7 @@ static char *tell_problem(void *context, const wh_flow_state_t *state, const wh_
     return why;
 }
 
-/* ---------------------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------------------------- whole */
 
 /* Takes the function of this name, if it is one. */
 static bool take_function(lua_State *L, int own, const char *name, int which) {

@@ -6,12 +6,12 @@
 
 #include "../flow/plan.h"
 
-/* Takes the functions `rule` and `on_error`, where they are functions, out of the description at stack index 1 into
- * the plan, and pushes one value, which must stay on the stack until wh_flow_own_close. */
+/* Takes the functions `rule` and `on_error`, where they are functions, out of the description at stack
+ * index 1 into the plan, and pushes one value, which must stay on the stack until wh_flow_own_close. */
 void wh_flow_own_open(lua_State *L, const wh_flow_tool_t *tool, wh_flow_plan_t *plan);
 
-/* The flow is over: what the functions kept of the tool tells nothing any more. Raises the error that ended one of
- * them, if there was one. `index` is that of the value that was pushed. */
+/* The flow is over: what the functions kept of the tool tells nothing any more. Raises the error that
+ * ended one of them, if there was one. `index` is that of the value that was pushed. */
 void wh_flow_own_close(lua_State *L, int index, wh_flow_plan_t *plan);
 
 #endif

@@ -66,7 +66,7 @@ static int64_t read_us(wh_reader_t *reader, const char *field, double fallback) 
     return wh_layout_us(wh_reader_number(reader, field, fallback, 0, LONGEST));
 }
 
-/* ------------------------------------------------------------------------------------------------- readers */
+/* ------------------------------------------------------------------------------------------------ readers */
 
 /* How many entries the table at which the reader is has, beside the known fields. Others are refused. */
 static size_t count_entries(wh_reader_t *reader, const wh_reader_field_t *known) {
@@ -106,7 +106,7 @@ const char *wh_flow_entry(wh_reader_t *reader, size_t index, char text[WH_NAME_S
     return text;
 }
 
-/* -------------------------------------------------------------------------------------------------- routes */
+/* ------------------------------------------------------------------------------------------------- routes */
 
 static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step,
                         const char *field, const char *name) {
@@ -191,7 +191,7 @@ static int32_t add_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flo
     return (int32_t)plan->route_count - 1;
 }
 
-/* ---------------------------------------------------------------------------------------------------- lots */
+/* --------------------------------------------------------------------------------------------------- lots */
 
 /* A lot's part of the plan, before lots are put in order. */
 typedef struct {
@@ -360,7 +360,7 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
     lua_remove(reader->L, -2);
 }
 
-/* --------------------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------------------------- whole */
 
 static int by_begin(const void *a, const void *b) {
     const wh_flow_down_t *one = a, *other = b;

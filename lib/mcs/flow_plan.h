@@ -8,15 +8,15 @@
 #include "../layout/layout.h"
 #include "../script/reader.h"
 
-/* Reads lots, routes and rule from the table on top of the stack into a zero flow, and finishes the plan. Raises the
- * first fault; the flow must then be closed. */
+/* Reads lots, routes and rule from the table on top of the stack into a zero flow, and finishes the plan.
+ * Raises the first fault; the flow must then be closed. */
 void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *flow);
 
 /* Reads the field `rule` of that table, once lots and routes are read. */
 void wh_flow_read_rule(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan);
 
-/* The text that is entry `index` of the table at which the reader is, "" if there is none; refused if it is something
- * else. */
+/* The text that is entry `index` of the table at which the reader is, "" if there is none; refused if it
+ * is something else. */
 const char *wh_flow_entry(wh_reader_t *reader, size_t index, char text[WH_NAME_SIZE]);
 
 /* The fields of the table and of those in it. */

@@ -96,8 +96,8 @@ bool wh_mcs_job_waits(const wh_mcs_t *mcs, int32_t job);
  * a caller that answers in place of motion control, such as a busy port. */
 bool wh_mcs_take_alarm(wh_mcs_t *mcs, wh_status_t error, int32_t job);
 
-/* The faults that have not begun by now, and the errors that still wait for a command, as a list in words: what
- * they were to show was not tried. Null: there are none; to be freed. */
+/* The faults that have not begun by now, and the errors that still wait for a command, as a list in words:
+ * what they were to show was not tried. Null: there are none; to be freed. */
 char *wh_mcs_tell_never_came(const wh_mcs_t *mcs);
 
 /* Room for the text of wh_mcs_describe. */

@@ -78,8 +78,8 @@ static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const w
     }
 }
 
-/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next gripper, and
- * its sensor to tell it. */
+/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next
+ * gripper, and its sensor to tell it. */
 static double default_timeout(const wh_physics_t *physics) {
     const wh_vacuum_config_t *vacuum = &physics->vacuum;
     const double least = 0.25, below_full = vacuum->on < 1 ? 1 - vacuum->on : 1e-3;

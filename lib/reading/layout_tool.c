@@ -17,7 +17,7 @@ int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback
     return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
 }
 
-/* --------------------------------------------------------------------------------------------------- kinds */
+/* -------------------------------------------------------------------------------------------------- kinds */
 
 static bool is_kind_timed(const wh_reader_t *reader) {
     const bool is_text = wh_reader_push(reader, "kind") == LUA_TSTRING;
@@ -52,7 +52,7 @@ bool wh_layout_is_timed(wh_reader_t *reader) {
     return timed > 0;
 }
 
-/* --------------------------------------------------------------------------------------------------- names */
+/* -------------------------------------------------------------------------------------------------- names */
 
 const wh_timed_name_t *wh_timed_read_names(wh_reader_t *reader, const char *what, size_t *count) {
     return wh_layout_read_keys(reader, WH_LAYOUT_STATIONS, sizeof(wh_timed_name_t), what, count);
@@ -74,7 +74,7 @@ int32_t wh_timed_find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, c
     return found;
 }
 
-/* ------------------------------------------------------------------------------------------------- stations */
+/* ----------------------------------------------------------------------------------------------- stations */
 
 /* A door's two times; `field` is a number or a table. */
 static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
@@ -248,7 +248,7 @@ static void read_by(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t station) 
     wh_reader_leave(reader);
 }
 
-/* ------------------------------------------------------------------------------------------------ the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 static int close_tool(lua_State *L) {
     wh_flow_tool_close(lua_touserdata(L, 1));

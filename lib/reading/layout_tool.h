@@ -6,12 +6,12 @@
 #include "../layout/layout.h"
 #include "../script/reader.h"
 
-/* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and others are
- * not. */
+/* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and
+ * others are not. */
 bool wh_layout_is_timed(wh_reader_t *reader);
 
-/* Reads such a cell: its robots' times and its stations. The tool lives as long as the Lua state. Raises the first
- * fault. */
+/* Reads such a cell: its robots' times and its stations. The tool lives as long as the Lua state. Raises
+ * the first fault. */
 const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader);
 
 /* Whole microseconds of a time in s. */

@@ -62,9 +62,10 @@ size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_sim
 wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity, size_t *size)
     WH_SYMBOL(wh_simulator_save);
 
-/* True if the simulator can have this state, which wh_physics_state_validate has accepted. No vacuum sensor
- * waits longer than the debounce. Without edge sensors there must be no scan, and without beams no latch. There must be as many doors as it has; without
- * other grips all plungers must be open. No argument may be null. Cost: linear in grippers. */
+/* True if the simulator can have this state, which wh_physics_state_validate has accepted. No vacuum
+ * sensor waits longer than the debounce. Without edge sensors there must be no scan, and without beams no
+ * latch. There must be as many doors as it has; without other grips all plungers must be open. No argument
+ * may be null. Cost: linear in grippers. */
 bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_state_t *state)
     WH_SYMBOL(wh_simulator_may_have);
 

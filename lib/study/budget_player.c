@@ -44,8 +44,8 @@ static void end_at_complaint(void *user, const wh_command_t *command, const wh_s
     }
 }
 
-/* Motion control looks ahead by what it believes: the cell as taught, and which slot has which wafer. A replay
- * in which it reads what it has read believes the same, so it was refused nothing either. */
+/* Motion control looks ahead by what it believes: the cell as taught, and which slot has which wafer. A
+ * replay in which it reads what it has read believes the same, so it was refused nothing either. */
 static bool was_refused_ahead(const wh_record_t *record) {
     bool was = false;
     for (size_t i = 0; i < record->command_count; ++i) {

@@ -9,8 +9,8 @@
 
 #include "../math/hash.h"
 
-/* Values in this range are handled by whole numbers of 128 bits, without any rounding; those below some 1e-15,
- * such as what is left of a turn, by 64 bits more. */
+/* Values in this range are handled by whole numbers of 128 bits, without any rounding; those below some
+ * 1e-15, such as what is left of a turn, by 64 bits more. */
 #define LEAST 1e-36
 #define BELOW 1e15
 
@@ -75,8 +75,8 @@ static uint64_t whole_of(const scaled_t *scaled) {
     return (uint64_t)(scaled->product >> scaled->shift);
 }
 
-/* From 5^33 on the product has more than 128 bits. Those above the lowest 64 fit: 5^27 has 63 bits, and the rest
- * of the power is at most 5^26. */
+/* From 5^33 on the product has more than 128 bits. Those above the lowest 64 fit: 5^27 has 63 bits, and
+ * the rest of the power is at most 5^26. */
 static scaled_t scale_small(uint64_t significand, int power, int exponent) {
     const int tens = DIGITS - 1 - exponent;
     const uint64_t rest = fives[tens - FIVES + 1];
@@ -126,8 +126,8 @@ static inline uint64_t round_to(const scaled_t *scaled, uint64_t unit) {
     return (multiple + (up ? 1 : 0)) * unit;
 }
 
-/* The distance of a small value's product from another one, in units of its lowest bit; WIDEST: beyond all steps
- * between doubles. */
+/* The distance of a small value's product from another one, in units of its lowest bit; WIDEST: beyond all
+ * steps between doubles. */
 static wide_t distance_small(const scaled_t *scaled, wide_t read, bool is_below) {
     const wide_t high =
         is_below ? scaled->product - read : read - scaled->product - (scaled->low > 0 ? 1 : 0);

@@ -6,7 +6,8 @@
 
 #include "array.h"
 
-/* The level, up to 9. From here on a page gets smaller by less than one percent, in several times the time. */
+/* The level, up to 9. From here on a page gets smaller by less than one percent, in several times the
+ * time. */
 #define LEVEL 6
 
 char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size) {

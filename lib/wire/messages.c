@@ -316,8 +316,8 @@ static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t
     take_encounter(&in->contest, tolerance, &out->contest);
 }
 
-/* True for a gripper whose plunger is at home, or that has none: its `grip_s` tells how long its vacuum sensor
- * waits. */
+/* True for a gripper whose plunger is at home, or that has none: its `grip_s` tells how long its vacuum
+ * sensor waits. */
 static bool tells_wait(const waferhand_gripper_state *in) {
     return in->grip_phase == (int8_t)WH_GRIP_OPEN;
 }
