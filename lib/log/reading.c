@@ -81,18 +81,23 @@ static bool take_event(wh_reading_t *reading, const wh_log_t *log, wh_replay_t *
     return replay->messages > messages && is_of_slices(log->channel);
 }
 
+/* True if the file is a part of a recording whose next part is the next file. */
+static bool goes_on(const wh_log_files_t *files, size_t file) {
+    const wh_log_head_t *head = &files->heads[file];
+    const wh_log_head_t *next = file + 1 < files->count ? &files->heads[file + 1] : NULL;
+    return next && head->is_told && next->is_told && head->id == next->id;
+}
+
 /* Notes a file in which no slice is, unless it is a part of a recording that goes on in the next one. Returns
  * true if the next one need not have a slice. */
 static bool end_file(wh_reading_t *reading, const wh_log_files_t *files, size_t file, bool has_slices,
                      bool is_cut) {
-    const wh_log_head_t *head = &files->heads[file];
-    const wh_log_head_t *next = file + 1 < files->count ? &files->heads[file + 1] : NULL;
-    const bool goes_on = next && head->is_told && next->is_told && head->id == next->id;
-    if (files->count > 1 && !has_slices && !goes_on) {
+    const bool is_part = goes_on(files, file);
+    if (files->count > 1 && !has_slices && !is_part) {
         reading->is_begun_and_cut = reading->is_begun_and_cut || is_cut;
         reading->barren = reading->barren || is_cut ? reading->barren : files->paths[file];
     }
-    return has_slices && goes_on;
+    return has_slices && is_part;
 }
 
 void wh_reading_replay(const wh_log_files_t *files, wh_log_t *log, wh_replay_t *replay,

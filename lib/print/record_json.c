@@ -406,8 +406,8 @@ static json_t *given_error(const void *subject, size_t i) {
     return wh_json_text(((const wh_record_t *)subject)->errors[i]);
 }
 
-static void put_head(const wh_record_t *record, json_t *root) {
-    (void)wh_json_set(root, "format %d", FORMAT);
+/* How it ended, and what it was a run of, as far as it was none without errors. */
+static void put_verdict(const wh_record_t *record, json_t *root) {
     const bool moved_nothing = wh_record_moved_nothing(record);
     wh_json_put(root, "ok", record->is_untold || moved_nothing ? json_null() : json_boolean(record->ok));
     if (moved_nothing) {
@@ -427,6 +427,11 @@ static void put_head(const wh_record_t *record, json_t *root) {
     if (record->log) {
         wh_json_put(root, "log", log_of(record->log));
     }
+}
+
+static void put_head(const wh_record_t *record, json_t *root) {
+    (void)wh_json_set(root, "format %d", FORMAT);
+    put_verdict(record, root);
     (void)wh_json_set(root, "script %s layout %s slices %lld missed %lld simulated_s %g wall_s %g hash %llx",
                       record->script, record->layout ? record->layout->path : NULL,
                       (json_int_t)record->slices, (json_int_t)record->missed, record->simulated_s,

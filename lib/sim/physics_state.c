@@ -12,6 +12,10 @@ static bool is_place(const wh_vec3_t *place) {
     return wh_real_is_finite(place->x) && wh_real_is_finite(place->y) && wh_real_is_finite(place->z);
 }
 
+static bool is_carried(const wh_carry_t *carry) {
+    return carry->known >= 0 && carry->known <= 2;
+}
+
 static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
     const wh_vacuum_t *vacuum = &state->vacuum[g];
     const wh_carry_t *carry = &state->carry[g];
@@ -22,8 +26,7 @@ static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
         return WH_STATUS_NOT_FINITE;
     }
     const bool good = vacuum->level >= 0 && vacuum->level <= 1 && vacuum->waits <= WH_VACUUM_DEBOUNCE &&
-                      carry->known >= 0 && carry->known <= 2 &&
-                      (unsigned)state->grips[g].phase <= WH_GRIP_OPENING;
+                      is_carried(carry) && (unsigned)state->grips[g].phase <= WH_GRIP_OPENING;
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 

@@ -552,14 +552,20 @@ static bool load_faults(stream_t *stream, wh_faults_t *faults, const wh_simulato
     return true;
 }
 
+/* False if a sensor waits longer than its debounce, or waits without vacuum. */
+static bool may_wait(const wh_simulator_t *simulator, const wh_physics_state_t *state) {
+    bool good = true;
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
+        const bool has_vacuum = (simulator->given.no_vacuum >> g & 1U) == 0;
+        good = good && state->vacuum[g].waits <= (has_vacuum ? simulator->vacuum.debounce : 0);
+    }
+    return good;
+}
+
 bool wh_simulator_may_have(const wh_simulator_t *simulator, const wh_physics_state_t *state) {
     const wh_simulator_given_t *given = &simulator->given;
     bool good = (given->scans || state->scan.number == 0) && (given->beams || state->latches.number == 0) &&
-                (size_t)state->doors.count == given->doors.count;
-    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const bool has_vacuum = (given->no_vacuum >> g & 1U) == 0;
-        good = good && state->vacuum[g].waits <= (has_vacuum ? simulator->vacuum.debounce : 0);
-    }
+                (size_t)state->doors.count == given->doors.count && may_wait(simulator, state);
     for (size_t g = 0; !given->gripping && g < simulator->table.storage.gripper_count; ++g) {
         good = good && state->grips[g].phase == WH_GRIP_OPEN;
     }

@@ -36,7 +36,7 @@ static bool checks_fit(const waferhand_cell *cell) {
            is_within(cell->askew, 0, 10) && is_within(cell->drop, 0, 1e6) &&
            is_within(cell->thickness, 0, WH_FACE_THICKEST) &&
            is_within(cell->collision, WH_LINK_NO_COLLISION, WH_LINK_GAPS) && cell->slice_us >= 1 &&
-           slice_us_of(cell) >= 1 && slice_us_of(cell) <= 1000000;
+           is_within((double)slice_us_of(cell), 1, 1000000);
 }
 
 /* The layout has times in s, the message has slices in us; lib/reading/layout_physics.c converts them the

@@ -146,6 +146,11 @@ LOGS := $(addprefix $(B)/log/,library program functions texts) $(SOURCE_LOGS)
 check-deviations: $(LOGS) lib/DEVIATIONS.md
 	@tests/check/deviations lib/DEVIATIONS.md elsewhere='^(-Wanalyzer-|[a-zA-Z]+[.])' $(LOGS)
 
+# Lines and functions alone, in seconds, for while you work: `make -f lib/build/build.mk check-lines`.
+.PHONY: check-lines
+check-lines: $(B)/log/functions $(B)/log/texts
+	@tests/check/deviations lib/DEVIATIONS.md elsewhere=. $^
+
 # In `make verify` it is the other way round: these must find something, and the others need not.
 .PHONY: analysers
 analysers: $(B)/log/library-float $(PATH_LOGS)

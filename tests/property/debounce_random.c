@@ -78,6 +78,15 @@ static bool is_lost(const wh_state_t *state, int g) {
     return lost;
 }
 
+/* True if the switch stood otherwise than told in this slice and in those before it that the debounce asks for. */
+static bool has_stood(const bool switched[], bool was_told, int seq) {
+    bool stands = true;
+    for (int i = seq; i >= seq - physics.vacuum.debounce; --i) {
+        stands = stands && i > 0 && switched[i] != was_told;
+    }
+    return stands;
+}
+
 /* The sensor turns in a slice if its switch has stood otherwise than told in this and all of the slices before
  * it that the debounce asks for. */
 static void judge(int g, int seq) {
@@ -85,19 +94,15 @@ static void judge(int g, int seq) {
     const wh_vacuum_t *now = &cell.simulator.physics.vacuum[g];
     bool *switched = plain[g].switched;
     const bool was_told = plain[g].told;
-    bool stands = true;
     switched[seq] = switched[seq - 1] ? now->level >= vacuum->off : now->level >= vacuum->on;
-    for (int i = seq; i >= seq - vacuum->debounce; --i) {
-        stands = stands && i > 0 && switched[i] != was_told;
-    }
-    plain[g].told = stands ? !was_told : was_told;
+    plain[g].told = was_told != has_stood(switched, was_told, seq);
     assert_true(((cell.state.sensors >> g & 1U) != 0) == plain[g].told);
     const bool is_held = cell.state.grippers[g].wafer != WH_NONE;
     const bool lost = was_told && !plain[g].told && is_held && now->command == OPEN;
     assert_true(is_lost(&cell.state, g) == lost);
-    found.turns += was_told != plain[g].told ? 1 : 0;
-    found.unsaid += switched[seq] != switched[seq - 1] && switched[seq] == was_told ? 1 : 0;
-    found.lost += lost ? 1 : 0;
+    found.turns += (int)(was_told != plain[g].told);
+    found.unsaid += (int)(switched[seq] != switched[seq - 1] && switched[seq] == was_told);
+    found.lost += (int)lost;
 }
 
 /* Reads the copy anew from the bytes of the cell. */
