@@ -78,27 +78,34 @@ static wh_pose_t pose_at(const wh_cell_t *cell, const wh_station_t *station, int
     return pose;
 }
 
+/* True if the wafer is over the slot as it passes its height. */
+static bool is_over_on_way(const wh_cell_t *cell, const wh_station_t *station, int32_t slot,
+                           const wh_pose_t *base_from_wafer, const wh_pose_t *next,
+                           const wh_real_t heights[2]) {
+    const wh_pose_t pose = pose_at(cell, station, slot, base_from_wafer, next, heights);
+    const wh_place_t place = wh_cell_measure(cell, station, slot, &pose);
+    return is_over(cell, station, &place, &pose);
+}
+
 static bool passes(const wh_cell_t *cell, int32_t s, const wh_pose_t *base_from_wafer, const wh_pose_t *next,
                    wh_passing_t *passing) {
     const wh_station_t *station = &cell->stations[s];
     const wh_real_t heights[2] = {height_over(cell, station, base_from_wafer),
                                   height_over(cell, station, next)};
     const counts_t counts = count_on_way(cell, station, heights[0], heights[1]);
-    const bool goes_up = counts.after > counts.before;
-    int32_t below = counts.before;
-    while (below != counts.after) {
-        const int32_t slot = goes_up ? below + 1 : below;
-        const wh_pose_t pose = pose_at(cell, station, slot, base_from_wafer, next, heights);
-        const wh_place_t place = wh_cell_measure(cell, station, slot, &pose);
-        if (is_over(cell, station, &place, &pose)) {
-            passing->station = s;
-            passing->slot = slot;
-            passing->goes_up = goes_up;
-            return true;
-        }
-        below += goes_up ? 1 : -1;
+    int32_t found = 0;
+    for (int32_t below = counts.before; found == 0 && below < counts.after; ++below) {
+        found = is_over_on_way(cell, station, below + 1, base_from_wafer, next, heights) ? below + 1 : 0;
     }
-    return false;
+    for (int32_t slot = counts.before; found == 0 && slot > counts.after; --slot) {
+        found = is_over_on_way(cell, station, slot, base_from_wafer, next, heights) ? slot : 0;
+    }
+    if (found != 0) {
+        passing->station = s;
+        passing->slot = found;
+        passing->goes_up = counts.after > counts.before;
+    }
+    return found != 0;
 }
 
 bool wh_cell_passes(const wh_cell_t *cell, int32_t gripper, const wh_pose_t *base_from_wafer,
