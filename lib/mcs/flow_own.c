@@ -99,10 +99,9 @@ static void add_wafer(own_t *own, int32_t wafer) {
     choice->wafer = wafer;
     choice->begin_us = wh_flow_begin_us(state, own->robot, wafer, &choice->there_us);
     const int32_t from = wh_flow_station_of(state, wafer);
-    const int64_t wait_us =
-        choice->begin_us == WH_FLOW_NEVER ? WH_FLOW_UNKNOWN : choice->begin_us - state->now_us;
-    choice->target = wh_flow_target(state, own->robot, wafer, from,
-                                    wait_us + wh_flow_pick_us(state, own->robot, from), WH_FLOW_NONE);
+    choice->target =
+        wh_flow_target(state, own->robot, wafer, from,
+                       wh_flow_loaded_us(state, own->robot, wafer, choice->begin_us), WH_FLOW_NONE);
     own->count += choice->target.place != WH_FLOW_NONE && own->count < MOST_CHOICES - 1;
 }
 
