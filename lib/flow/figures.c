@@ -221,42 +221,32 @@ static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
     return hash;
 }
 
+/* Where visits are kept: what else they tell, and what happened beside them. */
+static void note_event(measure_t *measure, const wh_flow_event_t *event) {
+    const bool is_doing = event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
+                          event->kind == WH_FLOW_EVENT_DOWN;
+    wh_flow_log_add(&measure->log, event);
+    if (event->kind == WH_FLOW_EVENT_PICK) {
+        measure->open[event->wafer].picked_us = event->end_us;
+    } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
+        note_process(measure, event);
+    } else if (is_doing) {
+        note_doing(measure->figures, event);
+    }
+}
+
 static void hear(void *context, const wh_flow_state_t *state, const wh_flow_event_t *event) {
     measure_t *measure = context;
     measure->figures->hash = hash_event(measure->figures->hash, event);
-    if (measure->open) {
-        wh_flow_log_add(&measure->log, event);
-    }
-    switch (event->kind) {
-    case WH_FLOW_EVENT_STAY:
+    if (event->kind == WH_FLOW_EVENT_STAY) {
         hear_stay(measure, state, event);
-        break;
-    case WH_FLOW_EVENT_PICK:
+    } else if (event->kind == WH_FLOW_EVENT_PICK) {
         go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
-        if (measure->open) {
-            measure->open[event->wafer].picked_us = event->end_us;
-        }
-        break;
-    case WH_FLOW_EVENT_PLACE:
-    case WH_FLOW_EVENT_SWAP:
+    } else if (event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP) {
         hear_placing(measure, state, event);
-        break;
-    case WH_FLOW_EVENT_PROCESS:
-        if (measure->open) {
-            note_process(measure, event);
-        }
-        break;
-    case WH_FLOW_EVENT_CLEAN:
-    case WH_FLOW_EVENT_PUMP:
-    case WH_FLOW_EVENT_DOWN:
-        if (measure->open) {
-            note_doing(measure->figures, event);
-        }
-        break;
-    case WH_FLOW_EVENT_MOVE:
-    case WH_FLOW_EVENT_OPEN:
-    default:
-        break;
+    }
+    if (measure->open) {
+        note_event(measure, event);
     }
 }
 

@@ -26,31 +26,12 @@ typedef struct {
     size_t count, capacity;
 } path_t;
 
-static wh_flow_path_word_t word_of(wh_flow_event_kind_t kind) {
-    switch (kind) {
-    case WH_FLOW_EVENT_MOVE:
-        return WH_FLOW_PATH_MOVE;
-    case WH_FLOW_EVENT_OPEN:
-        return WH_FLOW_PATH_DOOR;
-    case WH_FLOW_EVENT_PICK:
-        return WH_FLOW_PATH_PICK;
-    case WH_FLOW_EVENT_PLACE:
-        return WH_FLOW_PATH_PLACE;
-    case WH_FLOW_EVENT_SWAP:
-        return WH_FLOW_PATH_SWAP;
-    case WH_FLOW_EVENT_PROCESS:
-        return WH_FLOW_PATH_PROCESS;
-    case WH_FLOW_EVENT_CLEAN:
-        return WH_FLOW_PATH_CLEAN;
-    case WH_FLOW_EVENT_PUMP:
-        return WH_FLOW_PATH_PUMP;
-    case WH_FLOW_EVENT_DOWN:
-        return WH_FLOW_PATH_DOWN;
-    case WH_FLOW_EVENT_STAY:
-    default:
-        return WH_FLOW_PATH_WAIT;
-    }
-}
+static const wh_flow_path_word_t words_of_events[] = {
+    [WH_FLOW_EVENT_MOVE] = WH_FLOW_PATH_MOVE,   [WH_FLOW_EVENT_OPEN] = WH_FLOW_PATH_DOOR,
+    [WH_FLOW_EVENT_PICK] = WH_FLOW_PATH_PICK,   [WH_FLOW_EVENT_PLACE] = WH_FLOW_PATH_PLACE,
+    [WH_FLOW_EVENT_SWAP] = WH_FLOW_PATH_SWAP,   [WH_FLOW_EVENT_PROCESS] = WH_FLOW_PATH_PROCESS,
+    [WH_FLOW_EVENT_CLEAN] = WH_FLOW_PATH_CLEAN, [WH_FLOW_EVENT_PUMP] = WH_FLOW_PATH_PUMP,
+    [WH_FLOW_EVENT_DOWN] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_STAY] = WH_FLOW_PATH_WAIT};
 
 static void add_part(path_t *path, wh_flow_path_word_t word, int32_t robot, int32_t station, int64_t us) {
     for (size_t i = 0; i < path->count; ++i) {
@@ -102,24 +83,29 @@ static const wh_flow_event_t *find_before(const path_t *path, const wh_flow_even
     return best;
 }
 
+static int64_t longest_shutting_us(const wh_flow_tool_t *tool) {
+    int64_t longest_us = 0;
+    for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
+        longest_us = tool->doors[i].close_us > longest_us ? tool->doors[i].close_us : longest_us;
+    }
+    return longest_us;
+}
+
+/* True if it is an access whose door is shut at this time. */
+static bool is_shut_at(const wh_flow_tool_t *tool, const wh_flow_event_t *event, int64_t us) {
+    const bool is_access = event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_PLACE ||
+                           event->kind == WH_FLOW_EVENT_SWAP;
+    return is_access &&
+           event->end_us + tool->doors[wh_flow_of(tool, event->robot, event->station)].close_us == us;
+}
+
 /* The access whose door is shut at the begin of this event, or null. */
 static const wh_flow_event_t *find_shut(const path_t *path, const wh_flow_event_t *event) {
     const wh_flow_event_t *best = NULL;
-    int64_t longest_us = 0;
-    const size_t pairs = path->tool->robot_count * path->tool->station_count;
-    for (size_t i = 0; i < pairs; ++i) {
-        longest_us = path->tool->doors[i].close_us > longest_us ? path->tool->doors[i].close_us : longest_us;
-    }
-    for (size_t i = first_ending(path->log, event->begin_us - longest_us);
+    for (size_t i = first_ending(path->log, event->begin_us - longest_shutting_us(path->tool));
          i < path->log->count && path->log->events[i].end_us < event->begin_us; ++i) {
         const wh_flow_event_t *before = &path->log->events[i];
-        const bool is_access = before->kind == WH_FLOW_EVENT_PICK || before->kind == WH_FLOW_EVENT_PLACE ||
-                               before->kind == WH_FLOW_EVENT_SWAP;
-        if (is_access &&
-            before->end_us +
-                    path->tool->doors[wh_flow_of(path->tool, before->robot, before->station)].close_us ==
-                event->begin_us &&
-            (!best || before->station == event->station)) {
+        if (is_shut_at(path->tool, before, event->begin_us) && (!best || before->station == event->station)) {
             best = before;
         }
     }
@@ -189,7 +175,7 @@ wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *p
     const wh_flow_event_t *event = find_last(log);
     while (event) {
         const bool is_robots = event->robot != WH_FLOW_NONE;
-        add_part(&path, word_of(event->kind), event->robot, is_robots ? WH_FLOW_NONE : event->station,
+        add_part(&path, words_of_events[event->kind], event->robot, is_robots ? WH_FLOW_NONE : event->station,
                  event->end_us - event->begin_us);
         const wh_flow_event_t *before = event->begin_us > 0 ? find_before(&path, event) : NULL;
         event = before || event->begin_us == 0 ? before : go_back(&path, event);

@@ -9,20 +9,31 @@ static bool leads_to(const wh_flow_state_t *state, int32_t wafer, int32_t statio
     return wh_flow_step_has(wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1), station);
 }
 
+/* True if the line may mean this wafer, which lies in its station. */
+static bool fits_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
+                      int32_t wafer) {
+    if (state->wafers[wafer].is_moving || state->wafers[wafer].is_over ||
+        (line->wafer != WH_FLOW_NONE && line->wafer != wafer)) {
+        return false;
+    }
+    return line->what == WH_FLOW_TRANSFER
+               ? leads_to(state, wafer, line->to)
+               : line->what != WH_FLOW_KEEP || wh_flow_is_carrier(state, robot, wafer);
+}
+
+static bool entered_before(const wh_flow_state_t *state, int32_t a, int32_t b) {
+    const int64_t a_us = state->wafers[a].entered_us, b_us = state->wafers[b].entered_us;
+    return a_us != b_us ? a_us < b_us : a < b;
+}
+
 /* The wafer that a line means, if it lies in the station: the one named, or the first that entered. */
 static int32_t wafer_in(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
     const wh_flow_station_t *station = &state->tool->stations[line->from];
     int32_t best = WH_FLOW_NONE;
     for (int32_t place = station->first_place; place < station->first_place + station->slots; ++place) {
         const int32_t wafer = state->places[place].wafer;
-        if (wafer == WH_FLOW_NONE || state->wafers[wafer].is_moving || state->wafers[wafer].is_over ||
-            (line->wafer != WH_FLOW_NONE && line->wafer != wafer) ||
-            (line->what == WH_FLOW_TRANSFER && !leads_to(state, wafer, line->to)) ||
-            (line->what == WH_FLOW_KEEP && !wh_flow_is_carrier(state, robot, wafer))) {
-            continue;
-        }
-        if (best == WH_FLOW_NONE || state->wafers[wafer].entered_us < state->wafers[best].entered_us ||
-            (state->wafers[wafer].entered_us == state->wafers[best].entered_us && wafer < best)) {
+        if (wafer != WH_FLOW_NONE && fits_line(state, robot, line, wafer) &&
+            (best == WH_FLOW_NONE || entered_before(state, wafer, best))) {
             best = wafer;
         }
     }

@@ -27,26 +27,28 @@ static bool is_before(const wh_flow_state_t *state, int32_t robot, int32_t a, in
     return wh_flow_compare(state, a, b) < 0;
 }
 
+/* True if the robot may swap this wafer against the one in the place: no other is on its way there. */
+static bool may_swap_in(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t place) {
+    const wh_flow_place_t *at = &state->places[place];
+    const int32_t station = state->tool->place_stations[place];
+    const size_t of = wh_flow_of(state->tool, robot, station);
+    return at->wafer != WH_FLOW_NONE && (at->coming == WH_FLOW_NONE || at->coming == wafer) &&
+           state->tool->serves[of] && state->stations[station].down_us == WH_FLOW_NEVER &&
+           wh_flow_sides_agree(state->tool->sides[of], state->tool->slot_sides[place]);
+}
+
 /* The best of the next step's full places, or WH_FLOW_NONE. */
 static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wafer) {
-    const wh_flow_tool_t *tool = state->tool;
     const int32_t next = state->wafers[wafer].step + 1;
     const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
     const int32_t end = wh_flow_end_of(state->plan, wafer, next);
     int32_t best = WH_FLOW_NONE;
     for (size_t i = 0; i < step->station_count; ++i) {
-        const wh_flow_station_t *station = &tool->stations[step->stations[i]];
-        const size_t of = wh_flow_of(tool, robot, step->stations[i]);
+        const wh_flow_station_t *station = &state->tool->stations[step->stations[i]];
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
-            const wh_flow_place_t *place = &state->places[p];
-            if (!tool->serves[of] || place->wafer == WH_FLOW_NONE ||
-                (place->coming != WH_FLOW_NONE && place->coming != wafer) ||
-                (end != WH_FLOW_NONE && end != p) ||
-                state->stations[step->stations[i]].down_us != WH_FLOW_NEVER ||
-                !wh_flow_sides_agree(tool->sides[of], tool->slot_sides[p])) {
-                continue;
-            }
-            if (best == WH_FLOW_NONE || is_before(state, robot, place->wafer, state->places[best].wafer)) {
+            if ((end == WH_FLOW_NONE || end == p) && may_swap_in(state, robot, wafer, p) &&
+                (best == WH_FLOW_NONE ||
+                 is_before(state, robot, state->places[p].wafer, state->places[best].wafer))) {
                 best = p;
             }
         }
@@ -54,20 +56,23 @@ static int32_t best_full(const wh_flow_state_t *state, int32_t robot, int32_t wa
     return best;
 }
 
+static bool is_among(const wh_flow_into_t moves[], size_t count, int32_t wafer) {
+    for (size_t i = 0; i < count; ++i) {
+        if (moves[i].wafer == wafer) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us) {
     wh_flow_into_t moves[LONGEST];
     for (size_t count = 0; count < LONGEST; ++count) {
-        const int32_t station = wh_flow_station_of(state, wafer);
-        const int64_t wait_us = begin_us == WH_FLOW_NEVER ? WH_FLOW_UNKNOWN : begin_us - state->now_us;
-        const wh_flow_target_t target = wh_flow_target(
-            state, robot, wafer, station, wait_us + wh_flow_pick_us(state, robot, station), WH_FLOW_NONE);
+        const wh_flow_target_t target =
+            wh_flow_target(state, robot, wafer, wh_flow_station_of(state, wafer),
+                           wh_flow_loaded_us(state, robot, wafer, begin_us), WH_FLOW_NONE);
         const int32_t place = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
-        for (size_t i = 0; i < count; ++i) {
-            if (moves[i].wafer == wafer) {
-                return WH_FLOW_NONE;
-            }
-        }
-        if (place == WH_FLOW_NONE) {
+        if (place == WH_FLOW_NONE || is_among(moves, count, wafer)) {
             return WH_FLOW_NONE;
         }
         moves[count] = (wh_flow_into_t){wafer, place};
@@ -84,11 +89,6 @@ int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wa
     return WH_FLOW_NONE;
 }
 
-static bool is_emptied_and_cleaned(const wh_flow_state_t *state, int32_t place) {
-    return !state->tool->stations[state->tool->place_stations[place]].cleans_full &&
-           wh_flow_is_clean_next(state, place);
-}
-
 /* Before a full place: against its wafer, as soon as that is done. A clean that is due comes between. */
 static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place, wh_flow_order_t *order) {
     const int32_t other = state->places[place].wafer;
@@ -97,7 +97,7 @@ static void exchange(const wh_flow_state_t *state, int32_t robot, int32_t place,
         return;
     }
     const int32_t onward = wh_flow_swap_way(state, robot, other, state->now_us);
-    if (onward != WH_FLOW_NONE && is_emptied_and_cleaned(state, place)) {
+    if (onward != WH_FLOW_NONE && wh_flow_is_clean_behind(state, place)) {
         order->what = WH_FLOW_KEEP;
         order->wafer = other;
         order->place = onward;
@@ -201,32 +201,46 @@ static bool is_coming(const wh_flow_state_t *state, const wh_flow_task_t *task) 
                                   state->counts[step] > state->leaving[step]);
 }
 
+/* Looks into first steps to which wafers are still to come, or in which they lie. False if there are none. */
+static bool look_into_first(const wh_flow_state_t *state, int32_t robot, const wh_flow_round_t *round,
+                            found_t *found) {
+    bool is_awaited = false;
+    for (size_t i = 0; i < round->count; ++i) {
+        if (is_first(round, &round->tasks[i]) && is_coming(state, &round->tasks[i])) {
+            is_awaited = true;
+            look_into(state, robot, &round->tasks[i], found);
+        }
+    }
+    return is_awaited;
+}
+
+/* Looks into all steps from the earliest on until there is a wafer. Those of one number stand in the order of
+ * their routes. */
+static void look_into_all(const wh_flow_state_t *state, int32_t robot, const wh_flow_round_t *round,
+                          found_t *found) {
+    for (size_t i = round->count; i > 0 && found->wafer == WH_FLOW_NONE;) {
+        size_t first = i - 1;
+        while (first > 0 && round->tasks[first - 1].step == round->tasks[i - 1].step) {
+            --first;
+        }
+        for (size_t k = first; k < i && found->wafer == WH_FLOW_NONE; ++k) {
+            look_into(state, robot, &round->tasks[k], found);
+        }
+        i = first;
+    }
+}
+
 /* Empty-handed: from first steps while wafers are still to come to them or lie there, else from the
  * earliest. */
 static bool take(const wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                  wh_flow_order_t *order) {
     const wh_flow_round_t *round = &rules->rounds[robot];
     found_t found = {WH_FLOW_NONE, WH_FLOW_NONE, false};
-    bool is_awaited = false;
-    for (size_t i = 0; i < round->count; ++i) {
-        if (is_first(round, &round->tasks[i]) && is_coming(state, &round->tasks[i])) {
-            is_awaited = true;
-            look_into(state, robot, &round->tasks[i], &found);
-        }
-    }
-    if (found.wafer == WH_FLOW_NONE && is_awaited && !found.is_any) {
+    const bool is_awaited = look_into_first(state, robot, round, &found);
+    if (is_awaited && !found.is_any) {
         return false;
     }
-    for (size_t i = round->count; i > 0 && found.wafer == WH_FLOW_NONE;) {
-        size_t first = i - 1; /* those of one number stand in the order of their routes */
-        while (first > 0 && round->tasks[first - 1].step == round->tasks[i - 1].step) {
-            --first;
-        }
-        for (size_t k = first; k < i && found.wafer == WH_FLOW_NONE; ++k) {
-            look_into(state, robot, &round->tasks[k], &found);
-        }
-        i = first;
-    }
+    look_into_all(state, robot, round, &found);
     *order = (wh_flow_order_t){.what = WH_FLOW_KEEP,
                                .wafer = found.wafer,
                                .at = found.wafer == WH_FLOW_NONE ? WH_FLOW_NONE

@@ -168,6 +168,12 @@ static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t p
     return after > 0 && state->places[place].since_clean + 1 >= after;
 }
 
+/* True if such a clean begins as soon as the place's wafer is out of it. */
+static inline bool wh_flow_is_clean_behind(const wh_flow_state_t *state, int32_t place) {
+    return !state->tool->stations[state->tool->place_stations[place]].cleans_full &&
+           wh_flow_is_clean_next(state, place);
+}
+
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
 

@@ -2,9 +2,17 @@
 
 #include "safe.h"
 
+/* So long after now that all that has begun has ended: for a beginning that nobody knows. */
+#define UNKNOWN_US INT64_C(1000000000000000)
+
 int64_t wh_flow_pick_us(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const size_t of = wh_flow_of(state->tool, robot, station);
     return state->tool->doors[of].open_us + state->tool->pick_us[of];
+}
+
+int64_t wh_flow_loaded_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us) {
+    const int64_t wait_us = begin_us == WH_FLOW_NEVER ? UNKNOWN_US : begin_us - state->now_us;
+    return wait_us + wh_flow_pick_us(state, robot, wh_flow_station_of(state, wafer));
 }
 
 int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
@@ -28,36 +36,37 @@ bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t stat
 
 /* ------------------------------------------------------------------------------------------------ targets */
 
+static int64_t later(int64_t a_us, int64_t b_us) {
+    return a_us > b_us ? a_us : b_us;
+}
+
+/* When a clean that is due in a place without a wafer, or behind its wafer, begins: the door is shut then. */
+static int64_t clean_begin_us(const wh_flow_state_t *state, int32_t place) {
+    const wh_flow_station_state_t *now = &state->stations[state->tool->place_stations[place]];
+    return state->places[place].wafer != WH_FLOW_NONE ? now->busy_us : later(now->shut_us, state->now_us);
+}
+
 /* When the place will be empty and clean, or WH_FLOW_NEVER; `empty_us` is when it will be empty. */
 static int64_t clean_from(const wh_flow_state_t *state, int32_t place, int64_t *empty_us) {
-    const int32_t number = state->tool->place_stations[place];
     const wh_flow_place_t *at = &state->places[place];
-    const wh_flow_station_t *station = &state->tool->stations[number];
-    if (at->coming != WH_FLOW_NONE || (at->wafer != WH_FLOW_NONE && at->leaving_us == WH_FLOW_NEVER)) {
+    const bool has_wafer = at->wafer != WH_FLOW_NONE;
+    if (at->coming != WH_FLOW_NONE || (has_wafer && at->leaving_us == WH_FLOW_NEVER)) {
         return WH_FLOW_NEVER;
     }
-    *empty_us = at->wafer == WH_FLOW_NONE ? state->now_us : at->leaving_us;
+    *empty_us = has_wafer ? at->leaving_us : state->now_us;
     if (at->clean_us != WH_FLOW_NEVER) {
         return at->clean_us;
     }
-    if (!at->is_clean_due &&
-        (at->wafer == WH_FLOW_NONE || station->cleans_full || !wh_flow_is_clean_next(state, place))) {
+    if (!at->is_clean_due && !(has_wafer && wh_flow_is_clean_behind(state, place))) {
         return *empty_us;
     }
-    const wh_flow_station_state_t *now = &state->stations[number]; /* it begins when the door is shut */
-    return station->clean_us + (at->wafer != WH_FLOW_NONE      ? now->busy_us
-                                : now->shut_us > state->now_us ? now->shut_us
-                                                               : state->now_us);
+    return clean_begin_us(state, place) + state->tool->stations[state->tool->place_stations[place]].clean_us;
 }
 
 /* Since when it is empty, or will be; 0 if no wafer ever lay there. */
 static int64_t emptied_us(const wh_flow_place_t *place) {
     const int64_t us = place->wafer == WH_FLOW_NONE ? place->empty_us : place->leaving_us;
     return us < 0 ? 0 : us;
-}
-
-static int64_t later(int64_t a_us, int64_t b_us) {
-    return a_us > b_us ? a_us : b_us;
 }
 
 /* When a robot that is there could begin, as far as the station is concerned; WH_FLOW_NEVER: not known,
@@ -198,10 +207,9 @@ wh_flow_target_t wh_flow_target(const wh_flow_state_t *state, int32_t robot, int
 int32_t wh_flow_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us,
                            int32_t station) {
     const int32_t from = wh_flow_station_of(state, wafer);
-    const int64_t wait_us = begin_us == WH_FLOW_NEVER ? WH_FLOW_UNKNOWN : begin_us - state->now_us;
     wh_flow_target_t targets[64];
     const size_t count =
-        wh_flow_targets(state, robot, wafer, from, wait_us + wh_flow_pick_us(state, robot, from), station,
+        wh_flow_targets(state, robot, wafer, from, wh_flow_loaded_us(state, robot, wafer, begin_us), station,
                         targets, sizeof targets / sizeof targets[0]);
     for (size_t i = 0; i < count; ++i) {
         const wh_flow_into_t into = {wafer, targets[i].place};

@@ -20,8 +20,9 @@ wh_flow_target_t wh_flow_target(const wh_flow_state_t *state, int32_t robot, int
 size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
                        int64_t loaded_us, int32_t station, wh_flow_target_t targets[], size_t most);
 
-/* So long after now that all that has begun has ended: for a beginning that nobody knows. */
-#define WH_FLOW_UNKNOWN INT64_C(1000000000000000)
+/* How long after now the robot has the wafer if its pick, the door's opening included, begins at `begin_us`;
+ * WH_FLOW_NEVER: nobody knows when, and the answer is a time after all that has begun. */
+int64_t wh_flow_loaded_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us);
 
 /* When the robot is in front of the wafer, and when its pick could begin then; WH_FLOW_NEVER: not known. */
 int64_t wh_flow_begin_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t *there_us);

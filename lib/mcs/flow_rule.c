@@ -16,7 +16,30 @@ static int32_t find_wafer(wh_reader_t *reader, const wh_flow_plan_t *plan, const
     wh_reader_refuse(reader, "[3]", name, "a wafer of the lots by name");
 }
 
-/* { "LLA", "PM1" }, { "PM2", "keep" }, { "keep", "PM3", "W3" }, { "pump", "LLA", "vacuum" } */
+/* { "pump", "LLA", "vacuum" } */
+static void read_pump(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *lock, const char *side,
+                      wh_flow_line_t *line) {
+    line->what = WH_FLOW_PUMP;
+    line->to = wh_timed_find_station(reader, tool, "[2]", lock);
+    line->side = strcmp(side, "vacuum") == 0 ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE;
+    if (!tool->stations[line->to].is_lock ||
+        (line->side == WH_FLOW_ATMOSPHERE && strcmp(side, "atmosphere") != 0)) {
+        wh_reader_fail(reader, NULL, "{ \"pump\", LOAD LOCK, \"vacuum\" } or \"atmosphere\"");
+    }
+}
+
+/* { "LLA", "PM1" }, { "PM2", "keep" }, { "keep", "PM3" } */
+static void read_way(wh_reader_t *reader, const wh_flow_tool_t *tool, const char *from, const char *to,
+                     wh_flow_line_t *line) {
+    const bool brings = strcmp(from, "keep") == 0, keeps = strcmp(to, "keep") == 0;
+    line->what = brings ? WH_FLOW_BRING : keeps ? WH_FLOW_KEEP : WH_FLOW_TRANSFER;
+    if (brings && keeps) {
+        wh_reader_fail(reader, NULL, "one \"keep\" in a line");
+    }
+    line->from = brings ? WH_FLOW_NONE : wh_timed_find_station(reader, tool, "[1]", from);
+    line->to = keeps ? WH_FLOW_NONE : wh_timed_find_station(reader, tool, "[2]", to);
+}
+
 static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                       wh_flow_line_t *line) {
     char first[WH_NAME_SIZE], second[WH_NAME_SIZE], third[WH_NAME_SIZE];
@@ -29,22 +52,10 @@ static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_
     (void)wh_flow_entry(reader, 3, third);
     *line = (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
     if (strcmp(first, "pump") == 0) {
-        line->what = WH_FLOW_PUMP;
-        line->to = wh_timed_find_station(reader, tool, "[2]", second);
-        line->side = strcmp(third, "vacuum") == 0 ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE;
-        if (!tool->stations[line->to].is_lock ||
-            (line->side == WH_FLOW_ATMOSPHERE && strcmp(third, "atmosphere") != 0)) {
-            wh_reader_fail(reader, NULL, "{ \"pump\", LOAD LOCK, \"vacuum\" } or \"atmosphere\"");
-        }
+        read_pump(reader, tool, second, third, line);
         return;
     }
-    const bool brings = strcmp(first, "keep") == 0, keeps = strcmp(second, "keep") == 0;
-    line->what = brings ? WH_FLOW_BRING : keeps ? WH_FLOW_KEEP : WH_FLOW_TRANSFER;
-    if (brings && keeps) {
-        wh_reader_fail(reader, NULL, "one \"keep\" in a line");
-    }
-    line->from = brings ? WH_FLOW_NONE : wh_timed_find_station(reader, tool, "[1]", first);
-    line->to = keeps ? WH_FLOW_NONE : wh_timed_find_station(reader, tool, "[2]", second);
+    read_way(reader, tool, first, second, line);
     line->wafer = third[0] == '\0' ? WH_FLOW_NONE : find_wafer(reader, plan, third);
 }
 

@@ -6,27 +6,14 @@
 #include "layout_internal.h"
 #include "layout_tool.h"
 
-/* A time for each station: a number, or a table with some of them and `default`. */
-static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *field,
-                       double fallback, int64_t times_us[]) {
-    int64_t *own = &times_us[wh_flow_of(tool, robot, 0)];
-    const int type = wh_reader_push(reader, field);
-    lua_pop(reader->L, 1);
-    const bool is_table = type == LUA_TTABLE && wh_reader_enter(reader, field);
-    const double usual =
-        is_table ? wh_reader_number(reader, "default", isnan(fallback) ? 0 : fallback, 0, WH_TIMED_LONGEST_S)
-                 : wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S);
-    for (size_t s = 0; s < tool->station_count; ++s) {
-        own[s] = wh_layout_us(usual);
-    }
-    if (!is_table) {
-        return;
-    }
-    const bool has_usual = wh_reader_has(reader, "default") || !isnan(fallback);
+/* The times of the stations that the reader's table names. It must name all that the robot serves if there is
+ * no usual time. */
+static void read_own_times(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_t robot, bool has_usual,
+                           int64_t own_us[]) {
     for (size_t s = 0; s < tool->station_count; ++s) {
         const bool is_needed = !has_usual && tool->serves[wh_flow_of(tool, robot, (int32_t)s)];
         if (is_needed || wh_reader_has(reader, tool->stations[s].name)) {
-            own[s] = wh_timed_read_us(reader, tool->stations[s].name, NAN);
+            own_us[s] = wh_timed_read_us(reader, tool->stations[s].name, NAN);
         }
     }
     size_t count = 0;
@@ -36,7 +23,26 @@ static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot,
             (void)wh_timed_find_station(reader, tool, names[i].name, names[i].name);
         }
     }
-    wh_reader_leave(reader);
+}
+
+/* A time for each station: a number, or a table with some of them and `default`. */
+static void read_times(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const char *field,
+                       double fallback, int64_t times_us[]) {
+    int64_t *own_us = &times_us[wh_flow_of(tool, robot, 0)];
+    const int type = wh_reader_push(reader, field);
+    lua_pop(reader->L, 1);
+    const bool is_table = type == LUA_TTABLE && wh_reader_enter(reader, field);
+    const double usual =
+        is_table ? wh_reader_number(reader, "default", isnan(fallback) ? 0 : fallback, 0, WH_TIMED_LONGEST_S)
+                 : wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S);
+    for (size_t s = 0; s < tool->station_count; ++s) {
+        own_us[s] = wh_layout_us(usual);
+    }
+    if (is_table) {
+        const bool has_usual = wh_reader_has(reader, "default") || !isnan(fallback);
+        read_own_times(reader, tool, robot, has_usual, own_us);
+        wh_reader_leave(reader);
+    }
 }
 
 /* One pair of `move`, named "A>B"; and the way back, unless that is named as well. */

@@ -38,6 +38,8 @@ static const char reentrant[] = "1 2 0 0,1 3 0 0,1 4 0 0,2 5 0 0,0 0 5 6,3 5 0 0
 static const char *const reentrant_places[] = {"",     "LLA",  "PM11", "PM12", "PM13", "BM11", "PM21",
                                                "PM22", "PM23", "PM24", "BM12", "PM14", "LLB"};
 
+static const char *const robots[2] = {"R1", "R2"};
+
 static void open_clusters(flow_case_t *flow, int which) {
     flow_open(flow, "R1 R2*2", "LLA*5 LLB*5 PM11 PM12 PM13 PM14 BM11 BM12 PM21 PM22 PM23 PM24");
     flow_robot(flow, "R1", "LLA LLB PM11 PM12 PM13 PM14 BM11 BM12", 1, 1, 1, 0);
@@ -50,22 +52,36 @@ static const char *place_name(const char *const places[], int number) {
     return number == 100 ? "keep" : places[number];
 }
 
+/* A move of the serial flow is one number: from that place along the route to the next. */
+static void add_serial(flow_case_t *flow, const int moves[]) {
+    for (int r = 0; r < 2; ++r) {
+        if (moves[r] > 0) {
+            flow_line(flow, robots[r], serial_places[moves[r] - 1], serial_places[moves[r]]);
+        }
+    }
+}
+
+static void add_pair(flow_case_t *flow, const char *const places[], const int moves[]) {
+    for (int r = 0; r < 2; ++r) {
+        if (moves[2 * r] > 0) {
+            flow_line(flow, robots[r], place_name(places, moves[2 * r]),
+                      place_name(places, moves[2 * r + 1]));
+        }
+    }
+}
+
 static void read_lists(flow_case_t *flow, int which) {
+    static const char *const rounds[3] = {serial, parallel, reentrant};
     char text[2000], *rest = NULL;
-    (void)snprintf(text, sizeof text, "%s", which == 0 ? serial : which == 1 ? parallel : reentrant);
-    const char *const *places = which == 1 ? parallel_places : reentrant_places;
+    (void)snprintf(text, sizeof text, "%s", rounds[which]);
     for (char *round = strtok_r(text, ",", &rest); round; round = strtok_r(NULL, ",", &rest)) {
         int moves[4] = {0, 0, 0, 0};
         const int count = sscanf(round, "%d %d %d %d", &moves[0], &moves[1], &moves[2], &moves[3]);
         assert_int_equal(count, which == 0 ? 2 : 4);
-        for (int r = 0; r < 2; ++r) {
-            const char *robot = r == 0 ? "R1" : "R2";
-            if (which == 0 && moves[r] > 0) {
-                flow_line(flow, robot, serial_places[moves[r] - 1], serial_places[moves[r]]);
-            } else if (which > 0 && moves[2 * r] > 0) {
-                flow_line(flow, robot, place_name(places, moves[2 * r]),
-                          place_name(places, moves[2 * r + 1]));
-            }
+        if (which == 0) {
+            add_serial(flow, moves);
+        } else {
+            add_pair(flow, which == 1 ? parallel_places : reentrant_places, moves);
         }
     }
 }
