@@ -239,7 +239,7 @@ static void put_fields(const wh_layout_t *layout, const double axes[], const wh_
         put_gripper(layout, state, g, are_wafers_same && is_as_before(&state->grippers[g], &row->grippers[g]),
                     values);
     }
-    if (!are_wafers_same || row->holds) {
+    if (!row || !are_wafers_same || row->holds) {
         put_wafers(layout, state, row, values);
     }
 }

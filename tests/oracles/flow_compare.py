@@ -104,8 +104,8 @@ def compare(program, folder, level, seed):
     (folder / "tool.lua").write_text(layout_text(tool), encoding="utf-8")
     ran = subprocess.run([program, "run", folder / "flow.lua", "--json"], capture_output=True, text=True, timeout=60, check=False)
     told = json.loads(ran.stdout).get("flow") if ran.stdout.startswith("{") else None
-    if not told:
-        return ran.stdout + ran.stderr
+    if not told or ran.returncode not in (0, 1):
+        return f"the program ended with {ran.returncode}: {ran.stdout}{ran.stderr}"
     model, ours = set(visits_of_model(result, names)), set(visits_of_program(told))
     ends = {"done": "done", "STUCK": "stuck", "refused": "broken", "until": "cut"}
     if ends[result["state"]] != told["end"]:
