@@ -92,7 +92,7 @@ typedef struct {
     double s;              /* of the plunger, mm (edge.h) */
     double excess;         /* JAMMED: mm beyond the clearance, 0 for a wafer that is too large; else 0 */
     wh_edge_wafer_t lying; /* that wafer, as it lay on the blade when the plunger started */
-    wh_real_t x, y;        /* of gripper_from_wafer at that time */
+    wh_real_t x, y;        /* of gripper_from_wafer at that time; 0 if it was not taken */
 } wh_grip_state_t;
 
 /* The data that a table needs in addition to its own arrays. The arrays belong to the caller, live as long
@@ -159,12 +159,13 @@ int32_t wh_grips_support(const wh_grips_t *grips, size_t wafer) WH_SYMBOL(wh_gri
 
 /* Completes states that came from elsewhere, such as from a message, and checks whether a step can have
  * left them with these grippers. It uses of each state phase, wafer, s and excess, and while the plunger
- * closes on a wafer x, y and, in `lying`, the place and the notch's axis. It fills in the rest: the wafer's
- * shape, and all of a state that is OPEN. Returns WH_OK, WH_STATUS_NOT_FINITE, or the status of
- * wh_edge_wafer_validate. Returns WH_STATUS_OUT_OF_RANGE for these: an unknown phase or one that the grip
- * does not have; a wafer that does not exist or is not the gripper's own, or is carried where the phase
- * says otherwise; an s outside of the stroke; an excess below 0, above 1000 or with another phase than
- * JAMMED. If it refuses, some states may be completed. Cost: linear in grippers. */
+ * closes on a wafer x, y and, in `lying`, the place and the notch's axis. It fills in the rest: the
+ * wafer's shape, and all of a state that is OPEN. Returns WH_OK, WH_STATUS_NOT_FINITE, or the status of
+ * wh_edge_wafer_validate. Returns WH_STATUS_OUT_OF_RANGE for these: vacuum that carries a wafer with a
+ * closed valve; an unknown phase or one that the grip does not have; a wafer that does not exist or is not
+ * the gripper's own, or is carried where the phase says otherwise; an s outside of the stroke; an excess
+ * below 0, above 1000 or with another phase than JAMMED. If it refuses, some states may be completed.
+ * Cost: linear in grippers. */
 wh_status_t wh_grips_complete(const wh_grips_parts_t *parts, const wh_gripper_t grippers[],
                               size_t gripper_count, size_t wafer_count, wh_grip_state_t states[])
     WH_SYMBOL(wh_grips_complete);

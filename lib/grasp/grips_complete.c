@@ -58,9 +58,18 @@ static wh_status_t complete_edge(const wh_edge_t *edge, const wh_edge_wafer_t sh
     return lies ? complete_lying(edge, shapes, state) : WH_OK;
 }
 
-static wh_status_t complete(const wh_grips_parts_t *parts, const wh_grip_t *grip, int32_t carried,
+/* Vacuum lets a wafer go once its valve is closed. */
+static bool may_carry(const wh_grip_t *grip, const wh_gripper_t *gripper) {
+    return grip->kind != WH_GRIP_VACUUM || gripper->wafer == WH_NONE || gripper->valve == WH_VALVE_OPEN;
+}
+
+static wh_status_t complete(const wh_grips_parts_t *parts, const wh_grip_t *grip, const wh_gripper_t *gripper,
                             size_t wafer_count, wh_grip_state_t *state) {
     const bool is_edge = grip->kind == WH_GRIP_EDGE;
+    const int32_t carried = gripper->wafer;
+    if (!may_carry(grip, gripper)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     if (state->phase == WH_GRIP_OPEN) {
         open_state(grip, state);
         return !is_edge || carried == WH_NONE ? WH_OK : WH_STATUS_OUT_OF_RANGE;
@@ -73,7 +82,7 @@ wh_status_t wh_grips_complete(const wh_grips_parts_t *parts, const wh_gripper_t 
                               size_t gripper_count, size_t wafer_count, wh_grip_state_t states[]) {
     wh_status_t status = WH_OK;
     for (size_t g = 0; g < gripper_count && status == WH_OK; ++g) {
-        status = complete(parts, &parts->grips[g], grippers[g].wafer, wafer_count, &states[g]);
+        status = complete(parts, &parts->grips[g], &grippers[g], wafer_count, &states[g]);
     }
     return status;
 }

@@ -85,7 +85,9 @@ static wh_status_t check_held(const wh_grasp_t *table, size_t g, const wh_wafer_
     if (gripper->wafer == WH_NONE) {
         return WH_OK;
     }
-    if (!wh_is_index(gripper->wafer, table->storage.wafer_count) || gripper->valve != WH_VALVE_OPEN ||
+    /* Passive pads, and a plunger that is stuck, hold with a closed valve too. */
+    const bool holds = gripper->valve == WH_VALVE_OPEN || table->grips != 0;
+    if (!wh_is_index(gripper->wafer, table->storage.wafer_count) || !holds ||
         wafers[gripper->wafer].holder != (int32_t)g) {
         return WH_STATUS_OUT_OF_RANGE;
     }

@@ -524,6 +524,7 @@ wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layo
                          wh_link_arrays_t *arrays) {
     return (wh_grasp_t){.config = layout->grasp,
                         .mark = WH_GRASP_MARK,
+                        .grips = wh_layout_has_grips(layout) ? 1 : 0,
                         .slice = (uint64_t)(message->seq - message->missed),
                         .storage = {.wafers = arrays->wafers,
                                     .wafer_count = layout->wafer_count,

@@ -15,27 +15,38 @@ typedef struct {
 } run_t;
 
 static wh_station_t station;
+static wh_pose_t support;
 static wh_grip_t grip;
 static wh_edge_wafer_t shape;
 static run_t run, twin;
 static wh_command_t command;
 static wh_state_t answer;
 
-static void begin(run_t *of, double x, double y) {
+static void begin_with(run_t *of, wh_grip_kind_t kind, double x, double y) {
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {&of->wafer, 1, &of->gripper, 1, NULL, 0};
     const wh_cell_t cell = {.stations = &station, .count = 1, .tolerance = wh_tolerance_paper()};
-    const wh_grips_parts_t parts = {.dt = 0.001, .grips = &grip, .shapes = &shape, .seen = &of->seen};
+    const wh_grips_parts_t parts = {.dt = 0.001,
+                                    .grips = &grip,
+                                    .shapes = &shape,
+                                    .seen = &of->seen,
+                                    .supports = &support,
+                                    .support_count = 1};
     memset(of, 0x5a, sizeof *of);
     station = (wh_station_t){wh_test_at(700, 0, 900), 1, 10, WH_NONE};
     of->wafer.base_from_wafer = wh_test_at(700 + x, y, 900);
-    grip = (wh_grip_t){WH_GRIP_EDGE, wh_edge_default(150)};
+    support = wh_station_slot(&station, 1);
+    grip = (wh_grip_t){kind, wh_edge_default(150)};
     shape = wh_edge_wafer_nominal(150);
     assert_int_equal(wh_simulator_init(&of->simulator, &config, &storage, &cell), WH_OK);
     assert_int_equal(wh_simulator_set_grips(&of->simulator, &parts), WH_OK);
     memset(&command, 0, sizeof command);
     command.gripper_count = 1;
     command.grippers[0].base_from_gripper = wh_test_at(700, 0, 900);
+}
+
+static void begin(run_t *of, double x, double y) {
+    begin_with(of, WH_GRIP_EDGE, x, y);
 }
 
 static void step(run_t *of, int valve) {
@@ -155,6 +166,68 @@ static void a_snapshot_has_all_of_a_plunger_on_its_way(void **state) {
     }
 }
 
+/* Saves `run`, loads the bytes into `twin`, and relinks a copy; each has the hash of `run`, and keeps it in the next
+ * step. */
+static void expect_equal_copies(int valve) {
+    static uint8_t bytes[WH_SNAPSHOT_SIZE(1, 1)];
+    static wh_wafer_t wafers[1];
+    static wh_gripper_t grippers[1];
+    static wh_snapshot_room_t room = {.wafers = wafers, .grippers = grippers};
+    const wh_grip_t kept_grip = grip;
+    const wh_command_t kept = command;
+    run_t ahead = run;
+    const wh_grasp_storage_t storage = {&ahead.wafer, 1, &ahead.gripper, 1, NULL, 0};
+    size_t size = 0;
+    assert_int_equal(wh_simulator_save(&run.simulator, bytes, sizeof bytes, &size), WH_OK);
+    begin_with(&twin, kept_grip.kind, 0, 0);
+    assert_int_equal(wh_simulator_load(&twin.simulator, bytes, size, &room), WH_OK);
+    assert_int_equal(wh_simulator_relink(&ahead.simulator, &storage), WH_OK);
+    command = kept;
+    step(&twin, valve);
+    command = kept;
+    step(&ahead, valve);
+    command = kept;
+    step(&run, valve);
+    assert_true(wh_simulator_hash(&twin.simulator) == wh_simulator_hash(&run.simulator));
+    assert_true(wh_simulator_hash(&ahead.simulator) == wh_simulator_hash(&run.simulator));
+}
+
+static void what_holds_with_a_closed_valve_can_be_saved(void **state) {
+    (void)state;
+    begin(&run, 0, 0);
+    steps(&run, STROKE, OPEN);
+    arm(WH_FAULT_PLUNGER_STUCK, 0, 50);
+    steps(&run, 20, CLOSED);
+    assert_int_equal(run.gripper.wafer, 0);
+    expect_equal_copies(CLOSED);
+    begin_with(&run, WH_GRIP_PASSIVE, 0, 0);
+    command.grippers[0].base_from_gripper.r.z = 899;
+    for (int i = 0; i < 200; ++i) {
+        command.grippers[0].base_from_gripper.r.z += 0.01;
+        step(&run, CLOSED);
+    }
+    assert_int_equal(run.gripper.wafer, 0);
+    expect_equal_copies(CLOSED);
+}
+
+/* The wafer that the blade held before leaves nothing in the state of a plunger that closes on none of its own. */
+static void a_jam_after_a_hold_can_be_saved(void **state) {
+    (void)state;
+    begin(&run, 0.5, 0.3);
+    steps(&run, STROKE, OPEN);
+    steps(&run, STROKE, CLOSED);
+    command.grippers[0].base_from_gripper.r.x += 5;
+    steps(&run, 10, OPEN);
+    assert_int_equal(run.gripper.wafer, WH_NONE);
+    assert_int_equal(state_of(&run)->phase, WH_GRIP_CLOSING);
+    assert_true(state_of(&run)->x == 0 && state_of(&run)->y == 0);
+    begin(&run, 0.5, 0.3);
+    steps(&run, STROKE, OPEN);
+    steps(&run, STROKE, CLOSED);
+    command.grippers[0].base_from_gripper.r.x += 5;
+    expect_equal_copies(OPEN);
+}
+
 static void states_that_no_step_leaves_are_refused(void **state) {
     (void)state;
     begin(&run, 0, 0);
@@ -181,6 +254,8 @@ static void states_that_no_step_leaves_are_refused(void **state) {
     REFUSED(lying.notch_x, (double)INFINITY, WH_STATUS_NOT_FINITE);
     grip.kind = WH_GRIP_VACUUM;
     REFUSED(excess, 0, WH_STATUS_OUT_OF_RANGE);
+    run.gripper.valve = CLOSED;
+    REFUSED(phase, WH_GRIP_OPEN, WH_STATUS_OUT_OF_RANGE);
 }
 
 int main(void) {
@@ -190,6 +265,8 @@ int main(void) {
         cmocka_unit_test(a_stuck_plunger_neither_closes_nor_lets_go),
         cmocka_unit_test(a_slow_plunger_goes_as_fast_as_its_fault_lets_it),
         cmocka_unit_test(a_snapshot_has_all_of_a_plunger_on_its_way),
+        cmocka_unit_test(what_holds_with_a_closed_valve_can_be_saved),
+        cmocka_unit_test(a_jam_after_a_hold_can_be_saved),
         cmocka_unit_test(states_that_no_step_leaves_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
