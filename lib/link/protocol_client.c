@@ -160,6 +160,16 @@ static void take_refusal(wh_protocol_client_t *client, const waferhand_state *me
     }
 }
 
+/* A state that cannot be is no answer: the wait for one goes on, and ends as for a silent simulator. */
+static void refuse_state(wh_protocol_client_t *client, int64_t seq) {
+    if (client->counters.malformed++ == 0) {
+        wh_node_warn(client->node,
+                     "the simulator's state of slice %" PRId64 " cannot be one of this layout: it "
+                     "is not taken (expected the states of one simulator of this version)",
+                     seq);
+    }
+}
+
 static void take_message(wh_protocol_client_t *client, const waferhand_state *message, const void *data,
                          size_t size) {
     wh_state_t state;
@@ -167,13 +177,16 @@ static void take_message(wh_protocol_client_t *client, const waferhand_state *me
         ++client->counters.unasked;
         return;
     }
+    const bool is_ours = message->status == WH_OK && is_awaited(client, message->seq);
+    if (is_ours && !take_over(client, message, &state)) {
+        refuse_state(client, message->seq);
+        return;
+    }
     heard(client);
     if (message->status != WH_OK) {
         take_refusal(client, message);
-    } else if (!is_awaited(client, message->seq)) {
+    } else if (!is_ours) {
         ++client->counters.unasked;
-    } else if (!take_over(client, message, &state)) {
-        ++client->counters.malformed;
     } else {
         take(client, message, &state, data, size);
     }

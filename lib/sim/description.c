@@ -35,6 +35,7 @@ static uint64_t hash_cell(uint64_t hash, const wh_cell_t *cell) {
     hash = wh_hash_real(hash, cell->askew);
     hash = wh_hash_int(hash, cell->settle ? 1 : 0);
     hash = cell->drop > 0 ? wh_hash_real(hash, cell->drop) : hash;
+    hash = cell->thickness > 0 ? wh_hash_real(wh_hash_int(hash, 2), cell->thickness) : hash;
     for (size_t s = 0; s < cell->count; ++s) {
         hash = wh_hash_pose(hash, &cell->stations[s].base_from_station);
         hash = wh_hash_int(hash, cell->stations[s].slots);

@@ -252,6 +252,30 @@ static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answer
     wh_node_close(&node);
 }
 
+/* A simulator whose states cannot be. */
+static void answer_impossibly(void *user, const void *data, size_t size) {
+    (void)user;
+    waferhand_command message;
+    assert_true(wh_link_decode_command(data, size, &message));
+    (void)wh_protocol_server_command(&server, &message, NULL);
+    change = hold_by_no_such_gripper;
+    tell_changed_state();
+}
+
+static void impossible_answers_end_a_wait_as_none_would(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.timeout_us = 200000};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_impossibly, NULL));
+    assert_int_equal(send_slice(1, &answer), WH_STATUS_NO_ANSWER);
+    assert_true(client.timed_out && client.counters.malformed > 0);
+    const char *told = strstr(said, "the simulator's state of slice 1 cannot be one of this layout");
+    assert_non_null(told);
+    assert_null(strstr(told + 1, "the simulator's state"));
+    wh_node_close(&node);
+}
+
 /* It runs at full speed after its first slice, which a simulator has answered. */
 static void begin_free_run(int64_t timeout_us, wh_state_t *answer) {
     const wh_protocol_client_options_t options = {.rate = 1000, .timeout_us = timeout_us};
@@ -523,6 +547,7 @@ int main(void) {
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_free_run_waits_for_a_state_that_is_awaited, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_free_run_tells_each_state_that_it_takes_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(impossible_answers_end_a_wait_as_none_would, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stop_loses_no_slice, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator,
                                         set_up, tear_down),

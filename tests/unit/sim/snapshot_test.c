@@ -278,6 +278,9 @@ static void a_snapshot_of_another_cell_is_refused(void **state) {
     begin(&twin, WH_CHECK_SAMPLED, true);
     stations[1].pitch += 1;
     refuse(size, WH_STATUS_OTHER_SNAPSHOT);
+    begin(&twin, WH_CHECK_SAMPLED, true);
+    twin.simulator.cell.thickness += WH_REAL(0.5);
+    refuse(size, WH_STATUS_OTHER_SNAPSHOT);
 }
 
 static void what_is_missing_is_refused(void **state) {
