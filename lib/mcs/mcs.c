@@ -63,6 +63,10 @@ const wh_record_t *wh_mcs_record(const wh_mcs_t *mcs) {
     return mcs->recorder.record;
 }
 
+bool wh_mcs_is_script(const wh_mcs_t *mcs) {
+    return mcs->wanted.is_file;
+}
+
 const char *wh_mcs_running_text(const wh_mcs_t *mcs) {
     const wh_recorder_t *recorder = &mcs->recorder;
     return recorder->running != WH_NONE ? recorder->record->commands[recorder->running].text : NULL;
