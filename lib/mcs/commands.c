@@ -66,7 +66,7 @@ static int begin_command(lua_State *L) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
     }
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track); /* of a command that was cut short */
-    wh_mcs_find_callers(L, mcs, mcs->running.callers);
+    wh_mcs_find_callers(L, mcs);
     wh_origins_look(&mcs->heard.origins, &mcs->state); /* a free run may not hear of each slice */
     tell_command(mcs,
                  wh_recorder_begin(&mcs->recorder, find_line(L, mcs), text, wh_recorder_now(&mcs->recorder)),
