@@ -66,10 +66,13 @@ static wh_broadcast_t *broadcast_of(void *user) {
     return (wh_broadcast_t *)(void *)((char *)user - offsetof(wh_broadcast_t, control));
 }
 
+/* Messages from now on tell the slice in which the run begins, not the last one of the run before. */
 static void begin_run(wh_broadcast_t *broadcast) {
     broadcast->identity.run = wh_protocol_client_draw_run();
     broadcast->identity.layout_hash = broadcast->simulation->server.identity.layout_hash;
     broadcast->control.identity = broadcast->identity;
+    broadcast->control.seq = 0;
+    broadcast->control.utime = 0;
 }
 
 /* The earlier run stays as it is until this one can begin. */
@@ -152,6 +155,8 @@ static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_st
     }
     *state = broadcast->simulation->server.state;
     state->event_count = 0;
+    broadcast->control.seq = state->seq;
+    broadcast->control.utime = state->utime;
     return WH_OK;
 }
 

@@ -312,6 +312,11 @@ static bool write_report(arguments_t *arguments, wh_session_t *session, wh_signa
 
 /* ------------------------------------------------------------------------------------------------ serving */
 
+static void say_untried(void *user, const char *list) {
+    (void)user;
+    fprintf(stderr, "serve: never came, and so were not tried: %s\n", list);
+}
+
 static void say_counters(const wh_host_t *host) {
     const wh_session_t *session = host->session;
     for (size_t i = 0; i < host->count; ++i) {
@@ -341,6 +346,9 @@ static void say_counters(const wh_host_t *host) {
         fprintf(stderr, "serve: %" PRId64 " PUT%s ended in another slot than was asked\n",
                 (int64_t)session->unmet, WH_PLURAL(session->unmet));
     }
+    if (session->record.never_came) {
+        say_untried(NULL, session->record.never_came);
+    }
     fprintf(stderr, "serve: %" PRId64 " slice%s, hash %016" PRIx64 "\n", slices, WH_PLURAL(slices),
             wh_session_hash(session));
 }
@@ -360,7 +368,8 @@ static bool open_session(served_t *served, const arguments_t *arguments) {
         .parameters = arguments->layout.parameters.items,
         .parameter_count = arguments->layout.parameters.count,
         .listener = wh_host_listener(&served->host),
-        .keeps_all = wh_run_files_wanted(&arguments->run.files)};
+        .keeps_all = wh_run_files_wanted(&arguments->run.files),
+        .untried = say_untried};
     if (!wh_serve_cell_open(&served->cell, &arguments->cell, &served->host, &wanted.partners)) {
         return false;
     }

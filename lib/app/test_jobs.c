@@ -13,6 +13,9 @@
 #include "../text/clock.h"
 #include "../text/output.h"
 
+/* A longer list ends in "...". */
+#define NEVER_CAME_BYTES 2000
+
 /* The message of a script's process when it has ended: fewer bytes than a pipe takes at once. */
 typedef struct {
     wh_test_verdict_t verdict;
@@ -22,6 +25,7 @@ typedef struct {
     uint64_t hash;
     bool is_unlooked;
     char reason[WH_SANDBOX_MESSAGE_BYTES + 80];
+    char never_came[NEVER_CAME_BYTES]; /* empty: all faults came */
 } told_t;
 
 /* A script that is being played. */
@@ -78,6 +82,13 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, c
     }
 }
 
+static void tell_never_came(const wh_record_t *record, told_t *told) {
+    const char *list = record->never_came ? record->never_came : "";
+    const bool is_cut = strlen(list) >= sizeof told->never_came;
+    (void)snprintf(told->never_came, sizeof told->never_came, "%.*s%s", NEVER_CAME_BYTES - 4, list,
+                   is_cut ? "..." : "");
+}
+
 /* Does not return: the process ends as a script's run does. */
 static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     wh_script_run_options_t options = crew->options->run;
@@ -93,6 +104,7 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     told.errors = count_errors(&run.record);
     told.simulated_s = run.record.simulated_s;
     told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
+    tell_never_came(&run.record, &told);
     for (size_t i = 0; i < WH_TEST_OUTPUTS; ++i) {
         const char *output = crew->options->outputs[i];
         told.reads = output && wh_output_is_kept(output) ? i + 1 : told.reads;
@@ -206,6 +218,7 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
         result->simulated_s = told->simulated_s;
         result->hash = told->hash;
         result->is_unlooked = told->is_unlooked;
+        result->never_came = told->never_came[0] != '\0' ? wh_text_copy(told->never_came) : NULL;
     }
 }
 
@@ -304,5 +317,6 @@ void wh_test_results_free(wh_test_result_t results[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
         free(results[i].reason);
         free(results[i].output);
+        free(results[i].never_came);
     }
 }

@@ -201,7 +201,9 @@ static void tell_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news,
         wh_mcs_process_tell_centring(control, mcs);
         break;
     case WH_MCS_FINISHED:
-        judge_run(control, mcs);
+        if (wh_mcs_is_script(mcs)) {
+            judge_run(control, mcs);
+        }
         break;
     }
 }

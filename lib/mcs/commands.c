@@ -46,6 +46,16 @@ static int find_last_line(lua_State *L) {
     return 1;
 }
 
+/* native.line_in(thread): the script's line in which a coroutine waits; 0: in none that is known. */
+static int find_line_in(lua_State *L) {
+    lua_State *thread = lua_tothread(L, 1);
+    luaL_argcheck(L, thread, 1, "no thread");
+    int line = 0;
+    (void)wh_sandbox_lines(thread, wh_mcs_of(L)->script, &line, 1);
+    lua_pushinteger(L, line);
+    return 1;
+}
+
 /* native.begin(text, line): a command starts; the script's line is found on the stack, or else it is `line`.
  * An argument's metamethod can call this within another command. */
 static int begin_command(lua_State *L) {
@@ -56,7 +66,7 @@ static int begin_command(lua_State *L) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
     }
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track); /* of a command that was cut short */
-    wh_mcs_find_callers(L, mcs, mcs->running.callers);
+    wh_mcs_find_callers(L, mcs);
     wh_origins_look(&mcs->heard.origins, &mcs->state); /* a free run may not hear of each slice */
     tell_command(mcs,
                  wh_recorder_begin(&mcs->recorder, find_line(L, mcs), text, wh_recorder_now(&mcs->recorder)),
@@ -355,20 +365,10 @@ static int list_complaints(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
-                                             {"line_of", find_last_line},
-                                             {"finish", finish_command},
-                                             {"begin_word", begin_word},
-                                             {"hold", hold_command},
-                                             {"release", release_command},
-                                             {"is_held", find_phase},
-                                             {"expect", expect_condition},
-                                             {"imply", add_implied},
-                                             {"cycle", begin_cycle},
-                                             {"nearest", find_nearest},
-                                             {"fail", fail_command},
-                                             {"closest", find_closest},
-                                             {"let_go", find_let_go},
-                                             {"mark", count_events},
-                                             {"complaints", list_complaints},
-                                             {NULL, NULL}};
+const luaL_Reg wh_mcs_command_functions[] = {
+    {"begin", begin_command},     {"line_of", find_last_line},     {"line_in", find_line_in},
+    {"finish", finish_command},   {"begin_word", begin_word},      {"hold", hold_command},
+    {"release", release_command}, {"is_held", find_phase},         {"expect", expect_condition},
+    {"imply", add_implied},       {"cycle", begin_cycle},          {"nearest", find_nearest},
+    {"fail", fail_command},       {"closest", find_closest},       {"let_go", find_let_go},
+    {"mark", count_events},       {"complaints", list_complaints}, {NULL, NULL}};

@@ -227,6 +227,7 @@ static int switch_lane(lua_State *L) {
     lane->running = mcs->recorder.running;
     lane->planned = mcs->rehearsal.planned;
     memcpy(lane->callers, mcs->running.callers, sizeof lane->callers);
+    memcpy(lane->module, mcs->running.module, sizeof lane->module);
     memcpy(lane->word, mcs->running.word, sizeof lane->word);
     mcs->lanes->current = to;
     mcs->lanes->count = (size_t)to < mcs->lanes->count ? mcs->lanes->count : (size_t)to + 1;
@@ -236,6 +237,7 @@ static int switch_lane(lua_State *L) {
     mcs->recorder.running = lane->running;
     mcs->rehearsal.planned = lane->planned;
     memcpy(mcs->running.callers, lane->callers, sizeof mcs->running.callers);
+    memcpy(mcs->running.module, lane->module, sizeof mcs->running.module);
     memcpy(mcs->running.word, lane->word, sizeof mcs->running.word);
     return 0;
 }

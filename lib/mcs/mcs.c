@@ -63,6 +63,10 @@ const wh_record_t *wh_mcs_record(const wh_mcs_t *mcs) {
     return mcs->recorder.record;
 }
 
+bool wh_mcs_is_script(const wh_mcs_t *mcs) {
+    return mcs->wanted.is_file;
+}
+
 const char *wh_mcs_running_text(const wh_mcs_t *mcs) {
     const wh_recorder_t *recorder = &mcs->recorder;
     return recorder->running != WH_NONE ? recorder->record->commands[recorder->running].text : NULL;
@@ -96,7 +100,8 @@ static void push_numbered_error_metatable(lua_State *L) {
     }
 }
 
-void wh_mcs_find_callers(lua_State *L, const wh_mcs_t *mcs, int callers[WH_MCS_CALLERS]) {
+void wh_mcs_find_callers(lua_State *L, wh_mcs_t *mcs) {
+    int *callers = mcs->running.callers;
     int lines[2 * WH_MCS_CALLERS];
     const size_t count = wh_sandbox_lines(L, mcs->script, lines, sizeof lines / sizeof *lines);
     size_t kept = 0;
@@ -106,11 +111,14 @@ void wh_mcs_find_callers(lua_State *L, const wh_mcs_t *mcs, int callers[WH_MCS_C
         }
     }
     memset(callers + kept, 0, (WH_MCS_CALLERS - kept) * sizeof *callers);
+    wh_sandbox_module_place(L, mcs->script, mcs->running.module);
 }
 
-/* Pushes "; called from line 9, 20", or nothing as text. */
-static void push_callers(lua_State *L, const int callers[WH_MCS_CALLERS]) {
-    lua_pushstring(L, callers[0] > 0 ? "; called from line " : "");
+/* Pushes "; in moves.lua:4; called from line 9, 20", or what there is of it. */
+static void push_callers(lua_State *L, const wh_mcs_running_t *running) {
+    const int *callers = running->callers;
+    lua_pushfstring(L, "%s%s%s", running->module[0] ? "; in " : "", running->module,
+                    callers[0] > 0 ? "; called from line " : "");
     for (size_t i = 0; i < WH_MCS_CALLERS && callers[i] > 0; ++i) {
         lua_pushfstring(L, i > 0 ? ", %d" : "%d", callers[i]);
         lua_concat(L, 2);
@@ -130,9 +138,9 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
     wh_lua_set_text(L, "name", wh_status_name(status));
     wh_lua_set_integer(L, "line", line);
     if (!runs) {
-        wh_mcs_find_callers(L, mcs, mcs->running.callers);
+        wh_mcs_find_callers(L, mcs);
     }
-    push_callers(L, mcs->running.callers);
+    push_callers(L, &mcs->running);
     lua_pushfstring(L, "error %d %s: %s%s%s%s", (int)status, wh_status_name(status),
                     wh_record_error_text(status), detail ? "; " : "", detail ? detail : "",
                     lua_tostring(L, -1));

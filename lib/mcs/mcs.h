@@ -24,6 +24,9 @@ wh_link_t *wh_mcs_link(const wh_mcs_t *mcs);
 /* Commands, expectations, cycles and events. */
 const wh_record_t *wh_mcs_record(const wh_mcs_t *mcs);
 
+/* True if a script's file is run: only then does the run have a verdict. False: lines of a session. */
+bool wh_mcs_is_script(const wh_mcs_t *mcs);
+
 /* The text of the running command; null: none runs. */
 const char *wh_mcs_running_text(const wh_mcs_t *mcs);
 

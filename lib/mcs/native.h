@@ -18,7 +18,7 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
     __attribute__((noreturn));
 
 /* Finds the calling lines of the script's functions on L's stack, the innermost first. */
-void wh_mcs_find_callers(lua_State *L, const wh_mcs_t *mcs, int callers[WH_MCS_CALLERS]);
+void wh_mcs_find_callers(lua_State *L, wh_mcs_t *mcs);
 
 /* Index (from 0) of a wafer, gripper or station given from 1 by lua/mcs. */
 int32_t wh_mcs_index(lua_State *L, int argument, size_t count);

@@ -68,6 +68,23 @@ bool wh_session_says(const char *line, const char *word) {
     return strncasecmp(begin, word, length) == 0 && begin[length + strspn(begin + length, " ")] == '\0';
 }
 
+void wh_session_tell_untried(wh_session_t *session, wh_session_untried_t *untried, void *user) {
+    session->options.untried = untried;
+    session->options.untried_user = user;
+}
+
+/* Ends the run that RESET has left; the data that it shows is still there. */
+static void leave(wh_session_t *before) {
+    char *list = before->options.untried ? wh_mcs_tell_never_came(&before->mcs) : NULL;
+    if (list) {
+        before->options.untried(before->options.untried_user, list);
+        free(list);
+    }
+    wh_mcs_close(&before->mcs);
+    wh_record_free(&before->record);
+    wh_sandbox_free(before->sandbox);
+}
+
 /* Puts the old session aside. If the new one cannot be opened, the old one comes back to its place, so
  * pointers to it stay valid. */
 static bool reset_session(wh_session_t *session, char message[WH_SANDBOX_MESSAGE_BYTES]) {
@@ -76,9 +93,7 @@ static bool reset_session(wh_session_t *session, char message[WH_SANDBOX_MESSAGE
     *before = *session;
     const bool opened = wh_session_open(session, &options);
     if (opened) {
-        wh_mcs_close(&before->mcs);
-        wh_record_free(&before->record);
-        wh_sandbox_free(before->sandbox);
+        leave(before);
     } else {
         snprintf(message, WH_SANDBOX_MESSAGE_BYTES, "%s", session->message);
         wh_session_close(session);

@@ -30,6 +30,10 @@ typedef void wh_session_report_t(void *user, const char *line, wh_status_t statu
 /* True if the line has only this word, in upper or lower case, and blanks. */
 bool wh_session_says(const char *line, const char *word);
 
+/* Called when a RESET has ended a run in which faults or errors on purpose had not come: `list` names them,
+ * as wh_mcs_tell_never_came does. */
+typedef void wh_session_untried_t(void *user, const char *list);
+
 /* Zero or null fields mean their default. */
 typedef struct {
     const char *layout;            /* path, relative to the working directory */
@@ -41,6 +45,8 @@ typedef struct {
     bool keeps_all;             /* the record forgets no command */
     wh_session_report_t *report;
     void *report_user;
+    wh_session_untried_t *untried;
+    void *untried_user;
 } wh_session_options_t;
 
 /* Read `mcs`, `record`, `message`, `complaints` and `unmet`; the rest is internal. Must not be moved while it
@@ -60,6 +66,9 @@ typedef struct {
  * it points to must. False, and the reason in `message`, if layout, parameter or link is not usable.
  * Close it in either case. */
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options);
+
+/* Calls `untried` from now on; null: nobody. */
+void wh_session_tell_untried(wh_session_t *session, wh_session_untried_t *untried, void *user);
 
 /* The slices of this run so far, and the length of one, us. */
 int64_t wh_session_slice(const wh_session_t *session);

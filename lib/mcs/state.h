@@ -21,6 +21,9 @@
 /* The most lines of a script that are listed as calling lines, for a command within functions. */
 #define WH_MCS_CALLERS 4
 
+/* Room for a script's word, or for "the script's end". */
+#define WH_MCS_WORD 20
+
 /* A segment that was played, and the command of the record that asked for it (or WH_NONE). */
 typedef struct {
     wh_segment_t segment;
@@ -121,7 +124,8 @@ typedef struct {
     int32_t running;        /* the record's command; WH_NONE: none */
     wh_plan_list_t planned; /* its segments */
     int callers[WH_MCS_CALLERS];
-    char word[16];
+    char module[WH_SANDBOX_MODULE_BYTES];
+    char word[WH_MCS_WORD];
 } wh_lane_t;
 
 typedef struct {
@@ -197,8 +201,9 @@ typedef struct {
     wh_awaited_t awaited;                     /* what the running segment waits for */
     wh_vacuum_watch_t watch;                  /* of the running segment */
     uint32_t axes;                            /* bits: the axes of the running command */
-    int callers[WH_MCS_CALLERS]; /* the lines that called the running command's line; 0: no more */
-    char word[16];               /* the script's last word, which an error outside of a command names */
+    int callers[WH_MCS_CALLERS];          /* the lines that called the running command's line; 0: no more */
+    char module[WH_SANDBOX_MODULE_BYTES]; /* the place in a module where that line led; empty: none */
+    char word[WH_MCS_WORD]; /* the script's last word, which an error outside of a command names */
 } wh_mcs_running_t;
 
 /* Faults, and errors on purpose. */

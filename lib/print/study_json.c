@@ -191,6 +191,9 @@ static json_t *run_without_errors(const wh_study_result_t *result) {
     json_t *object =
         wh_json_set(json_object(), "ok %i hash %llx slices %lld simulated_s %g", record->ok,
                     (unsigned long long)record->hash, (json_int_t)record->slices, record->simulated_s);
+    if (record->never_came) {
+        wh_json_put(object, "never_came", wh_json_text(record->never_came));
+    }
     return wh_json_add(object, "throughput", wh_throughput_to_json(record), NULL);
 }
 

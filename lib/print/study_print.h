@@ -9,7 +9,8 @@
  *   noise_alone   (true if no error is drawn: trials differ in the noise of sensors alone),
  *   drawn_aside   (the number of drawn errors that are not in `drawn`: of wafers and stations that the run
  *                 without errors neither moves nor goes to),
- *   run_without_errors: { ok, hash, slices, simulated_s, throughput (as of a run) }
+ *   run_without_errors: { ok, hash, slices, simulated_s, throughput (as of a run), never_came (only if
+ *                 faults or errors on purpose did not come: their list in words) }
  * and the lists
  *   expectations: line, text, seen (trials that came to it), met, rate, low, high, first_missed (the lowest
  *                 trial, or null); that of a PUT, or of the script's end, only if a trial did not meet it

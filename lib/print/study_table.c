@@ -283,12 +283,17 @@ static void print_how(const table_t *table) {
 /* Prints warnings that the rate does not show. */
 static void print_warnings(const table_t *table) {
     const wh_trial_lines_t *lines = &table->tally->lines;
+    const char *never_came = table->study->study->nominal.record.never_came;
     size_t caught = 0;
     for (size_t i = 0; i < lines->count; ++i) {
         caught += lines->lines[i].met && lines->lines[i].errors > 0 ? 1 : 0;
     }
     if (!table->study->study->layout->collision) {
         fputs("! " WH_RECORD_UNLOOKED "\n", table->frame.out);
+    }
+    if (never_came) {
+        fprintf(table->frame.out, "! never came in the run without errors, and so were not tried: %s\n",
+                never_came);
     }
     if (caught > 0) {
         fprintf(table->frame.out, "! in %zu trial%s that count%s as ok the script caught errors%s\n", caught,

@@ -143,6 +143,21 @@ static size_t count_unchecked(const wh_script_sweep_t *sweep) {
     return unchecked;
 }
 
+/* The faults that did not come, as the first such run tells them: other runs may miss others. */
+static void print_never_came(const wh_script_sweep_t *sweep, FILE *out) {
+    const char *first = NULL;
+    size_t runs = 0;
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const char *list = sweep->points[i].never_came;
+        first = first ? first : list;
+        runs += list ? 1 : 0;
+    }
+    if (first) {
+        fprintf(out, "! never came in %zu run%s, and so were not tried%s: %s\n", runs, runs == 1 ? "" : "s",
+                runs == 1 ? "" : ", in the first of them", first);
+    }
+}
+
 /* Prints warnings that the rows do not show. */
 static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
     const size_t unchecked = count_unchecked(sweep);
@@ -158,6 +173,7 @@ static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
         fprintf(out, "! in %zu run%s that count as ok the script caught errors\n", caught,
                 caught == 1 ? "" : "s");
     }
+    print_never_came(sweep, out);
     for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
         print_end(&sweep->axes[axis], out);
     }
@@ -211,6 +227,9 @@ static json_t *run(const void *subject, size_t i) {
                       "gap %g checked %i caught_errors %i",
                       verdicts[point->verdict], point->reason, point->simulated_s, point->wafers_per_hour,
                       point->projz, point->projxy, point->gap, point->checked, point->caught);
+    if (point->never_came) {
+        wh_json_put(object, "never_came", wh_json_text(point->never_came));
+    }
     return wh_json_add(object, "hash",
                        point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);
 }

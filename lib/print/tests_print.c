@@ -61,6 +61,13 @@ static void put_caught(const wh_test_result_t *result, FILE *out, const char *be
     }
 }
 
+/* The faults and errors that the script wanted to try, and did not. */
+static void put_never_came(const wh_test_result_t *result, FILE *out, const char *before) {
+    if (result->never_came) {
+        fprintf(out, "%snever came, and so were not tried: %s\n", before, result->never_came);
+    }
+}
+
 static void put_good(const wh_test_result_t *result, FILE *out) {
     fprintf(out, "%llu %s, %.3f s simulated", (unsigned long long)result->expectations,
             result->expectations == 1 ? "expectation" : "expectations", result->simulated_s);
@@ -78,6 +85,7 @@ void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *
         put_good(result, out);
     }
     fputc('\n', out);
+    put_never_came(result, out, "    ! ");
     if (wh_test_is_bad(result->verdict)) {
         each_line(result->output, put_indented, out);
     }
@@ -151,6 +159,7 @@ void wh_test_print_tap(const wh_test_result_t *result, size_t number, FILE *out)
     put_tap_name(out, result->path);
     fputc('\n', out);
     put_caught(result, out, "# ", "\n");
+    put_never_came(result, out, "# ");
     if (is_bad) {
         fprintf(out, "# %s: ", wh_test_word(result->verdict));
         wh_style_put(out, without_path(result));
@@ -236,9 +245,10 @@ static void put_case(FILE *out, const wh_test_result_t *result) {
         fputs("/>\n", out);
     }
     const bool has_caught = result->verdict == WH_TEST_OK && result->errors > 0;
-    if (result->output || has_caught) {
+    if (result->output || has_caught || result->never_came) {
         fputs("      <system-out>", out);
         put_caught(result, out, "", "\n");
+        put_never_came(result, out, "");
         put_xml(out, result->output ? result->output : "");
         fputs("</system-out>\n", out);
     }

@@ -5,9 +5,10 @@
  *     passed over  paper.lua: a layout: waferhand layout paper.lua
  *
  * A script's output follows, indented, if its verdict is a bad one. If a script is ok, the errors that it
- * caught are counted in its line, in a comment of TAP, and in JUnit's system-out. Text is adapted to its
- * target: control characters stand as \xNN, and in XML each byte that is no UTF-8, and each character that
- * XML cannot hold, is U+FFFD.
+ * caught are counted in its line, in a comment of TAP, and in JUnit's system-out. Faults and errors on
+ * purpose that did not come are named below its line, in a comment of TAP, and in JUnit's system-out. Text is
+ * adapted to its target: control characters stand as \xNN, and in XML each byte that is no UTF-8, and each
+ * character that XML cannot hold, is U+FFFD.
  */
 #ifndef WH_PRINT_TESTS_PRINT_H
 #define WH_PRINT_TESTS_PRINT_H
@@ -37,6 +38,7 @@ typedef struct {
     double simulated_s, wall_s;
     uint64_t hash;    /* of the run */
     bool is_unlooked; /* it was played, and nobody looked for collisions */
+    char *never_came; /* the faults and errors on purpose that did not come; null: none */
 } wh_test_result_t;
 
 /* In words: "ok", "failed", "bad", "no end", "killed", "passed over". */

@@ -117,6 +117,13 @@ int wh_sandbox_last_line(lua_State *L, int index);
  * called its own functions. Returns how many there are. */
 size_t wh_sandbox_lines(lua_State *L, const char *path, int lines[], size_t room);
 
+/* Room for the place of wh_sandbox_module_place. */
+#define WH_SANDBOX_MODULE_BYTES 240
+
+/* The innermost place on L's call stack, FILE:LINE, if it is in another user's file than the chunk named
+ * `path`, such as a module; else "". A longer path loses its beginning. */
+void wh_sandbox_module_place(lua_State *L, const char *path, char place[WH_SANDBOX_MODULE_BYTES]);
+
 /* Names of chunks that messages never show begin with this: the library's own Lua files. No file can be
  * below it, so no user's path has such a name. */
 #define WH_INNER_CHUNK "/dev/null/"

@@ -98,17 +98,37 @@ size_t wh_sandbox_lines(lua_State *L, const char *path, int lines[], size_t room
     return count;
 }
 
-/* The innermost file on L's stack. Returns false if there is none. */
-static bool find_file(lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {
-    lua_Debug frame;
-    for (int level = 0; level < SEARCHED_LEVELS && lua_getstack(L, level, &frame); ++level) {
-        if (lua_getinfo(L, "Sl", &frame) && frame.currentline > 0 && frame.source[0] == '@' &&
-            !wh_sandbox_is_inner(frame.source + 1)) {
-            snprintf(place, WH_SANDBOX_PLACE_BYTES, "%.900s:%d", frame.source + 1, frame.currentline);
+/* The innermost place on L's stack that is in a user's file. Returns false if there is none. */
+static bool find_frame(lua_State *L, lua_Debug *frame) {
+    for (int level = 0; level < SEARCHED_LEVELS && lua_getstack(L, level, frame); ++level) {
+        if (lua_getinfo(L, "Sl", frame) && frame->currentline > 0 && frame->source[0] == '@' &&
+            !wh_sandbox_is_inner(frame->source + 1)) {
             return true;
         }
     }
     return false;
+}
+
+void wh_sandbox_module_place(lua_State *L, const char *path, char place[WH_SANDBOX_MODULE_BYTES]) {
+    lua_Debug frame;
+    place[0] = '\0';
+    if (find_frame(L, &frame) && strcmp(frame.source + 1, path) != 0) {
+        const char *file = frame.source + 1;
+        const size_t length = strlen(file);
+        const size_t most = WH_SANDBOX_MODULE_BYTES - 20;
+        (void)snprintf(place, WH_SANDBOX_MODULE_BYTES, "%s%s:%d", length > most ? "..." : "",
+                       length > most ? file + length - most + 3 : file, frame.currentline);
+    }
+}
+
+/* The innermost file on L's stack. Returns false if there is none. */
+static bool find_file(lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {
+    lua_Debug frame;
+    const bool found = find_frame(L, &frame);
+    if (found) {
+        snprintf(place, WH_SANDBOX_PLACE_BYTES, "%.900s:%d", frame.source + 1, frame.currentline);
+    }
+    return found;
 }
 
 void wh_sandbox_find_place(const wh_sandbox_t *sandbox, lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {

@@ -95,6 +95,7 @@ void wh_sweep_close(wh_script_sweep_t *sweep) {
     }
     for (size_t i = 0; sweep->points && i < sweep->point_count; ++i) {
         free(sweep->points[i].reason);
+        free(sweep->points[i].never_came);
     }
     free(sweep->axes);
     free(sweep->points);
@@ -162,6 +163,7 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     }
     measure_picks(record, point);
     point->checked = record->checked;
+    point->never_came = record->never_came ? wh_text_copy(record->never_came) : NULL;
     for (size_t i = 0; record->ok && i < record->command_count; ++i) {
         point->caught = point->caught || record->commands[i].error != WH_OK;
     }
@@ -195,7 +197,8 @@ static void play(const wh_script_sweep_t *sweep, size_t i, wh_script_run_t *run)
     options.parameters = (const char *const *)parameters;
     options.parameter_count = sweep->parameter_count;
     const double none = HUGE_VAL;
-    *point = (wh_sweep_point_t){WH_SWEEP_OK, NULL, none, none, none, none, none, false, false, 0};
+    *point = (wh_sweep_point_t){
+        .simulated_s = none, .wafers_per_hour = none, .projz = none, .projxy = none, .gap = none};
     const wh_script_run_outcome_t outcome = wh_script_run(run, &options);
     if (outcome != WH_RUN_BAD_INPUT) {
         measure(&run->record, point);

@@ -33,6 +33,7 @@ typedef struct {
     double gap;           /* mm, the smallest of all, if collisions are looked for */
     bool checked;         /* for collisions */
     bool caught;          /* it is ok, and its script caught an error */
+    char *never_came;     /* the faults and errors on purpose that did not come; null: none */
     uint64_t hash;
 } wh_sweep_point_t;
 

@@ -81,12 +81,14 @@ return function(native, lookup)
     conclude(task, resume(task.thread))
   end
 
-  -- The text of a deadlock: which task waits for what, and which one has it.
+  -- The text of a deadlock: which task waits for what, in which line, and which one has it. The line of the current
+  -- task is that of the error.
   local function complaint()
     local parts = {}
     local function add(task)
       if task.waits_for then
-        parts[#parts + 1] = ("%s waits for %s"):format(task.name, task.waits_for())
+        local line = task ~= current and task.thread and native.line_in(task.thread) or 0
+        parts[#parts + 1] = ("%s waits for %s%s"):format(task.name, task.waits_for(), line > 0 and ", in line " .. line or "")
       end
     end
     add(script)
@@ -564,6 +566,7 @@ return function(native, lookup)
   -- fails the run.
   function module.finish()
     if is_open then
+      native.begin_word("the script's end")
       wait_idle(function()
         return #tasks == 0
       end, function()

@@ -29,6 +29,23 @@ struct wh_prompt {
     char answer[WH_SESSION_ANSWER_BYTES];
 };
 
+void wh_prompt_say(wh_prompt_t *prompt, const char *line) {
+    if (prompt->editor) {
+        wh_editor_say(prompt->editor, line);
+    } else {
+        fprintf(stderr, "%s\n", line);
+    }
+}
+
+/* Faults and errors on purpose that nobody met in a run. */
+static void say_untried(void *user, const char *list) {
+    const size_t size = strlen(list) + 100;
+    char *text = wh_array_new(size, 1);
+    (void)snprintf(text, size, "mcs: never came, and so were not tried: %s", list);
+    wh_prompt_say(user, text);
+    free(text);
+}
+
 wh_prompt_t *wh_prompt_open(wh_session_t *session, const wh_prompt_watch_t *watch) {
     wh_prompt_t *prompt = wh_array_new(1, sizeof *prompt);
     const bool terminal = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
@@ -37,6 +54,7 @@ wh_prompt_t *wh_prompt_open(wh_session_t *session, const wh_prompt_watch_t *watc
     prompt->style = wh_style_of(stdout);
     wh_interrupt_hold(terminal);
     prompt->editor = terminal ? wh_editor_open(&prompt->input) : NULL;
+    wh_session_tell_untried(session, say_untried, prompt);
     return prompt;
 }
 
@@ -44,15 +62,8 @@ void wh_prompt_close(wh_prompt_t *prompt) {
     if (prompt) {
         wh_editor_close(prompt->editor);
         wh_interrupt_release();
+        wh_session_tell_untried(prompt->input.session, NULL, NULL);
         free(prompt);
-    }
-}
-
-void wh_prompt_say(wh_prompt_t *prompt, const char *line) {
-    if (prompt->editor) {
-        wh_editor_say(prompt->editor, line);
-    } else {
-        fprintf(stderr, "%s\n", line);
     }
 }
 
@@ -218,15 +229,10 @@ static void judge_held(wh_prompt_t *prompt) {
     }
 }
 
-/* Faults and errors on purpose that nobody met. */
 static void tell_never_came(wh_prompt_t *prompt) {
     char *list = wh_mcs_tell_never_came(&prompt->input.session->mcs);
     if (list) {
-        const size_t size = strlen(list) + 100;
-        char *text = wh_array_new(size, 1);
-        (void)snprintf(text, size, "mcs: never came, and so were not tried: %s", list);
-        wh_prompt_say(prompt, text);
-        free(text);
+        say_untried(prompt, list);
         free(list);
     }
 }
