@@ -353,3 +353,15 @@ void wh_flow_close(wh_flow_t *flow) {
     wh_flow_plan_close(&flow->plan, flow->tool);
     wh_flow_figures_close(&flow->figures);
 }
+
+bool wh_flow_has_moved(const wh_flow_t *flow) {
+    size_t placed = 0;
+    for (size_t s = 0; flow->figures.tool && s < flow->figures.tool->station_count; ++s) {
+        placed += flow->figures.placed[s];
+    }
+    return placed > 0;
+}
+
+bool wh_flow_is_cut(const wh_flow_t *flow) {
+    return flow->figures.tool && flow->figures.result.end == WH_FLOW_CUT;
+}

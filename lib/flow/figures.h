@@ -64,7 +64,7 @@ typedef struct {
     wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
     int64_t longest_stay_us; /* after a process */
     uint64_t hash;           /* of all that was told, in its order */
-    int64_t end_us;          /* up to which time is counted: the makespan, or when nobody went on */
+    int64_t end_us;          /* up to which time is counted: the makespan, the cut, or when nobody went on */
 } wh_flow_figures_t;
 
 /* A flow that a run has played: it owns the plan. */
@@ -78,6 +78,12 @@ typedef struct {
 } wh_flow_t;
 
 void wh_flow_close(wh_flow_t *flow);
+
+/* True if it was played, and a wafer was placed. */
+bool wh_flow_has_moved(const wh_flow_t *flow);
+
+/* True if it was cut: wafers are not at their ends then. */
+bool wh_flow_is_cut(const wh_flow_t *flow);
 
 /* wh_flow_play, with figures. `keeps_visits`: about 100 bytes for each placing. Close them in any case. */
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,

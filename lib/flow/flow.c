@@ -125,6 +125,12 @@ static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t
     return begun;
 }
 
+/* What goes on at the cut goes on up to it. */
+static void cut(wh_flow_state_t *state) {
+    state->listener.advance(state->listener.context, state, state->plan->until_us);
+    state->now_us = state->plan->until_us;
+}
+
 static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
     while (true) {
         play_instant(state, rules, asked);
@@ -142,6 +148,7 @@ static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rule
             continue;
         }
         if (next_us > state->plan->until_us) {
+            cut(state);
             return WH_FLOW_CUT;
         }
         state->listener.advance(state->listener.context, state, next_us);
@@ -167,6 +174,7 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
         play.listener.end(play.listener.context, &state);
     }
     result->over = play.count;
+    result->left = plan->wafer_count - state.over;
     result->period = wh_flow_steady(play.ends_us, play.count, &result->cycle_us);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(&state);

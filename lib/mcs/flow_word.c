@@ -82,10 +82,11 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
 static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_result_t *result = &figures->result;
-    lua_createtable(L, 0, 10);
+    lua_createtable(L, 0, 11);
     wh_lua_set_text(L, "end", ends[result->end]);
     set_seconds(L, "makespan_s", result->makespan_us);
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
+    wh_lua_set_integer(L, "left", (int64_t)result->left);
     if (result->period > 0) {
         lua_pushnumber(L, seconds(result->cycle_us) / result->period);
         lua_setfield(L, -2, "cycle_s");
@@ -104,16 +105,17 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     push_all_shares(L, figures);
 }
 
-/* A flow that did not end well, and stays that were too long, fail the run as expectations do. */
+/* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was asked
+ * for: it is told, and is no expectation. */
 static void judge(wh_mcs_t *mcs, const wh_flow_t *flow) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;
     char text[600];
-    static const char *const words[] = {"", "STUCK: ", "", "cut at until_s: "};
-    if (figures->result.end != WH_FLOW_DONE) {
-        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.500s", words[figures->result.end],
-                       figures->result.why ? figures->result.why : "wafers are still on their way");
-        wh_record_add_expectation(record, flow->line, text, figures->result.end == WH_FLOW_CUT);
+    const bool is_stuck = figures->result.end == WH_FLOW_STUCK;
+    if (is_stuck || figures->result.end == WH_FLOW_BROKEN) {
+        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.500s", is_stuck ? "STUCK: " : "",
+                       figures->result.why ? figures->result.why : "");
+        wh_record_add_expectation(record, flow->line, text, false);
     }
     for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
         const wh_flow_breach_t *breach = &figures->breaches[i];

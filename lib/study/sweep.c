@@ -162,6 +162,8 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     }
     measure_picks(record, point);
     point->checked = record->checked;
+    point->is_timed = record->layout && record->layout->tool;
+    point->is_cut = record->flow && wh_flow_is_cut(record->flow);
     for (size_t i = 0; record->ok && i < record->command_count; ++i) {
         point->caught = point->caught || record->commands[i].error != WH_OK;
     }
@@ -181,7 +183,8 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, w
     } else if (outcome == WH_RUN_FAILED) {
         point->verdict = WH_SWEEP_FAILED;
         wh_record_reason(record, reason, sizeof reason);
-    } else if (record->slices == 0 && record->expectation_count == 0) {
+    } else if (record->slices == 0 && record->expectation_count == 0 &&
+               !(record->flow && wh_flow_has_moved(record->flow))) {
         point->verdict = WH_SWEEP_FAILED;
         (void)snprintf(reason, sizeof reason, "it moves nothing and expects nothing");
     }
@@ -195,7 +198,8 @@ static void play(const wh_script_sweep_t *sweep, size_t i, wh_script_run_t *run)
     options.parameters = (const char *const *)parameters;
     options.parameter_count = sweep->parameter_count;
     const double none = HUGE_VAL;
-    *point = (wh_sweep_point_t){WH_SWEEP_OK, NULL, none, none, none, none, none, false, false, 0};
+    *point =
+        (wh_sweep_point_t){WH_SWEEP_OK, NULL, none, none, none, none, none, false, false, false, false, 0};
     const wh_script_run_outcome_t outcome = wh_script_run(run, &options);
     if (outcome != WH_RUN_BAD_INPUT) {
         measure(&run->record, point);
