@@ -282,6 +282,12 @@ static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) 
 
 static void end(void *context, const wh_flow_state_t *state) {
     measure_t *measure = context;
+    wh_flow_event_t stay;
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        if (wh_flow_open_stay(state, w, &stay)) {
+            check_window(measure->figures, state, &stay);
+        }
+    }
     for (size_t p = 0; p < state->tool->place_count; ++p) {
         const int32_t wafer = state->places[p].wafer;
         if (wafer != WH_FLOW_NONE && !state->wafers[wafer].is_over) {

@@ -125,10 +125,24 @@ static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t
     return begun;
 }
 
+/* The plan's own function hears of each wafer that still lies in its place beyond the window. */
+static void tell_late(wh_flow_state_t *state) {
+    wh_flow_event_t stay;
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        const int64_t over_us = wh_flow_open_stay(state, w, &stay) ? wh_flow_over_window_us(state, &stay) : 0;
+        if (over_us > 0) {
+            const wh_flow_problem_t late = {WH_FLOW_LATE, WH_FLOW_NONE, w, stay.station, over_us};
+            wh_flow_tell_problem(state, &late);
+        }
+    }
+}
+
 /* What goes on at the cut goes on up to it. */
-static void cut(wh_flow_state_t *state) {
+static wh_flow_end_t cut(wh_flow_state_t *state) {
     state->listener.advance(state->listener.context, state, state->plan->until_us);
     state->now_us = state->plan->until_us;
+    tell_late(state);
+    return state->cause ? WH_FLOW_BROKEN : WH_FLOW_CUT;
 }
 
 static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
@@ -148,8 +162,7 @@ static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rule
             continue;
         }
         if (next_us > state->plan->until_us) {
-            cut(state);
-            return WH_FLOW_CUT;
+            return cut(state);
         }
         state->listener.advance(state->listener.context, state, next_us);
         state->now_us = next_us;

@@ -106,15 +106,16 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
 }
 
 /* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was asked
- * for: it is told, and is no expectation. */
-static void judge(wh_mcs_t *mcs, const wh_flow_t *flow) {
+ * for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or null. */
+static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;
     char text[600];
     const bool is_stuck = figures->result.end == WH_FLOW_STUCK;
     if (is_stuck || figures->result.end == WH_FLOW_BROKEN) {
-        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.500s", is_stuck ? "STUCK: " : "",
-                       figures->result.why ? figures->result.why : "");
+        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.300s%s%.200s",
+                       is_stuck ? "STUCK: " : "", figures->result.why ? figures->result.why : "",
+                       error ? ": " : "", error ? error : "");
         wh_record_add_expectation(record, flow->line, text, false);
     }
     for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
@@ -156,11 +157,14 @@ static int play_flow(lua_State *L) {
     wh_flow_own_open(L, tool, &record->flow->plan);
     const int own = lua_gettop(L);
     wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
-    wh_flow_own_close(L, own, &record->flow->plan);
+    const bool has_failed = wh_flow_own_close(L, own, &record->flow->plan);
+    judge(mcs, record->flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
+    if (has_failed) {
+        return lua_error(L);
+    }
     if (record->flow->has_gains) {
         record->flow->figures.gains = wh_flow_gains(tool, &record->flow->plan);
     }
-    judge(mcs, record->flow);
     push_result(L, &record->flow->figures);
     return 1;
 }
