@@ -144,6 +144,14 @@ static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
                                                    .done_us = WH_FLOW_NEVER};
 }
 
+/* A lot may arrive before its port is free; its wafers come when it is. */
+static void note_coming(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    if (at->step == 0 && at->place != WH_FLOW_NONE) {
+        figures->came_us[wafer] = at->entered_us;
+    }
+}
+
 static void keep_visit(measure_t *measure, int32_t wafer) {
     wh_flow_figures_t *figures = measure->figures;
     figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
@@ -165,6 +173,7 @@ static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t 
 static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
         const wh_flow_wafer_state_t *wafer = &state->wafers[w];
+        note_coming(measure->figures, state, w);
         if (wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us) {
             measure->open[w].arm =
                 wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
@@ -197,6 +206,7 @@ static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh
         check_window(measure->figures, state, event);
     }
     if (measure->open) {
+        note_coming(measure->figures, state, event->wafer);
         begin_visit(measure, event);
     }
 }
@@ -352,6 +362,10 @@ void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, boo
     open_figures(figures, tool, plan);
     if (keeps_visits) {
         measure.visits = wh_array_new(plan->wafer_count, sizeof *measure.visits);
+        figures->came_us = wh_array_new(plan->wafer_count, sizeof *figures->came_us);
+        for (size_t w = 0; w < plan->wafer_count; ++w) {
+            figures->came_us[w] = WH_FLOW_NEVER;
+        }
         measure.open = wh_array_new(plan->wafer_count, sizeof *measure.open);
         memset(measure.visits, 0xff, plan->wafer_count * sizeof *measure.visits);
     }
@@ -376,6 +390,7 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->gains);
     free(figures->visits);
     free(figures->doings);
+    free(figures->came_us);
     wh_flow_result_close(&figures->result);
     memset(figures, 0, sizeof *figures);
 }

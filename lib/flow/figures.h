@@ -57,6 +57,7 @@ typedef struct {
     size_t breach_count, breach_capacity;
     wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
+    int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
     wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
