@@ -137,7 +137,7 @@ static void tell_late(wh_flow_state_t *state) {
     }
 }
 
-/* What goes on at the cut goes on up to it. */
+/* All that runs at the cut runs up to it. */
 static wh_flow_end_t cut(wh_flow_state_t *state) {
     state->listener.advance(state->listener.context, state, state->plan->until_us);
     state->now_us = state->plan->until_us;

@@ -105,8 +105,9 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     push_all_shares(L, figures);
 }
 
-/* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was asked
- * for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or null. */
+/* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was
+ * asked for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or
+ * null. */
 static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;

@@ -1,4 +1,4 @@
-/* What the runs of a sweep, or the scripts of a test, have left out, though they may be ok. */
+/* Lines about what the runs of a sweep, or the scripts of a test, have left out, though they may be ok. */
 #ifndef WH_PRINT_UNLOOKED_H
 #define WH_PRINT_UNLOOKED_H
 
