@@ -23,7 +23,7 @@ typedef struct {
     uint64_t expectations, errors;
     double simulated_s;
     uint64_t hash;
-    bool is_unlooked;
+    bool is_unlooked, is_timed, is_cut;
     char reason[WH_SANDBOX_MESSAGE_BYTES + 80];
     char never_came[NEVER_CAME_BYTES]; /* empty: all faults came */
 } told_t;
@@ -53,7 +53,8 @@ typedef struct {
 /* Waiting and switching valves do not count as motion. */
 static bool has_moved(const wh_record_t *record) {
     const int64_t *shares = record->activity.shares;
-    return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] > 0;
+    return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] > 0 ||
+           (record->flow && wh_flow_has_moved(record->flow));
 }
 
 static uint64_t count_errors(const wh_record_t *record) {
@@ -105,6 +106,8 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     told.simulated_s = run.record.simulated_s;
     told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
     tell_never_came(&run.record, &told);
+    told.is_timed = told.is_unlooked && run.record.layout && run.record.layout->tool;
+    told.is_cut = outcome != WH_RUN_BAD_INPUT && run.record.flow && wh_flow_is_cut(run.record.flow);
     for (size_t i = 0; i < WH_TEST_OUTPUTS; ++i) {
         const char *output = crew->options->outputs[i];
         told.reads = output && wh_output_is_kept(output) ? i + 1 : told.reads;
@@ -219,6 +222,8 @@ static void take_end(const crew_t *crew, const player_t *player, int status, con
         result->hash = told->hash;
         result->is_unlooked = told->is_unlooked;
         result->never_came = told->never_came[0] != '\0' ? wh_text_copy(told->never_came) : NULL;
+        result->is_timed = told->is_timed;
+        result->is_cut = told->is_cut;
     }
 }
 

@@ -23,7 +23,8 @@ typedef struct {
 typedef struct {
     int64_t since_us;
     aside_t aside;
-    bool is_over; /* the wafer in it is at its end */
+    int64_t *blamed; /* where the end of the last stay was counted */
+    bool is_over;    /* the wafer in it is at its end */
 } place_t;
 
 typedef struct {
@@ -95,14 +96,20 @@ static void blame(measure_t *measure, const wh_flow_state_t *state, const wh_flo
         int64_t empty_us = place->wafer == WH_FLOW_NONE ? place->empty_us : stay->end_us;
         empty_us = empty_us > stay->end_us ? stay->end_us : empty_us;
         if (empty_us > from_us) {
-            measure->figures->blocked_by_station[(size_t)stay->station * stations +
-                                                 (size_t)state->tool->place_stations[to]] +=
-                empty_us - from_us;
+            int64_t *by_station =
+                &measure->figures->blocked_by_station[(size_t)stay->station * stations +
+                                                      (size_t)state->tool->place_stations[to]];
+            *by_station += empty_us - from_us;
+            measure->places[stay->place].blamed = by_station;
             from_us = empty_us;
         }
     }
-    measure->figures->blocked_by_robot[(size_t)stay->station * robots + (size_t)stay->robot] +=
-        stay->end_us - from_us;
+    int64_t *by_robot =
+        &measure->figures->blocked_by_robot[(size_t)stay->station * robots + (size_t)stay->robot];
+    *by_robot += stay->end_us - from_us;
+    if (from_us < stay->end_us) {
+        measure->places[stay->place].blamed = by_robot;
+    }
 }
 
 static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *state,
@@ -137,6 +144,14 @@ static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
                                                    .done_us = WH_FLOW_NEVER};
 }
 
+/* A lot may arrive before its port is free; its wafers come when it is. */
+static void note_coming(wh_flow_figures_t *figures, const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    if (at->step == 0 && at->place != WH_FLOW_NONE) {
+        figures->came_us[wafer] = at->entered_us;
+    }
+}
+
 static void keep_visit(measure_t *measure, int32_t wafer) {
     wh_flow_figures_t *figures = measure->figures;
     figures->visits = wh_array_grow(figures->visits, figures->visit_count, &figures->visit_capacity,
@@ -154,11 +169,12 @@ static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t 
     keep_visit(measure, wafer);
 }
 
-/* Those of wafers that are under way when the flow ends. */
+/* Those of wafers that are under way when the flow ends; a door that opens is no visit yet. */
 static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
         const wh_flow_wafer_state_t *wafer = &state->wafers[w];
-        if (wafer->taker != WH_FLOW_NONE) {
+        note_coming(measure->figures, state, w);
+        if (wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us) {
             measure->open[w].arm =
                 wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
             keep_visit(measure, w);
@@ -190,6 +206,7 @@ static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh
         check_window(measure->figures, state, event);
     }
     if (measure->open) {
+        note_coming(measure->figures, state, event->wafer);
         begin_visit(measure, event);
     }
 }
@@ -280,10 +297,34 @@ static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) 
     }
 }
 
+/* A stay is counted up to the pick when its door begins to open. The flow may end before that. */
+static void take_back(measure_t *measure, const wh_flow_state_t *state, int32_t number) {
+    place_t *place = &measure->places[number];
+    const int32_t wafer = state->places[number].wafer, station = state->tool->place_stations[number];
+    const int64_t ahead_us = place->since_us - state->now_us;
+    if (ahead_us <= 0 || wafer == WH_FLOW_NONE) {
+        return;
+    }
+    if (state->wafers[wafer].step > 0) {
+        add(measure, station, WH_FLOW_STATION_BLOCKED, -ahead_us);
+        *place->blamed -= ahead_us;
+    } else {
+        add(measure, station, WH_FLOW_STATION_STORED, -ahead_us);
+    }
+    place->since_us = state->now_us;
+}
+
 static void end(void *context, const wh_flow_state_t *state) {
     measure_t *measure = context;
+    wh_flow_event_t stay;
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        if (wh_flow_open_stay(state, w, &stay)) {
+            check_window(measure->figures, state, &stay);
+        }
+    }
     for (size_t p = 0; p < state->tool->place_count; ++p) {
         const int32_t wafer = state->places[p].wafer;
+        take_back(measure, state, (int32_t)p);
         if (wafer != WH_FLOW_NONE && !state->wafers[wafer].is_over) {
             account_wafer(measure, state, wafer, state->now_us);
         } else {
@@ -321,6 +362,10 @@ void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, boo
     open_figures(figures, tool, plan);
     if (keeps_visits) {
         measure.visits = wh_array_new(plan->wafer_count, sizeof *measure.visits);
+        figures->came_us = wh_array_new(plan->wafer_count, sizeof *figures->came_us);
+        for (size_t w = 0; w < plan->wafer_count; ++w) {
+            figures->came_us[w] = WH_FLOW_NEVER;
+        }
         measure.open = wh_array_new(plan->wafer_count, sizeof *measure.open);
         memset(measure.visits, 0xff, plan->wafer_count * sizeof *measure.visits);
     }
@@ -345,6 +390,7 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->gains);
     free(figures->visits);
     free(figures->doings);
+    free(figures->came_us);
     wh_flow_result_close(&figures->result);
     memset(figures, 0, sizeof *figures);
 }
@@ -352,4 +398,16 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
 void wh_flow_close(wh_flow_t *flow) {
     wh_flow_plan_close(&flow->plan, flow->tool);
     wh_flow_figures_close(&flow->figures);
+}
+
+bool wh_flow_has_moved(const wh_flow_t *flow) {
+    size_t placed = 0;
+    for (size_t s = 0; flow->figures.tool && s < flow->figures.tool->station_count; ++s) {
+        placed += flow->figures.placed[s];
+    }
+    return placed > 0;
+}
+
+bool wh_flow_is_cut(const wh_flow_t *flow) {
+    return flow->figures.tool && flow->figures.result.end == WH_FLOW_CUT;
 }

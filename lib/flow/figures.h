@@ -57,6 +57,7 @@ typedef struct {
     size_t breach_count, breach_capacity;
     wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
+    int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
     wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
@@ -64,7 +65,7 @@ typedef struct {
     wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
     int64_t longest_stay_us; /* after a process */
     uint64_t hash;           /* of all that was told, in its order */
-    int64_t end_us;          /* up to which time is counted: the makespan, or when nobody went on */
+    int64_t end_us;          /* up to which time is counted: the makespan, the cut, or when nobody went on */
 } wh_flow_figures_t;
 
 /* A flow that a run has played: it owns the plan. */
@@ -78,6 +79,12 @@ typedef struct {
 } wh_flow_t;
 
 void wh_flow_close(wh_flow_t *flow);
+
+/* True if it was played, and a wafer was placed. */
+bool wh_flow_has_moved(const wh_flow_t *flow);
+
+/* True if it was cut: wafers are not at their ends then. */
+bool wh_flow_is_cut(const wh_flow_t *flow);
 
 /* wh_flow_play, with figures. `keeps_visits`: about 100 bytes for each placing. Close them in any case. */
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,

@@ -125,6 +125,26 @@ static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t
     return begun;
 }
 
+/* The plan's own function hears of each wafer that still lies in its place beyond the window. */
+static void tell_late(wh_flow_state_t *state) {
+    wh_flow_event_t stay;
+    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+        const int64_t over_us = wh_flow_open_stay(state, w, &stay) ? wh_flow_over_window_us(state, &stay) : 0;
+        if (over_us > 0) {
+            const wh_flow_problem_t late = {WH_FLOW_LATE, WH_FLOW_NONE, w, stay.station, over_us};
+            wh_flow_tell_problem(state, &late);
+        }
+    }
+}
+
+/* All that runs at the cut runs up to it. */
+static wh_flow_end_t cut(wh_flow_state_t *state) {
+    state->listener.advance(state->listener.context, state, state->plan->until_us);
+    state->now_us = state->plan->until_us;
+    tell_late(state);
+    return state->cause ? WH_FLOW_BROKEN : WH_FLOW_CUT;
+}
+
 static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
     while (true) {
         play_instant(state, rules, asked);
@@ -142,7 +162,7 @@ static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rule
             continue;
         }
         if (next_us > state->plan->until_us) {
-            return WH_FLOW_CUT;
+            return cut(state);
         }
         state->listener.advance(state->listener.context, state, next_us);
         state->now_us = next_us;
@@ -167,6 +187,7 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
         play.listener.end(play.listener.context, &state);
     }
     result->over = play.count;
+    result->left = plan->wafer_count - state.over;
     result->period = wh_flow_steady(play.ends_us, play.count, &result->cycle_us);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(&state);

@@ -18,6 +18,7 @@ typedef struct {
     int64_t cycle_us;    /* over `period` wafers; WH_FLOW_NEVER if there is no steady cycle */
     int32_t period;
     size_t over;    /* wafers at their ends, without dummies */
+    size_t left;    /* wafers that are not at their ends, with dummies */
     char *why;      /* null if done; see wh_flow_result_close */
     uint64_t asked; /* how often a rule was asked */
 } wh_flow_result_t;

@@ -7,7 +7,7 @@
 
 #include "../text/array.h"
 
-static void free_route(wh_flow_route_t *route) {
+void wh_flow_route_close(wh_flow_route_t *route) {
     for (size_t k = 0; k < route->step_count; ++k) {
         free(route->steps[k].stations);
     }
@@ -21,7 +21,7 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     }
     free(plan->backs);
     for (size_t i = 0; i < plan->route_count; ++i) {
-        free_route(&plan->routes[i]);
+        wh_flow_route_close(&plan->routes[i]);
     }
     for (size_t i = 0; i < plan->lot_count; ++i) {
         free(plan->lots[i].name);
@@ -155,6 +155,23 @@ static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t 
     }
 }
 
+/* A process in the last step would begin when the wafer is at its end: it would count nowhere. */
+static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
+    const int32_t k = wh_flow_last_step(plan, w);
+    const wh_flow_step_t *last = wh_flow_step_of(plan, w, k);
+    for (size_t i = 0; i < last->station_count; ++i) {
+        const wh_flow_station_t *station = &tool->stations[last->stations[i]];
+        const int64_t process_us = last->process_us == WH_FLOW_NONE ? station->process_us : last->process_us;
+        if (process_us > 0) {
+            return problem_of(
+                "route %s: its last step, %d, is %s, which processes for %.6g s (expected one more "
+                "step where wafers end, back in the lot, or process = 0 in this step)",
+                route_of(plan, w)->name, (int)k, station->name, (double)process_us / 1e6);
+        }
+    }
+    return NULL;
+}
+
 /* Each wafer can leave its first place, and can get back. */
 static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     const wh_flow_route_t *route = route_of(plan, w);
@@ -165,7 +182,7 @@ static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32
         problem = check_way(tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
                             last->stations[i]);
     }
-    return problem;
+    return problem ? problem : check_end(plan, tool, w);
 }
 
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {

@@ -112,9 +112,12 @@ typedef struct {
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
+/* Frees what the route holds. */
+void wh_flow_route_close(wh_flow_route_t *route);
+
 /* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or what
  * is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
- * whose places are all kept empty, the same station twice in succession. */
+ * whose places are all kept empty, the same station twice in succession, a process in the last step. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
 /* True if the step has this station; if the robot serves one of its stations. */

@@ -181,13 +181,13 @@ void wh_flow_own_open(lua_State *L, const wh_flow_tool_t *tool, wh_flow_plan_t *
     }
 }
 
-void wh_flow_own_close(lua_State *L, int index, wh_flow_plan_t *plan) {
+bool wh_flow_own_close(lua_State *L, int index, wh_flow_plan_t *plan) {
     const own_t *own = lua_touserdata(L, index);
     plan->own = NULL;
     plan->on_problem = NULL;
     plan->own_context = NULL;
     if (own->has_failed) {
         (void)lua_getiuservalue(L, index, FAILURE);
-        (void)lua_error(L);
     }
+    return own->has_failed;
 }

@@ -326,6 +326,48 @@ static void take_lots(const wh_flow_tool_t *tool, wh_flow_plan_t *plan, const lo
     }
 }
 
+static int by_name(const void *a, const void *b) {
+    const lot_t *const *one = a, *const *other = b;
+    const int order = strcmp((*one)->name, (*other)->name);
+    return order != 0 ? order : (*one)->index < (*other)->index ? -1 : 1;
+}
+
+/* Wafers are found by their names, which begin with that of their lot. */
+static void refuse_twins(wh_reader_t *reader, const lot_t lots[], size_t count) {
+    const lot_t **named = wh_array_new(count + 1, sizeof(lot_t *));
+    const lot_t *twin = NULL;
+    for (size_t i = 0; i < count; ++i) {
+        named[i] = &lots[i];
+    }
+    qsort(named, count, sizeof *named, by_name);
+    for (size_t i = 1; i < count && !twin; ++i) {
+        const bool is_one = named[i]->name[0] != '\0' && strcmp(named[i - 1]->name, named[i]->name) == 0;
+        twin = is_one ? named[i] : NULL;
+    }
+    free(named);
+    if (twin) {
+        char field[48];
+        (void)snprintf(field, sizeof field, "[%zu].name", twin->index + 1);
+        wh_reader_refuse(reader, field, twin->name, "a name that no lot before it has");
+    }
+}
+
+/* A route that no lot takes is read as well, and then dropped. */
+static void look_at_unused(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan,
+                           const wh_timed_name_t *routes, size_t route_count) {
+    const size_t used = plan->route_count;
+    for (size_t i = 0; i < route_count; ++i) {
+        bool is_used = false;
+        for (size_t k = 0; k < used; ++k) {
+            is_used = is_used || strcmp(plan->routes[k].name, routes[i].name) == 0;
+        }
+        if (!is_used) {
+            (void)add_route(reader, tool, plan, routes[i].name);
+            wh_flow_route_close(&plan->routes[--plan->route_count]);
+        }
+    }
+}
+
 static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
     size_t route_count = 0, wafers = 0;
     if (!wh_reader_enter(reader, "routes")) {
@@ -350,11 +392,13 @@ static void read_lots(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_p
     if (count == 0 || wafers > MOST_WAFERS) {
         wh_reader_fail(reader, NULL, "1 to %d wafers in lots", MOST_WAFERS);
     }
+    refuse_twins(reader, lots, count);
     wh_reader_leave(reader);
     lua_insert(reader->L, -2); /* the table on top of the lots */
     for (size_t i = 0; i < count; ++i) {
         take_route(reader, tool, plan, lots, i);
     }
+    look_at_unused(reader, tool, plan, routes, route_count);
     qsort(lots, count, sizeof *lots, by_arrival);
     take_lots(tool, plan, lots, count, wafers);
     lua_remove(reader->L, -2);

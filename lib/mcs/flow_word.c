@@ -82,10 +82,11 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
 static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_result_t *result = &figures->result;
-    lua_createtable(L, 0, 10);
+    lua_createtable(L, 0, 11);
     wh_lua_set_text(L, "end", ends[result->end]);
     set_seconds(L, "makespan_s", result->makespan_us);
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
+    wh_lua_set_integer(L, "left", (int64_t)result->left);
     if (result->period > 0) {
         lua_pushnumber(L, seconds(result->cycle_us) / result->period);
         lua_setfield(L, -2, "cycle_s");
@@ -104,16 +105,19 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     push_all_shares(L, figures);
 }
 
-/* A flow that did not end well, and stays that were too long, fail the run as expectations do. */
-static void judge(wh_mcs_t *mcs, const wh_flow_t *flow) {
+/* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was
+ * asked for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or
+ * null. */
+static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;
     char text[600];
-    static const char *const words[] = {"", "STUCK: ", "", "cut at until_s: "};
-    if (figures->result.end != WH_FLOW_DONE) {
-        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.500s", words[figures->result.end],
-                       figures->result.why ? figures->result.why : "wafers are still on their way");
-        wh_record_add_expectation(record, flow->line, text, figures->result.end == WH_FLOW_CUT);
+    const bool is_stuck = figures->result.end == WH_FLOW_STUCK;
+    if (is_stuck || figures->result.end == WH_FLOW_BROKEN) {
+        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.300s%s%.200s",
+                       is_stuck ? "STUCK: " : "", figures->result.why ? figures->result.why : "",
+                       error ? ": " : "", error ? error : "");
+        wh_record_add_expectation(record, flow->line, text, false);
     }
     for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
         const wh_flow_breach_t *breach = &figures->breaches[i];
@@ -154,11 +158,14 @@ static int play_flow(lua_State *L) {
     wh_flow_own_open(L, tool, &record->flow->plan);
     const int own = lua_gettop(L);
     wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
-    wh_flow_own_close(L, own, &record->flow->plan);
+    const bool has_failed = wh_flow_own_close(L, own, &record->flow->plan);
+    judge(mcs, record->flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
+    if (has_failed) {
+        return lua_error(L);
+    }
     if (record->flow->has_gains) {
         record->flow->figures.gains = wh_flow_gains(tool, &record->flow->plan);
     }
-    judge(mcs, record->flow);
     push_result(L, &record->flow->figures);
     return 1;
 }

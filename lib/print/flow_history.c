@@ -105,7 +105,7 @@ static void find_lines(lines_t *lines) {
     const char **processing = wh_array_new(plan->wafer_count + 1, sizeof *processing);
     int64_t *taken_us = wh_array_new(plan->wafer_count + 1, sizeof *taken_us);
     for (int32_t w = 0; w < (int32_t)plan->wafer_count; ++w) {
-        const line_t line = {.us = plan->lots[plan->wafers[w].lot].arrives_us,
+        const line_t line = {.us = figures->came_us[w],
                              .wafer = w,
                              .place = plan->wafers[w].home,
                              .robot = WH_FLOW_NONE,
@@ -113,9 +113,7 @@ static void find_lines(lines_t *lines) {
                              .processing = "NeedsProcessing"};
         processing[w] = line.processing;
         taken_us[w] = WH_FLOW_NEVER;
-        if (line.us <= figures->end_us) {
-            add_line(lines, &line);
-        }
+        add_line(lines, &line);
     }
     for (size_t i = 0; i < figures->visit_count; ++i) {
         add_visit(lines, &figures->visits[i], processing);

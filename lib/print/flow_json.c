@@ -128,8 +128,9 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
     const wh_flow_result_t *result = &figures->result;
     const double cycle_s = result->period > 0 ? (double)result->cycle_us / 1e6 / result->period : (double)NAN;
     json_t *object = wh_json_set(
-        json_object(), "line %d end %s why %s wafers %lld makespan_s %g cycle_s %g period %lld per_hour %g",
-        flow->line, ends[result->end], result->why, (long long)result->over,
+        json_object(),
+        "line %d end %s why %s wafers %lld left %lld makespan_s %g cycle_s %g period %lld per_hour %g",
+        flow->line, ends[result->end], result->why, (long long)result->over, (long long)result->left,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;

@@ -24,10 +24,12 @@ static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *fig
     } else {
         fprintf(printer->out, "no steady cycle: the wafers' ends do not repeat within their middle third");
     }
-    fprintf(printer->out, "\n%s wafers at their ends in %.6f s, with start and run-out",
-            wh_print_count(count, (int64_t)result->over), seconds(result->makespan_us));
-    if (result->over > 0 && result->makespan_us > 0) {
-        fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(result->makespan_us));
+    const bool is_cut = result->end == WH_FLOW_CUT;
+    const int64_t all_us = is_cut ? figures->end_us : result->makespan_us;
+    fprintf(printer->out, "\n%s wafers at their ends in %.6f s, with start and %s",
+            wh_print_count(count, (int64_t)result->over), seconds(all_us), is_cut ? "cut" : "run-out");
+    if (result->over > 0 && all_us > 0) {
+        fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(all_us));
     }
     fputc('\n', printer->out);
 }

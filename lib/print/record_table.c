@@ -408,6 +408,12 @@ static void print_summary(const wh_printer_t *printer) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);
     }
+    if (record->flow && wh_flow_is_cut(record->flow)) {
+        const wh_flow_figures_t *figures = &record->flow->figures;
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        fprintf(printer->out, "cut at %.10g s: %zu of %zu wafers not at their ends\n",
+                (double)figures->end_us / 1e6, figures->result.left, figures->plan->wafer_count);
+    }
     if (record->never_came) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "never came, and so were not tried: %s\n", record->never_came);

@@ -7,6 +7,7 @@
 #include "../text/array.h"
 #include "../text/grid.h"
 #include "../text/json.h"
+#include "unlooked.h"
 
 static const char *const verdicts[] = {"ok", "failed", "undone", "bad"};
 
@@ -133,14 +134,16 @@ static void print_end(const wh_sweep_axis_t *axis, FILE *out) {
     }
 }
 
-static size_t count_unchecked(const wh_script_sweep_t *sweep) {
-    size_t unchecked = 0;
+static wh_print_unlooked_t count_unlooked(const wh_script_sweep_t *sweep) {
+    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0};
     for (size_t i = 0; i < sweep->point_count; ++i) {
         const wh_sweep_point_t *point = &sweep->points[i];
         const bool played = point->verdict == WH_SWEEP_OK || point->verdict == WH_SWEEP_FAILED;
-        unchecked += played && !point->checked ? 1 : 0;
+        unlooked.unchecked += played && !point->checked && !point->is_timed ? 1 : 0;
+        unlooked.timed += played && point->is_timed ? 1 : 0;
+        unlooked.cut += played && point->is_cut ? 1 : 0;
     }
-    return unchecked;
+    return unlooked;
 }
 
 /* The faults that did not come, as the first such run tells them: other runs may miss others. */
@@ -160,15 +163,12 @@ static void print_never_came(const wh_script_sweep_t *sweep, FILE *out) {
 
 /* Prints warnings that the rows do not show. */
 static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
-    const size_t unchecked = count_unchecked(sweep);
+    const wh_print_unlooked_t unlooked = count_unlooked(sweep);
     size_t caught = 0;
     for (size_t i = 0; i < sweep->point_count; ++i) {
         caught += sweep->points[i].caught ? 1 : 0;
     }
-    if (unchecked > 0) {
-        fprintf(out, "! collisions were not looked for in %zu run%s: the layout has no collision = true\n",
-                unchecked, unchecked == 1 ? "" : "s");
-    }
+    wh_print_unlooked(&unlooked, out);
     if (caught > 0) {
         fprintf(out, "! in %zu run%s that count as ok the script caught errors\n", caught,
                 caught == 1 ? "" : "s");
@@ -229,6 +229,9 @@ static json_t *run(const void *subject, size_t i) {
                       point->projz, point->projxy, point->gap, point->checked, point->caught);
     if (point->never_came) {
         wh_json_put(object, "never_came", wh_json_text(point->never_came));
+    }
+    if (point->is_cut) {
+        wh_json_put(object, "cut", json_true());
     }
     return wh_json_add(object, "hash",
                        point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);

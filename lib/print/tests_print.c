@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/utf8.h"
+#include "unlooked.h"
 
 static const struct {
     const char *word;
@@ -91,16 +92,15 @@ void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *
     }
 }
 
-/* Like that of a sweep: in how many nobody looked for collisions. */
+/* Like those of a sweep: in how many scripts nobody looked for collisions, or a flow was cut. */
 static void put_unlooked(const wh_test_result_t results[], size_t count, FILE *out, const char *before) {
-    size_t unlooked = 0;
+    wh_print_unlooked_t unlooked = {before, "script", 0, 0, 0};
     for (size_t i = 0; i < count; ++i) {
-        unlooked += results[i].is_unlooked ? 1 : 0;
+        unlooked.unchecked += results[i].is_unlooked && !results[i].is_timed ? 1 : 0;
+        unlooked.timed += results[i].is_timed ? 1 : 0;
+        unlooked.cut += results[i].is_cut ? 1 : 0;
     }
-    if (unlooked > 0) {
-        fprintf(out, "%scollisions were not looked for in %zu script%s: the layout has no collision = true\n",
-                before, unlooked, unlooked == 1 ? "" : "s");
-    }
+    wh_print_unlooked(&unlooked, out);
 }
 
 void wh_test_print_sum(const wh_test_result_t results[], size_t count, FILE *out, const wh_style_t *style) {

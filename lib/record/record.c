@@ -7,7 +7,8 @@
 #include "../text/array.h"
 
 bool wh_record_moved_nothing(const wh_record_t *record) {
-    return record->ok && record->command_count == 0 && record->slices == 0 && !record->flow;
+    return record->ok && record->command_count == 0 && record->slices == 0 &&
+           !(record->flow && wh_flow_has_moved(record->flow));
 }
 
 const char *wh_record_error_text(wh_status_t status) {

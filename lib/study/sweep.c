@@ -154,6 +154,17 @@ static void measure_picks(const wh_record_t *record, wh_sweep_point_t *point) {
     }
 }
 
+/* The words about the run that go beside its figures. */
+static void note(const wh_record_t *record, wh_sweep_point_t *point) {
+    point->checked = record->checked;
+    point->never_came = record->never_came ? wh_text_copy(record->never_came) : NULL;
+    point->is_timed = record->layout && record->layout->tool;
+    point->is_cut = record->flow && wh_flow_is_cut(record->flow);
+    for (size_t i = 0; record->ok && i < record->command_count; ++i) {
+        point->caught = point->caught || record->commands[i].error != WH_OK;
+    }
+}
+
 static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
     const wh_throughput_t throughput = wh_throughput(record);
     point->simulated_s = record->simulated_s;
@@ -162,11 +173,7 @@ static void measure(const wh_record_t *record, wh_sweep_point_t *point) {
         point->wafers_per_hour = throughput.wafers_per_hour;
     }
     measure_picks(record, point);
-    point->checked = record->checked;
-    point->never_came = record->never_came ? wh_text_copy(record->never_came) : NULL;
-    for (size_t i = 0; record->ok && i < record->command_count; ++i) {
-        point->caught = point->caught || record->commands[i].error != WH_OK;
-    }
+    note(record, point);
     for (size_t kind = 0; record->checked && kind < WH_CLEARANCES; ++kind) {
         point->gap = record->clearances[kind].parts[0] == WH_NONE
                          ? point->gap
@@ -183,7 +190,8 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, w
     } else if (outcome == WH_RUN_FAILED) {
         point->verdict = WH_SWEEP_FAILED;
         wh_record_reason(record, reason, sizeof reason);
-    } else if (record->slices == 0 && record->expectation_count == 0) {
+    } else if (record->slices == 0 && record->expectation_count == 0 &&
+               !(record->flow && wh_flow_has_moved(record->flow))) {
         point->verdict = WH_SWEEP_FAILED;
         (void)snprintf(reason, sizeof reason, "it moves nothing and expects nothing");
     }

@@ -1,0 +1,17 @@
+#include "unlooked.h"
+
+static void put(const wh_print_unlooked_t *unlooked, const char *text, size_t count, const char *why,
+                FILE *out) {
+    if (count > 0) {
+        fprintf(out, "%s%s in %zu %s%s: %s\n", unlooked->before, text, count, unlooked->what,
+                count == 1 ? "" : "s", why);
+    }
+}
+
+void wh_print_unlooked(const wh_print_unlooked_t *unlooked, FILE *out) {
+    put(unlooked, "collisions were not looked for", unlooked->unchecked, "the layout has no collision = true",
+        out);
+    put(unlooked, "places, ways and collisions were not looked for", unlooked->timed,
+        "the robots are times alone", out);
+    put(unlooked, "the flow was cut", unlooked->cut, "wafers are not at their ends", out);
+}
