@@ -81,9 +81,13 @@ static int our_door(lua_State *L) {
     return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
 }
 
-/* host.typed(name): a name of a wafer or of what was saved, as it is typed. */
+/* host.typed(name): a name of a wafer or of what was saved, as it is typed. An empty one names nothing. */
 static int name_as_typed(lua_State *L) {
-    (void)luaL_tolstring(L, 1, NULL);
+    size_t length = 0;
+    (void)luaL_tolstring(L, 1, &length);
+    if (length == 0) {
+        return refuse_by(L, WH_STATUS_BAD_ARGUMENT, "no name");
+    }
     return push_spelt(L, WH_STATUS_BAD_ARGUMENT);
 }
 

@@ -51,7 +51,7 @@ local function options(words, first, known)
   local list, values = {}, {}
   for place = first, #words, 2 do
     local name, value = words[place]:upper(), words[place + 1]
-    if not known[name] or not value then
+    if not known[name] or not value or values[name] then
       host.refuse("BAD_ARGUMENT", words[place])
     end
     values[name] = value
