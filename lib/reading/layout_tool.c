@@ -106,16 +106,26 @@ static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
     wh_reader_leave(reader);
 }
 
+/* A lock that turns in no time would turn again and again at one instant. */
+static int64_t read_pump_us(wh_reader_t *reader, const char *field, double fallback) {
+    const int64_t us = wh_timed_read_us(reader, field, fallback);
+    if (us == 0) {
+        (void)wh_reader_push(reader, field);
+        wh_reader_fail(reader, field, "at least 0.000001 s");
+    }
+    return us;
+}
+
 static void read_pump(wh_reader_t *reader, wh_flow_station_t *station) {
     static const char *const states[] = {"atmosphere", "vacuum", NULL};
     station->is_lock = wh_reader_open(reader, "pump", wh_layout_pump_fields);
     if (station->is_lock) {
-        station->pump_us[WH_FLOW_VACUUM] = wh_timed_read_us(reader, "down", NAN);
-        station->pump_us[WH_FLOW_ATMOSPHERE] = wh_timed_read_us(reader, "up", NAN);
+        station->pump_us[WH_FLOW_VACUUM] = read_pump_us(reader, "down", NAN);
+        station->pump_us[WH_FLOW_ATMOSPHERE] = read_pump_us(reader, "up", NAN);
         station->empty_pump_us[WH_FLOW_VACUUM] =
-            wh_timed_read_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
+            read_pump_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
         station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
-            wh_timed_read_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
+            read_pump_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
         wh_reader_leave(reader);
     } else if (wh_reader_has(reader, "state")) {
         wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");

@@ -54,8 +54,8 @@ const wh_reader_field_t wh_layout_clean_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_pump_fields[] = {
-    {"down", "number", "s to vacuum", true},
-    {"up", "number", "s to atmosphere", true},
+    {"down", "number", "s to vacuum, above 0", true},
+    {"up", "number", "s to atmosphere, above 0", true},
     {"empty_down", "number", "s to vacuum without a wafer; down", false},
     {"empty_up", "number", "s to atmosphere without a wafer; up", false},
     END};
