@@ -62,7 +62,8 @@ class Hour(unittest.TestCase):
         median = statistics.median(spent)
         print(f"hour, {name}: work a step, ms: median {median:.2f}, longest {max(spent):.1f}; "
               f"frame to frame, in software GL: median {statistics.median(frames):.1f}, longest {max(frames):.1f}")
-        self.assertLess(median, limit, name)
+        # Where more want to run than there are processors, the page gets a share of one.
+        self.assertLess(median, limit * max(1, os.getloadavg()[0] / os.cpu_count()), name)
         return spent
 
     def test_scrubbing(self):
