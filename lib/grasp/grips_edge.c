@@ -150,7 +150,8 @@ void wh_edge_turn_pick(const wh_turn_t *turn) {
         return;
     }
     state->phase = WH_GRIP_CLOSING;
-    state->x = state->y = 0;
+    state->x = 0;
+    state->y = 0;
     find_wafer(turn);
     const wh_edge_place_t last = place_at(turn, edge_of(turn)->end);
     if (state->wafer != WH_NONE && last.phase != WH_EDGE_JAMMED && last.phase != WH_EDGE_MISSED) {
