@@ -1,5 +1,5 @@
 """Event logs of ours, taken apart and put together again with checks and digests made anew, as another simulator would make
-them. What a message's bytes are, the files in lcm_types say."""
+them. The files in lcm_types describe a message's bytes."""
 import functools
 import os
 import re
