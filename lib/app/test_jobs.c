@@ -106,7 +106,7 @@ static void play(const crew_t *crew, const wh_test_job_t *job, int answer) {
     told.simulated_s = run.record.simulated_s;
     told.is_unlooked = outcome != WH_RUN_BAD_INPUT && run.record.unlooked;
     tell_never_came(&run.record, &told);
-    told.is_timed = told.is_unlooked && run.record.layout && run.record.layout->tool;
+    told.is_timed = told.is_unlooked && wh_record_is_timed(&run.record);
     told.is_cut = outcome != WH_RUN_BAD_INPUT && run.record.flow && wh_flow_is_cut(run.record.flow);
     for (size_t i = 0; i < WH_TEST_OUTPUTS; ++i) {
         const char *output = crew->options->outputs[i];

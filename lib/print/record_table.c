@@ -36,7 +36,7 @@ static void print_heading(const wh_printer_t *printer) {
     wh_print_say(printer, "%s on %s", record->script ? record->script : "(no script)",
                  record->layout ? record->layout->path : "no layout");
     fputc('\n', printer->out);
-    if (record->layout && record->layout->tool) {
+    if (wh_record_is_timed(record)) {
         fprintf(printer->out, "times alone: the robots are of kind \"timed\", and nothing stands anywhere\n");
     } else if (record->layout) {
         print_tolerance(printer);
@@ -329,7 +329,7 @@ static void print_times_alone(const wh_printer_t *printer) {
 
 static void print_times(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
-    if (record->layout && record->layout->tool) {
+    if (wh_record_is_timed(record)) {
         print_times_alone(printer);
         return;
     }
@@ -457,7 +457,7 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     const wh_record_sections_t *wanted = sections ? sections : &none;
     const wh_printer_t printer = {record, style, out};
     print_heading(&printer);
-    if (!record->layout || !record->layout->tool) {
+    if (!wh_record_is_timed(record)) {
         wh_print_commands(&printer);
     }
     wh_print_flow(&printer);

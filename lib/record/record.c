@@ -6,6 +6,10 @@
 
 #include "../text/array.h"
 
+bool wh_record_is_timed(const wh_record_t *record) {
+    return record->layout && record->layout->tool;
+}
+
 bool wh_record_moved_nothing(const wh_record_t *record) {
     return record->ok && record->command_count == 0 && record->slices == 0 &&
            !(record->flow && wh_flow_has_moved(record->flow));

@@ -187,6 +187,9 @@ void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
 /* True if all was well only because nothing happened: the cell stood still, and no command came. */
 bool wh_record_moved_nothing(const wh_record_t *record);
 
+/* True if the cell is known, and its robots are times alone. */
+bool wh_record_is_timed(const wh_record_t *record);
+
 /* The catalogue's text for any status. It also has the statuses of motion control and the link, which
  * wh_status_text leaves out. It is never null. */
 const char *wh_record_error_text(wh_status_t status);
