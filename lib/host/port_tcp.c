@@ -95,18 +95,18 @@ static unsigned take_waiting(wh_port_t *port) {
     address_t from = {.size = sizeof from.bytes};
     const int fd =
         accept4(port->listener, (struct sockaddr *)&from.bytes, &from.size, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    unsigned told = 0;
     if (fd < 0) {
         return 0;
     }
+    unsigned told = wh_port_hear_client(port); /* which may have gone before this one came */
     if (port->is_there && !port->is_done && port->second == WH_PORT_REFUSE) {
         (void)close(fd);
         port->counters.refused += 1;
-        return WH_PORT_REFUSED;
+        return told | WH_PORT_REFUSED;
     }
     if (port->is_there) {
         port->counters.taken += port->is_done ? 0 : 1;
-        told = wh_port_lose_client(port, port->is_done ? 0 : WH_PORT_TAKEN);
+        told |= wh_port_lose_client(port, port->is_done ? 0 : WH_PORT_TAKEN);
     }
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     port->client = fd;

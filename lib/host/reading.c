@@ -134,11 +134,21 @@ static void heed_told(wh_controller_t *controller, unsigned what) {
     }
 }
 
+/* What a client that has gone had sent last, without an end. */
+static void hear_rest(wh_controller_t *controller) {
+    wh_frame_t frame;
+    if (wh_framer_finish(&controller->line.framer, &frame)) {
+        take_frame(controller, &frame);
+    }
+}
+
 static unsigned serve_port(wh_controller_t *controller) {
     wh_port_t *port = &controller->line.port;
-    wh_frame_t frame;
     port->slice = wh_session_slice(controller->host->session);
     const unsigned what = wh_port_serve(port);
+    if ((what & WH_PORT_CAME) != 0 && !port->tells_all) { /* the next client is there already */
+        hear_rest(controller);
+    }
     wh_controller_note_port(controller, what);
     if (port->tells_all) {
         heed_told(controller, what);
@@ -148,9 +158,7 @@ static unsigned serve_port(wh_controller_t *controller) {
     if (!controller->line.has_gone || port->input.count > 0) {
         return what;
     }
-    if (wh_framer_finish(&controller->line.framer, &frame)) {
-        take_frame(controller, &frame);
-    }
+    hear_rest(controller);
     wh_controller_note_going(controller);
     return what;
 }
