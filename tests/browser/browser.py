@@ -17,7 +17,7 @@ FLAGS = ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable
          "--force-device-scale-factor=1", "--hide-scrollbars",
          # Software GL is used for WebGL only: for text and plots it would take more time than for the cell.
          "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas"]
-WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none"]
 NO_WEBGL = ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"]
 
 SIZE = (1440, 900)

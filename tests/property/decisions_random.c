@@ -144,8 +144,9 @@ static void an_example(void **state) {
 static void a_script_that_measures_is_never_replayed(void **state) {
     (void)state;
     static const char *const parameters[] = {"by=offset", "by=frames"};
-    (void)compare(RETRY, &parameters[0], 1, 0, 0);
-    (void)compare(RETRY, &parameters[1], 1, 0, 0);
+    for (size_t i = 0; i < 2; i += WH_TEST_SHARE) {
+        (void)compare(RETRY, &parameters[i], 1, 0, 0);
+    }
 }
 
 static void collisions_are_never_replayed(void **state) {

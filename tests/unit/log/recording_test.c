@@ -204,7 +204,7 @@ static void slices_hold_what_all_messages_hold(void **state) {
                                           "lua/examples/05_leak.lua", "lua/examples/06_cross_slotted.lua",
                                           "lua/examples/08_corrections.lua"};
     (void)state;
-    for (size_t i = 0; i<sizeof scripts / sizeof scripts[0]; i += WH_TEST_SHARE> 1 ? 2 : 1) {
+    for (size_t i = 0; i<sizeof scripts / sizeof scripts[0]; i += WH_TEST_SHARE> 1 ? 4 : 1) {
         record_all(scripts[i]);
         read_log("all.log", &all);
         (void)unlink(in_folder("some.log"));

@@ -271,20 +271,25 @@ static void what_hangs_above_its_slot_does_not_lie_there(void **state) {
 /* Errors of 300 passes, each with latches of its own, in units of the stated deviations. */
 static void centring_is_as_near_as_it_says(void **state) {
     (void)state;
+    char script[1000];
+    /* Under sanitizers, the transfers are too few for a standard deviation. */
+    (void)snprintf(script, sizeof script,
+                   "cell 'cell.lua' local sum, worst, n, near = { 0, 0 }, 0, %d, %g\n"
+                   "for i = 1, n do\n"
+                   "  get('A', 1) local c = put('B', 1, { centre = true })\n"
+                   "  local x, y = offset('W', 'B', 1)\n"
+                   "  sum[1], sum[2] = sum[1] + (x / c.sd_dx)^2, sum[2] + (y / c.sd_dy)^2\n"
+                   "  worst = math.max(worst, x / c.sd_dx, y / c.sd_dy)\n"
+                   "  get('B', 1) put('A', 1, { dx = i %% 3 - 1, dy = i %% 5 - 2 })\n"
+                   "end\n"
+                   "local x, y = math.sqrt(sum[1] / n), math.sqrt(sum[2] / n)\n"
+                   "expect(math.abs(x - 1) < near and math.abs(y - 1) < near and worst < 5,\n"
+                   "       x .. ' ' .. y .. ' ' .. worst)\n",
+                   WH_TEST_SHARE > 1 ? 30 : 300, WH_TEST_SHARE > 1 ? 0.5 : 0.15);
     assert_texts(
         DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
               "} } } }\n",
-        "cell 'cell.lua' local sum, worst, n = { 0, 0 }, 0, 300\n"
-        "for i = 1, n do\n"
-        "  get('A', 1) local c = put('B', 1, { centre = true })\n"
-        "  local x, y = offset('W', 'B', 1)\n"
-        "  sum[1], sum[2] = sum[1] + (x / c.sd_dx)^2, sum[2] + (y / c.sd_dy)^2\n"
-        "  worst = math.max(worst, x / c.sd_dx, y / c.sd_dy)\n"
-        "  get('B', 1) put('A', 1, { dx = i % 3 - 1, dy = i % 5 - 2 })\n"
-        "end\n"
-        "local x, y = math.sqrt(sum[1] / n), math.sqrt(sum[2] / n)\n"
-        "expect(math.abs(x - 1) < 0.15 and math.abs(y - 1) < 0.15 and worst < 5, x .. ' ' .. y .. ' ' "
-        ".. worst)\n");
+        script);
 }
 
 /* The notch passes one of the beams' crossings, 0.02 degrees further each time. */
