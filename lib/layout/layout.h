@@ -37,6 +37,10 @@
 #define WH_LAYOUT_PARTS 100000
 #define WH_LAYOUT_OBSTACLES 1000
 
+/* The wafers that sensors and beams can see, mm. */
+#define WH_SENSED_LEAST 20
+#define WH_SENSED_MOST 600
+
 /* The most slices by which a valve acts late in a trial of a study. */
 #define WH_STUDY_LAG_SLICES 8000
 

@@ -9,3 +9,7 @@ const char *const wh_layout_beam_stuck_words[] = {"no", "dark", "lit", NULL};
 const char *const wh_layout_touch_stuck_words[] = {"no", "closed", "open", NULL};
 const char *const wh_layout_grip_words[] = {"vacuum", "edge", "passive", NULL};
 const char *const wh_layout_mount_words[] = {"chuck", "stage", "pins", "flipper", NULL};
+const char *const wh_layout_robot_words[] = {"TRZY", "TRZ", "SCARA", NULL};
+const char *const wh_layout_side_words[] = {"left", "right", NULL};
+const char *const wh_layout_door_words[] = {"shut", "open", NULL};
+const char *const wh_layout_shape_words[] = {"normal", "uniform", NULL};

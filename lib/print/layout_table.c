@@ -5,6 +5,7 @@
 #include "../layout/arms.h"
 #include "../layout/axes.h"
 #include "../layout/grips.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "../text/array.h"
 #include "layout_print.h"
@@ -133,7 +134,7 @@ static void print_doors(const listing_t *listing) {
         (void)wh_profile_plan(&profile, door->travel, &door->limits);
         wh_grid_named_row(grid, layout->door_list[d].name);
         list_stations(layout, grid, (int32_t)d);
-        wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", door->is_open ? "open" : "shut");
+        wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", wh_layout_door_words[door->is_open]);
         const double values[] = {door->travel * door->way.x, door->travel * door->way.y,
                                  door->travel * door->way.z, wh_profile_duration(&profile)};
         wh_grid_numbers(grid, 3, values, 4);
@@ -336,7 +337,7 @@ static void print_arms(const wh_layout_t *layout, wh_grid_t *grid) {
                          links[0], links[1]);
         } else {
             wh_grid_text(grid, 1, WH_INK_PLAIN, "two links of %g, wrist %g behind the end-effector, elbow %s",
-                         arm->link, arm->reach, arm->right_handed ? "right" : "left");
+                         arm->link, arm->reach, wh_layout_side_words[arm->right_handed]);
         }
     }
 }

@@ -101,8 +101,8 @@ static void read_drive(const urdf_t *urdf, const wh_urdf_link_t *link, wh_urdf_d
     }
     (void)wh_reader_open(reader, link->joint, wh_layout_joint_fields);
     drive->source = wh_reader_has(reader, "axis") ? read_source(urdf, link, "axis") : -1;
-    drive->factor = wh_reader_number(reader, "factor", 1, -1e6, 1e6);
-    drive->offset = wh_reader_number(reader, "offset", 0, -1e6, 1e6);
+    drive->factor = wh_reader_apart(reader, "factor");
+    drive->offset = wh_reader_apart(reader, "offset");
     if (link->motion == WH_URDF_TURNS) {
         drive->offset = wh_rad_from_deg(drive->offset);
     }
