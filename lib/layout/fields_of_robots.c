@@ -126,16 +126,15 @@ const wh_reader_field_t wh_layout_edge_grip_fields[] = {
     {"alpha", NUMBER, "degrees: the rests' directions to both sides of the blade's x", false,
      AS_DEGREES(wh_edge_t, alpha, 25, 60, KEPT)},
     {"clearance", NUMBER, "mm: how far off centre a wafer may lie", false,
-     AS_NUMBER(wh_edge_t, clearance, 0, 10, FOLLOWS), .otherwise = "1, at most a tenth of the radius"},
+     AS_NUMBER(wh_edge_t, clearance, 0, 10, FOLLOWS)},
     {"retracted", NUMBER, "mm, below 0: where the open plunger is; 0 is where it touches a nominal wafer",
-     false, AS_NUMBER(wh_edge_t, retracted, -50, 0, FOLLOWS),
-     .otherwise = "that of the size, open for the clearance"},
+     false, AS_NUMBER(wh_edge_t, retracted, -50, 0, FOLLOWS)},
     {"gripped_from", NUMBER, "mm: where the window in which a wafer is held begins", false,
-     AS_NUMBER(wh_edge_t, gripped_from, -5, 5, FOLLOWS), .otherwise = "that of the size"},
+     AS_NUMBER(wh_edge_t, gripped_from, -5, 5, FOLLOWS)},
     {"gripped_to", NUMBER, "mm: where that window ends", false,
-     AS_NUMBER(wh_edge_t, gripped_to, -5, 5, FOLLOWS), .otherwise = "that of the size"},
+     AS_NUMBER(wh_edge_t, gripped_to, -5, 5, FOLLOWS)},
     {"stroke", NUMBER, "mm: how far the plunger comes, from retracted", false,
-     .otherwise = "to 1 beyond the window"},
+     .otherwise = "12, at least to 1 beyond the window"},
     {"speed", NUMBER, "mm/s: of the plunger", false, AS_NUMBER(wh_edge_t, speed, 0.01, 1e4, KEPT)},
     END};
 
@@ -195,12 +194,11 @@ const wh_reader_field_t wh_layout_blade_fields[] = {
     {"thickness", NUMBER, "mm", false, AS_NUMBER(wh_blade_t, thickness, 0.1, 50, KEPT)},
     {"half_width", NUMBER, "mm from its middle to its side", false,
      AS_NUMBER(wh_blade_t, half_width, 1, 500, KEPT)},
-    {"finger", NUMBER, "mm: the width of a finger", false, AS_NUMBER(wh_blade_t, finger, 0.1, 495, FOLLOWS),
-     .otherwise = "a third of half_width"},
+    {"finger", NUMBER, "mm: the width of a finger", false, AS_NUMBER(wh_blade_t, finger, 0.1, 495, FOLLOWS)},
     {"length", NUMBER, "mm by which the fingers reach before its origin", false,
      AS_NUMBER(wh_blade_t, length, 1, 1000, KEPT)},
     {"palm", NUMBER, "mm by which it ends behind its origin", false,
-     AS_NUMBER(wh_blade_t, palm, 0.1, 1000, FOLLOWS), .otherwise = "by size"},
+     AS_NUMBER(wh_blade_t, palm, 0.1, 1000, FOLLOWS)},
     END};
 
 const wh_reader_field_t wh_layout_arm_fields[] = {
@@ -213,8 +211,7 @@ const wh_reader_field_t wh_layout_arm_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_ledge_fields[] = {
-    {"inner", NUMBER, "mm beside the middle", false, AS_NUMBER(wh_ledge_t, inner, 0, 1998, FOLLOWS),
-     .otherwise = "by size"},
+    {"inner", NUMBER, "mm beside the middle", false, AS_NUMBER(wh_ledge_t, inner, 0, 1998, FOLLOWS)},
     {"outer", NUMBER, "mm beside the middle", false, AS_NUMBER(wh_ledge_t, outer, 1, 2000, KEPT)},
     {"thickness", NUMBER, "mm", false, AS_NUMBER(wh_ledge_t, thickness, 0.05, 100, KEPT)},
     {"length", NUMBER, "mm", false, AS_NUMBER(wh_ledge_t, length, 0.1, 2000, KEPT)},

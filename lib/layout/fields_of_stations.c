@@ -21,7 +21,7 @@ const wh_reader_field_t wh_layout_station_fields[] = {
      .otherwise = "the first on the robot"},
     {"stroke", NUMBER, "mm: the height of the stroke", false,
      AS_NUMBER(wh_layout_station_t, stroke, 0.01, 1000, FOLLOWS),
-     .otherwise = "6 for 300 mm, 4 for 200, 3 below"},
+     .otherwise = "6 above 200 mm, 4 above 150, else 3"},
     {"offset", NUMBER, "mm above the slot at which a GET leaves", false,
      AS_NUMBER(wh_layout_station_t, offset, 0, 1000, FOLLOWS), .otherwise = "half of the stroke"},
     {"retract", NUMBER, "mm before the slot, where the straight way in begins", false,
@@ -32,7 +32,7 @@ const wh_reader_field_t wh_layout_station_fields[] = {
      AS_NUMBER(wh_layout_station_t, pickup_acceleration, 0, 1e8, 0)},
     {"release", NUMBER, "mm above the slot at which a PUT switches the valves", false,
      AS_NUMBER(wh_layout_station_t, release, -1000, 1000, FOLLOWS),
-     .otherwise = "half of projz below; 0 with seat and of an edge grip"},
+     .otherwise = "-projz/2; 0 with seat and of an edge grip"},
     {"vacuum_delay", NUMBER, "s from the end of the stroke until the sensor is asked", false,
      AS_NUMBER(wh_layout_station_t, vacuum_delay, 0, 3600, 0)},
     {"vacuum_check", WORD, "the commands that the sensor decides", false,
@@ -61,9 +61,11 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"elbow", WORD, "the side of a SCARA's elbow there", false, APART_WORD(FOLLOWS, wh_layout_side_words),
      .otherwise = "the robot's"},
     {"door", "string", "the door through which wafers come, by name", false},
-    {"pins", "string", "the pins that lift wafers off its chuck, by name", false},
+    {"pins", "string", "the pins that lift wafers off its chuck, by name", false,
+     .otherwise = "those that are on it"},
     {"via", "waferhand.via[]", "where the arm passes on its way there, and back on its way away", false},
-    {"by", "table<string, waferhand.approach>", "with several robots: those that serve it, by name", false},
+    {"by", "table<string, waferhand.approach>", "with several robots: those that serve it, by name", false,
+     .otherwise = "those that come there"},
     END};
 
 const wh_reader_field_t wh_layout_approach_fields[] = {
@@ -121,7 +123,7 @@ const wh_reader_field_t wh_layout_via_fields[] = {
 
 const wh_reader_field_t wh_layout_beam_fields[] = {
     {"x", NUMBER, "mm along the way in from the slot's centre, below 0 before it", false,
-     AS_NUMBER(wh_layout_beam_t, x, -10000, 10000, FOLLOWS), .otherwise = "half of the way in"},
+     AS_NUMBER(wh_layout_beam_t, x, -10000, 10000, FOLLOWS), .otherwise = "-retract/2"},
     {"y", NUMBER, "mm across the way, to the left", true,
      AS_NUMBER(wh_layout_beam_t, y, -10000, 10000, FOLLOWS)},
     {"low", NUMBER, "mm above slot 1 where it begins", false,
@@ -147,12 +149,14 @@ const wh_reader_field_t wh_layout_beam_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_block_fields[] = {
-    {"at", TRIPLE, "x, y, z in mm, in the station's frame: the middle of its upper face", false},
-    {"size", TRIPLE, "mm along the station's x, y and z", false},
+    {"at", TRIPLE, "x, y, z in mm, in the station's frame: the middle of its upper face", false,
+     .otherwise = "30 before a wafer in the slot, 40 below it"},
+    {"size", TRIPLE, "mm along the station's x, y and z", false, .otherwise = "40, 200, 20"},
     END};
 
 const wh_reader_field_t wh_layout_probe_fields[] = {
-    {"at", TRIPLE, "x, y, z in mm, in the gripper's frame: the middle of its ball", false},
+    {"at", TRIPLE, "x, y, z in mm, in the gripper's frame: the middle of its ball", false,
+     .otherwise = "0, 0, -12"},
     {"radius", NUMBER, "mm: of the ball", false, AS_NUMBER(wh_layout_probe_t, radius, 0, 50, 1.5)},
     {"noise", NUMBER, "mm: of where a touch closes the switch, standard deviation", false,
      AS_NUMBER(wh_layout_probe_t, noise, 0, 0.1, 0.005)},
@@ -166,8 +170,7 @@ const wh_reader_field_t wh_layout_sensor_fields[] = {
     {"samples", "integer", "how many in a turn", false,
      AS_WHOLE(wh_sensor_t, samples, 90, WH_SENSOR_SAMPLES, KEPT)},
     {"pixel", NUMBER, "mm: a pixel's length", false, AS_NUMBER(wh_sensor_t, pixel, 0.001, 0.1, KEPT)},
-    {"length", NUMBER, "mm: the line's length", false, AS_NUMBER(wh_sensor_t, length, 2, 100, FOLLOWS),
-     .otherwise = "28, at most the diameter"},
+    {"length", NUMBER, "mm: the line's length", false, AS_NUMBER(wh_sensor_t, length, 2, 100, FOLLOWS)},
     {"noise", NUMBER, "mm: standard deviation of one sample", false,
      AS_NUMBER(wh_sensor_t, noise, 0, 0.1, 0)},
     {"seed", "integer", "names the noise, with the number of the scan", false, APART(0, INT32_MAX, 1)},
@@ -206,7 +209,7 @@ const wh_reader_field_t wh_layout_rim_fields[] = {
     {"diameter", NUMBER, "mm", false, APART(WH_SENSED_LEAST, WH_SENSED_MOST, FOLLOWS),
      .otherwise = "that of `wafer`"},
     {"notch", "waferhand.rim_notch", "the notch", false},
-    {"flats", "waferhand.flat[]", "the flats", false},
+    {"flats", "waferhand.flat[]", "the flats", false, .otherwise = "by size, below 200 mm"},
     {"chips", "waferhand.chip[]", "what is broken off", false},
     {"bow", NUMBER, "mm: how far the rim is above the centre, the same all round", false,
      AS_NUMBER(wh_rim_t, bow, -2, 2, 0)},
@@ -226,9 +229,9 @@ const wh_reader_field_t wh_layout_rim_notch_fields[] = {
     {"angle", NUMBER, "degrees between its flanks", false,
      AS_DEGREES(wh_notch_shape_t, opening, 58, 120, 90)},
     {"bottom", NUMBER, "mm: the radius at its bottom", false,
-     AS_NUMBER(wh_notch_shape_t, bottom, 0, 2, FOLLOWS), .otherwise = "as SEMI has it"},
+     AS_NUMBER(wh_notch_shape_t, bottom, 0, 2, FOLLOWS)},
     {"corner", NUMBER, "mm: the radius where it meets the rim", false,
-     AS_NUMBER(wh_notch_shape_t, corner, 0, 1, FOLLOWS), .otherwise = "as SEMI has it"},
+     AS_NUMBER(wh_notch_shape_t, corner, 0, 1, FOLLOWS)},
     END};
 
 const wh_reader_field_t wh_layout_flat_fields[] = {
