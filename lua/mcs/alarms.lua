@@ -1,5 +1,10 @@
 -- Injected errors: fault { error = N } arms one. The next command that can give this error gives it, once.
--- lua/mcs/alarm_words.lua has how each one is raised.
+--
+-- How each one is raised:
+--   cause   something breaks, so that the command meets the real effect in the cell
+--   check   the command is refused before anything moves, though nothing is wrong
+--   line    likewise, for an error that motion control and the cell never cause, or that comes before a command is
+--           read: a host gets it all the same
 
 -- Local copies: a script may set globals of these names.
 local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
@@ -7,8 +12,81 @@ local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
 return function(native, lookup)
   local alarms = {}
 
+  local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
+  local PLANNED = STATION .. " LINE"
+  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
+  local SETTING = " SET_STATION STATION"
+  local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
+
   -- By the error's name: how it is raised, and the commands that can give it.
-  local HOW = native.module("mcs/alarm_words.lua").how
+  local HOW = {
+    BAD_VALVE = { "check", "VALVE" },
+    BAD_LIMITS = { "line", MOVING },
+    OUT_OF_REACH = { "check", PLANNED .. " SET_STATION" },
+    LIMIT_EXCEEDED = { "check", PLANNED .. " MOVE ROTATE SET_STATION" },
+    NOT_LEVEL = { "check", STATION },
+    NOT_ALONG_ARM = { "check", STATION .. SETTING },
+    NO_SUCH_STATION = { "check", STATION .. " ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT OFFSET" .. SETTING },
+    NO_SUCH_SLOT = { "check", AT_SLOT .. " OFFSET" },
+    WAFER_MISSING = { "cause", "GET SWAP" },
+    NO_WAFER_ON_GRIPPER = { "cause", "PUT" },
+    WAFER_ON_GRIPPER = { "cause", "GET SWAP" },
+    NO_SUCH_GRIPPER = { "check", STATION .. " VALVE FLIP PROXIMITY" .. SETTING },
+    AMBIGUOUS_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
+    NO_SUCH_ROBOT = { "check", STATION .. " CONTINUE HOME RECOVER MOVE FLIP LINE" .. SETTING },
+    NO_SUCH_WAFER = { "check", "OFFSET HOLDER PROXIMITY WHERE" },
+    NO_SUCH_COMMAND = { "line", MOVING .. " " .. QUERIES },
+    BAD_ARGUMENT = { "check", MOVING .. " " .. QUERIES .. SETTING },
+    NOT_A_PREALIGNER = { "check", "ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT" },
+    WAFER_LOST = { "cause", "PUT" },
+    DEADLOCK = { "check", STATION },
+    FLIP_TIMEOUT = { "cause", "FLIP" },
+    FLIP_NOT_CLAMPED = { "check", "FLIP" },
+    WRONG_FACE = { "check", "PUT SWAP" },
+    WRONG_SLOT = { "check", "GET SWAP" },
+    STOPPED = { "cause", STATION .. " HOME ROTATE EDGE_SCAN ALIGN MOVE FLIP LINE" },
+    OUT_OF_BUDGET = { "check", MOVING },
+    BUSY = { "line", MOVING },
+    NOT_TAUGHT = { "check", STATION .. " STATION" },
+    WAFER_ALREADY_THERE = { "check", "PUT" },
+    VACUUM_TIMEOUT = { "cause", "GET PUT SWAP" },
+    VACUUM_BEFORE_PICK = { "cause", "GET SWAP" },
+    NOT_HOMED = { "cause", STATION .. " MOVE FLIP LINE" },
+    WAFER_LOST_ON_WAY = { "cause", "PUT" },
+    WAFER_JAMMED = { "check", "GET SWAP" },
+    PLUNGER_STUCK = { "cause", "GET PUT SWAP" },
+    GRIP_TIMEOUT = { "cause", "GET SWAP" },
+    UNGRIP_TIMEOUT = { "cause", "PUT" },
+    SENSORS_DISAGREE = { "cause", "GET SWAP" },
+    COLLISION_AHEAD = { "check", PLANNED .. " MOVE FLIP" },
+    SLIP_AHEAD = { "check", PLANNED .. " MOVE FLIP HOME" },
+    BAD_SLOT = { "check", "GET PUT SWAP" },
+    NOT_MAPPED = { "check", "GET SWAP" },
+    CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP ALIGN" },
+    IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE" },
+    PINS_UP = { "check", "GET PUT SWAP READY ROTATE EDGE_SCAN ALIGN TEACH" },
+    DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH" },
+    DOOR_BLOCKED = { "check", "CLOSE" },
+    DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
+    NOT_IN_PHASE = { "check", "CONTINUE" },
+    NO_SUCH_SAVE = { "check", "RESTORE" },
+    NOTHING_TO_UNDO = { "check", "UNDO" },
+    NOT_RESTORED = { "line", "RESTORE UNDO" },
+    TOO_FEW_SAMPLES = { "check", "ALIGN TEACH" },
+    NO_NOTCH = { "check", "ALIGN TEACH" },
+    NOT_TOUCHED = { "check", "TEACH" },
+    TWO_NOTCHES = { "check", "ALIGN" },
+    OFF_SENSOR = { "check", "ALIGN" },
+    TOO_ECCENTRIC = { "check", "ALIGN" },
+    CENTRE_NOT_SURE = { "check", "ALIGN CALIBRATE TEACH" },
+    NOTCH_NOT_SURE = { "check", "ALIGN" },
+    BAD_SCAN = { "line", "ALIGN" },
+    RUN_OVER = { "line", MOVING },
+    NO_ANSWER = { "line", MOVING },
+  }
+
+  -- The manual's table is made of these: tests/end_to_end/tools/manual_tables.lua.
+  alarms.how, alarms.groups = HOW, { MOVING, STATION, QUERIES }
 
   -- By the error's number: its name, how it is raised, and the set of commands.
   local by_number, numbers = {}, {}

@@ -131,11 +131,6 @@ words.scripts = {
             does = "Marks where a cycle begins, for wafers per hour." },
 }
 
--- The order in which the manual has them.
-words.order = "cell flow study get put swap continue stop ready map home recover stop_in rotate centring teach station " ..
-  "set_station edge_scan align calibrate open close lift valve move flip robot line wait task join signal await fault " ..
-  "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset cycle"
-
 -- The module wh, see lib/script/wh_module.h.
 local POSE = { "waferhand.pose", "base_from_body" }
 local TOLERANCE = { "tolerance", "\"paper\"|\"strict\"|waferhand.tolerance?", "\"paper\" without it" }

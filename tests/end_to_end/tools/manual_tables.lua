@@ -10,8 +10,43 @@
 
 local chapters = { ... }
 local words = dofile "lua/mcs/words.lua"
-local alarms = dofile "lua/mcs/alarm_words.lua"
+
+-- The module wants motion control's own functions, of which it calls none at first, and the errors by name.
+local errors = {}
+for _, status in ipairs(statuses) do
+  errors[status.name] = status
+end
+local alarms = dofile "lua/mcs/alarms.lua" ({}, { errors = errors })
 local NONE = ""
+
+-- The order of the words in the manual.
+local ORDER = "cell flow study get put swap continue stop ready map home recover stop_in rotate centring teach station " ..
+  "set_station edge_scan align calibrate open close lift valve move flip robot line wait task join signal await fault " ..
+  "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset cycle"
+
+-- Errors on purpose: what breaks, or for whom else a check is.
+local NOTES = {
+  WAFER_MISSING = "with vacuum: the valve of the gripper is stuck",
+  NO_WAFER_ON_GRIPPER = "the gripper's sensor stays off",
+  WAFER_ON_GRIPPER = "the gripper's valve is open and its sensor stays on",
+  WAFER_LOST = "the gripper's sensor stays on; onto a chuck, the chuck's valve is stuck",
+  FLIP_TIMEOUT = "what carries the gripper or the clamp stands still",
+  STOPPED = "a STOP comes 0.1 s after it has begun to move; it waits for another one if that has ended by then",
+  VACUUM_TIMEOUT = "the gripper's sensor stays off; of a PUT onto a chuck, the chuck's",
+  VACUUM_BEFORE_PICK = "the gripper's sensor stays on",
+  NOT_HOMED = "the robot no longer knows where it is, until HOME",
+  WAFER_LOST_ON_WAY = "the gripper's pump dies as the arm sets out",
+  PLUNGER_STUCK = "with an edge grip: its plunger is stuck",
+  GRIP_TIMEOUT = "with an edge grip that is open: its plunger creeps",
+  UNGRIP_TIMEOUT = "with an edge grip: its plunger creeps",
+  SENSORS_DISAGREE = "with an edge grip: its sensor stays off",
+  DOOR_TIMEOUT = "the door is stuck",
+  TOO_FEW_SAMPLES = "of a PUT with `centre`, too",
+  CENTRE_NOT_SURE = "of a PUT with `centre`, too",
+}
+
+-- The words that people use for many commands at once.
+local GROUPS = { { "all that moves", alarms.groups[1] }, { "all at stations", alarms.groups[2] }, { "questions", alarms.groups[3] } }
 
 local function read(path)
   local file <close> = assert(io.open(path))
@@ -106,7 +141,7 @@ end
 -- "all that moves, OFFSET" for a list of commands that has all of a group's.
 local function commands_of(list)
   local said, left = {}, " " .. list .. " "
-  for _, group in ipairs(alarms.groups) do
+  for _, group in ipairs(GROUPS) do
     local without, is_whole = left, true
     for word in group[2]:gmatch "%S+" do
       local count
@@ -130,7 +165,7 @@ local function add_alarms()
     local how = alarms.how[status.name]
     if how then
       known = known + 1
-      row(("%d %s"):format(status.number, status.name), commands_of(how[2]), how[1] .. (how[3] and ": " .. how[3] or ""))
+      row(("%d %s"):format(status.number, status.name), commands_of(how[2]), how[1] .. (NOTES[status.name] and ": " .. NOTES[status.name] or ""))
     end
   end
   for name in pairs(alarms.how) do
@@ -148,7 +183,7 @@ local function add_words()
     left[name] = true
   end
   head("word", "gives", "what it does")
-  for name in words.order:gmatch "%S+" do
+  for name in ORDER:gmatch "%S+" do
     local word, takes, gives = words.scripts[name], {}, {}
     for i, parameter in ipairs(word.takes) do
       takes[i] = parameter[1] .. (parameter[2]:find "%?$" and "?" or "")
@@ -159,7 +194,7 @@ local function add_words()
     row(("`%s(%s)`"):format(name, table.concat(takes, ", ")), #gives > 0 and "`" .. table.concat(gives, ", ") .. "`" or NONE, word.does)
     left[name] = nil
   end
-  assert(not next(left), ("%s is not in words.order"):format(next(left)))
+  assert(not next(left), ("%s is not in ORDER"):format(next(left)))
   add ""
 end
 
