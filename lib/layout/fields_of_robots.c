@@ -165,7 +165,7 @@ const wh_reader_field_t wh_layout_flipper_fields[] = {
         {"cylinder", "waferhand.round", "along z", false},                                                   \
         {"capsule", "waferhand.round", "along z; the height is without its caps", false},                    \
         {"mesh", "string", "an STL file of a convex body, beside the layout", false}, {                      \
-        "unit", "\"mm\"|\"cm\"|\"m\"|\"inch\"", "of the mesh, which wants it", false                         \
+        "unit", WORD, "of the mesh, which wants it", false, APART_WORD(FOLLOWS, wh_layout_unit_words)        \
     }
 
 const wh_reader_field_t wh_layout_door_fields[] = {

@@ -4,8 +4,7 @@
 /* ---------------------------------------------------------------------------------- stations and wafers */
 
 const wh_reader_field_t wh_layout_station_fields[] = {
-    {"kind", "\"slots\"|\"prealigner\"|\"foup\"|\"flipper\"", "what stands there", false,
-     .otherwise = "\"slots\""},
+    {"kind", WORD, "what stands there", false, APART_WORD(0, wh_layout_station_words)},
     {"at", TRIPLE, "x, y, z in mm, in base: the centre of a wafer's back face in slot 1; or `axes` says it",
      false},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees: x is the way in, z goes up through the slots", false,
@@ -49,8 +48,8 @@ const wh_reader_field_t wh_layout_station_fields[] = {
      AS_SWITCH(wh_layout_station_t, check_map, false)},
     {"handover", WORD, "at a chuck: the order of the two valves", false,
      AS_WORD(wh_layout_station_t, handover, WH_HANDOVER_NEW_FIRST, wh_layout_handover_words)},
-    {"face", "\"up\"|\"down\"", "how wafers must lie there; without it either way", false,
-     .otherwise = "either"},
+    {"face", WORD, "how wafers must lie there; without it either way", false,
+     APART_WORD(FOLLOWS, wh_layout_face_words), .otherwise = "either"},
     {"counts", SWITCH, "true: a wafer that is put here is done, for wafers per hour", false,
      APART_SWITCH(FOLLOWS), .otherwise = "true where wafers end up"},
     {"sensor", "waferhand.sensor", "at a prealigner: what sees the wafer's edge", false},
@@ -100,7 +99,8 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
     {"dy", NUMBER, "mm off the slot's centre, along its y", false, APART(-1000, 1000, 0)},
     {"dz", NUMBER, "mm above the slot", false, APART(-1000, 1000, 0)},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false, .otherwise = "0, 0, 0"},
-    {"face", "\"up\"|\"down\"", "the way it lies; without it as its station says, else up", false},
+    {"face", WORD, "the way it lies; without it as its station says, else up", false,
+     APART_WORD(FOLLOWS, wh_layout_face_words), .otherwise = "the station's, else up"},
     {"thickness", NUMBER, "mm: what MAP measures; all else goes by that of `wafer`", false,
      APART(0.01, 100, FOLLOWS), .otherwise = "that of `wafer`"},
     {"rim", "waferhand.rim", "its true rim, which edge sensors and beams see, and edge grips meet", false},

@@ -305,6 +305,9 @@ bool wh_layout_is_pins(const wh_layout_t *layout, size_t gripper);
 bool wh_layout_is_flipper(const wh_layout_t *layout, size_t gripper);
 int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station);
 
+/* A station's kind as a layout has it: see words.h. */
+const char *wh_layout_station_kind(const wh_layout_station_t *station);
+
 /* The door of a station for a robot, or WH_NONE. */
 int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot);
 

@@ -104,8 +104,8 @@ const wh_reader_field_t wh_layout_mapping_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_vacuum_fields[] = {
-    {"model", "\"ideal\"|\"delayed\"", "whose values the other fields have by default", false,
-     .otherwise = "\"delayed\""},
+    {"model", WORD, "whose values the other fields have by default", false,
+     APART_WORD(1, wh_layout_vacuum_words)},
     {"build", NUMBER, "s: time constant upwards", false, AS_NUMBER(wh_vacuum_config_t, build, 0, 3600, KEPT),
      .hashed = WH_HASHED_VACUUM},
     {"vent", NUMBER, "s: time constant downwards", false, AS_NUMBER(wh_vacuum_config_t, vent, 0, 3600, KEPT),

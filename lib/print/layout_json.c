@@ -170,20 +170,13 @@ static json_t *servers(const wh_layout_t *layout, const wh_layout_station_t *sta
     return list;
 }
 
-static const char *kind_of(const wh_layout_station_t *station) {
-    return station->prealigner ? "prealigner"
-           : station->foup     ? "foup"
-           : station->flipper  ? "flipper"
-                               : "slots";
-}
-
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *from = &layout->stations[i];
     const wh_entry_t *entry = &check->entries[i];
     const wh_station_t *place = &layout->places[i];
-    json_t *object = wh_json_set(json_object(), "name %s kind %s", from->name, kind_of(from));
+    json_t *object = wh_json_set(json_object(), "name %s kind %s", from->name, wh_layout_station_kind(from));
     put_pose(object, &place->base_from_station);
     (void)wh_json_set(object, "slots %d pitch %g", place->slots, place->pitch);
     (void)put_scalars(object, wh_layout_station_fields, from, "stroke offset retract pickup_speed taught");

@@ -159,9 +159,8 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_vec3_t *r = &place->base_from_station.r;
     const wh_mat3_t *R = &place->base_from_station.R;
     const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
-    const char *kind = station->foup ? "foup" : station->flipper ? "flipper" : "slots";
     wh_grid_named_row(grid, station->name);
-    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s%s", station->prealigner ? "prealigner" : kind,
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s%s%s", wh_layout_station_kind(station),
                  seen_by(listing->layout, s), station->by_axes ? ", by axes" : "",
                  station->taught ? "" : ", not taught");
     const double values[] = {r->x,

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../layout/grips.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -9,8 +10,6 @@
 
 /* The longest debounce, ms. */
 #define MOST_DEBOUNCE_MS 60000.0
-
-static const char *const models[] = {"ideal", "delayed", NULL};
 
 static wh_vacuum_config_t model_of(int choice) {
     return choice == 0 ? wh_vacuum_ideal() : wh_vacuum_delayed();
@@ -34,7 +33,7 @@ static int32_t read_debounce(wh_reader_t *reader, int64_t slice_us) {
 
 static void read_vacuum_table(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_t *vacuum) {
     (void)wh_reader_open(reader, "vacuum", wh_layout_vacuum_fields);
-    *vacuum = model_of(wh_reader_choice(reader, "model", 1, models));
+    *vacuum = model_of((int)wh_reader_apart(reader, "model"));
     wh_reader_scalars(reader, vacuum);
     read_levels(reader, vacuum);
     vacuum->debounce = read_debounce(reader, slice_us);
@@ -50,7 +49,7 @@ static void read_vacuum(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_
     if (type == LUA_TTABLE) {
         read_vacuum_table(reader, slice_us, vacuum);
     } else {
-        *vacuum = model_of(wh_reader_choice(reader, "vacuum", 0, models));
+        *vacuum = model_of(wh_reader_choice(reader, "vacuum", 0, wh_layout_vacuum_words));
     }
 }
 

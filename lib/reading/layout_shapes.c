@@ -9,6 +9,7 @@
 #include "../bodies/stl.h"
 #include "../layout/arms.h"
 #include "../layout/axes.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -27,14 +28,13 @@ static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *conv
 }
 
 static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
-    static const char *const units[] = {"mm", "cm", "m", "inch", NULL};
     static const double mm_per_unit[] = {1, 10, 1000, 25.4};
     char name[512];
     char path[1024];
     char message[512];
     wh_vec3_t *points = NULL;
     wh_reader_text(reader, "mesh", NULL, name, sizeof name);
-    const int unit = wh_reader_choice(reader, "unit", -1, units);
+    const int unit = wh_reader_choice(reader, "unit", -1, wh_layout_unit_words);
     if (unit < 0) {
         wh_reader_refuse(reader, "unit", NULL, "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
     }

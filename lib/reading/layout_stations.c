@@ -142,18 +142,16 @@ static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static wh_station_face_t read_face(wh_reader_t *reader, wh_station_face_t fallback) {
-    static const char *const faces[] = {"up", "down", NULL};
     return wh_reader_has(reader, "face")
-               ? (wh_station_face_t)(wh_reader_choice(reader, "face", 0, faces) + WH_STATION_FACE_UP)
+               ? (wh_station_face_t)((int)wh_reader_apart(reader, "face") + WH_STATION_FACE_UP)
                : fallback;
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    static const char *const kinds[] = {"slots", "prealigner", "foup", "flipper", NULL};
     wh_layout_station_t *station = &layout->stations[index];
     wh_reader_enter(reader, station->name);
     wh_reader_refuse_unknown(reader, wh_layout_station_fields);
-    const int kind = wh_reader_choice(reader, "kind", 0, kinds);
+    const int kind = (int)wh_reader_apart(reader, "kind");
     station->prealigner = kind == 1;
     station->foup = kind == 2;
     station->flipper = kind == 3;

@@ -1,6 +1,6 @@
 /* manual_tables SCRIPT FILE...: runs a Lua script that writes the tables of the manual's chapters anew; see
  * manual_tables.lua beside this file. The script gets what the program goes by: `classes`, the tables of
- * layouts and flows with the rows of their fields, and `statuses`, the errors. */
+ * layouts and flows with the rows of their fields, `statuses`, the errors, and `axes`, the usual robot's. */
 #include <lauxlib.h>
 #include <lualib.h>
 #include <math.h>
@@ -12,6 +12,7 @@
 #include "layout/layout.h"
 #include "layout/layout_fields.h"
 #include "math/status.h"
+#include "math/trig.h"
 #include "mcs/definitions.h"
 
 /* Defaults that a struct has before it is read, for wafers of 300 mm. */
@@ -116,6 +117,29 @@ static void push_classes(lua_State *L, const wh_layout_class_t *classes) {
     }
 }
 
+/* The axes of the usual robot: { name, turns, and travel, home and limits as a layout has them }. */
+static void push_axes(lua_State *L) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    lua_newtable(L);
+    for (size_t i = 0; i < WH_ROBOT_AXES; ++i) {
+        const bool turns = i == WH_AXIS_THETA || i == WH_AXIS_YAW;
+        const double unit = turns ? wh_deg_from_rad(1) : 1;
+        lua_newtable(L);
+        set_text(L, "name", names[i]);
+        lua_pushboolean(L, turns);
+        lua_setfield(L, -2, "turns");
+        set_number(L, "least", unit * robot.travel[i].min);
+        set_number(L, "most", unit * robot.travel[i].max);
+        set_number(L, "home", unit * robot.home[i]);
+        set_number(L, "speed", unit * robot.limits[i].speed);
+        set_number(L, "acceleration", unit * robot.limits[i].acceleration);
+        set_number(L, "jerk", unit * robot.limits[i].jerk);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
 static void push_statuses(lua_State *L) {
     static const struct {
         int number;
@@ -147,6 +171,8 @@ int main(int argc, char **argv) {
         lua_setglobal(L, "classes");
         push_statuses(L);
         lua_setglobal(L, "statuses");
+        push_axes(L);
+        lua_setglobal(L, "axes");
         if (luaL_loadfile(L, argv[1]) == LUA_OK) {
             for (int i = 2; i < argc; ++i) {
                 lua_pushstring(L, argv[i]);

@@ -3,6 +3,7 @@
 --   <!-- tables of fields: station approach -->   begins the tables of these classes,
 --   <!-- tables of errors -->                     the table of all errors,
 --   <!-- tables of errors on purpose -->          that of the errors that a command can answer, and
+--   <!-- tables of axes -->                       that of the usual robot's axes,
 --   <!-- tables of words -->                      that of a script's words;
 --   <!-- end of tables -->                        ends each of them.
 --
@@ -126,6 +127,17 @@ local function add_class(name, here)
   add ""
 end
 
+local function add_axes()
+  head("axis", "travel", "home", "speed", "acceleration", "jerk")
+  for _, axis in ipairs(axes) do
+    local unit, to = axis.turns and "°" or " mm", axis.turns and "°" or ""
+    local per = axis.turns and " °" or " mm"
+    row("`" .. axis.name .. "`", number(axis.least) .. to .. " to " .. number(axis.most) .. unit, number(axis.home) .. unit,
+      number(axis.speed) .. per .. "/s", number(axis.acceleration) .. per .. "/s²", number(axis.jerk) .. per .. "/s³")
+  end
+  add ""
+end
+
 ---------------------------------------------------------------------------------------------------------------- errors
 
 local function add_errors()
@@ -201,7 +213,7 @@ end
 -------------------------------------------------------------------------------------------------------------- chapters
 
 local MARK, LAST = "^<!%-%- tables of (.-) %-%->$", "<!-- end of tables -->"
-local makers = { errors = add_errors, ["errors on purpose"] = add_alarms, words = add_words }
+local makers = { axes = add_axes, errors = add_errors, ["errors on purpose"] = add_alarms, words = add_words }
 
 for _, path in ipairs(chapters) do
   for list in read(path):gmatch "<!%-%- tables of fields: (.-) %-%->" do

@@ -7,7 +7,7 @@ mkdir -p "$work"
 # shellcheck source=tests/end_to_end/tools/hosts.sh
 source tests/end_to_end/tools/hosts.sh
 layout=lua/layouts/paper.lua
-# What most refusals need.
+# Most refusals need these.
 # shellcheck disable=SC2034 # scripts use them
 port=(--tcp 127.0.0.1:0) dialect=(--dialect lua/dialects/prompt.lua)
 served=
