@@ -39,7 +39,7 @@ include lib/build/switches.mk tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz configurations
 PART := $(CORE_PARTS) same_bits builds analysers wp random long long_counts coverage mutation host_mutation
 
-.PHONY: all deps library shared manual install-library run spy view test quick bench check verify-core verify install uninstall clean help
+.PHONY: all deps library shared manual manual-tables install-library run spy view test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -105,6 +105,11 @@ verify: ## all of it, hours; goes on where it was stopped. PART="wp mutation" fo
 manual: ## all manuals as one site with a search, in build/manual, read from disk; make install takes it along
 	$(NEED) manual
 	@lib/build/site build/manual && echo 'build/manual/index.html'
+
+manual-tables: ## writes the tables of fields, errors and words in lua/manual anew, from what the program goes by
+	$(NEED) run test
+	$(BUILD) all build/tests/end_to_end/tools/manual_tables
+	@build/tests/end_to_end/tools/manual_tables tests/end_to_end/tools/manual_tables.lua lua/manual/*.md
 
 shared: ## build/libwaferhand.so alone
 	$(COMPILER)

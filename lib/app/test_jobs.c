@@ -50,13 +50,6 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
-/* Waiting and switching valves do not count as motion. */
-static bool has_moved(const wh_record_t *record) {
-    const int64_t *shares = record->activity.shares;
-    return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] > 0 ||
-           (record->flow && wh_flow_has_moved(record->flow));
-}
-
 static uint64_t count_errors(const wh_record_t *record) {
     uint64_t errors = 0;
     for (size_t i = 0; i < record->command_count; ++i) {
@@ -74,9 +67,9 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, c
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
         wh_record_reason(record, told->reason, sizeof told->reason);
-    } else if (!has_moved(record) && record->expectation_count == 0) {
+    } else if (wh_record_kept_still(record) && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
-        (void)snprintf(told->reason, sizeof told->reason, "it moves nothing and expects nothing");
+        (void)snprintf(told->reason, sizeof told->reason, "%s", WH_RECORD_IDLE);
     } else if (needs_expectations && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it expects nothing (--require-expectations)");

@@ -3,18 +3,20 @@
 #include <math.h>
 #include <string.h>
 
-/* The field of each draw. Never renumber fields: the same seeds would then give other trials. */
+#include "layout_fields.h"
+
+/* The field of each draw, whose row has its name and its range. Never renumber fields: the same seeds would
+ * then give other trials. */
 static const struct {
-    const char *name, *unit;
-    double most;
+    const char *unit;
     uint32_t field;
     bool is_size;
-} draws[WH_BEAM_DRAWS] = {[WH_BEAM_DX] = {"dx", "mm", 5, 0x500, false},
-                          [WH_BEAM_DY] = {"dy", "mm", 5, 0x501, false},
-                          [WH_BEAM_LATE] = {"late", "s", 0.001, 0x502, true}};
+} draws[WH_BEAM_DRAWS] = {[WH_BEAM_DX] = {"mm", 0x500, false},
+                          [WH_BEAM_DY] = {"mm", 0x501, false},
+                          [WH_BEAM_LATE] = {"s", 0x502, true}};
 
 const char *wh_beam_draw_name(wh_beam_draw_t draw) {
-    return draws[draw].name;
+    return wh_layout_beam_width_fields[draw].name;
 }
 
 const char *wh_beam_draw_unit(wh_beam_draw_t draw) {
@@ -22,7 +24,7 @@ const char *wh_beam_draw_unit(wh_beam_draw_t draw) {
 }
 
 double wh_beam_draw_most(wh_beam_draw_t draw) {
-    return draws[draw].most;
+    return wh_layout_beam_width_fields[draw].most;
 }
 
 bool wh_beam_draw_is_size(wh_beam_draw_t draw) {
@@ -34,7 +36,7 @@ static double own_of(wh_beam_draw_t draw, const wh_layout_beam_t *beam) {
 }
 
 bool wh_beam_draw_fits(wh_beam_draw_t draw, const wh_layout_beam_t *beam, double error) {
-    return fabs(own_of(draw, beam) + error) <= draws[draw].most;
+    return fabs(own_of(draw, beam) + error) <= wh_beam_draw_most(draw);
 }
 
 void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, size_t beam,

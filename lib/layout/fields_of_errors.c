@@ -4,8 +4,9 @@
 /* ----------------------------------------------------------------------------------------------- faults */
 
 #define OF_EVERY_FAULT                                                                                       \
-    {"after", NUMBER, "s until it begins", false}, {                                                         \
-        "lasting", NUMBER, "s; without it until it is cleared", false                                        \
+    {"after", NUMBER, "s until it begins", false, APART(0, 1e6, 0)}, {                                       \
+        "lasting", NUMBER, "s; without it until it is cleared", false, APART(0, 1e6, FOLLOWS),               \
+            .otherwise = "until it is cleared"                                                               \
     }
 #define GRIPPER                                                                                              \
     { "gripper", "string", "whose; without it the first on the robot", false }
@@ -87,15 +88,15 @@ const wh_reader_field_t wh_layout_fault_crossed[] = {
     {"kind", "\"wafer_crossed\"", "one edge lies higher than the other", true},
     OF_EVERY_FAULT,
     WAFER,
-    {"value", NUMBER, "mm by which it does", false},
+    {"value", NUMBER, "mm by which it does", false, .otherwise = "the pitch, at most half the diameter"},
     END};
 const wh_reader_field_t wh_layout_fault_shifted[] = {
     {"kind", "\"wafer_shifted\"", "the wafer is moved, in its own frame", true},
     OF_EVERY_FAULT,
     WAFER,
-    {"dx", NUMBER, "mm", false},
-    {"dy", NUMBER, "mm", false},
-    {"dz", NUMBER, "mm", false},
+    {"dx", NUMBER, "mm", false, APART(-1000, 1000, 0)},
+    {"dy", NUMBER, "mm", false, APART(-1000, 1000, 0)},
+    {"dz", NUMBER, "mm", false, APART(-1000, 1000, 0)},
     END};
 const wh_reader_field_t wh_layout_fault_tilted[] = {
     {"kind", "\"wafer_tilted\"", "the wafer is turned, in its own frame", true},
@@ -133,23 +134,29 @@ const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
 
 /* ---------------------------------------------------------------------------------------------- studies */
 
+/* The width of an error; of one wafer, station or gripper by default that of all. */
+#define WIDTH(most) APART(0, most, 0)
 #define PLACEMENT_FIELDS                                                                                     \
-    {"dx", NUMBER, "mm, in the slot's frame", false}, {"dy", NUMBER, "mm", false},                           \
-        {"dz", NUMBER, "mm", false}, {"tilt", NUMBER, "degrees, about the slot's x and about its y", false}, \
-        {"turn", NUMBER, "degrees, about z", false}, {                                                       \
-        "shape", SHAPE, "how they are spread", false                                                         \
+    {"dx", NUMBER, "mm, in the slot's frame", false, WIDTH(WH_ERRORS_MOST_MM)},                              \
+        {"dy", NUMBER, "mm", false, WIDTH(WH_ERRORS_MOST_MM)},                                               \
+        {"dz", NUMBER, "mm", false, WIDTH(WH_ERRORS_MOST_MM)},                                               \
+        {"tilt", NUMBER, "degrees, about the slot's x and about its y", false, WIDTH(WH_ERRORS_MOST_DEG)},   \
+        {"turn", NUMBER, "degrees, about z", false, WIDTH(WH_ERRORS_MOST_TURN_DEG)}, {                       \
+        "shape", WORD, "how they are spread", false, SHAPE                                                   \
     }
 
 #define TEACHING_FIELDS                                                                                      \
-    {"x", NUMBER, "mm, along base's x", false}, {"y", NUMBER, "mm, along base's y", false},                  \
-        {"z", NUMBER, "mm, along base's z", false}, {"roll", NUMBER, "degrees, about base's x", false},      \
-        {"pitch", NUMBER, "degrees, about base's y", false},                                                 \
-        {"yaw", NUMBER, "degrees, about base's z", false}, {                                                 \
-        "shape", SHAPE, "how they are spread", false                                                         \
+    {"x", NUMBER, "mm, along base's x", false, WIDTH(WH_ERRORS_MOST_MM)},                                    \
+        {"y", NUMBER, "mm, along base's y", false, WIDTH(WH_ERRORS_MOST_MM)},                                \
+        {"z", NUMBER, "mm, along base's z", false, WIDTH(WH_ERRORS_MOST_MM)},                                \
+        {"roll", NUMBER, "degrees, about base's x", false, WIDTH(WH_ERRORS_MOST_DEG)},                       \
+        {"pitch", NUMBER, "degrees, about base's y", false, WIDTH(WH_ERRORS_MOST_DEG)},                      \
+        {"yaw", NUMBER, "degrees, about base's z", false, WIDTH(WH_ERRORS_MOST_DEG)}, {                      \
+        "shape", WORD, "how they are spread", false, SHAPE                                                   \
     }
 
 const wh_reader_field_t wh_layout_study_fields[] = {
-    {"shape", SHAPE, "how all errors are spread", false},
+    {"shape", WORD, "how all errors are spread", false, APART_WORD(WH_SHAPE_NORMAL, wh_layout_shape_words)},
     {"placement", "waferhand.placement", "of every wafer in its slot", false},
     {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
     {"timing", "waferhand.timing", "of valves and vacuum", false},
@@ -165,31 +172,33 @@ const wh_reader_field_t wh_layout_study_fields[] = {
 const wh_reader_field_t wh_layout_placement_fields[] = {PLACEMENT_FIELDS, END};
 const wh_reader_field_t wh_layout_teaching_fields[] = {TEACHING_FIELDS, END};
 const wh_reader_field_t wh_layout_timing_fields[] = {
-    {"valve", NUMBER, "s by which a valve acts late", false},
-    {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false},
-    {"shape", SHAPE, "how they are spread", false},
+    {"valve", NUMBER, "s by which a valve acts late", false, WIDTH(WH_ERRORS_MOST_S)},
+    {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false, WIDTH(WH_ERRORS_MOST_S)},
+    {"shape", WORD, "how they are spread", false, SHAPE},
     END};
 const wh_reader_field_t wh_layout_valve_fields[] = {
-    {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
+    {"valve", NUMBER, "s by which it acts late", false, WIDTH(WH_ERRORS_MOST_S)},
+    {"shape", WORD, "how that is spread", false, SHAPE},
+    END};
 const wh_reader_field_t wh_layout_rim_width_fields[] = {
-    {"diameter", NUMBER, "mm, of the true diameter", false},
-    {"notch_depth", NUMBER, "mm", false},
-    {"notch_angle", NUMBER, "degrees, between the notch's flanks", false},
-    {"notch_bottom", NUMBER, "mm, of the radius of its bottom", false},
-    {"notch_corner", NUMBER, "mm, of the radii of its corners", false},
-    {"flat", NUMBER, "mm, of the primary flat's length", false},
-    {"second_flat", NUMBER, "mm, of the secondary flat's length", false},
-    {"chip_depth", NUMBER, "mm, of a chip more, somewhere", false},
-    {"chip_width", NUMBER, "mm, of that chip along the rim", false},
-    {"bow", NUMBER, "mm", false},
-    {"saddle", NUMBER, "mm, high in some direction", false},
-    {"glass", NUMBER, "part of the light that comes through", false},
-    {"shape", SHAPE, "how they are spread", false},
+    {"diameter", NUMBER, "mm, of the true diameter", false, WIDTH(2)},
+    {"notch_depth", NUMBER, "mm", false, WIDTH(1)},
+    {"notch_angle", NUMBER, "degrees, between the notch's flanks", false, WIDTH(15)},
+    {"notch_bottom", NUMBER, "mm, of the radius of its bottom", false, WIDTH(1)},
+    {"notch_corner", NUMBER, "mm, of the radii of its corners", false, WIDTH(1)},
+    {"flat", NUMBER, "mm, of the primary flat's length", false, WIDTH(5)},
+    {"second_flat", NUMBER, "mm, of the secondary flat's length", false, WIDTH(5)},
+    {"chip_depth", NUMBER, "mm, of a chip more, somewhere", false, WIDTH(5)},
+    {"chip_width", NUMBER, "mm, of that chip along the rim", false, WIDTH(30)},
+    {"bow", NUMBER, "mm", false, WIDTH(2)},
+    {"saddle", NUMBER, "mm, high in some direction", false, WIDTH(2)},
+    {"glass", NUMBER, "part of the light that comes through", false, WIDTH(0.9)},
+    {"shape", WORD, "how they are spread", false, SHAPE},
     END};
 
 const wh_reader_field_t wh_layout_beam_width_fields[] = {
-    {"dx", NUMBER, "mm by which it stands farther in", false},
-    {"dy", NUMBER, "mm by which it stands to the left", false},
-    {"late", NUMBER, "s by which its latches are late", false},
-    {"shape", SHAPE, "how they are spread", false},
+    {"dx", NUMBER, "mm by which it stands farther in", false, WIDTH(5)},
+    {"dy", NUMBER, "mm by which it stands to the left", false, WIDTH(5)},
+    {"late", NUMBER, "s by which its latches are late", false, WIDTH(0.001)},
+    {"shape", WORD, "how they are spread", false, SHAPE},
     END};

@@ -149,8 +149,7 @@ wh_pose_t wh_layout_lying(const wh_layout_t *layout, int32_t station, int32_t sl
 }
 
 const char *wh_layout_face_name(wh_station_face_t face) {
-    static const char *const names[] = {"up or down", "up", "down"};
-    return names[face];
+    return face == WH_STATION_ANY_FACE ? "up or down" : wh_layout_face_words[face - WH_STATION_FACE_UP];
 }
 
 bool wh_layout_is_face_down(const wh_pose_t *base_from_wafer) {

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "words.h"
+
 /* -------------------------------------------------------------------------------------------------- names */
 
 /* The index of the item with that name; each of them begins with its name. WH_NONE if there is none. */
@@ -78,6 +80,10 @@ int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station) {
         }
     }
     return WH_NONE;
+}
+
+const char *wh_layout_station_kind(const wh_layout_station_t *station) {
+    return wh_layout_station_words[station->prealigner ? 1 : station->foup ? 2 : station->flipper ? 3 : 0];
 }
 
 int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot) {

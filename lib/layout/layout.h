@@ -37,6 +37,10 @@
 #define WH_LAYOUT_PARTS 100000
 #define WH_LAYOUT_OBSTACLES 1000
 
+/* The wafers that sensors and beams can see, mm. */
+#define WH_SENSED_LEAST 20
+#define WH_SENSED_MOST 600
+
 /* The most slices by which a valve acts late in a trial of a study. */
 #define WH_STUDY_LAG_SLICES 8000
 
@@ -300,6 +304,9 @@ bool wh_layout_has_loaded(const wh_layout_t *layout);
 bool wh_layout_is_pins(const wh_layout_t *layout, size_t gripper);
 bool wh_layout_is_flipper(const wh_layout_t *layout, size_t gripper);
 int32_t wh_layout_find_pins(const wh_layout_t *layout, int32_t station);
+
+/* A station's kind as a layout has it: see words.h. */
+const char *wh_layout_station_kind(const wh_layout_station_t *station);
 
 /* The door of a station for a robot, or WH_NONE. */
 int32_t wh_layout_door_of(const wh_layout_t *layout, size_t station, size_t robot);

@@ -5,30 +5,33 @@
 
 const wh_reader_field_t wh_layout_top_fields[] = {
     {"wafer", "waferhand.wafer_size", "the wafers' size", false},
-    {"tolerance", "\"paper\"|\"strict\"|waferhand.tolerance", "when a gripper may take a wafer", false},
+    {"tolerance", "\"paper\"|\"strict\"|waferhand.tolerance", "when a gripper may take a wafer", false,
+     .otherwise = "\"paper\""},
     {"near", "waferhand.near", "how near a miss must be to be reported", false},
     {"check", WORD, "if the check runs between slices, too", false,
-     AS_WORD(wh_layout_t, grasp.check, WH_CHECK_SAMPLED, wh_layout_check_words)},
-    {"slice", NUMBER, "s: the length of a slice, a whole number of microseconds", false},
+     AS_WORD(wh_layout_t, grasp.check, WH_CHECK_SAMPLED, wh_layout_check_words), .hashed = WH_HASHED_CHECKS},
+    {"slice", NUMBER, "s: the length of a slice, a whole number of microseconds", false,
+     APART(1e-6, 1, 0.001)},
     {"seat", SWITCH, "true: the pick draws the wafer onto the pads", false,
-     AS_SWITCH(wh_layout_t, grasp.seat, false)},
+     AS_SWITCH(wh_layout_t, grasp.seat, false), .hashed = WH_HASHED_CHECKS},
     {"settle", SWITCH, "true: a wafer let go above a slot comes to lie on it", false,
-     AS_SWITCH(wh_layout_t, cell.settle, false)},
+     AS_SWITCH(wh_layout_t, cell.settle, false), .hashed = WH_HASHED_PLACING},
     {"placing", "waferhand.placing", "the limits above which a wafer's place is reported", false},
-    {"collision", SWITCH, "true: look for collisions while stepping", false},
-    {"look_ahead", SWITCH, "true: a command that would collide is refused", false},
+    {"collision", SWITCH, "true: look for collisions while stepping", false, APART_SWITCH(false)},
+    {"look_ahead", SWITCH, "true: a command that would collide is refused", false, APART_SWITCH(false)},
     {"robot", "waferhand.robot", "the robot's axes", false},
     {"robots", "table<string, waferhand.robot>", "several robots by name, in place of robot", false},
     {"homed", SWITCH, "false: HOME comes first", false, AS_SWITCH(wh_layout_t, homed, true)},
     {"doors", "table<string, waferhand.door>", "walls that move, by name", false},
-    {"chuck", "waferhand.chuck", "the limits of the prealigners' chucks", false},
+    {"chuck", "waferhand.chuck", "the limits of the prealigners' chucks", false, .otherwise = "as yaw"},
     {"grippers", "waferhand.gripper[]", "blades on the robot, and one on each prealigner", true},
     {"stations", "table<string, waferhand.station>", "the stations by name", true},
     {"wafers", "waferhand.wafer[]", "where wafers lie when a run begins", false},
     {"shapes", "waferhand.shapes", "sizes of blade, ledges, arm, FOUPs and chucks", false},
     {"obstacles", "waferhand.obstacle[]", "walls, tables, tools on the robot", false},
     {"clearance", "waferhand.clearance", "gaps that must be kept", false},
-    {"vacuum", "\"ideal\"|\"delayed\"|waferhand.vacuum", "how the vacuum builds up and falls", false},
+    {"vacuum", "\"ideal\"|\"delayed\"|waferhand.vacuum", "how the vacuum builds up and falls", false,
+     .otherwise = "\"ideal\""},
     {"pads", "waferhand.pads", "what the pads hold: a wafer that would slip is named", false},
     {"faults", "waferhand.fault[]", "faults on purpose", false},
     {"study", "waferhand.study", "what the trials of a study draw", false},
@@ -38,7 +41,7 @@ const wh_reader_field_t wh_layout_top_fields[] = {
 
 const wh_reader_field_t wh_layout_wafer_size_fields[] = {
     {"diameter", NUMBER, "mm", false, AS_NUMBER(wh_layout_t, wafer_diameter, 25, 1000, 300)},
-    {"thickness", NUMBER, "mm", false},
+    {"thickness", NUMBER, "mm", false, APART(0.01, 100, FOLLOWS), .otherwise = "by diameter"},
     {"spread", NUMBER,
      "mm: standard deviation of true diameters, which "
      "centring allows for; 0: none",
@@ -47,28 +50,33 @@ const wh_reader_field_t wh_layout_wafer_size_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_notch_fields[] = {
-    {"at", NUMBER, "degrees about the wafer's axis, from its x", false}, {"depth", NUMBER, "mm", false}, END};
+    {"at", NUMBER, "degrees about the wafer's axis, from its x", false, APART(-360, 360, 0)},
+    {"depth", NUMBER, "mm", false, .otherwise = "1; of wafers below 200 mm no notch"},
+    END};
 
 const wh_reader_field_t wh_layout_tolerance_fields[] = {
     {"projz", NUMBER, "mm: the limit of |dr_proj_z|", false,
-     AS_NUMBER(wh_tolerance_t, projz, 1e-9, 1e6, KEPT)},
+     AS_NUMBER(wh_tolerance_t, projz, 1e-9, 1e6, KEPT), .hashed = WH_HASHED_CHECKS},
     {"projxy", NUMBER, "mm: the limit of |dr_proj_xy|", false,
-     AS_NUMBER(wh_tolerance_t, projxy, 1e-6, 1e6, KEPT)},
+     AS_NUMBER(wh_tolerance_t, projxy, 1e-6, 1e6, KEPT), .hashed = WH_HASHED_CHECKS},
     {"planar", NUMBER, "the limit of n1_proj_n2, a cosine", false,
-     AS_NUMBER(wh_tolerance_t, planar, 0, 0.999999999999, KEPT)},
+     AS_NUMBER(wh_tolerance_t, planar, 0, 0.999999999999, KEPT), .hashed = WH_HASHED_CHECKS},
     END};
 
 const wh_reader_field_t wh_layout_near_fields[] = {
-    {"projz", NUMBER, "mm", false, AS_NUMBER(wh_grasp_config_t, near_projz, 1e-9, 1e6, KEPT)},
-    {"projxy", NUMBER, "mm", false, AS_NUMBER(wh_grasp_config_t, near_projxy, 1e-9, 1e6, KEPT)},
+    {"projz", NUMBER, "mm", false, AS_NUMBER(wh_grasp_config_t, near_projz, 1e-9, 1e6, KEPT),
+     .hashed = WH_HASHED_CHECKS},
+    {"projxy", NUMBER, "mm", false, AS_NUMBER(wh_grasp_config_t, near_projxy, 1e-9, 1e6, KEPT),
+     .otherwise = "twice tolerance.projxy", .hashed = WH_HASHED_CHECKS},
     END};
 
 const wh_reader_field_t wh_layout_placing_fields[] = {
     {"off_centre", NUMBER, "mm beside the slot's centre; 0: never", false,
-     AS_NUMBER(wh_cell_t, off_centre, 0, 1000, 0)},
-    {"askew", NUMBER, "degrees of tilt; 0: never", false, AS_DEGREES(wh_cell_t, askew, 0, 90, 0)},
+     AS_NUMBER(wh_cell_t, off_centre, 0, 1000, 0), .hashed = WH_HASHED_PLACING},
+    {"askew", NUMBER, "degrees of tilt; 0: never", false, AS_DEGREES(wh_cell_t, askew, 0, 90, 0),
+     .hashed = WH_HASHED_PLACING},
     {"drop", NUMBER, "mm above the slot as it is let go, 0.5; 0: any height is good", false,
-     AS_NUMBER(wh_cell_t, drop, 0, 1000, WH_USUAL_DROP)},
+     AS_NUMBER(wh_cell_t, drop, 0, 1000, WH_USUAL_DROP), .hashed = WH_HASHED_DROP},
     END};
 
 const wh_reader_field_t wh_layout_corrections_fields[] = {
@@ -82,40 +90,47 @@ const wh_reader_field_t wh_layout_mapping_fields[] = {
     {"x", NUMBER, "0 to 0.8: the beams before the slot's middle, a share of the wafers' radius", false,
      AS_NUMBER(wh_mapping_t, x, 0, 0.8, 0.6)},
     {"y", NUMBER, "the beams to either side, likewise; both are within the rim", false,
-     AS_NUMBER(wh_mapping_t, y, 0.1, 0.98, FOLLOWS)},
+     AS_NUMBER(wh_mapping_t, y, 0.1, 0.98, FOLLOWS), .otherwise = "0.6, or as far as the rim allows"},
     {"crossed", NUMBER, "0.01 to 0.5: a wafer farther from its slot's plane is crossed, a share of the pitch",
      false, AS_NUMBER(wh_mapping_t, crossed, 0.01, 0.5, 0.5)},
     {"level", NUMBER, "mm: a wafer that the beams see so far apart in height is crossed; 0: half the pitch",
-     false, AS_NUMBER(wh_mapping_t, level, 0, 1000, FOLLOWS)},
+     false, AS_NUMBER(wh_mapping_t, level, 0, 1000, FOLLOWS), .otherwise = "0"},
     {"protruded", NUMBER, "mm: a wafer farther out towards the arm is protruded", false,
-     AS_NUMBER(wh_mapping_t, protruded, 0, 1000, FOLLOWS)},
+     AS_NUMBER(wh_mapping_t, protruded, 0, 1000, FOLLOWS), .otherwise = "a tenth of the diameter"},
     {"thinnest", NUMBER, "mm: a wafer below it is thin", false,
-     AS_NUMBER(wh_mapping_t, thinnest, 0, 100, FOLLOWS)},
+     AS_NUMBER(wh_mapping_t, thinnest, 0, 100, FOLLOWS), .otherwise = "half of the thickness"},
     {"thickest", NUMBER, "mm: a wafer above it is thick", false,
-     AS_NUMBER(wh_mapping_t, thickest, 0.01, 1000, FOLLOWS)},
+     AS_NUMBER(wh_mapping_t, thickest, 0.01, 1000, FOLLOWS), .otherwise = "1.5 of the thickness"},
     END};
 
 const wh_reader_field_t wh_layout_vacuum_fields[] = {
-    {"model", "\"ideal\"|\"delayed\"", "whose values the other fields have by default", false},
-    {"build", NUMBER, "s: time constant upwards", false, AS_NUMBER(wh_vacuum_config_t, build, 0, 3600, KEPT)},
-    {"vent", NUMBER, "s: time constant downwards", false, AS_NUMBER(wh_vacuum_config_t, vent, 0, 3600, KEPT)},
+    {"model", WORD, "whose values the other fields have by default", false,
+     APART_WORD(1, wh_layout_vacuum_words)},
+    {"build", NUMBER, "s: time constant upwards", false, AS_NUMBER(wh_vacuum_config_t, build, 0, 3600, KEPT),
+     .hashed = WH_HASHED_VACUUM},
+    {"vent", NUMBER, "s: time constant downwards", false, AS_NUMBER(wh_vacuum_config_t, vent, 0, 3600, KEPT),
+     .hashed = WH_HASHED_VACUUM},
     {"idle", NUMBER, "0 to 1: the level of an open valve without a wafer", false,
-     AS_NUMBER(wh_vacuum_config_t, idle, 0, 1, FOLLOWS)},
+     AS_NUMBER(wh_vacuum_config_t, idle, 0, 1, FOLLOWS), .hashed = WH_HASHED_VACUUM},
     {"sensor_on", NUMBER, "0 to 1: the level at which the sensor goes on", false,
-     AS_NUMBER(wh_vacuum_config_t, on, 0.01, 1, KEPT)},
+     AS_NUMBER(wh_vacuum_config_t, on, 0.01, 1, KEPT), .hashed = WH_HASHED_VACUUM},
     {"sensor_off", NUMBER, "0 to 1: the level below which the sensor goes off", false,
-     AS_NUMBER(wh_vacuum_config_t, off, 0.01, 1, FOLLOWS)},
+     AS_NUMBER(wh_vacuum_config_t, off, 0.01, 1, FOLLOWS), .hashed = WH_HASHED_VACUUM},
     {"release", NUMBER, "0 to 1: the level below which a closed valve lets go", false,
-     AS_NUMBER(wh_vacuum_config_t, release, 0.01, 1, KEPT)},
-    {"debounce", NUMBER, "ms for which the sensor's switch must stand until it is told", false},
+     AS_NUMBER(wh_vacuum_config_t, release, 0.01, 1, KEPT), .hashed = WH_HASHED_VACUUM},
+    {"debounce", NUMBER, "ms for which the sensor's switch must stand until it is told", false,
+     .otherwise = "0"},
     END};
 
 const wh_reader_field_t wh_layout_pads_fields[] = {
     {"friction", NUMBER, "the coefficient between pads and wafer", true,
-     AS_NUMBER(wh_pads_t, friction, 0, 100, KEPT)},
-    {"force", NUMBER, "N: the force of the full vacuum", true, AS_NUMBER(wh_pads_t, force, 0, 1e6, KEPT)},
-    {"mass", NUMBER, "kg: of a wafer", false, AS_NUMBER(wh_pads_t, mass, 1e-6, 1000, FOLLOWS)},
-    {"gravity", NUMBER, "m/s^2, along -z of base", false, AS_NUMBER(wh_pads_t, gravity, 0, 1000, 9.81)},
+     AS_NUMBER(wh_pads_t, friction, 0, 100, KEPT), .hashed = WH_HASHED_PADS},
+    {"force", NUMBER, "N: the force of the full vacuum", true, AS_NUMBER(wh_pads_t, force, 0, 1e6, KEPT),
+     .hashed = WH_HASHED_PADS},
+    {"mass", NUMBER, "kg: of a wafer", false, AS_NUMBER(wh_pads_t, mass, 1e-6, 1000, FOLLOWS),
+     .otherwise = "that of a silicon wafer", .hashed = WH_HASHED_PADS},
+    {"gravity", NUMBER, "m/s^2, along -z of base", false, AS_NUMBER(wh_pads_t, gravity, 0, 1000, 9.81),
+     .hashed = WH_HASHED_PADS},
     END};
 
 /* --------------------------------------------------------------------------------------------- the list */

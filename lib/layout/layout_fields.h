@@ -6,6 +6,16 @@
 #include "../script/field.h"
 #include "../sim/faults.h"
 
+/* The parts of a layout's hash that go by rows: wh_reader_field_t.hashed. */
+enum {
+    WH_HASHED_CHECKS = 1,
+    WH_HASHED_VACUUM,
+    WH_HASHED_PADS,
+    WH_HASHED_PLACING,
+    WH_HASHED_DROP,
+    WH_HASHED_ARM
+};
+
 /* The tables of one kind. Types of fields name them as waferhand.NAME. */
 typedef struct {
     const char *name; /* null ends the list */

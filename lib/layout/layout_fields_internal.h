@@ -10,7 +10,6 @@
 #define TRIPLE "number[]"
 #define SWITCH "boolean"
 #define WORD "" /* its type is its words: wh_field_type */
-#define SHAPE "\"normal\"|\"uniform\""
 #define END                                                                                                  \
     { NULL, NULL, NULL, false }
 
@@ -24,6 +23,12 @@
 #define AS_SEED(of, member) WH_SCALAR_SEED, AT(of, member, uint64_t), 0, INT32_MAX, 1
 #define AS_SWITCH(of, member, usual) WH_SCALAR_SWITCH, AT(of, member, bool), 0, 1, usual
 #define AS_WORD(of, member, usual, words) WH_SCALAR_WORD, AT(of, member, int32_t), 0, 0, usual, words
+#define APART(least, most, usual) WH_SCALAR_APART, 0, least, most, usual
+#define APART_SWITCH(usual) WH_SCALAR_APART, 0, 0, 1, usual
+#define APART_WORD(usual, words) WH_SCALAR_APART, 0, 0, 0, usual, words
+/* How errors are spread: as the study says, or the table for all. */
+#define SHAPE APART_WORD(FOLLOWS, wh_layout_shape_words), .otherwise = "that of the study"
+#define ASKED WH_FIELD_FOLLOWS /* there is no default */
 #define FOLLOWS WH_FIELD_FOLLOWS
 #define KEPT WH_FIELD_KEPT
 

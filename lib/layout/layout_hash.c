@@ -1,5 +1,6 @@
 #include "../math/hash.h"
 #include "grips.h"
+#include "layout_fields.h"
 #include "words.h"
 
 static uint64_t hash_reals(uint64_t hash, const wh_real_t reals[], size_t count) {
@@ -13,13 +14,27 @@ static uint64_t hash_limits(uint64_t hash, const wh_limits_t *limits) {
     return hash_reals(hash, (const wh_real_t[]){limits->speed, limits->acceleration, limits->jerk}, 3);
 }
 
+/* Hashes the members of a struct that are in this part of the hash, in the rows' order. */
+static uint64_t hash_rows(uint64_t hash, int part, const wh_reader_field_t *rows, const void *of) {
+    for (const wh_reader_field_t *row = rows; row->name; ++row) {
+        hash = row->hashed == part ? wh_field_hash(row, of, hash) : hash;
+    }
+    return hash;
+}
+
+/* True if one of them is above 0. */
+static bool is_any_set(int part, const wh_reader_field_t *rows, const void *of) {
+    bool is_any = false;
+    for (const wh_reader_field_t *row = rows; row->name; ++row) {
+        is_any = is_any || (row->hashed == part && wh_field_get(row, of) > 0);
+    }
+    return is_any;
+}
+
 static uint64_t hash_checks(uint64_t hash, const wh_layout_t *layout) {
-    const wh_grasp_config_t *grasp = &layout->grasp;
-    const wh_real_t reals[] = {grasp->tolerance.projz, grasp->tolerance.projxy, grasp->tolerance.planar,
-                               grasp->near_projz, grasp->near_projxy};
-    hash = hash_reals(hash, reals, sizeof reals / sizeof reals[0]);
-    hash = wh_hash_int(hash, (int32_t)grasp->check);
-    hash = wh_hash_int(hash, grasp->seat ? 1 : 0);
+    hash = hash_rows(hash, WH_HASHED_CHECKS, wh_layout_tolerance_fields, &layout->grasp.tolerance);
+    hash = hash_rows(hash, WH_HASHED_CHECKS, wh_layout_near_fields, &layout->grasp);
+    hash = hash_rows(hash, WH_HASHED_CHECKS, wh_layout_top_fields, layout);
     return wh_hash_word(hash, (uint64_t)layout->slice_us);
 }
 
@@ -34,38 +49,26 @@ static uint64_t hash_second(uint64_t hash, const wh_carrier_t *carrier) {
     return hash;
 }
 
-/* Hashes what a robot has beyond the four axes of the usual one. */
-static uint64_t hash_carrier(uint64_t hash, const wh_layout_t *layout) {
-    const wh_chain_t *chain = &layout->carrier.chain;
-    hash = wh_hash_int(wh_hash_text(hash, "carrier"), (int32_t)chain->kind);
+/* Hashes a robot, with its axes from the first one on that is hashed nowhere else. */
+static uint64_t hash_carrier(uint64_t hash, const wh_carrier_t *carrier, size_t first) {
+    const wh_chain_t *chain = &carrier->chain;
+    hash = wh_hash_int(hash, (int32_t)chain->kind);
     hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
     hash = hash_reals(hash, chain->links, 2);
-    for (size_t axis = WH_ROBOT_AXES; axis < layout->carrier.axis_count; ++axis) {
+    for (size_t axis = first; axis < carrier->axis_count; ++axis) {
         size_t of;
-        (void)wh_carrier_axis(&layout->carrier, axis, &of); /* which both arms have alike */
+        (void)wh_carrier_axis(carrier, axis, &of); /* which both arms have alike */
         const wh_real_t reals[] = {chain->travel[of].min, chain->travel[of].max, chain->home[of]};
         hash = hash_limits(hash_reals(wh_hash_word(hash, of), reals, 3), &chain->limits[of]);
     }
     hash = chain->has_flip ? wh_hash_real(hash, chain->flip_height) : hash;
-    return hash_second(hash, &layout->carrier);
+    return hash_second(hash, carrier);
 }
 
 /* Hashes the other robots, and the first one's name. */
 static uint64_t hash_robots(uint64_t hash, const wh_layout_t *layout) {
     for (size_t r = 0; layout->robot_count > 1 && r < layout->robot_count; ++r) {
-        const wh_carrier_t *carrier = &layout->robots[r].carrier;
-        const wh_chain_t *chain = &carrier->chain;
-        hash = wh_hash_int(wh_hash_text(hash, layout->robots[r].name), (int32_t)chain->kind);
-        hash = chain->is_placed ? wh_hash_pose(hash, &chain->base_from_robot) : hash;
-        hash = hash_reals(hash, chain->links, 2);
-        for (size_t axis = 0; axis < carrier->axis_count; ++axis) {
-            size_t of;
-            (void)wh_carrier_axis(carrier, axis, &of);
-            const wh_real_t reals[] = {chain->travel[of].min, chain->travel[of].max, chain->home[of]};
-            hash = hash_limits(hash_reals(wh_hash_word(hash, of), reals, 3), &chain->limits[of]);
-        }
-        hash = chain->has_flip ? wh_hash_real(hash, chain->flip_height) : hash;
-        hash = hash_second(hash, carrier);
+        hash = hash_carrier(wh_hash_text(hash, layout->robots[r].name), &layout->robots[r].carrier, 0);
     }
     for (size_t g = 0; layout->robot_count > 1 && g < layout->machine.gripper_count; ++g) {
         const wh_mount_t *mount = &layout->machine.mounts[g];
@@ -94,7 +97,7 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
     }
     hash = hash_limits(hash, &machine->chuck_limits);
     if (machine->carrier) {
-        hash = hash_carrier(hash, layout);
+        hash = hash_carrier(wh_hash_text(hash, "carrier"), &layout->carrier, WH_ROBOT_AXES);
     }
     for (size_t r = 0; r < layout->robot_count; ++r) {
         const wh_real_t transit = layout->robots[r].transit;
@@ -143,39 +146,37 @@ static uint64_t hash_stations(uint64_t hash, const wh_layout_t *layout) {
 }
 
 /* Hashes only fields that are set, so that layouts without them keep their hash. */
-static uint64_t hash_placing(uint64_t hash, const wh_cell_t *cell) {
-    if (cell->settle || cell->off_centre > 0 || cell->askew > 0) {
-        hash = wh_hash_int(hash, cell->settle ? 1 : 0);
-        hash = wh_hash_real(hash, cell->off_centre);
-        hash = wh_hash_real(hash, cell->askew);
+static uint64_t hash_placing(uint64_t hash, const wh_layout_t *layout) {
+    const wh_cell_t *cell = &layout->cell;
+    if (is_any_set(WH_HASHED_PLACING, wh_layout_top_fields, layout) ||
+        is_any_set(WH_HASHED_PLACING, wh_layout_placing_fields, cell)) {
+        hash = hash_rows(hash, WH_HASHED_PLACING, wh_layout_top_fields, layout);
+        hash = hash_rows(hash, WH_HASHED_PLACING, wh_layout_placing_fields, cell);
     }
     const bool is_usual = !(cell->drop < WH_USUAL_DROP) && !(cell->drop > WH_USUAL_DROP);
-    return is_usual ? hash : wh_hash_real(wh_hash_int(hash, 1), cell->drop);
+    return is_usual ? hash : hash_rows(wh_hash_int(hash, 1), WH_HASHED_DROP, wh_layout_placing_fields, cell);
 }
 
 /* Hashes only differences from the paper's gripper, so that a layout without these sections keeps its
  * hash. */
 static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
     const wh_vacuum_config_t ideal = wh_vacuum_ideal();
-    const wh_real_t values[] = {vacuum->build, vacuum->vent, vacuum->idle,
-                                vacuum->on,    vacuum->off,  vacuum->release};
-    const wh_real_t usual[] = {ideal.build, ideal.vent, ideal.idle, ideal.on, ideal.off, ideal.release};
-    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
-        if (values[i] != usual[i]) {
-            hash = wh_hash_real(wh_hash_text(hash, "vacuum"), values[i]);
-            hash = wh_hash_word(hash, i);
+    uint64_t place = 0;
+    for (const wh_reader_field_t *row = wh_layout_vacuum_fields; row->name; ++row) {
+        if (row->hashed == WH_HASHED_VACUUM) {
+            if (wh_field_get(row, vacuum) != wh_field_get(row, &ideal)) {
+                hash = wh_field_hash(row, vacuum, wh_hash_text(hash, "vacuum"));
+                hash = wh_hash_word(hash, place);
+            }
+            ++place;
         }
     }
     return vacuum->debounce > 0 ? wh_hash_int(wh_hash_text(hash, "debounce"), vacuum->debounce) : hash;
 }
 
 static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {
-    if (pads->mass > 0) {
-        hash = wh_hash_text(hash, "pads");
-        const wh_real_t reals[] = {pads->friction, pads->force, pads->mass, pads->gravity};
-        hash = hash_reals(hash, reals, 4);
-    }
-    return hash;
+    return pads->mass > 0 ? hash_rows(wh_hash_text(hash, "pads"), WH_HASHED_PADS, wh_layout_pads_fields, pads)
+                          : hash;
 }
 
 static uint64_t hash_fault(uint64_t hash, const wh_fault_t *fault) {
@@ -210,12 +211,9 @@ uint64_t wh_layout_world_hash(const wh_layout_t *layout) {
     for (size_t i = 0; i < world->part_count; ++i) {
         hash = hash_part(hash, &world->parts[i]);
     }
-    hash = hash_reals(hash, (const wh_real_t[]){layout->shapes.arm.reach, layout->shapes.arm.link}, 2);
-    hash = wh_hash_int(hash, layout->shapes.arm.right_handed ? 1 : 0);
+    hash = hash_rows(hash, WH_HASHED_ARM, wh_layout_arm_fields, &layout->shapes.arm);
     for (size_t robot = 1; robot < layout->robot_count; ++robot) {
-        const wh_arm_t *arm = &layout->robots[robot].arm;
-        hash = hash_reals(hash, (const wh_real_t[]){arm->reach, arm->link}, 2);
-        hash = wh_hash_int(hash, arm->right_handed ? 1 : 0);
+        hash = hash_rows(hash, WH_HASHED_ARM, wh_layout_arm_fields, &layout->robots[robot].arm);
     }
     return hash_reals(hash, world->limits, WH_CLEARANCES);
 }
@@ -238,10 +236,7 @@ static uint64_t hash_loaded(uint64_t hash, const wh_layout_t *layout) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         const wh_limits_t limits = wh_layout_loaded(layout, g);
         if (limits.speed > 0 || limits.acceleration > 0 || limits.jerk > 0) {
-            hash = wh_hash_int(wh_hash_word(hash, 'l'), (int32_t)g);
-            hash = wh_hash_real(hash, limits.speed);
-            hash = wh_hash_real(hash, limits.acceleration);
-            hash = wh_hash_real(hash, limits.jerk);
+            hash = hash_limits(wh_hash_int(wh_hash_word(hash, 'l'), (int32_t)g), &limits);
         }
     }
     return hash;
@@ -291,7 +286,7 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     for (size_t i = 0; i < layout->physics.fault_count; ++i) {
         hash = hash_fault(hash, &layout->physics.faults[i]);
     }
-    hash = hash_placing(hash, &layout->cell);
+    hash = hash_placing(hash, layout);
     if (layout->cell.thickness > 0) {
         hash = wh_hash_real(wh_hash_text(hash, "faces"), layout->cell.thickness);
     }

@@ -4,27 +4,22 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "layout_fields.h"
 
-/* The field of each draw. Never renumber fields: the same seeds would then give other trials. */
+/* The field of each draw, whose row has its name and its range. Never renumber fields: the same seeds would
+ * then give other trials. */
 static const struct {
-    const char *name, *unit;
-    double most;
+    const char *unit;
     uint32_t field;
     bool is_size;
-} draws[WH_RIM_DRAWS] = {[WH_RIM_DIAMETER] = {"diameter", "mm", 2, 0x110, false},
-                         [WH_RIM_NOTCH_DEPTH] = {"notch_depth", "mm", 1, 0x111, false},
-                         [WH_RIM_NOTCH_ANGLE] = {"notch_angle", "deg", 15, 0x112, false},
-                         [WH_RIM_NOTCH_BOTTOM] = {"notch_bottom", "mm", 1, 0x113, false},
-                         [WH_RIM_NOTCH_CORNER] = {"notch_corner", "mm", 1, 0x114, false},
-                         [WH_RIM_FLAT] = {"flat", "mm", 5, 0x115, false},
-                         [WH_RIM_SECOND_FLAT] = {"second_flat", "mm", 5, 0x116, false},
-                         [WH_RIM_CHIP_DEPTH] = {"chip_depth", "mm", 5, 0x117, true},
-                         [WH_RIM_CHIP_WIDTH] = {"chip_width", "mm", 30, 0x118, true},
-                         [WH_RIM_BOW] = {"bow", "mm", 2, 0x119, false},
-                         [WH_RIM_SADDLE] = {"saddle", "mm", 2, 0x11A, false},
-                         [WH_RIM_GLASS] = {"glass", "", 0.9, 0x11B, true},
-                         [WH_RIM_CHIP_AT] = {"chip_at", "deg", 360, 0x11C, false},
-                         [WH_RIM_SADDLE_AT] = {"saddle_at", "deg", 360, 0x11D, false}};
+} draws[WH_RIM_DRAWS] = {
+    [WH_RIM_DIAMETER] = {"mm", 0x110, false},     [WH_RIM_NOTCH_DEPTH] = {"mm", 0x111, false},
+    [WH_RIM_NOTCH_ANGLE] = {"deg", 0x112, false}, [WH_RIM_NOTCH_BOTTOM] = {"mm", 0x113, false},
+    [WH_RIM_NOTCH_CORNER] = {"mm", 0x114, false}, [WH_RIM_FLAT] = {"mm", 0x115, false},
+    [WH_RIM_SECOND_FLAT] = {"mm", 0x116, false},  [WH_RIM_CHIP_DEPTH] = {"mm", 0x117, true},
+    [WH_RIM_CHIP_WIDTH] = {"mm", 0x118, true},    [WH_RIM_BOW] = {"mm", 0x119, false},
+    [WH_RIM_SADDLE] = {"mm", 0x11A, false},       [WH_RIM_GLASS] = {"", 0x11B, true},
+    [WH_RIM_CHIP_AT] = {"deg", 0x11C, false},     [WH_RIM_SADDLE_AT] = {"deg", 0x11D, false}};
 
 /* A chip is never narrower, mm. */
 #define LEAST_CHIP_WIDTH 0.01
@@ -32,7 +27,8 @@ static const struct {
 #define CHIP_SLENDERNESS 4
 
 const char *wh_rim_draw_name(wh_rim_draw_t draw) {
-    return draws[draw].name;
+    static const char *const directions[] = {"chip_at", "saddle_at"};
+    return draw < WH_RIM_WIDTHS ? wh_layout_rim_width_fields[draw].name : directions[draw - WH_RIM_WIDTHS];
 }
 
 const char *wh_rim_draw_unit(wh_rim_draw_t draw) {
@@ -40,7 +36,7 @@ const char *wh_rim_draw_unit(wh_rim_draw_t draw) {
 }
 
 double wh_rim_draw_most(wh_rim_draw_t draw) {
-    return draws[draw].most;
+    return draw < WH_RIM_WIDTHS ? wh_layout_rim_width_fields[draw].most : 360;
 }
 
 bool wh_rim_draw_is_size(wh_rim_draw_t draw) {
@@ -141,7 +137,7 @@ static wh_rim_draw_t find_alone(const wh_rim_spreads_t *spreads, const wh_rim_t 
         }
         /* Nothing is drawn for a chip without a depth, so its width is checked here. */
         const double chip = i == (int)WH_RIM_CHIP_WIDTH ? fabs(drawn[i]) : 0;
-        if (!good || chip > draws[WH_RIM_CHIP_WIDTH].most) {
+        if (!good || chip > wh_rim_draw_most(WH_RIM_CHIP_WIDTH)) {
             return (wh_rim_draw_t)i;
         }
     }

@@ -9,5 +9,13 @@ extern const char *const wh_layout_beam_stuck_words[];   /* wh_beam_stuck_t of a
 extern const char *const wh_layout_touch_stuck_words[];  /* wh_beam_stuck_t of a probe */
 extern const char *const wh_layout_grip_words[];         /* wh_grip_kind_t */
 extern const char *const wh_layout_mount_words[];        /* wh_mount_kind_t */
+extern const char *const wh_layout_robot_words[];        /* wh_chain_kind_t */
+extern const char *const wh_layout_side_words[];         /* of an elbow: left, right */
+extern const char *const wh_layout_door_words[];         /* shut, open */
+extern const char *const wh_layout_shape_words[];        /* wh_shape_t */
+extern const char *const wh_layout_station_words[];      /* kinds of stations: see wh_layout_station_kind */
+extern const char *const wh_layout_face_words[];         /* wh_station_face_t from WH_STATION_FACE_UP on */
+extern const char *const wh_layout_vacuum_words[];       /* models: ideal, delayed */
+extern const char *const wh_layout_unit_words[];         /* of a mesh: mm, cm, m, inch */
 
 #endif

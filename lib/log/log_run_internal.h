@@ -1,10 +1,15 @@
-/* Shared by log_run.c, which reads a run slice by slice, log_run_told.c, which takes the messages of motion
- * control, log_run_lanes.c, which separates parallel commands, and log_run_passes.c, which collects the
- * passes through beams. */
+/* Shared by log_run.c, which reads a run, log_run_states.c, which takes its slices, log_run_told.c, which
+ * takes the messages of motion control, log_run_lanes.c, which separates parallel commands, and
+ * log_run_passes.c, which collects the passes through beams. */
 #ifndef WH_LOG_LOG_RUN_INTERNAL_H
 #define WH_LOG_LOG_RUN_INTERNAL_H
 
 #include "log_run.h"
+
+/* The replay's listeners, with the run as their user: one hears recorded states, the other a simulator's
+ * own. */
+void wh_log_run_on_state(void *user, const waferhand_command *command, const waferhand_state *message);
+void wh_log_run_on_stepped(void *user, const waferhand_command *command, const wh_protocol_server_t *server);
 
 /* Takes a message over, if it belongs to a run. */
 void wh_log_run_add_told(wh_log_run_t *run, waferhand_mcs *message);

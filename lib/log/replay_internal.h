@@ -66,4 +66,13 @@ const wh_replay_return_t *wh_replay_find_return(wh_replay_t *replay, int64_t run
 /* Counts a command that the simulator accepted and the replay refuses, or the reverse. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed);
 
+/* True for an event of the collision check, which a replay does not have. */
+bool wh_replay_is_collision(int32_t kind);
+
+/* True if the states differ in any bit, except in their checks and events of the collision check.
+ * `difference` then tells where; else it is unchanged. Whole messages are compared, so that no field can be
+ * forgotten; the tables name it. */
+bool wh_replay_states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
+                             const waferhand_state *replayed, wh_replay_difference_t *difference);
+
 #endif

@@ -23,8 +23,7 @@ static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
     }
 }
 
-/* Cells of times alone, and what a script says of a flow. */
-static const wh_layout_class_t of_flows[] = {
+const wh_layout_class_t wh_flow_classes[] = {
     {"timed_layout", "A cell whose robots are times alone.", wh_layout_timed_fields},
     {"timed_robot", "A robot that is times alone.", wh_layout_timed_robot_fields},
     {"timed_station", "A station of such a cell.", wh_layout_timed_station_fields},
@@ -60,7 +59,7 @@ static int list_classes(lua_State *L) {
     }
     lua_newtable(L);
     push_classes(L, wh_layout_classes, 1);
-    push_classes(L, of_flows, count + 1);
+    push_classes(L, wh_flow_classes, count + 1);
     return 1;
 }
 

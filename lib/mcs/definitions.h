@@ -7,7 +7,11 @@
 #ifndef WH_MCS_DEFINITIONS_H
 #define WH_MCS_DEFINITIONS_H
 
+#include "../layout/layout_fields.h"
 #include "../script/sandbox.h"
+
+/* The tables of cells of times alone, and of what a script says of a flow: up to a null. */
+extern const wh_layout_class_t wh_flow_classes[];
 
 /* Makes the text; the caller frees it. Null, and the reason in `result`, if a sandbox has no room
  * for it. */

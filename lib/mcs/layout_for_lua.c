@@ -99,7 +99,7 @@ static void push_scalars(lua_State *L, const wh_reader_field_t *rows, const void
             wh_lua_set_boolean(L, row->name, value > 0);
         } else if (row->kind == WH_SCALAR_WORD) {
             wh_lua_set_text(L, row->name, row->words[(size_t)value]);
-        } else if (row->kind != WH_SCALAR_BY_HAND) {
+        } else if (wh_field_is_member(row)) {
             wh_lua_set_number(L, row->name, value);
         }
     }

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "../layout/axes.h"
 #include "../layout/grips.h"
@@ -12,6 +13,39 @@
 
 static void put_pose(json_t *object, const wh_pose_t *pose) {
     (void)wh_json_add(object, "at rotation", wh_json_vector(pose->r), wh_json_matrix(&pose->R), NULL);
+}
+
+static json_t *scalar(const wh_reader_field_t *row, const void *of) {
+    const double value = wh_field_get(row, of);
+    return row->kind == WH_SCALAR_SWITCH  ? json_boolean(value > 0)
+           : row->kind == WH_SCALAR_WORD  ? wh_json_text(row->words[(size_t)value])
+           : row->kind == WH_SCALAR_WHOLE ? json_integer((json_int_t)value)
+                                          : wh_json_real(value);
+}
+
+/* Puts the members of a struct that have these names, which blanks separate. */
+static json_t *put_scalars(json_t *object, const wh_reader_field_t *rows, const void *of, const char *names) {
+    while (*names) {
+        const wh_reader_field_t *row = rows;
+        const size_t length = strcspn(names, " ");
+        while (strlen(row->name) != length || strncmp(row->name, names, length) != 0) {
+            ++row;
+        }
+        wh_json_put(object, row->name, scalar(row, of));
+        names += length + strspn(names + length, " ");
+    }
+    return object;
+}
+
+/* Each member of a struct by its field's name, in the order of the rows. */
+static json_t *scalars(const wh_reader_field_t *rows, const void *of) {
+    json_t *object = json_object();
+    for (const wh_reader_field_t *row = rows; row->name; ++row) {
+        if (wh_field_is_member(row)) {
+            wh_json_put(object, row->name, scalar(row, of));
+        }
+    }
+    return object;
 }
 
 /* -------------------------------------------------------------------------------------------- the machine */
@@ -56,14 +90,11 @@ static void put_grip(json_t *object, const wh_grip_t *grip) {
     }
     (void)wh_json_set(object, "grip %s", wh_layout_grip_name(grip->kind));
     if (grip->kind == WH_GRIP_EDGE) {
-        wh_json_put(
-            object, "edge",
-            wh_json_set(json_object(),
-                        "rest %g plunger %g alpha %g clearance %g retracted %g gripped_from %g gripped_to %g "
-                        "stroke %g speed %g",
-                        edge->rest, edge->plunger, (double)wh_deg_from_rad((wh_real_t)edge->alpha),
-                        edge->clearance, edge->retracted, edge->gripped_from, edge->gripped_to,
-                        edge->end - edge->retracted, edge->speed));
+        const wh_reader_field_t *rows = wh_layout_edge_grip_fields;
+        json_t *values = put_scalars(json_object(), rows, edge,
+                                     "rest plunger alpha clearance retracted gripped_from gripped_to");
+        (void)wh_json_set(values, "stroke %g", edge->end - edge->retracted);
+        wh_json_put(object, "edge", put_scalars(values, rows, edge, "speed"));
     }
 }
 
@@ -73,7 +104,7 @@ static json_t *door(const void *subject, size_t i) {
     const wh_vec3_t open = wh_vec3_scale(from->travel, &from->way);
     json_t *object =
         wh_json_set(json_object(), "name %s home %s speed %g acceleration %g jerk %g timeout %g",
-                    layout->door_list[i].name, from->is_open ? "open" : "shut", from->limits.speed,
+                    layout->door_list[i].name, wh_layout_door_words[from->is_open], from->limits.speed,
                     from->limits.acceleration, from->limits.jerk, layout->door_list[i].timeout);
     wh_json_put(object, "open", json_pack("[f, f, f]", open.x, open.y, open.z));
     return object;
@@ -103,21 +134,17 @@ static json_t *gripper(const void *subject, size_t i) {
 /* ----------------------------------------------------------------------------------------------- stations */
 
 static json_t *sensor(const wh_sensor_t *from) {
-    return wh_json_set(json_object(),
-                       "samples %d pixel %g length %g at %g encoder %d noise %g tilt %g offset %g zero %g "
-                       "gain %g latency %g hidden %d",
-                       from->samples, from->pixel, from->length, wh_deg_from_rad(from->direction),
-                       from->encoder, from->noise, wh_deg_from_rad(from->tilt), from->error.offset,
-                       from->error.zero, from->error.gain, from->error.latency, from->hidden_count);
+    json_t *object = put_scalars(json_object(), wh_layout_sensor_fields, from,
+                                 "samples pixel length at encoder noise tilt offset zero gain latency");
+    return wh_json_set(object, "hidden %d", from->hidden_count);
 }
 
 static json_t *beam(const wh_layout_t *layout, size_t b) {
+    const wh_reader_field_t *rows = wh_layout_beam_fields;
     const wh_layout_beam_t *from = &layout->beams[b];
-    return wh_json_set(json_object(),
-                       "x %g y %g low %g high %g delay_on %g delay_off %g jitter %g dx %g dy %g late %g "
-                       "stuck %s",
-                       from->x, from->y, from->low, from->high, from->delay_on, from->delay_off,
-                       layout->doors[b].jitter, from->dx, from->dy, from->late,
+    json_t *object = put_scalars(json_object(), rows, from, "x y low high delay_on delay_off");
+    (void)wh_json_set(object, "jitter %g", layout->doors[b].jitter);
+    return wh_json_set(put_scalars(object, rows, from, "dx dy late"), "stuck %s",
                        wh_layout_beam_stuck_words[layout->doors[b].stuck]);
 }
 
@@ -143,27 +170,18 @@ static json_t *servers(const wh_layout_t *layout, const wh_layout_station_t *sta
     return list;
 }
 
-static const char *kind_of(const wh_layout_station_t *station) {
-    return station->prealigner ? "prealigner"
-           : station->foup     ? "foup"
-           : station->flipper  ? "flipper"
-                               : "slots";
-}
-
 static json_t *station(const void *subject, size_t i) {
     const wh_feasibility_t *check = subject;
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *from = &layout->stations[i];
     const wh_entry_t *entry = &check->entries[i];
     const wh_station_t *place = &layout->places[i];
-    json_t *object = wh_json_set(json_object(), "name %s kind %s", from->name, kind_of(from));
+    json_t *object = wh_json_set(json_object(), "name %s kind %s", from->name, wh_layout_station_kind(from));
     put_pose(object, &place->base_from_station);
-    (void)wh_json_set(object,
-                      "slots %d pitch %g stroke %g offset %g retract %g pickup_speed %g taught %i "
-                      "by_axes %i effector %s counts %i wafers %lld",
-                      place->slots, place->pitch, from->stroke, from->offset, from->retract,
-                      from->pickup_speed, from->taught, from->by_axes, layout->grippers[from->effector].name,
-                      from->counts, (json_int_t)entry->wafers);
+    (void)wh_json_set(object, "slots %d pitch %g", place->slots, place->pitch);
+    (void)put_scalars(object, wh_layout_station_fields, from, "stroke offset retract pickup_speed taught");
+    (void)wh_json_set(object, "by_axes %i effector %s counts %i wafers %lld", from->by_axes,
+                      layout->grippers[from->effector].name, from->counts, (json_int_t)entry->wafers);
     json_t *room = wh_json_set(
         json_object(), "above %g below %g beside %g before %g lifted %g",
         entry->has_above ? entry->above : HUGE_VAL, entry->has_below ? entry->below : HUGE_VAL,
@@ -181,22 +199,6 @@ static json_t *station(const void *subject, size_t i) {
 }
 
 /* ------------------------------------------------------------------------------------------------- shapes */
-
-/* Each scalar of a struct by its field's name, in the order of the rows. */
-static json_t *scalars(const wh_reader_field_t *rows, const void *of) {
-    json_t *object = json_object();
-    for (const wh_reader_field_t *row = rows; row->name; ++row) {
-        const double value = wh_field_get(row, of);
-        if (row->kind == WH_SCALAR_SWITCH) {
-            wh_json_put(object, row->name, json_boolean(value > 0));
-        } else if (row->kind == WH_SCALAR_WORD) {
-            wh_json_put(object, row->name, wh_json_text(row->words[(size_t)value]));
-        } else if (row->kind != WH_SCALAR_BY_HAND) {
-            wh_json_put(object, row->name, wh_json_real(value));
-        }
-    }
-    return object;
-}
 
 static json_t *shapes(const wh_shapes_t *from) {
     return wh_json_add(
@@ -244,16 +246,12 @@ static json_t *wafer(const void *subject, size_t i) {
 /* The debounce, in ms, stands in it only if there is one. */
 static json_t *vacuum(const wh_layout_t *layout) {
     const wh_vacuum_config_t *from = &layout->physics.vacuum;
-    json_t *object =
-        wh_json_set(json_object(), "build %g vent %g idle %g sensor_on %g sensor_off %g release %g",
-                    from->build, from->vent, from->idle, from->on, from->off, from->release);
+    json_t *object = scalars(wh_layout_vacuum_fields, from);
     return from->debounce > 0 ? wh_json_set(object, "debounce %g", wh_layout_debounce_ms(layout)) : object;
 }
 
 static json_t *pads(const wh_pads_t *from) {
-    return from->mass > 0 ? wh_json_set(json_object(), "friction %g force %g mass %g gravity %g",
-                                        from->friction, from->force, from->mass, from->gravity)
-                          : json_null();
+    return from->mass > 0 ? scalars(wh_layout_pads_fields, from) : json_null();
 }
 
 /* Null for a thing that the fault does not concern. */
@@ -319,13 +317,12 @@ static json_t *corrections(const wh_corrections_t *from) {
 
 static void put_checks(const wh_layout_t *layout, json_t *root) {
     const wh_tolerance_t *from = &layout->grasp.tolerance;
-    json_t *tolerance = wh_json_set(json_object(), "name %s projz %g projxy %g planar %g",
-                                    layout->tolerance_name, from->projz, from->projxy, from->planar);
-    static const char *const names[WH_TOLERANCE_LIMITS] = {"projz", "projxy", "planar"};
+    json_t *tolerance = wh_json_set(json_object(), "name %s", layout->tolerance_name);
+    (void)put_scalars(tolerance, wh_layout_tolerance_fields, from, "projz projxy planar");
     json_t *defaults = json_array();
     for (size_t i = 0; i < WH_TOLERANCE_LIMITS; ++i) {
         if (layout->tolerance_default[i]) {
-            json_array_append_new(defaults, json_string(names[i]));
+            json_array_append_new(defaults, json_string(wh_layout_tolerance_fields[i].name));
         }
     }
     wh_json_put(tolerance, "defaults", defaults);

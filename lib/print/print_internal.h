@@ -66,6 +66,9 @@ void wh_print_measured(const wh_printer_t *printer, wh_grid_t *grid, size_t firs
 /* Behind a limit of the tolerance: " (default)", if the layout gives others and not this one; else "". */
 const char *wh_print_default(const wh_layout_t *layout, size_t limit);
 
+/* The part of a layout's listing about shapes, links, obstacles and clearances. */
+void wh_layout_print_bodies(const wh_printer_t *frame, const wh_layout_t *layout);
+
 /* When picks are checked: before a slice's length. */
 const char *wh_print_check(const wh_layout_t *layout);
 

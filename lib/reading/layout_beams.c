@@ -56,9 +56,9 @@ static void read_beam(wh_reader_t *reader, wh_layout_t *layout, size_t s, size_t
     wh_reader_scalar_within(reader, "high", beam, high, beam->low + 1, 1e4);
     door->delay_on = beam->delay_on + beam->late;
     door->delay_off = beam->delay_off + beam->late;
-    door->jitter = wh_reader_number(reader, "jitter", 0, 0, 0.001);
-    door->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
-    door->stuck = (wh_beam_stuck_t)wh_reader_choice(reader, "stuck", 0, wh_layout_beam_stuck_words);
+    door->jitter = wh_reader_apart(reader, "jitter");
+    door->seed = (uint64_t)wh_reader_apart(reader, "seed");
+    door->stuck = (wh_beam_stuck_t)wh_reader_apart(reader, "stuck");
     wh_layout_place_beam(layout, layout->beam_count);
 }
 
@@ -253,7 +253,7 @@ void wh_layout_read_beams(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
         }
         wh_reader_leave(reader);
     }
-    layout->stations[s].centre = wh_reader_boolean(reader, "centre", false);
+    layout->stations[s].centre = wh_reader_apart(reader, "centre") > 0;
     if (layout->stations[s].by) {
         find_ways(reader, layout, s);
     } else if (layout->stations[s].centre) {

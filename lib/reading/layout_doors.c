@@ -21,15 +21,12 @@ static void check_name(wh_reader_t *reader, const wh_layout_t *layout, const cha
 }
 
 static void read_limits(wh_reader_t *reader, wh_door_t *door) {
-    door->limits = (wh_limits_t){200, 800, 8000};
     if (wh_reader_has(reader, "seconds")) {
+        door->limits = wh_layout_usual_limits(wh_layout_door_fields, false);
         wh_layout_read_seconds(reader, door->travel, &door->limits);
-        return;
+    } else {
+        wh_layout_read_limits(reader, &door->limits);
     }
-    door->limits.speed = wh_reader_number(reader, "speed", door->limits.speed, 1e-6, 1e4);
-    door->limits.acceleration =
-        wh_reader_number(reader, "acceleration", door->limits.acceleration, 1e-6, 1e8);
-    door->limits.jerk = wh_reader_number(reader, "jerk", door->limits.jerk, 1e-6, 1e10);
 }
 
 static void read_way(wh_reader_t *reader, wh_door_t *door) {
@@ -44,7 +41,6 @@ static void read_way(wh_reader_t *reader, wh_door_t *door) {
 
 static void read_door(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_door_t *entry,
                       wh_door_t *door) {
-    static const char *const homes[] = {"shut", "open", NULL};
     wh_convex_t wall;
     memset(&wall, 0, sizeof wall);
     wh_reader_enter(reader, entry->name);
@@ -53,8 +49,8 @@ static void read_door(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_
     wh_layout_read_shape(reader, layout, entry->name, &wall);
     read_way(reader, door);
     read_limits(reader, door);
-    door->is_open = wh_reader_choice(reader, "home", 0, homes) == 1;
-    entry->timeout = wh_reader_number(reader, "timeout", 1, 0, 3600);
+    door->is_open = wh_reader_apart(reader, "home") > 0;
+    entry->timeout = wh_reader_apart(reader, "timeout");
     wh_reader_leave(reader);
 }
 

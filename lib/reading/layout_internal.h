@@ -25,10 +25,14 @@ int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layo
 /* The pitch of the wafers' size, mm; 0: there is none for such wafers. */
 double wh_layout_default_pitch(const wh_layout_t *layout);
 
-/* wh_reader_number of a field whose default follows from the wafers' size. If there is none (0), the field is
+/* speed, acceleration and jerk by default, as the rows have them: in rad if they turn; and those of the table
+ * being read. */
+wh_limits_t wh_layout_usual_limits(const wh_reader_field_t *rows, bool turns);
+void wh_layout_read_limits(wh_reader_t *reader, wh_limits_t *limits);
+
+/* wh_reader_apart of a field whose default follows from the wafers' size. If there is none (0), the field is
  * required, and the error says so. */
-double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback,
-                       double min, double max);
+double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback);
 
 /* Each reads its fields from the layout's top table, at which the reader is. */
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
@@ -97,10 +101,6 @@ void wh_layout_read_server(wh_reader_t *reader, wh_layout_t *layout, size_t s);
 /* The names of the table at which the reader is, sorted, for Lua's own order differs from run to run: `count`
  * items of `size` bytes that begin with their name. More than `most` are refused. */
 void *wh_layout_read_keys(wh_reader_t *reader, size_t most, size_t size, const char *what, size_t *count);
-
-/* The wafers that sensors and beams can see, mm. */
-#define WH_SENSED_LEAST 20
-#define WH_SENSED_MOST 600
 
 /* `shape` of errors that are spread. */
 wh_shape_t wh_layout_read_spread_shape(wh_reader_t *reader, wh_shape_t fallback);

@@ -8,24 +8,17 @@
 
 void wh_layout_read_loaded(wh_reader_t *reader, wh_limits_t *loaded) {
     if (wh_reader_open(reader, "loaded", wh_layout_loaded_fields)) {
-        static const struct {
-            const char *name;
-            wh_real_t most;
-        } fields[] = {{"speed", 1e6}, {"acceleration", 1e8}, {"jerk", 1e10}};
-        wh_real_t *const values[] = {&loaded->speed, &loaded->acceleration, &loaded->jerk};
-        for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
-            const bool is_given = wh_reader_has(reader, fields[i].name);
-            *values[i] = is_given ? wh_reader_number(reader, fields[i].name, 0, 1, fields[i].most) : 0;
-        }
+        loaded->speed = wh_reader_apart_from(reader, "speed", 0);
+        loaded->acceleration = wh_reader_apart_from(reader, "acceleration", 0);
+        loaded->jerk = wh_reader_apart_from(reader, "jerk", 0);
         wh_reader_leave(reader);
     }
 }
 
-static void read_slides(wh_reader_t *reader, wh_mount_t *mount) {
-    mount->limits.speed = wh_reader_number(reader, "speed", 50, 1e-6, 1e6);
-    mount->limits.acceleration = wh_reader_number(reader, "acceleration", 500, 1e-6, 1e8);
-    mount->limits.jerk = wh_reader_number(reader, "jerk", 5000, 1e-6, 1e10);
-    wh_reader_leave(reader);
+void wh_layout_read_limits(wh_reader_t *reader, wh_limits_t *limits) {
+    limits->speed = wh_reader_apart(reader, "speed");
+    limits->acceleration = wh_reader_apart(reader, "acceleration");
+    limits->jerk = wh_reader_apart(reader, "jerk");
 }
 
 /* Reads what the axes of a gripper on a prealigner do; by default it is a chuck that turns. */
@@ -33,9 +26,10 @@ static void read_kind(wh_reader_t *reader, wh_mount_t *mount) {
     mount->kind = WH_MOUNT_CHUCK;
     if (wh_reader_open(reader, "stage", wh_layout_stage_fields)) {
         mount->kind = WH_MOUNT_STAGE;
-        mount->travel.max = wh_reader_number(reader, "travel", 10, 0.1, 1000);
+        mount->travel.max = wh_reader_apart(reader, "travel");
         mount->travel.min = -mount->travel.max;
-        read_slides(reader, mount);
+        wh_layout_read_limits(reader, &mount->limits);
+        wh_reader_leave(reader);
     }
     if (wh_reader_open(reader, "pins", wh_layout_pins_fields)) {
         if (mount->kind == WH_MOUNT_STAGE) {
@@ -43,9 +37,10 @@ static void read_kind(wh_reader_t *reader, wh_mount_t *mount) {
                            "nothing: this gripper is a chuck on a stage, and pins are one of their own");
         }
         mount->kind = WH_MOUNT_PINS;
-        mount->travel.min = -wh_reader_number(reader, "down", 3, 0.6, 1000);
-        mount->travel.max = wh_reader_number(reader, "up", 5, 0.6, 1000);
-        read_slides(reader, mount);
+        mount->travel.min = -wh_reader_apart(reader, "down");
+        mount->travel.max = wh_reader_apart(reader, "up");
+        wh_layout_read_limits(reader, &mount->limits);
+        wh_reader_leave(reader);
     }
 }
 
@@ -56,7 +51,7 @@ static void read_flipper(wh_reader_t *reader, const wh_layout_t *layout, wh_moun
     mount->kind = WH_MOUNT_FLIPPER;
     mount->height = layout->wafer_thickness / 2;
     mount->travel.max = WH_PI;
-    mount->limits = (wh_limits_t){wh_rad_from_deg(180), wh_rad_from_deg(720), wh_rad_from_deg(7200)};
+    mount->limits = wh_layout_usual_limits(wh_layout_flipper_fields, true);
     wh_reader_open_section(reader, "flipper", wh_layout_flipper_fields);
     if (wh_reader_has(reader, "seconds")) {
         wh_layout_read_seconds(reader, WH_PI, &mount->limits);
@@ -142,7 +137,7 @@ static void read_arm(wh_reader_t *reader, const wh_machine_t *machine, wh_mount_
     const wh_carrier_t *second = carrier ? carrier->second : NULL;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
         if (second && (second->chain.kind == WH_CHAIN_SCARA) == (i == 1)) {
-            mount->arm = (uint8_t)(wh_reader_whole(reader, fields[i], 1, 1, 2) - 1);
+            mount->arm = (uint8_t)(wh_reader_apart(reader, fields[i]) - 1);
         } else if (wh_reader_has(reader, fields[i])) {
             (void)wh_reader_push(reader, fields[i]);
             wh_reader_fail(reader, fields[i], "nothing: the robot does not have two %ss", fields[i]);

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "../layout/grips.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -9,8 +10,6 @@
 
 /* The longest debounce, ms. */
 #define MOST_DEBOUNCE_MS 60000.0
-
-static const char *const models[] = {"ideal", "delayed", NULL};
 
 static wh_vacuum_config_t model_of(int choice) {
     return choice == 0 ? wh_vacuum_ideal() : wh_vacuum_delayed();
@@ -34,7 +33,7 @@ static int32_t read_debounce(wh_reader_t *reader, int64_t slice_us) {
 
 static void read_vacuum_table(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_t *vacuum) {
     (void)wh_reader_open(reader, "vacuum", wh_layout_vacuum_fields);
-    *vacuum = model_of(wh_reader_choice(reader, "model", 1, models));
+    *vacuum = model_of((int)wh_reader_apart(reader, "model"));
     wh_reader_scalars(reader, vacuum);
     read_levels(reader, vacuum);
     vacuum->debounce = read_debounce(reader, slice_us);
@@ -50,7 +49,7 @@ static void read_vacuum(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_
     if (type == LUA_TTABLE) {
         read_vacuum_table(reader, slice_us, vacuum);
     } else {
-        *vacuum = model_of(wh_reader_choice(reader, "vacuum", 0, models));
+        *vacuum = model_of(wh_reader_choice(reader, "vacuum", 0, wh_layout_vacuum_words));
     }
 }
 
@@ -72,9 +71,6 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 /* ------------------------------------------------------------------------------------------------- faults */
-
-/* The longest time of a fault, s. */
-#define LONGEST 1e6
 
 static wh_fault_kind_t read_kind(wh_reader_t *reader) {
     const char *names[WH_FAULT_KINDS + 1] = {NULL};
@@ -146,9 +142,9 @@ static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, con
     } else if (fault->kind == WH_FAULT_WAFER_CROSSED) {
         pose = crossed(reader, layout, fault->target, &wafers[fault->target].base_from_wafer);
     } else if (fault->kind == WH_FAULT_WAFER_SHIFTED) {
-        pose.r.x = wh_reader_number(reader, "dx", 0, -1000, 1000);
-        pose.r.y = wh_reader_number(reader, "dy", 0, -1000, 1000);
-        pose.r.z = wh_reader_number(reader, "dz", 0, -1000, 1000);
+        pose.r.x = wh_reader_apart(reader, "dx");
+        pose.r.y = wh_reader_apart(reader, "dy");
+        pose.r.z = wh_reader_apart(reader, "dz");
     } else if (fault->kind == WH_FAULT_WAFER_TILTED) {
         const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", NULL);
         pose.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
@@ -249,9 +245,9 @@ static int64_t slices_of(const wh_layout_t *layout, wh_real_t seconds) {
 
 /* Without `lasting` the fault stays until it is cleared; with it, for one slice at least. */
 static void read_times(wh_reader_t *reader, const wh_layout_t *layout, int64_t first, wh_fault_t *fault) {
-    const wh_real_t lasting = wh_reader_number(reader, "lasting", -1, 0, LONGEST);
+    const wh_real_t lasting = wh_reader_apart_from(reader, "lasting", -1);
     const int64_t slices = slices_of(layout, lasting);
-    fault->from = first + slices_of(layout, wh_reader_number(reader, "after", 0, 0, LONGEST));
+    fault->from = first + slices_of(layout, wh_reader_apart(reader, "after"));
     fault->until = lasting < 0 ? WH_FAULT_FOREVER : fault->from + (slices > 1 ? slices : 1);
 }
 

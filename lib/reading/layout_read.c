@@ -56,16 +56,16 @@ static const struct wafer_size *size_of(const wh_layout_t *layout) {
     return size;
 }
 
-double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback,
-                       double min, double max) {
+double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback) {
+    const wh_reader_field_t *row = wh_reader_row(reader, field);
     if (!(fallback > 0) && !wh_reader_has(reader, field)) {
         wh_reader_refuse(
             reader, field, NULL,
             "a number from %.12g to %.12g: wafers of %.12g mm have no default, those of 100, 125, "
             "150, 200 and 300 mm have",
-            min, max, layout->wafer_diameter);
+            row->least, row->most, layout->wafer_diameter);
     }
-    return wh_reader_number(reader, field, fallback > 0 ? fallback : min, min, max);
+    return wh_reader_apart_from(reader, field, fallback > 0 ? fallback : row->least);
 }
 
 double wh_layout_default_pitch(const wh_layout_t *layout) {
@@ -90,7 +90,7 @@ static void refuse_inches(wh_reader_t *reader) {
 static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
     layout->notch_depth = layout->wafer_diameter < LEAST_NOTCHED ? 0 : 1;
     if (wh_reader_open(reader, "notch", wh_layout_notch_fields)) {
-        layout->notch = wh_rad_from_deg(wh_reader_number(reader, "at", 0, -360, 360));
+        layout->notch = wh_rad_from_deg(wh_reader_apart(reader, "at"));
         layout->notch_depth = wh_reader_number(reader, "depth", 1, 0, layout->wafer_diameter / 4);
         wh_reader_leave(reader);
     }
@@ -100,8 +100,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_open_section(reader, "wafer", wh_layout_wafer_size_fields);
     refuse_inches(reader);
     wh_reader_scalars(reader, layout);
-    layout->wafer_thickness =
-        wh_layout_sized(reader, layout, "thickness", size_of(layout)->thickness, 0.01, 100);
+    layout->wafer_thickness = wh_layout_sized(reader, layout, "thickness", size_of(layout)->thickness);
     read_notch(reader, layout);
     wh_reader_leave(reader);
 }
@@ -183,7 +182,7 @@ static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* A slice is a whole number of microseconds, so that times of slices are exact. */
 static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
-    const double slice = wh_reader_number(reader, "slice", 0.001, 1e-6, 1);
+    const double slice = wh_reader_apart(reader, "slice");
     const double exact = slice * 1e6;
     layout->slice_us = llround(exact);
     if (fabs(exact - (double)layout->slice_us) > 1e-6 * exact) {
@@ -290,6 +289,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
 void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell) {
     wh_reader_t reader;
     wh_reader_start(&reader, L, trial_cell->path);
+    wh_reader_refuse_unknown(&reader, wh_layout_top_fields);
     wh_layout_read_world(&reader, trial_cell);
 }
 

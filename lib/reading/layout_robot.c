@@ -20,10 +20,27 @@ static wh_real_t read_quantity(wh_reader_t *reader, const char *field, bool turn
     return value == shown ? fallback : turns ? wh_rad_from_deg(value) : value;
 }
 
+/* Likewise, within the row's range. */
+static wh_real_t read_ranged(wh_reader_t *reader, const char *field, bool turns, wh_real_t fallback) {
+    const wh_reader_field_t *row = wh_reader_row(reader, field);
+    return read_quantity(reader, field, turns, fallback, row->least, row->most);
+}
+
+static const char *const limit_names[] = {"speed", "acceleration", "jerk"};
+
 void wh_layout_read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limits) {
-    limits->speed = read_quantity(reader, "speed", turns, limits->speed, 1e-6, 1e6);
-    limits->acceleration = read_quantity(reader, "acceleration", turns, limits->acceleration, 1e-6, 1e8);
-    limits->jerk = read_quantity(reader, "jerk", turns, limits->jerk, 1e-6, 1e10);
+    limits->speed = read_ranged(reader, "speed", turns, limits->speed);
+    limits->acceleration = read_ranged(reader, "acceleration", turns, limits->acceleration);
+    limits->jerk = read_ranged(reader, "jerk", turns, limits->jerk);
+}
+
+wh_limits_t wh_layout_usual_limits(const wh_reader_field_t *rows, bool turns) {
+    wh_real_t usual[3];
+    for (size_t i = 0; i < 3; ++i) {
+        usual[i] = (wh_real_t)wh_field_find(rows, limit_names[i])->usual;
+        usual[i] = turns ? wh_rad_from_deg(usual[i]) : usual[i];
+    }
+    return (wh_limits_t){usual[0], usual[1], usual[2]};
 }
 
 /* Checks defaults too: a travel that the layout gives may exclude the default home. */
@@ -82,8 +99,6 @@ static void read_plain(wh_reader_t *reader, wh_robot_t *robot) {
 }
 
 /* ------------------------------------------------------------------------------------------ other kinds */
-
-static const char *const kind_names[] = {"TRZY", "TRZ", "SCARA", NULL};
 
 void wh_layout_refuse_field(wh_reader_t *reader, const char *field, const char *expected) {
     if (wh_reader_has(reader, field)) {
@@ -145,7 +160,6 @@ static wh_travel_t turn_travel(wh_real_t degrees) {
 
 static void start_chain(wh_chain_t *chain, wh_chain_kind_t kind, bool is_left) {
     static const size_t axes[WH_ROBOT_AXES] = {WH_CHAIN_THETA, WH_CHAIN_REACH, WH_CHAIN_Z, WH_CHAIN_YAW};
-    const wh_limits_t flip_limits = {wh_rad_from_deg(180), wh_rad_from_deg(720), wh_rad_from_deg(7200)};
     const wh_limits_t tilt_limits = {wh_rad_from_deg(10), wh_rad_from_deg(50), wh_rad_from_deg(500)};
     wh_robot_t robot;
     wh_robot_default(&robot);
@@ -162,7 +176,7 @@ static void start_chain(wh_chain_t *chain, wh_chain_kind_t kind, bool is_left) {
         chain->limits[axis] = tilt_limits;
     }
     chain->travel[WH_CHAIN_FLIP].max = WH_PI;
-    chain->limits[WH_CHAIN_FLIP] = flip_limits;
+    chain->limits[WH_CHAIN_FLIP] = wh_layout_usual_limits(wh_layout_flip_axis_fields, true);
     if (kind == WH_CHAIN_SCARA) { /* folded, the blade along the line from the shoulder */
         chain->travel[WH_CHAIN_REACH] = turn_travel(165);
         chain->limits[WH_CHAIN_REACH] = robot.limits[WH_AXIS_YAW];
@@ -206,11 +220,10 @@ static void read_tilt(wh_reader_t *reader, wh_chain_t *chain) {
 }
 
 void wh_layout_read_seconds(wh_reader_t *reader, wh_real_t way, wh_limits_t *limits) {
-    static const char *const others[] = {"speed", "acceleration", "jerk"};
     wh_profile_t profile;
-    const wh_real_t seconds = wh_reader_number(reader, "seconds", 1, WH_REAL(0.05), 1000);
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
-        wh_layout_refuse_field(reader, others[i], "nothing: `seconds` says how fast it goes");
+    const wh_real_t seconds = wh_reader_apart(reader, "seconds");
+    for (size_t i = 0; i < sizeof limit_names / sizeof limit_names[0]; ++i) {
+        wh_layout_refuse_field(reader, limit_names[i], "nothing: `seconds` says how fast it goes");
     }
     if (wh_profile_plan(&profile, way, limits) == WH_OK) {
         const wh_real_t faster = wh_profile_duration(&profile) / seconds;
@@ -224,9 +237,9 @@ static void read_flip(wh_reader_t *reader, wh_chain_t *chain) {
     wh_travel_t *travel = &chain->travel[WH_CHAIN_FLIP];
     wh_limits_t *limits = &chain->limits[WH_CHAIN_FLIP];
     wh_reader_open_section(reader, "flip", wh_layout_flip_axis_fields);
-    travel->min = read_quantity(reader, "min", true, travel->min, -360, 0);
-    travel->max = read_quantity(reader, "max", true, travel->max, 180, 360);
-    chain->flip_height = wh_reader_number(reader, "height", 0, -500, 500);
+    travel->min = read_ranged(reader, "min", true, travel->min);
+    travel->max = read_ranged(reader, "max", true, travel->max);
+    chain->flip_height = wh_reader_apart(reader, "height");
     if (wh_reader_has(reader, "seconds")) {
         wh_layout_read_seconds(reader, WH_PI, limits);
     } else {
@@ -238,7 +251,7 @@ static void read_flip(wh_reader_t *reader, wh_chain_t *chain) {
 static void read_foot(wh_reader_t *reader, wh_chain_t *chain) {
     static const wh_vec3_t origin = {0, 0, 0};
     const wh_vec3_t at = wh_reader_vector(reader, "at", &origin);
-    const wh_real_t heading = wh_reader_number(reader, "heading", 0, -360, 360);
+    const wh_real_t heading = wh_reader_apart(reader, "heading");
     chain->is_placed = wh_vec3_dot(&at, &at) > 0 || wh_real_abs(heading) > 0;
     chain->base_from_robot.r = at;
     chain->base_from_robot.R = wh_mat3_from_rpy_deg(0, 0, heading);
@@ -276,8 +289,8 @@ static size_t read_arms(wh_reader_t *reader, wh_chain_kind_t kind, arm_t arms[2]
         wh_reader_enter_item(reader, (lua_Integer)i + 1);
         wh_reader_refuse_unknown(reader,
                                  is_scara ? wh_layout_robot_wrist_fields : wh_layout_robot_arm_fields);
-        arms[i].heading = wh_rad_from_deg(wh_reader_number(reader, "heading", 0, -360, 360));
-        arms[i].height = wh_reader_number(reader, "height", 0, -500, 500);
+        arms[i].heading = wh_rad_from_deg(wh_reader_apart(reader, "heading"));
+        arms[i].height = wh_reader_apart(reader, "height");
         wh_reader_leave(reader);
     }
     wh_reader_leave(reader);
@@ -303,16 +316,15 @@ static void add_second_arm(wh_reader_t *reader, wh_carrier_t *carrier, const arm
 }
 
 static void read_transit(wh_reader_t *reader, wh_layout_robot_t *robot) {
-    robot->transit = wh_reader_has(reader, "transit") ? wh_reader_number(reader, "transit", 0, 1, 1e5) : 0;
+    robot->transit = wh_reader_apart_from(reader, "transit", 0);
 }
 
 static void read_chain(wh_reader_t *reader, wh_layout_robot_t *robot, wh_chain_kind_t kind) {
-    static const char *const sides[] = {"left", "right", NULL};
     wh_chain_t chain;
     memset(&chain, 0, sizeof chain);
     refuse_others(reader, kind);
     if (kind == WH_CHAIN_SCARA) {
-        robot->elbow = wh_reader_choice(reader, "elbow", 0, sides) == 0 ? WH_ELBOW_LEFT : WH_ELBOW_RIGHT;
+        robot->elbow = wh_reader_apart(reader, "elbow") > 0 ? WH_ELBOW_RIGHT : WH_ELBOW_LEFT;
     }
     start_chain(&chain, kind, robot->elbow == WH_ELBOW_LEFT);
     read_arm(reader, &chain);
@@ -330,7 +342,7 @@ static void read_chain(wh_reader_t *reader, wh_layout_robot_t *robot, wh_chain_k
 }
 
 void wh_layout_read_carrier(wh_reader_t *reader, wh_layout_robot_t *robot) {
-    read_chain(reader, robot, (wh_chain_kind_t)wh_reader_choice(reader, "kind", 0, kind_names));
+    read_chain(reader, robot, (wh_chain_kind_t)wh_reader_apart(reader, "kind"));
 }
 
 void wh_layout_take_carriers(wh_layout_t *layout) {
@@ -347,7 +359,7 @@ void wh_layout_take_carriers(wh_layout_t *layout) {
 static bool is_at_origin(wh_reader_t *reader) {
     static const wh_vec3_t origin = {0, 0, 0};
     const wh_vec3_t at = wh_reader_vector(reader, "at", &origin);
-    const wh_real_t heading = wh_reader_number(reader, "heading", 0, -360, 360);
+    const wh_real_t heading = wh_reader_apart(reader, "heading");
     return !(wh_vec3_dot(&at, &at) > 0) && !(wh_real_abs(heading) > 0);
 }
 
@@ -362,7 +374,7 @@ static void read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     layout->robots = wh_layout_memory(reader->L, 1, sizeof *layout->robots);
     snprintf(layout->robots[0].name, sizeof layout->robots[0].name, "robot");
     wh_reader_open_section(reader, "robot", wh_layout_robot_fields);
-    const wh_chain_kind_t kind = (wh_chain_kind_t)wh_reader_choice(reader, "kind", 0, kind_names);
+    const wh_chain_kind_t kind = (wh_chain_kind_t)wh_reader_apart(reader, "kind");
     if (!is_plain(reader, kind)) {
         read_chain(reader, &layout->robots[0], kind);
         wh_layout_take_carriers(layout);

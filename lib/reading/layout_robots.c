@@ -56,7 +56,6 @@ void wh_layout_read_robots(wh_reader_t *reader, wh_layout_t *layout) {
  * is. */
 static void read_stand(wh_reader_t *reader, const wh_chain_t *chain, wh_elbow_t usual, double *rail,
                        wh_elbow_t *elbow) {
-    static const char *const sides[] = {"left", "right", NULL};
     *elbow = usual;
     if (chain && chain->has_rail) {
         const wh_travel_t *travel = &chain->travel[WH_CHAIN_RAIL];
@@ -65,8 +64,8 @@ static void read_stand(wh_reader_t *reader, const wh_chain_t *chain, wh_elbow_t 
         wh_layout_refuse_field(reader, "rail", "nothing: the robot has no rail");
     }
     if (chain && chain->kind == WH_CHAIN_SCARA) {
-        const int side = wh_reader_choice(reader, "elbow", usual == WH_ELBOW_RIGHT ? 1 : 0, sides);
-        *elbow = side == 0 ? WH_ELBOW_LEFT : WH_ELBOW_RIGHT;
+        const double side = wh_reader_apart_from(reader, "elbow", usual == WH_ELBOW_RIGHT ? 1 : 0);
+        *elbow = side > 0 ? WH_ELBOW_RIGHT : WH_ELBOW_LEFT;
     } else {
         wh_layout_refuse_field(reader, "elbow", "nothing: the robot is not of kind \"SCARA\"");
     }

@@ -10,10 +10,6 @@
  * encoder steps. */
 #define MOST_PASSED (WH_SCAN_SLICE - 2)
 
-static double read_required_angle(wh_reader_t *reader, const char *field) {
-    return wh_rad_from_deg(wh_reader_number(reader, field, WH_REAL(NAN), -360, 360));
-}
-
 /* ------------------------------------------------------------------------------------------------ sensors */
 
 /* Refuses values that would end each scan early: more samples in a slice than a state carries, or a chuck too
@@ -77,7 +73,7 @@ static void read_sensor(wh_reader_t *reader, const wh_layout_t *layout, wh_scann
     const double longest = 2 * radius < 100 ? 2 * radius : 100;
     wh_reader_scalar_within(reader, "length", sensor, 28 < longest ? 28 : longest, 2, longest);
     check_encoder(reader, sensor);
-    scanner->seed = (uint64_t)wh_reader_whole(reader, "seed", 1, 0, INT32_MAX);
+    scanner->seed = (uint64_t)wh_reader_apart(reader, "seed");
     read_hidden(reader, sensor);
     check_speed(reader, layout, sensor);
 }
@@ -164,7 +160,7 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
     }
     for (size_t i = 0; next_entry(reader, "flats", wh_layout_flat_fields, WH_RIM_FLATS, &i);) {
         wh_flat_shape_t *flat = &rim->flats[i - 1];
-        flat->direction = read_required_angle(reader, "at");
+        flat->direction = wh_rad_from_deg(wh_reader_apart(reader, "at"));
         flat->length = wh_reader_number(reader, "length", WH_REAL(NAN), 2, 1.4 * rim->radius);
     }
 }
@@ -172,8 +168,8 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
 static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
     for (size_t i = 0; next_entry(reader, "chips", wh_layout_chip_fields, WH_RIM_CHIPS, &i);) {
         wh_chip_t *chip = &rim->chips[rim->chip_count];
-        chip->direction = read_required_angle(reader, "at");
-        chip->width = wh_reader_number(reader, "width", WH_REAL(NAN), 0.01, 30);
+        chip->direction = wh_rad_from_deg(wh_reader_apart(reader, "at"));
+        chip->width = wh_reader_apart(reader, "width");
         chip->depth = wh_reader_number(reader, "depth", WH_REAL(NAN), 0, chip->width < 5 ? chip->width : 5);
         ++rim->chip_count;
     }
@@ -194,8 +190,7 @@ static void push_rim_field(lua_State *L, const wh_rim_t *rim, const char *name) 
 
 static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *rim) {
     wh_bad_field_t bad = {NULL, WH_NONE};
-    rim->radius =
-        wh_reader_number(reader, "diameter", layout->wafer_diameter, WH_SENSED_LEAST, WH_SENSED_MOST) / 2;
+    rim->radius = wh_reader_apart_from(reader, "diameter", layout->wafer_diameter) / 2;
     read_notch(reader, &rim->notch);
     read_flats(reader, rim);
     read_chips(reader, rim);
@@ -246,7 +241,7 @@ static void read_rims(wh_reader_t *reader, wh_layout_t *layout) {
 void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_enter(reader, "stations");
     for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_reader_enter(reader, layout->stations[s].name);
+        (void)wh_reader_open(reader, layout->stations[s].name, wh_layout_station_fields);
         read_station(reader, layout, s);
         wh_layout_read_beams(reader, layout, s);
         wh_reader_leave(reader);

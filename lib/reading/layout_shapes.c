@@ -9,6 +9,7 @@
 #include "../bodies/stl.h"
 #include "../layout/arms.h"
 #include "../layout/axes.h"
+#include "../layout/words.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -19,7 +20,7 @@
 static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *convex) {
     wh_reader_enter(reader, field);
     wh_reader_refuse_unknown(reader, wh_layout_round_fields);
-    convex->half.x = wh_reader_number(reader, "radius", WH_REAL(NAN), WH_CONVEX_THINNEST, 1e4);
+    convex->half.x = wh_reader_apart(reader, "radius");
     convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN),
                                       convex->kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
                      2;
@@ -27,14 +28,13 @@ static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *conv
 }
 
 static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
-    static const char *const units[] = {"mm", "cm", "m", "inch", NULL};
     static const double mm_per_unit[] = {1, 10, 1000, 25.4};
     char name[512];
     char path[1024];
     char message[512];
     wh_vec3_t *points = NULL;
     wh_reader_text(reader, "mesh", NULL, name, sizeof name);
-    const int unit = wh_reader_choice(reader, "unit", -1, units);
+    const int unit = wh_reader_choice(reader, "unit", -1, wh_layout_unit_words);
     if (unit < 0) {
         wh_reader_refuse(reader, "unit", NULL, "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
     }
@@ -326,8 +326,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_open_section(reader, "clearance", wh_layout_clearance_fields);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
-        const char *name = wh_clearance_name((wh_clearance_kind_t)kind);
-        layout->world.limits[kind] = wh_reader_number(reader, name, 0, 0, WH_CLEARANCE_RANGE);
+        layout->world.limits[kind] = wh_reader_apart(reader, wh_clearance_name((wh_clearance_kind_t)kind));
     }
     wh_reader_leave(reader);
 }
@@ -391,8 +390,8 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     read_obstacles(reader, layout, &obstacles);
     read_limits(reader, layout);
     const size_t capacity = wh_layout_count_parts(layout) + obstacles.count;
-    layout->collision = wh_reader_boolean(reader, "collision", false);
-    layout->look_ahead = wh_reader_boolean(reader, "look_ahead", false);
+    layout->collision = wh_reader_apart(reader, "collision") > 0;
+    layout->look_ahead = wh_reader_apart(reader, "look_ahead") > 0;
     if (capacity > WH_LAYOUT_PARTS) {
         lua_pushinteger(reader->L, (lua_Integer)capacity);
         if (layout->collision || layout->look_ahead) {

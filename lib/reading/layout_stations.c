@@ -42,7 +42,7 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, wh_layout
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
                                    station->prealigner || station->flipper ? 1 : WH_LAYOUT_SLOTS);
-    place->pitch = wh_layout_sized(reader, layout, "pitch", default_pitch(layout, place->slots), 0.1, 1000);
+    place->pitch = wh_layout_sized(reader, layout, "pitch", default_pitch(layout, place->slots));
     place->chuck = WH_NONE;
     check_pitch(reader, layout, place);
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
@@ -142,18 +142,16 @@ static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static wh_station_face_t read_face(wh_reader_t *reader, wh_station_face_t fallback) {
-    static const char *const faces[] = {"up", "down", NULL};
     return wh_reader_has(reader, "face")
-               ? (wh_station_face_t)(wh_reader_choice(reader, "face", 0, faces) + WH_STATION_FACE_UP)
+               ? (wh_station_face_t)((int)wh_reader_apart(reader, "face") + WH_STATION_FACE_UP)
                : fallback;
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    static const char *const kinds[] = {"slots", "prealigner", "foup", "flipper", NULL};
     wh_layout_station_t *station = &layout->stations[index];
     wh_reader_enter(reader, station->name);
     wh_reader_refuse_unknown(reader, wh_layout_station_fields);
-    const int kind = wh_reader_choice(reader, "kind", 0, kinds);
+    const int kind = (int)wh_reader_apart(reader, "kind");
     station->prealigner = kind == 1;
     station->foup = kind == 2;
     station->flipper = kind == 3;
@@ -193,8 +191,9 @@ static void read_counts(wh_reader_t *reader, wh_layout_t *layout) {
         }
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_reader_enter(reader, layout->stations[s].name);
-        layout->stations[s].counts = wh_reader_boolean(reader, "counts", rank_of(layout, s) == highest);
+        (void)wh_reader_open(reader, layout->stations[s].name, wh_layout_station_fields);
+        layout->stations[s].counts =
+            wh_reader_apart_from(reader, "counts", rank_of(layout, s) == highest) > 0;
         wh_reader_leave(reader);
     }
 }
@@ -254,9 +253,9 @@ static void read_position(wh_reader_t *reader, wh_layout_t *layout, const wh_lay
     const wh_pose_t base_from_slot = wh_station_slot(&layout->places[wafer->station], wafer->slot);
     const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &none);
     wh_pose_t slot_from_wafer;
-    slot_from_wafer.r.x = wh_reader_number(reader, "dx", 0, -1000, 1000);
-    slot_from_wafer.r.y = wh_reader_number(reader, "dy", 0, -1000, 1000);
-    slot_from_wafer.r.z = wh_reader_number(reader, "dz", 0, -1000, 1000);
+    slot_from_wafer.r.x = wh_reader_apart(reader, "dx");
+    slot_from_wafer.r.y = wh_reader_apart(reader, "dy");
+    slot_from_wafer.r.z = wh_reader_apart(reader, "dz");
     slot_from_wafer.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     *base_from_wafer = wh_pose_compose(&base_from_slot, &slot_from_wafer);
     if (read_wafer_face(reader, &layout->stations[wafer->station]) == WH_STATION_FACE_DOWN) {
@@ -275,7 +274,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     wafer->station = wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,
                                          "the name of a station of this layout");
     wafer->slot = wh_reader_whole(reader, "slot", 0, 1, layout->places[wafer->station].slots);
-    wafer->thickness = wh_reader_number(reader, "thickness", layout->wafer_thickness, 0.01, 100);
+    wafer->thickness = wh_reader_apart_from(reader, "thickness", layout->wafer_thickness);
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
 

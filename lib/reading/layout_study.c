@@ -9,33 +9,25 @@
 
 /* --------------------------------------------------------------------------------------------------- read */
 
-static const char *const shapes[] = {"normal", "uniform", NULL};
-
 wh_shape_t wh_layout_read_spread_shape(wh_reader_t *reader, wh_shape_t fallback) {
-    return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
+    return (wh_shape_t)wh_reader_apart_from(reader, "shape", fallback);
 }
 
 static const char *const placement_names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
 
-static wh_real_t most_of(const char *name, size_t index) {
-    return index < 3                   ? WH_ERRORS_MOST_MM
-           : strcmp(name, "turn") == 0 ? WH_ERRORS_MOST_TURN_DEG
-                                       : WH_ERRORS_MOST_DEG;
-}
-
-/* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
+/* Reads a width for each name, with its own default and the table's shape. */
 static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spreads_t *spreads) {
     for (size_t i = 0; names[i]; ++i) {
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, names[i], spread->width, 0, most_of(names[i], i));
+        spread->width = wh_reader_apart_from(reader, names[i], spread->width);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------- timing */
 
 static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread_t *valve) {
-    valve->width = wh_reader_number(reader, "valve", valve->width, 0, WH_ERRORS_MOST_S);
+    valve->width = wh_reader_apart_from(reader, "valve", valve->width);
     const double most = wh_spread_reach(valve);
     if (most * 1e6 / (double)layout->slice_us > WH_STUDY_LAG_SLICES) {
         lua_pushnumber(reader->L, valve->width);
@@ -47,7 +39,7 @@ static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread
 
 static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_errors_t *errors) {
     errors->vacuum.shape = wh_layout_read_spread_shape(reader, errors->vacuum.shape);
-    errors->vacuum.width = wh_reader_number(reader, "vacuum", 0, 0, WH_ERRORS_MOST_S);
+    errors->vacuum.width = wh_reader_apart(reader, "vacuum");
     errors->valves[0].shape = errors->vacuum.shape;
     read_valve(reader, layout, &errors->valves[0]);
     for (size_t g = 1; g < layout->machine.gripper_count; ++g) {
@@ -137,8 +129,7 @@ static void read_rim_widths(wh_reader_t *reader, const wh_layout_t *layout, size
         const wh_rim_draw_t draw = (wh_rim_draw_t)i;
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, wh_rim_draw_name(draw), spread->width, 0,
-                                         (wh_real_t)wh_rim_draw_most(draw));
+        spread->width = wh_reader_apart_from(reader, wh_rim_draw_name(draw), spread->width);
         check_concerned(reader, layout, first, end, draw, spread->width);
     }
     if (spreads->of[WH_RIM_CHIP_WIDTH].width > 0 && !(spreads->of[WH_RIM_CHIP_DEPTH].width > 0)) {
@@ -173,8 +164,7 @@ static void read_beam_widths(wh_reader_t *reader, const wh_layout_t *layout, int
         const wh_beam_draw_t draw = (wh_beam_draw_t)i;
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = wh_layout_read_spread_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, wh_beam_draw_name(draw), spread->width, 0,
-                                         (wh_real_t)wh_beam_draw_most(draw));
+        spread->width = wh_reader_apart_from(reader, wh_beam_draw_name(draw), spread->width);
     }
     for (size_t b = 0; b < layout->beam_count; ++b) {
         const bool is_its = station == WH_NONE || layout->beams[b].station == station;

@@ -1,33 +1,19 @@
-/* Robots' `urdf`: the map from its joints to the robot's axes, and the parts that its links are made of. */
+/* Robots' `urdf`: the map from its joints to the robot's axes, and whether both have the same poses. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../bodies/hull.h"
 #include "../bodies/shapes.h"
-#include "../bodies/stl.h"
 #include "../bodies/urdf.h"
 #include "../layout/arms.h"
 #include "../layout/axes.h"
 #include "../math/trig.h"
-#include "layout_internal.h"
-
-/* The state of reading a `urdf`, while the reader is at its robot. */
-typedef struct {
-    wh_reader_t *reader;
-    wh_layout_t *layout;
-    size_t first, count; /* the robot's axes among the machine's */
-    char name[512];      /* of the file, as the layout has it */
-    char path[1024];
-    char lengths[2 * WH_NAME_SIZE]; /* the field that has the arm's lengths, such as "shapes.arm" */
-    const wh_urdf_file_t *file;
-    wh_urdf_map_t map;
-} urdf_t;
+#include "layout_urdf_internal.h"
 
 /* ----------------------------------------------------------------------------------------------- the axes */
 
 /* The name of a source; null: this robot has no such axis or angle. */
-static const char *source_name(const urdf_t *urdf, size_t source) {
+static const char *source_name(const wh_reading_urdf_t *urdf, size_t source) {
     static const char *const angles[WH_URDF_ARMS * WH_URDF_ANGLES] = {
         "fold", "shoulder", "elbow", "wrist", "fold2", "shoulder2", "elbow2", "wrist2"};
     const wh_machine_t *machine = &urdf->layout->machine;
@@ -42,7 +28,7 @@ static const char *source_name(const urdf_t *urdf, size_t source) {
 }
 
 /* -1: this robot has no such axis or angle. */
-static int32_t find_source(const urdf_t *urdf, const char *name) {
+static int32_t find_source(const wh_reading_urdf_t *urdf, const char *name) {
     for (size_t i = 0; i < WH_URDF_SOURCES; ++i) {
         const char *known = source_name(urdf, i);
         if (known && strcmp(name, known) == 0) {
@@ -53,7 +39,7 @@ static int32_t find_source(const urdf_t *urdf, const char *name) {
 }
 
 /* All that find_source knows: "theta, r, z". */
-static void list_sources(const urdf_t *urdf, char *text, size_t size) {
+static void list_sources(const wh_reading_urdf_t *urdf, char *text, size_t size) {
     size_t length = 0;
     text[0] = '\0';
     for (size_t i = 0; i < WH_URDF_SOURCES && length < size; ++i) {
@@ -64,13 +50,13 @@ static void list_sources(const urdf_t *urdf, char *text, size_t size) {
     }
 }
 
-static bool source_turns(const urdf_t *urdf, int32_t source) {
+static bool source_turns(const wh_reading_urdf_t *urdf, int32_t source) {
     return source >= WH_URDF_FOLD || wh_axis_turns(&urdf->layout->machine, urdf->first + (size_t)source);
 }
 
 /* --------------------------------------------------------------------------------------------- the joints */
 
-static int32_t read_source(const urdf_t *urdf, const wh_urdf_link_t *link, const char *field) {
+static int32_t read_source(const wh_reading_urdf_t *urdf, const wh_urdf_link_t *link, const char *field) {
     char name[WH_NAME_SIZE];
     char known[256];
     wh_reader_text(urdf->reader, field, NULL, name, sizeof name);
@@ -86,7 +72,7 @@ static int32_t read_source(const urdf_t *urdf, const wh_urdf_link_t *link, const
     return source;
 }
 
-static void read_drive(const urdf_t *urdf, const wh_urdf_link_t *link, wh_urdf_drive_t *drive) {
+static void read_drive(const wh_reading_urdf_t *urdf, const wh_urdf_link_t *link, wh_urdf_drive_t *drive) {
     wh_reader_t *reader = urdf->reader;
     *drive = (wh_urdf_drive_t){-1, 1, 0};
     const int type = wh_reader_push(reader, link->joint);
@@ -101,8 +87,8 @@ static void read_drive(const urdf_t *urdf, const wh_urdf_link_t *link, wh_urdf_d
     }
     (void)wh_reader_open(reader, link->joint, wh_layout_joint_fields);
     drive->source = wh_reader_has(reader, "axis") ? read_source(urdf, link, "axis") : -1;
-    drive->factor = wh_reader_number(reader, "factor", 1, -1e6, 1e6);
-    drive->offset = wh_reader_number(reader, "offset", 0, -1e6, 1e6);
+    drive->factor = wh_reader_apart(reader, "factor");
+    drive->offset = wh_reader_apart(reader, "offset");
     if (link->motion == WH_URDF_TURNS) {
         drive->offset = wh_rad_from_deg(drive->offset);
     }
@@ -124,13 +110,13 @@ static void refuse_other_joints(wh_reader_t *reader, const wh_urdf_file_t *file)
     wh_reader_refuse_unknown(reader, known);
 }
 
-static void note_fold(urdf_t *urdf, int32_t source) {
+static void note_fold(wh_reading_urdf_t *urdf, int32_t source) {
     if (source >= WH_URDF_FOLD) {
         urdf->map.folds[(source - WH_URDF_FOLD) / WH_URDF_ANGLES] = true;
     }
 }
 
-static void read_joints(urdf_t *urdf) {
+static void read_joints(wh_reading_urdf_t *urdf) {
     static const wh_reader_field_t none[] = {{NULL, NULL, NULL, false}};
     const wh_urdf_file_t *file = urdf->file;
     if (!wh_reader_enter(urdf->reader, "joints")) {
@@ -147,28 +133,28 @@ static void read_joints(urdf_t *urdf) {
 }
 
 /* The fields that name the end-effectors. */
-static const char *const tool_fields[WH_URDF_ARMS] = {"tool", "tool2"};
+const char *const wh_reading_tool_fields[WH_URDF_ARMS] = {"tool", "tool2"};
 
-static void read_tool(urdf_t *urdf, size_t arm) {
+static void read_tool(wh_reading_urdf_t *urdf, size_t arm) {
     char name[WH_URDF_NAME];
     const wh_urdf_file_t *file = urdf->file;
     int32_t *tool = &urdf->map.tools[arm];
-    wh_reader_text(urdf->reader, tool_fields[arm], NULL, name, sizeof name);
+    wh_reader_text(urdf->reader, wh_reading_tool_fields[arm], NULL, name, sizeof name);
     *tool = -1;
     for (size_t i = 0; i < file->link_count; ++i) {
         *tool = strcmp(name, file->links[i].name) == 0 ? (int32_t)i : *tool;
     }
     if (*tool < 0) {
-        wh_reader_refuse(urdf->reader, tool_fields[arm], name, "a link of %s", urdf->path);
+        wh_reader_refuse(urdf->reader, wh_reading_tool_fields[arm], name, "a link of %s", urdf->path);
     }
 }
 
-static void read_tools(urdf_t *urdf) {
+static void read_tools(wh_reading_urdf_t *urdf) {
     for (size_t arm = 0; arm < urdf->map.arm_count && arm < WH_URDF_ARMS; ++arm) {
         read_tool(urdf, arm);
     }
     if (urdf->map.arm_count < WH_URDF_ARMS) {
-        wh_layout_refuse_field(urdf->reader, tool_fields[1],
+        wh_layout_refuse_field(urdf->reader, wh_reading_tool_fields[1],
                                "nothing: it is for a robot with two arms or two wrists");
     }
 }
@@ -176,7 +162,7 @@ static void read_tools(urdf_t *urdf) {
 /* ------------------------------------------------------------------------------------------ the agreement */
 
 /* "theta 12.5, r 400, z 900, yaw 0": degrees and mm. */
-static void describe_axes(const urdf_t *urdf, const wh_real_t axes[], char *text, size_t size) {
+static void describe_axes(const wh_reading_urdf_t *urdf, const wh_real_t axes[], char *text, size_t size) {
     const wh_machine_t *machine = &urdf->layout->machine;
     size_t length = 0;
     for (size_t i = urdf->first; i < urdf->first + urdf->count && length < size; ++i) {
@@ -189,15 +175,15 @@ static void describe_axes(const urdf_t *urdf, const wh_real_t axes[], char *text
 }
 
 /* The robot's lengths, which the layout's shapes have. */
-static wh_arm_t *lengths_of(const urdf_t *urdf) {
+static wh_arm_t *lengths_of(const wh_reading_urdf_t *urdf) {
     return urdf->map.robot == 0 ? &urdf->layout->shapes.arm : &urdf->layout->robots[urdf->map.robot].arm;
 }
 
-static const char *tool_name(const urdf_t *urdf, size_t arm) {
+static const char *tool_name(const wh_reading_urdf_t *urdf, size_t arm) {
     return urdf->file->links[urdf->map.tools[arm]].name;
 }
 
-static void measure_arm(const urdf_t *urdf, size_t number, wh_arm_t *arm) {
+static void measure_arm(const wh_reading_urdf_t *urdf, size_t number, wh_arm_t *arm) {
     wh_urdf_arm(&urdf->map, number, urdf->layout, arm);
     if (!(arm->link >= 10 && arm->link <= 5000 && arm->reach >= 0 && arm->reach <= 2000)) {
         wh_reader_refuse(
@@ -209,7 +195,7 @@ static void measure_arm(const urdf_t *urdf, size_t number, wh_arm_t *arm) {
 }
 
 /* `shapes` has been read: it may say nothing that the URDF says. Two arms of a robot are alike. */
-static void take_arms(const urdf_t *urdf, bool says_links) {
+static void take_arms(const wh_reading_urdf_t *urdf, bool says_links) {
     const bool *folds = urdf->map.folds;
     wh_arm_t arms[WH_URDF_ARMS];
     for (size_t i = 0; i < WH_URDF_ARMS; ++i) {
@@ -240,7 +226,7 @@ static wh_real_t beyond(wh_real_t difference, wh_real_t rounding) {
     return difference <= rounding ? 0 : difference;
 }
 
-static void refuse_difference(const urdf_t *urdf, const wh_urdf_findings_t *found) {
+static void refuse_difference(const wh_reading_urdf_t *urdf, const wh_urdf_findings_t *found) {
     char axes[256];
     describe_axes(urdf, found->axes, axes, sizeof axes);
     wh_reader_refuse(
@@ -252,7 +238,7 @@ static void refuse_difference(const urdf_t *urdf, const wh_urdf_findings_t *foun
         found->is.x, found->is.y, found->is.z, found->should.x, found->should.y, found->should.z);
 }
 
-static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
+static void check_agreement(const wh_reading_urdf_t *urdf, const wh_urdf_findings_t *findings) {
     if (findings->reached == 0) {
         wh_reader_refuse(urdf->reader, "urdf", urdf->name,
                          "links that reach somewhere within the travels: they are %.9g mm long",
@@ -273,170 +259,9 @@ static void check_agreement(const urdf_t *urdf, const wh_urdf_findings_t *findin
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- the parts */
-
-/* A mesh's path: from the URDF's folder, absolute, or from that of one of the packages. */
-static void find_mesh(const urdf_t *urdf, const char *mesh, char *path, size_t size) {
-    static const char package[] = "package://";
-    static const char file[] = "file://";
-    wh_reader_t *reader = urdf->reader;
-    const char *rest = mesh + sizeof package - 1;
-    const size_t length = strncmp(mesh, package, sizeof package - 1) == 0 ? strcspn(rest, "/") : 0;
-    if (length > 0 && length < WH_URDF_NAME && rest[length] == '/') {
-        char name[WH_URDF_NAME];
-        char folder[512];
-        char place[1024];
-        (void)snprintf(name, sizeof name, "%.*s", (int)length, rest);
-        if (!wh_reader_enter(reader, "packages") || !wh_reader_has(reader, name)) {
-            wh_reader_refuse(reader, "urdf", mesh, "packages = { [\"%s\"] = \"FOLDER\" } beside urdf", name);
-        }
-        wh_reader_text(reader, name, NULL, folder, sizeof folder);
-        wh_reader_leave(reader);
-        wh_layout_path(place, sizeof place, urdf->layout->path, folder);
-        (void)snprintf(path, size, "%s%s", place, rest + length);
-    } else if (strncmp(mesh, file, sizeof file - 1) == 0 && mesh[sizeof file - 1] == '/') {
-        (void)snprintf(path, size, "%s", mesh + sizeof file - 1);
-    } else if (strstr(mesh, "://")) {
-        wh_reader_refuse(reader, "urdf", mesh, "a mesh beside %s, file:///PATH or package://NAME/FILE",
-                         urdf->path);
-    } else {
-        wh_layout_path(path, size, urdf->path, mesh);
-    }
-}
-
-/* A URDF's meshes are in m, times their scale. */
-static void read_hull(const urdf_t *urdf, const wh_urdf_shape_t *shape, wh_convex_t *convex) {
-    const char *link = urdf->file->links[shape->link].name;
-    const wh_vec3_t *s = &shape->scale;
-    const wh_real_t largest =
-        wh_real_max(wh_real_abs(s->x), wh_real_max(wh_real_abs(s->y), wh_real_abs(s->z)));
-    char path[2048];
-    char message[512];
-    wh_vec3_t *points = NULL;
-    size_t count = 0;
-    find_mesh(urdf, shape->mesh, path, sizeof path);
-    bool good = wh_stl_read_body(path, 1000 * largest, &points, &count, message, sizeof message);
-    for (size_t i = 0; good && i < count; ++i) {
-        points[i] = wh_vec3(points[i].x * (s->x / largest), points[i].y * (s->y / largest),
-                            points[i].z * (s->z / largest));
-    }
-    good = good && wh_hull_reduce(points, &count, message, sizeof message);
-    if (good && count <= WH_STL_POINTS) {
-        wh_vec3_t *kept = wh_layout_memory(urdf->reader->L, count, sizeof *kept);
-        memcpy(kept, points, count * sizeof *kept);
-        convex->points = kept;
-        convex->point_count = count;
-        free(points);
-        return;
-    }
-    free(points);
-    if (good) {
-        wh_reader_refuse(urdf->reader, "urdf", shape->mesh,
-                         "a hull of at most %d corners for link \"%s\"; it has %zu", WH_STL_POINTS, link,
-                         count);
-    }
-    wh_reader_refuse(urdf->reader, "urdf", shape->mesh, "an STL mesh for link \"%s\": %s", link, message);
-}
-
-/* True if a link is called so: "forearm 2". */
-static bool is_link(const wh_urdf_file_t *file, const char *link, int number) {
-    char name[WH_URDF_NAME + 16];
-    bool found = false;
-    (void)snprintf(name, sizeof name, "%s %d", link, number);
-    for (size_t i = 0; i < file->link_count; ++i) {
-        found = found || strcmp(name, file->links[i].name) == 0;
-    }
-    return found;
-}
-
-/* "forearm", and of its other shapes "forearm 2", or "forearm shape 2" where a link is called "forearm 2";
- * "forearm hull" where it is the hull of a mesh; with several robots the robot's name comes first. */
-static void add_part(const urdf_t *urdf, wh_part_list_t *list, size_t index, const wh_part_t *part) {
-    const wh_urdf_shape_t *shapes = urdf->file->shapes;
-    const wh_layout_t *layout = urdf->layout;
-    const bool is_one = layout->robot_count < 2;
-    const char *link = urdf->file->links[shapes[index].link].name;
-    const char *what = part->convex.kind == WH_CONVEX_MESH ? " hull" : "";
-    const char *robot = is_one ? "" : layout->robots[urdf->map.robot].name;
-    int number = 1;
-    for (size_t i = 0; i < index; ++i) {
-        number += shapes[i].link == shapes[index].link;
-    }
-    if (number > 1) {
-        wh_shapes_add(list, part, "%s%s%s%s %d%s", robot, is_one ? "" : " ", link,
-                      is_link(urdf->file, link, number) ? " shape" : "", number, what);
-    } else {
-        wh_shapes_add(list, part, "%s%s%s%s", robot, is_one ? "" : " ", link, what);
-    }
-}
-
-static bool folds(const urdf_t *urdf) {
-    return urdf->map.folds[0] || urdf->map.folds[1];
-}
-
-/* The arm whose end-effector a link is; WH_URDF_ARMS: none. */
-static size_t arm_of_tool(const urdf_t *urdf, int32_t link) {
-    size_t arm = 0;
-    while (arm < WH_URDF_ARMS && !(arm < urdf->map.arm_count && urdf->map.tools[arm] == link)) {
-        ++arm;
-    }
-    return arm;
-}
-
-static void refuse_link(const urdf_t *urdf, const wh_urdf_shape_t *shape) {
-    const char *link = urdf->file->links[shape->link].name;
-    const size_t arm = arm_of_tool(urdf, shape->link);
-    if (arm < WH_URDF_ARMS) {
-        wh_reader_refuse(
-            urdf->reader, tool_fields[arm], link,
-            "a link without shapes, for the end-effector's frame: the blade is that of shapes.blade");
-    }
-    wh_reader_refuse(
-        urdf->reader, "urdf", urdf->name,
-        "links that move with the arm's column, lift, upper arm, forearm or hand; \"%s\" moves with none "
-        "of them%s%s%s",
-        link, folds(urdf) ? " (is the elbow on the other side? then " : "", folds(urdf) ? urdf->lengths : "",
-        folds(urdf) ? ".right_handed; is the wrist ever behind theta's axis? then r must begin farther out)"
-                    : "");
-}
-
-static void make_part(const urdf_t *urdf, const wh_urdf_findings_t *findings, size_t index, wh_part_t *part) {
-    const wh_urdf_shape_t *shape = &urdf->file->shapes[index];
-    const int32_t body = findings->body[shape->link];
-    if (body < 0 || arm_of_tool(urdf, shape->link) < WH_URDF_ARMS) {
-        refuse_link(urdf, shape);
-    }
-    *part = (wh_part_t){.kind = WH_PART_ARM, .owner = body, .convex = shape->convex};
-    wh_urdf_shape_place(&findings->body_from_link[shape->link], &part->convex);
-    if (part->convex.kind == WH_CONVEX_MESH) {
-        read_hull(urdf, shape, &part->convex);
-    }
-    const wh_status_t status = wh_convex_validate(&part->convex);
-    if (status != WH_OK) {
-        wh_reader_refuse(urdf->reader, "urdf", urdf->name, "shapes of %g to %g mm; one of link \"%s\": %s",
-                         WH_CONVEX_THINNEST, WH_CONVEX_LARGEST, urdf->file->links[shape->link].name,
-                         wh_status_text(status));
-    }
-}
-
-static void make_parts(const urdf_t *urdf, const wh_urdf_findings_t *findings) {
-    lua_State *L = urdf->reader->L;
-    const size_t count = urdf->file->shape_count;
-    wh_part_list_t *list = wh_layout_memory(L, 1, sizeof *list);
-    list->parts = wh_layout_memory(L, count, sizeof *list->parts);
-    list->names = wh_layout_memory(L, count, sizeof *list->names);
-    list->capacity = count;
-    for (size_t i = 0; i < count; ++i) {
-        wh_part_t part;
-        make_part(urdf, findings, i, &part);
-        add_part(urdf, list, i, &part);
-    }
-    urdf->layout->robots[urdf->map.robot].urdf = list;
-}
-
 /* ---------------------------------------------------------------------------------------------- the field */
 
-static void read_file(urdf_t *urdf) {
+static void read_file(wh_reading_urdf_t *urdf) {
     char message[1024];
     wh_urdf_file_t *file = wh_layout_memory(urdf->reader->L, 1, sizeof *file);
     wh_reader_text(urdf->reader, "urdf", NULL, urdf->name, sizeof urdf->name);
@@ -473,7 +298,7 @@ static void refuse_without(wh_reader_t *reader) {
 }
 
 /* Fills in what is known of the robot before its file is read. */
-static void start(urdf_t *urdf, wh_reader_t *reader, wh_layout_t *layout, size_t robot) {
+static void start(wh_reading_urdf_t *urdf, wh_reader_t *reader, wh_layout_t *layout, size_t robot) {
     const wh_carrier_t *carrier = wh_machine_carrier(&layout->machine, robot, &urdf->first);
     urdf->reader = reader;
     urdf->layout = layout;
@@ -486,7 +311,7 @@ static void start(urdf_t *urdf, wh_reader_t *reader, wh_layout_t *layout, size_t
 
 /* The reader is at the robot. */
 static void read_urdf(wh_reader_t *reader, wh_layout_t *layout, size_t robot, bool says_links) {
-    urdf_t urdf = {.reader = reader};
+    wh_reading_urdf_t urdf = {.reader = reader};
     wh_urdf_findings_t findings;
     start(&urdf, reader, layout, robot);
     if (wh_reader_enter(reader, "packages")) {
@@ -495,12 +320,12 @@ static void read_urdf(wh_reader_t *reader, wh_layout_t *layout, size_t robot, bo
     read_file(&urdf);
     read_joints(&urdf);
     read_tools(&urdf);
-    if (folds(&urdf)) {
+    if (urdf.map.folds[0] || urdf.map.folds[1]) {
         take_arms(&urdf, says_links);
     }
     wh_urdf_examine(&urdf.map, layout, &findings);
     check_agreement(&urdf, &findings);
-    make_parts(&urdf, &findings);
+    wh_layout_make_urdf_parts(&urdf, &findings);
 }
 
 /* The reader is where the robots are by name. */

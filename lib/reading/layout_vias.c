@@ -3,8 +3,6 @@
 #include "../math/trig.h"
 #include "layout_internal.h"
 
-#define USUAL_BLEND 50
-
 /* A robot's carrier; null: it is that of motion/robot.h. */
 static const wh_carrier_t *carrier_of(const wh_layout_t *layout, size_t robot) {
     return layout->machine.carrier ? &layout->robots[robot].carrier : NULL;
@@ -68,7 +66,7 @@ static void read_via(wh_reader_t *reader, const wh_layout_t *layout, size_t robo
             is_any = true;
         }
     }
-    via->point.blend = wh_reader_number(reader, "blend", USUAL_BLEND, 0, 1000);
+    via->point.blend = wh_reader_apart(reader, "blend");
     if (!is_any) {
         wh_reader_fail(reader, NULL, "at least one of theta, r (of a SCARA forearm), z, yaw and rail");
     }

@@ -10,9 +10,21 @@ bool wh_record_is_timed(const wh_record_t *record) {
     return record->layout && record->layout->tool;
 }
 
+static bool has_flowed(const wh_record_t *record) {
+    return record->flow && wh_flow_has_moved(record->flow);
+}
+
+bool wh_record_played_nothing(const wh_record_t *record) {
+    return record->slices == 0 && !has_flowed(record);
+}
+
+bool wh_record_kept_still(const wh_record_t *record) {
+    const int64_t *shares = record->activity.shares;
+    return shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY] == 0 && !has_flowed(record);
+}
+
 bool wh_record_moved_nothing(const wh_record_t *record) {
-    return record->ok && record->command_count == 0 && record->slices == 0 &&
-           !(record->flow && wh_flow_has_moved(record->flow));
+    return record->ok && record->command_count == 0 && wh_record_played_nothing(record);
 }
 
 const char *wh_record_error_text(wh_status_t status) {

@@ -184,8 +184,17 @@ void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
 #define WH_RECORD_TIMES_ALONE "places, ways and collisions were not looked for: the robots are times alone"
 #define WH_RECORD_UNLOOKED "collisions were not looked for: the layout has no collision = true"
 
-/* True if all was well only because nothing happened: the cell stood still, and no command came. */
+/* True if not one slice was played, and no wafer of a flow went anywhere. */
+bool wh_record_played_nothing(const wh_record_t *record);
+
+/* True if no robot moved in the slices that were played: waiting and switching valves are no motion. */
+bool wh_record_kept_still(const wh_record_t *record);
+
+/* True if all was well only because nothing happened: nothing was played, and no command came. */
 bool wh_record_moved_nothing(const wh_record_t *record);
+
+/* Why such a run is no good test, unless it expects something. */
+#define WH_RECORD_IDLE "it moves nothing and expects nothing"
 
 /* True if the cell is known, and its robots are times alone. */
 bool wh_record_is_timed(const wh_record_t *record);

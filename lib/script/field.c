@@ -1,9 +1,9 @@
 #include "field.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "../math/hash.h"
 #include "../math/trig.h"
 
 const wh_reader_field_t *wh_field_find(const wh_reader_field_t *rows, const char *name) {
@@ -24,6 +24,16 @@ bool wh_field_is_number(const wh_reader_field_t *row) {
     return row->kind >= WH_SCALAR_NUMBER && row->kind <= WH_SCALAR_SEED;
 }
 
+bool wh_field_is_member(const wh_reader_field_t *row) {
+    return row->kind >= WH_SCALAR_NUMBER;
+}
+
+uint64_t wh_field_hash(const wh_reader_field_t *row, const void *of, uint64_t hash) {
+    const bool is_real = row->kind == WH_SCALAR_NUMBER || row->kind == WH_SCALAR_DEGREES;
+    return is_real ? wh_hash_real(hash, *(const double *)(const void *)((const char *)of + row->offset))
+                   : wh_hash_int(hash, (int32_t)wh_field_get(row, of));
+}
+
 double wh_field_get(const wh_reader_field_t *row, const void *of) {
     const void *at = (const char *)of + row->offset;
     switch (row->kind) {
@@ -39,6 +49,7 @@ double wh_field_get(const wh_reader_field_t *row, const void *of) {
     case WH_SCALAR_SWITCH:
         return *(const bool *)at ? 1 : 0;
     case WH_SCALAR_BY_HAND:
+    case WH_SCALAR_APART:
         break;
     }
     return 0;
@@ -64,6 +75,7 @@ void wh_field_set(const wh_reader_field_t *row, double value, void *of) {
         *(bool *)at = value > 0;
         break;
     case WH_SCALAR_BY_HAND:
+    case WH_SCALAR_APART:
         break;
     }
 }

@@ -96,7 +96,15 @@ void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, d
 void wh_reader_scalar_within(wh_reader_t *reader, const char *field, void *into, double fallback,
                              double least, double most);
 
-/* All scalars of the table whose defaults do not follow from other fields. */
+/* The row of a known field of the table being read. */
+const wh_reader_field_t *wh_reader_row(const wh_reader_t *reader, const char *field);
+
+/* A scalar whose row has range and default alone: its value, 0 or 1 of a switch, a word's index. Required if
+ * the default is NaN. */
+double wh_reader_apart(wh_reader_t *reader, const char *field);
+double wh_reader_apart_from(wh_reader_t *reader, const char *field, double fallback);
+
+/* All members of the table whose defaults do not follow from other fields. */
 void wh_reader_scalars(wh_reader_t *reader, void *into);
 
 #endif

@@ -190,10 +190,9 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, w
     } else if (outcome == WH_RUN_FAILED) {
         point->verdict = WH_SWEEP_FAILED;
         wh_record_reason(record, reason, sizeof reason);
-    } else if (record->slices == 0 && record->expectation_count == 0 &&
-               !(record->flow && wh_flow_has_moved(record->flow))) {
+    } else if (wh_record_played_nothing(record) && record->expectation_count == 0) {
         point->verdict = WH_SWEEP_FAILED;
-        (void)snprintf(reason, sizeof reason, "it moves nothing and expects nothing");
+        (void)snprintf(reason, sizeof reason, "%s", WH_RECORD_IDLE);
     }
     point->reason = reason[0] != '\0' ? wh_text_copy(reason) : NULL;
 }

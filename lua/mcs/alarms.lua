@@ -85,6 +85,9 @@ return function(native, lookup)
     NO_ANSWER = { "line", MOVING },
   }
 
+  -- The manual's table is made of these: tests/end_to_end/tools/manual_tables.lua.
+  alarms.how, alarms.groups = HOW, { MOVING, STATION, QUERIES }
+
   -- By the error's number: its name, how it is raised, and the set of commands.
   local by_number, numbers = {}, {}
   for name, how in pairs(HOW) do

@@ -326,13 +326,13 @@ static void *struct_of(const wh_layout_class_t *class, wh_layout_t *layout) {
     return NULL;
 }
 
-/* True if both processes go by the struct: it is hashed, and a cell's message has it. */
-static bool is_shared(const char *class, const char *field) {
-    static const char *const shared[] = {"tolerance", "near",   "placing", "vacuum", "pads",
-                                         "edge_grip", "sensor", "arc",     "rim",    "rim_notch"};
-    bool is = strcmp(class, "layout") == 0 && strcmp(field, "homed") != 0;
-    for (size_t i = 0; i < sizeof shared / sizeof shared[0]; ++i) {
-        is = is || strcmp(class, shared[i]) == 0;
+/* True if both processes go by the member: it is hashed, by the rows or by the part of the simulator that it
+ * is of, and a cell's message has it. */
+static bool is_shared(const char *class, const wh_reader_field_t *row) {
+    static const char *const simulated[] = {"edge_grip", "sensor", "arc", "rim", "rim_notch"};
+    bool is = row->hashed > 0 && row->hashed != WH_HASHED_ARM;
+    for (size_t i = 0; i < sizeof simulated / sizeof simulated[0]; ++i) {
+        is = is || strcmp(class, simulated[i]) == 0;
     }
     return is;
 }
@@ -403,7 +403,7 @@ static void try_other_value(const wh_layout_class_t *class, const char *path, co
     if (!(fabs(got - other) <= 1e-12 * fabs(other))) {
         fail_msg("%s: %s is read as %.17g", path, value, got);
     }
-    if (is_shared(class->name, row->name)) {
+    if (is_shared(class->name, row)) {
         if (wh_layout_hash(layout_read()) == hash) {
             fail_msg("%s: the hash does not change with it", path);
         }
@@ -441,10 +441,11 @@ static void try_field(const wh_layout_class_t *class, const char *in, const wh_r
         fail_msg("%s: the list says required: %d; %s", path, (int)field->required, result.message);
     }
     ++tried;
-    if (wh_field_is_number(field)) {
+    if (wh_field_is_number(field) || (field->kind == WH_SCALAR_APART && field->least < field->most &&
+                                      strcmp(field->type, "boolean") != 0)) {
         try_beyond(path, before, field);
     }
-    if (field->kind != WH_SCALAR_BY_HAND) {
+    if (wh_field_is_member(field)) {
         try_other_value(class, path, before, field);
     }
 }

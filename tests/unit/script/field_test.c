@@ -1,6 +1,7 @@
 /* A scalar's row: its value in the struct, its unit and its type. */
 #include "support/support.h"
 
+#include "math/hash.h"
 #include "script/field.h"
 
 typedef struct {
@@ -50,6 +51,18 @@ static void a_field_that_is_no_scalar_has_no_value(void **state) {
     assert_null(wh_field_find(rows, "nam"));
 }
 
+static void a_member_is_hashed_as_the_struct_has_it(void **state) {
+    (void)state;
+    thing_t thing = {.length = 2, .angle = 0.5, .count = 3, .is_on = true, .side = RIGHT};
+    const uint64_t hashes[] = {wh_hash_real(WH_HASH_START, 2), wh_hash_real(WH_HASH_START, 0.5),
+                               wh_hash_int(WH_HASH_START, 3),  wh_hash_int(WH_HASH_START, 0),
+                               wh_hash_int(WH_HASH_START, 1),  wh_hash_int(WH_HASH_START, 1)};
+    for (size_t i = 0; wh_field_is_member(&rows[i]); ++i) {
+        assert_int_equal(wh_field_hash(&rows[i], &thing, WH_HASH_START), hashes[i]);
+    }
+    assert_false(wh_field_is_member(wh_field_find(rows, "name")));
+}
+
 static void a_text_begins_with_the_unit(void **state) {
     (void)state;
     static const char *const units[] = {"mm/s", "degrees", "", "", "", "", ""};
@@ -82,6 +95,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scalar_is_set_and_got_in_its_own_unit),
         cmocka_unit_test(a_field_that_is_no_scalar_has_no_value),
+        cmocka_unit_test(a_member_is_hashed_as_the_struct_has_it),
         cmocka_unit_test(a_text_begins_with_the_unit),
         cmocka_unit_test(an_enumeration_has_its_type_from_its_words),
         cmocka_unit_test(numbers_are_told_from_other_scalars),
