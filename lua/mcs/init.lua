@@ -23,25 +23,9 @@ return function(native)
     fail(numbers[name], detail)
   end
 
-  local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
-  local alarms = native.module("mcs/alarms.lua")(native, lookup)
-  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup, alarms)
-  local queries = native.module("mcs/queries.lua")(native, lookup)
-  local run, keep, finish_tasks, serve = commands.run, commands.keep, commands.finish, commands.serve
-  local reach = native.module("mcs/reach.lua")(native, {
-    rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
-    try_out = commands.try_out, try_carrying = commands.try_carrying,
-    rehearse_centring = commands.rehearse_centring, rehearse_aside = commands.rehearse_aside,
-  }, commands.flip_room)
-  commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
-  local is_any_alive = commands.is_any_alive
-  commands.finish, commands.serve, commands.is_any_alive = nil, nil, nil
-  local bind = commands.bind
-  commands.bind = nil
-  commands.try_out, commands.try_carrying, commands.rehearse_centring = nil, nil, nil
-  commands.rehearse_aside, commands.flip_room = nil, nil
-  native.module("mcs/faults.lua")(native, commands, run, lookup, alarms)
-  queries.station, commands.station = commands.station, nil
+  local parts = native.module("mcs/parts.lua")(native, wh.errors)
+  local lookup, alarms, reach = parts.lookup, parts.alarms, parts.reach
+  local commands, queries = parts.commands, parts.queries
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
   local flows = native.module("mcs/flow.lua")(native)
@@ -128,7 +112,7 @@ return function(native)
         if self ~= words_of_it then
           native.fail("BAD_ARGUMENT", ("%s: called with a dot (expected a colon, as in ROBOT:%s(...))"):format(bound, bound))
         end
-        return bind(index, action, ...)
+        return parts.bind(index, action, ...)
       end
     end
     return words_of_it
@@ -140,11 +124,12 @@ return function(native)
     local tokens = native.module("mcs/tokens.lua")(native)
     local states = native.module("mcs/saved_states.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
-    local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states, is_any_alive)
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep, background)
+    local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states,
+      parts.tasks.is_any_alive)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, parts.keep, background)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states, alarms,
-      bind, background)
-    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), serve
+      parts.bind, background)
+    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), parts.tasks.serve
   end
 
   -- For a layout that was already read: returns three functions with a station's name. They check a station, play
@@ -169,9 +154,8 @@ return function(native)
   end
 
   local function define()
-    local targets = native.module("mcs/targets.lua")(native, lookup)
-    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
+    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words)()
   end
 
-  return open_prompt, survey, define, finish_tasks
+  return open_prompt, survey, define, parts.tasks.finish
 end
