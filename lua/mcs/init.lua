@@ -4,7 +4,7 @@
 -- `waferhand definitions` prints.
 
 -- Local copies: a script may set globals of these names.
-local error, ipairs, math, pairs, pcall, rawset, select = error, ipairs, math, pairs, pcall, rawset, select
+local error, ipairs, math, pairs, pcall, rawget, rawset, select = error, ipairs, math, pairs, pcall, rawget, rawset, select
 local setmetatable, tostring, type = setmetatable, tostring, type
 
 return function(native)
@@ -35,7 +35,11 @@ return function(native)
     if type(path) ~= "string" then
       error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
     end
+    if type(rawget(_G, "patterns")) == "string" then
+      error('patterns: it was assigned (expected the call patterns "FILE.lua", before cell)', 0)
+    end
     native.layout = native.cell(path)
+    parts.own.open(native.layout)
     for name, station in pairs(native.layout.stations) do
       reach.check(station, function(slot, _, reason, robot)
         local message = "%s: stations.%s%s: slot %d (expected one in reach: %s)"
@@ -77,6 +81,7 @@ return function(native)
       error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
     end
     return function(...)
+      parts.own.refuse(name)
       native.begin_word(name)
       flows.refuse(name)
       for place = known.any and math.maxinteger or most + 1, select("#", ...) do
@@ -93,7 +98,7 @@ return function(native)
     end
   end
 
-  for _, group in ipairs({ commands, queries, cycles, { flow = flows.flow }, { cell = cell, study = study } }) do
+  for _, group in ipairs({ commands, queries, cycles, { flow = flows.flow }, { cell = cell, study = study, patterns = parts.own.patterns } }) do
     for name, action in pairs(group) do
       rawset(_G, name, word(name, action))
     end
@@ -101,7 +106,7 @@ return function(native)
 
   -- The words that robot() binds.
   local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop", "station",
-    "set_station", "teach" }
+    "set_station", "teach", "pattern" }
 
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)
@@ -126,7 +131,7 @@ return function(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
     local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states,
       parts.tasks.is_any_alive)
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, parts.keep, background)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, parts.keep, background, parts.own)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states, alarms,
       parts.bind, background)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), parts.tasks.serve
@@ -136,6 +141,7 @@ return function(native)
   -- there, and turn over there (without a name: at home). See lua/mcs/reach.lua.
   local function survey(layout)
     native.layout = layout
+    parts.own.open(layout)
     return function(name, found, missed)
       reach.check(layout.stations[name], found)
       reach.check_later(layout.stations[name], found)

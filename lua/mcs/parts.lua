@@ -18,6 +18,7 @@ return function(native, errors)
 
   local steps = native.module("mcs/steps.lua")
   local planes, patterns = make("planes", steps), make("patterns", steps)
+  local own = make("own_patterns", native, lookup, patterns, make("own_steps", native, lookup, steps))
   local grips = { vacuum = make("grip_vacuum", steps), edge = make("grip_edge", steps), passive = make("grip_passive", steps) }
 
   ------------------------------------------------------------------------------------------- who plans and plays it
@@ -57,7 +58,7 @@ return function(native, errors)
   local targets = make("targets", native, lookup, align, mechanisms, stations, grips, planes)
   local transfer, carrying = make("transfer", native, patterns, lookup, arm, player, targets, align, centring, alarms,
     slot_map)
-  local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying)
+  local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying, own.attempt)
   local flippers = make("flippers", native, patterns, lookup, arm, player, mechanisms, alarms)
   local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms)
   local singles = make("commands", native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers,
@@ -70,7 +71,8 @@ return function(native, errors)
     calibrate = make("calibration", native, patterns, lookup, arm, player, targets, align, carrying.carry),
     teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map),
   }
-  for _, words in ipairs({ transfer, singles, tasks.words, make("faults", native, lookup, arm, alarms) }) do
+  local added = make("added", native, lookup, arm, player, targets, align, centring, slot_map, own)
+  for _, words in ipairs({ transfer, singles, tasks.words, added, make("faults", native, lookup, arm, alarms) }) do
     for name, word in pairs(words) do
       commands[name] = word
     end
@@ -82,7 +84,8 @@ return function(native, errors)
 
   ------------------------------------------------------------------------------------------------------- the whole
 
-  local parts = { lookup = lookup, alarms = alarms, targets = targets, tasks = tasks, commands = commands, queries = queries }
+  local parts = { lookup = lookup, alarms = alarms, targets = targets, tasks = tasks, commands = commands, queries = queries,
+    own = own }
 
   parts.reach = make("reach", native, tryout, make("flip_room", native, patterns, lookup, player, tryout))
 

@@ -200,7 +200,7 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
   -- comes out again.
   local function plan_aside(plan)
     local ok, again = pcall(plan_again, plan)
-    if not ok and type(again) == "table" and plan.answers[#plan.answers] then
+    if not ok and type(again) == "table" and again.number and plan.answers[#plan.answers] then
       plan.target.refused = again
       plan.answers[#plan.answers] = false
       return plan_again(plan)

@@ -1,9 +1,10 @@
 -- GET, PUT and MAP for a survey: planned without being played, or played without the checks before them.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, pcall = ipairs, pcall
+local ipairs = ipairs
 
-return function(native, patterns, lookup, arm, player, targets, carrying)
+return function(native, patterns, lookup, arm, player, targets, carrying, attempt)
+  -- `attempt` is pcall, but for faults of a file of patterns: these are no verdict on the cell.
   local tryout = {}
 
   local function plan(word, station, slot, gripper)
@@ -24,11 +25,11 @@ return function(native, patterns, lookup, arm, player, targets, carrying)
   -- or another gripper (an index). Returns the word of the refused one and the error, or nil, nil and theta
   -- before the slot.
   function tryout.rehearse(station, slot, gripper)
-    local can_get, got = pcall(plan, "get", station, slot, gripper)
+    local can_get, got = attempt(plan, "get", station, slot, gripper)
     if not can_get then
       return "GET", got
     end
-    local can_put, put = pcall(plan, "put", station, slot, gripper)
+    local can_put, put = attempt(plan, "put", station, slot, gripper)
     if not can_put then
       return "PUT", put
     end
@@ -37,7 +38,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying)
 
   -- Plans a PUT with this gripper that goes aside by its beams' result. Returns the error if it is refused, or nil.
   function tryout.rehearse_centring(station, slot, gripper)
-    local can, problem = pcall(function()
+    local can, problem = attempt(function()
       player.rehearse(patterns.put, targets.at("put", station, slot, nil, gripper, ""))
     end)
     return not can and problem or nil
@@ -46,7 +47,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying)
   -- Plans a GET that goes aside by a possible ALIGN result. Its way in is as long as `retract`, if that is given.
   -- Returns the error if it is refused, or nil.
   function tryout.rehearse_aside(station, slot, dx, dy, retract)
-    local can, problem = pcall(function()
+    local can, problem = attempt(function()
       local options = { dx = dx, dy = dy, retract = retract }
       player.rehearse(patterns.get, targets.at("get", station, slot, options, lookup.station(station).effector, ""))
     end)
@@ -58,7 +59,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying)
   -- Plays a command like a run, but without the sensors' check for wafers before it; returns the error. Here
   -- and below `cell` is the cell in which lib/survey/survey.c places it.
   function tryout.try(word, station, slot, cell, gripper)
-    local good, problem = pcall(function()
+    local good, problem = attempt(function()
       gripper = gripper or lookup.station(station).effector
       local target = targets.at(word, station, slot, nil, gripper)
       carrying.judge[word](target, player.drive(player.rehearse(patterns[word], target)))
@@ -111,7 +112,7 @@ return function(native, patterns, lookup, arm, player, targets, carrying)
 
   -- Plans a MAP: returns the error, or nil.
   function tryout.rehearse_map(station)
-    local can_map, problem = pcall(function()
+    local can_map, problem = attempt(function()
       player.rehearse(patterns.map, (carrying.map_target(station, nil, lookup.station(station).effector)))
     end)
     return not can_map and problem or nil
