@@ -5,8 +5,8 @@
 #include "../script/wh_module_values.h"
 #include "native.h"
 
-/* native.patterns(path, is_of_script): runs the file; returns its value and its path. A path of the script is relative
- * to the script's folder. */
+/* native.patterns(path, is_of_script): runs the file; returns its value and its path. A path of the script
+ * is relative to the script's folder. */
 static int run_patterns(lua_State *L) {
     wh_sandbox_result_t result;
     const char *path = luaL_checkstring(L, 1);
@@ -22,8 +22,8 @@ static int run_patterns(lua_State *L) {
     return 2;
 }
 
-/* Pushes the innermost place on the stack of `of` in a user's file, "FILE:LINE" or "", and the beginning that a
- * message of Lua has for it, in which a long path is cut. */
+/* Pushes the innermost place on the stack of `of` in a user's file, "FILE:LINE" or "", and the beginning
+ * that a message of Lua has for it, in which a long path is cut. */
 static void push_place(lua_State *L, lua_State *of) {
     char place[WH_SANDBOX_MODULE_BYTES];
     char beginning[LUA_IDSIZE + 20] = "";
@@ -69,7 +69,8 @@ static int finish_call(lua_State *L, int status, lua_KContext context) {
     return lua_gettop(L) - 1;
 }
 
-/* native.call_own(function, ...): true and its results; or false and { error, place, beginning }, see push_place. */
+/* native.call_own(function, ...): true and its results; or false and { error, place, beginning }, see
+ * push_place. */
 static int call_own(lua_State *L) {
     luaL_checktype(L, 1, LUA_TFUNCTION);
     lua_pushboolean(L, true);

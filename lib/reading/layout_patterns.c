@@ -1,5 +1,5 @@
-/* The file of patterns that a layout names. Motion control runs it; here only its text counts, since a cell with
- * another text is another cell. */
+/* The file of patterns that a layout names. Motion control runs it; here only its text counts, since a cell
+ * with another text is another cell. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -12,7 +12,7 @@ local MOST = 1000
 return function(native, lookup, patterns, own_steps)
   local own = {}
 
-  -- What may be replaced.
+  -- The patterns that may be replaced.
   local NAMES = { "get", "put", "swap", "ready", "map", "recover" }
 
   -- Ours, as they are without a file.
@@ -160,12 +160,12 @@ return function(native, lookup, patterns, own_steps)
     return one == other or type(one) == "table" and type(other) == "table" and one[1] == other[1] and one[2] == other[2]
   end
 
-  -- A pattern runs once to be planned, and may run again while it is played. The first time it is kept with the
+  -- A pattern runs once to be planned, and may run again while that plan is played. The first time it is kept with the
   -- target what it asked and what was answered; as long as the answers are those, it must ask the same.
   local function follow(entry, target)
-    local log = target.own_log or {}
+    local log = target.asked[entry.name] or {}
     local count, is_as_before = 0, true
-    target.own_log = log
+    target.asked[entry.name] = log
 
     local function refuse()
       fail(entry.path, "%s: asks for other steps when it runs again (expected the same: it is planned, then played)",

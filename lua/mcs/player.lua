@@ -100,6 +100,9 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
   -- out of reach, and with `judged` for a collision ahead. Returns the plan: the requests in order and, as
   -- `became`, what the pattern returned. It can be played until the next one is made.
   function player.rehearse(pattern, target, judged)
+    for _, part in ipairs({ target, target.get, target.put }) do
+      part.asked = {} -- see lua/mcs/own_patterns.lua
+    end
     return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
   end
 

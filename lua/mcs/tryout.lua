@@ -12,13 +12,14 @@ return function(native, patterns, lookup, arm, player, targets, carrying, attemp
     return player.rehearse(patterns[word], targets.at(word, station, slot, nil, gripper))
   end
 
-  -- The axes in front of the slot that a plan goes to.
+  -- The axes in front of the slot that a plan goes to; those of now if it goes to none, as one's own may.
   local function before_slot(planned)
     for _, request in ipairs(planned) do
       if request.to then
         return request.axes
       end
     end
+    return native.axes()
   end
 
   -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
