@@ -14,7 +14,8 @@ return function(native, lookup, arm, player, targets, align, centring, slot_map,
   end
 
   local function play(name, station, slot, options)
-    local pattern, target = own.find(name), target_of(station, slot, options)
+    local target = target_of(station, slot, options)
+    local pattern = own.find(name)
     arm.check_free()
     slot_map.check_way(target)
     local plan = player.rehearse(pattern, target, true)
