@@ -5,7 +5,7 @@
 
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, rawget, rawset, select = error, ipairs, math, pairs, pcall, rawget, rawset, select
-local setmetatable, tostring, type = setmetatable, tostring, type
+local setmetatable, tostring, type, wh = setmetatable, tostring, type, wh
 
 return function(native)
   -- native.layout: the cell's layout, a value that `cell` sets. Before that a read raises the missing
@@ -23,7 +23,7 @@ return function(native)
     fail(numbers[name], detail)
   end
 
-  local parts = native.module("mcs/parts.lua")(native, wh.errors)
+  local parts = native.module("mcs/parts.lua")(native, wh)
   local lookup, alarms, reach = parts.lookup, parts.alarms, parts.reach
   local commands, queries = parts.commands, parts.queries
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
@@ -160,7 +160,7 @@ return function(native)
   end
 
   local function define()
-    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words)()
+    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words, wh)()
   end
 
   return open_prompt, survey, define, parts.tasks.finish

@@ -3,12 +3,12 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, pairs, pcall = error, ipairs, pairs, pcall
 
-return function(native, errors)
+return function(native, wh)
   local function make(name, ...)
     return native.module(("mcs/%s.lua"):format(name))(...)
   end
 
-  local lookup = make("lookup", native, errors)
+  local lookup = make("lookup", native, wh.errors)
   local alarms = make("alarms", native, lookup)
   local stations = make("stations", native, lookup)
   local centring = make("centring", native, lookup, stations)
@@ -79,7 +79,7 @@ return function(native, errors)
   end
 
   -- The words that only ask.
-  local queries = make("queries", native, lookup)
+  local queries = make("queries", native, lookup, wh)
   queries.station = stations.read
 
   ------------------------------------------------------------------------------------------------------- the whole
