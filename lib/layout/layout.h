@@ -219,6 +219,8 @@ typedef struct {
 typedef struct {
     /* ------------------------------------------------------------------------------------------ the file */
     const char *path;           /* as the caller named it */
+    const char *patterns;       /* the file of patterns that it names, as it is opened; null: none */
+    uint64_t patterns_hash;     /* of that file's text */
     const wh_flow_tool_t *tool; /* a cell of times alone, which has no stations and wafers here; else null */
     /* ------------------------------------------------------------------------------- how a run is judged */
     char tolerance_name[16]; /* the preset's, or "own" */

@@ -37,6 +37,7 @@ const wh_reader_field_t wh_layout_top_fields[] = {
     {"study", "waferhand.study", "what the trials of a study draw", false},
     {"corrections", "waferhand.corrections", "how far a command may go beside what was taught", false},
     {"mapping", "waferhand.mapping", "where the beams of MAP stand and how they judge", false},
+    {"patterns", "string", "a file of patterns, relative to the layout's folder", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_size_fields[] = {

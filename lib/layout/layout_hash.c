@@ -300,5 +300,6 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         hash = wh_latching_hash(&latching, layout->machine.gripper_count, layout->wafer_count,
                                 wh_hash_text(hash, "beams"));
     }
-    return hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
+    hash = hash_vias(hash_doors(hash_grips(hash, layout), layout), layout);
+    return layout->patterns ? wh_hash_word(wh_hash_text(hash, "patterns"), layout->patterns_hash) : hash;
 }

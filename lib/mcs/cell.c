@@ -29,8 +29,7 @@ static const char *push_short_path(lua_State *L, const char *path) {
     return wh_output_is_one_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
 }
 
-/* The layout's path relative to the script's own folder. */
-static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
+const char *wh_mcs_push_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
     const char *slash = strrchr(mcs->script, '/');
     if (name[0] == '/' || !slash) {
         return lua_pushstring(L, name);
@@ -246,7 +245,7 @@ static int set_up_cell(lua_State *L) {
         lua_pushfstring(L, "cell: \"%s\", called while a layout is read (expected in a script alone)", name);
         return lua_error(L);
     }
-    const char *path = push_layout_path(L, mcs, name);
+    const char *path = wh_mcs_push_path(L, mcs, name);
     evaluate_layout(L, mcs, path);
     wh_layout_t *layout = wh_layout_read(L, path);
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) == LUA_TTABLE) {

@@ -235,12 +235,15 @@ static double time_to_vent(const wh_vacuum_config_t *vacuum) {
     return vacuum->vent > 0 ? -vacuum->vent * wh_ln(vacuum->release) : 0;
 }
 
-/* { path, slice, sampled, homed, seat, thickness, vent, tolerance, robots in order, corrections: the
- * largest ones, by a command's field, the turn in degrees, grippers and doors in order, stations by
- * name }: lengths in mm, other angles in rad, times in s. */
+/* { path, patterns (or nil), slice, sampled, homed, seat, thickness, vent, tolerance, robots in order,
+ * corrections: the largest ones, by a command's field, the turn in degrees, grippers and doors in order,
+ * stations by name }: lengths in mm, other angles in rad, times in s. */
 void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);
+    if (layout->patterns) {
+        wh_lua_set_text(L, "patterns", layout->patterns);
+    }
     wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
     wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
     wh_lua_set_boolean(L, "homed", layout->homed);

@@ -92,6 +92,9 @@ void wh_mcs_push_edge_sensor(lua_State *L, const wh_layout_t *layout, const wh_s
 /* Pushes { offset, zero, gain, latency }. */
 void wh_mcs_push_sensor_error(lua_State *L, const wh_sensor_error_t *error);
 
+/* Pushes the path of a file that the script names: relative to the script's own folder. */
+const char *wh_mcs_push_path(lua_State *L, const wh_mcs_t *mcs, const char *name);
+
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_align_functions[];
 extern const luaL_Reg wh_mcs_arrival_functions[];
@@ -107,6 +110,7 @@ extern const luaL_Reg wh_mcs_edge_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_job_functions[];
 extern const luaL_Reg wh_mcs_lane_functions[];
+extern const luaL_Reg wh_mcs_own_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];

@@ -35,6 +35,7 @@ void wh_layout_read_limits(wh_reader_t *reader, wh_limits_t *limits);
 double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback);
 
 /* Each reads its fields from the layout's top table, at which the reader is. */
+void wh_layout_read_patterns(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);

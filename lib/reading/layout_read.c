@@ -259,6 +259,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
         stand_in(&reader, layout);
     }
     wh_reader_refuse_unknown(&reader, wh_layout_top_fields);
+    wh_layout_read_patterns(&reader, layout);
     read_checks(&reader, layout);
     wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);

@@ -36,7 +36,7 @@ local BY_ARGUMENT = { CSTP = true, MTRS = true }
 
 -- The most arguments of a command. Commands that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
-  INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
+  INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
   MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
   RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 13, RAXS = 0, RLOC = 1, RVER = 0,
@@ -230,6 +230,10 @@ return {
     ["MTRS,P"] = { does = "PUT", run = transfer("PUT", "") },
     ["MTRS,E"] = { does = "SWAP", run = transfer("SWAP", "put_") },
     MTRN = { does = "CONTINUE" },
+    MPAT = { does = "PATTERN", run = function(request)
+      local fields = request.arguments
+      return ("PATTERN %s %s %d"):format(host.typed(fields[1] or ""), host.station(fields[2] or ""), host.slot(fields[3] or ""))
+    end },
     MRDY = { does = "READY", run = transfer("READY", "") },
     MRTR = { does = "RECOVER" },
     MMAP = { does = "MAP", run = at_station("MAP"), answer = keep_map },

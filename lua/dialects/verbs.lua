@@ -25,7 +25,7 @@ end
 
 -- The most arguments of a verb. Verbs that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
-  ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
+  ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
   TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
   ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
   GVER = 0,
@@ -183,6 +183,10 @@ return {
     EXCH = { does = "SWAP", run = transfer("SWAP", "put_") },
     CONT = { does = "CONTINUE" },
     WAIT = { does = "WAIT", run = as_typed("WAIT") },
+    PLAY = { does = "PATTERN", run = function(request)
+      local fields = request.arguments
+      return ("PATTERN %s %s %d"):format(host.typed(fields[1] or ""), host.station(fields[2] or ""), host.slot(fields[3] or ""))
+    end },
     GOTO = { does = "READY", run = transfer("READY", "") },
     RETR = { does = "RECOVER" },
     WMAP = { does = "MAP", run = at_station("MAP"), answer = function(request, result)

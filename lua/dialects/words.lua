@@ -230,6 +230,11 @@ return {
     PLACE = { does = "PUT", run = with_slot("PUT") },
     SWAP = { does = "SWAP", run = with_slot("SWAP") },
     GOTO = { does = "READY", run = with_slot("READY") },
+    PLAY = { does = "PATTERN", run = function(request)
+      local text, values = options(request.words, 4, OPTIONS)
+      return ("PATTERN %s %s %d %s"):format(host.typed(request.words[2] or ""), host.station(request.words[3] or ""),
+        values.SLOT and host.slot(values.SLOT) or 1, text)
+    end },
     GO = { does = "CONTINUE" },
     MAP = { does = "MAP", run = with_station("MAP"), answer = map },
     TEACH = { does = "TEACH", run = teach, answer = keep },

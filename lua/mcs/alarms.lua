@@ -105,7 +105,7 @@ return function(native, lookup)
   local broken = {}
 
   -- alarms.play(segment) plays a single segment; alarms.robot() is the robot of the running command, or nil;
-  -- alarms.bearer() is that robot, or the task. lua/mcs/commands.lua sets all of them.
+  -- alarms.bearer() is that robot, or the task. lua/mcs/parts.lua sets all of them.
 
   function alarms.arm(error)
     if not by_number[error] then

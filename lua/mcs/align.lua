@@ -7,7 +7,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm, mechanisms)
+return function(native, patterns, lookup, arm, player, mechanisms)
   local align = {}
 
   local TURN = 2 * math.pi
@@ -94,7 +94,7 @@ return function(native, patterns, lookup, arm, mechanisms)
 
   -- Plays a single segment; `lost_as`: the error if the wafer is lost in it.
   local function play(segment, lost_as)
-    arm.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
+    player.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
   end
 
   local function turn_to(station, angle, lost_as)

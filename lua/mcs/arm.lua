@@ -1,12 +1,11 @@
--- The controller's knowledge of its arm, and the steps of a command. A command is recorded, planned to its
--- end before anything moves, and played. It is held in a phase if it asks for that, and refused while the
--- arm may stand in a place where it must not begin.
+-- The controller's knowledge of its arms: which command runs and what it needs, where an arm stands, and whether a
+-- command may begin there. lua/mcs/ways.lua says how it goes, lua/mcs/player.lua plans and plays that.
 
 -- Local copies: a script may set globals of these names.
-local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
+local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 local tostring, type = tostring, type
 
-return function(native, lookup, centring, tasks, alarms)
+return function(native, lookup, tasks, alarms)
   local arm = {}
 
   -- By robot:
@@ -20,22 +19,24 @@ return function(native, lookup, centring, tasks, alarms)
   --          and may give it up
   local states = {}
 
-  local function state_of(robot)
+  -- The state of a robot, without one of the running command's.
+  function arm.state(robot)
+    robot = robot or tasks.current().robot or 1
     states[robot] = states[robot] or {}
     return states[robot]
-  end
-
-  -- The state of the running command's robot.
-  function arm.state()
-    return state_of(tasks.current().robot or 1)
   end
 
   -- By task: its running command, and the door that this goes through, if any.
   local running, running_door = {}, {}
 
+  -- The running command's text.
+  function arm.running()
+    return running[tasks.current()]
+  end
+
   -- Gives up like a STOP: the arm must then be brought out.
   local function give_up(robot)
-    local state = state_of(robot)
+    local state = arm.state(robot)
     if state.held then
       state.stopped = state.stopped or state.held.text
       state.held = nil
@@ -44,8 +45,8 @@ return function(native, lookup, centring, tasks, alarms)
   end
 
   -- The robot's held plan, if there is one.
-  local function find_held(robot)
-    local state = state_of(robot)
+  function arm.find_held(robot)
+    local state = arm.state(robot)
     if state.held and not native.is_held(robot) then
       give_up(robot)
     end
@@ -53,10 +54,10 @@ return function(native, lookup, centring, tasks, alarms)
   end
 
   -- The robots with a held plan.
-  local function find_holding()
+  function arm.find_holding()
     local holding = {}
     for robot in ipairs(native.layout.robots) do
-      holding[#holding + 1] = find_held(robot) and robot or nil
+      holding[#holding + 1] = arm.find_held(robot) and robot or nil
     end
     return holding
   end
@@ -140,7 +141,7 @@ return function(native, lookup, centring, tasks, alarms)
   -- Needs the robot, and the station in which it stands.
   function arm.needs_stand(options)
     local needs = arm.needs(true, nil, options)
-    local inside = state_of(needs.robot).inside
+    local inside = arm.state(needs.robot).inside
     local station = inside and native.layout.stations[inside.station]
     if station then
       needs[1] = STATION:format(inside.station)
@@ -225,7 +226,7 @@ return function(native, lookup, centring, tasks, alarms)
     -- no part in this one.
     local had_part = not tasks.has_waited() and (needs == nil or needs.robot or not native.has_jobs())
     if number == lookup.errors.STOPPED.number and had_part then
-      for _, robot in ipairs(task.robot and { task.robot } or find_holding()) do
+      for _, robot in ipairs(task.robot and { task.robot } or arm.find_holding()) do
         give_up(robot)
       end
       state.stopped = state.stopped or marks(task) and text or nil
@@ -238,8 +239,8 @@ return function(native, lookup, centring, tasks, alarms)
   -- The held plan that is in the way. A command without a robot waits for all robots; at one of
   -- several ports for none.
   local function find_in_way()
-    local robot = tasks.current().robot or not native.has_jobs() and find_holding()[1]
-    return robot and find_held(robot)
+    local robot = tasks.current().robot or not native.has_jobs() and arm.find_holding()[1]
+    return robot and arm.find_held(robot)
   end
 
   local function run_free(action, ...)
@@ -304,420 +305,20 @@ return function(native, lookup, centring, tasks, alarms)
     end
   end
 
+  -- The index of the first axis of the robot that carries this gripper.
+  function arm.first_axis(gripper)
+    return native.layout.robots[native.layout.grippers[gripper].robot].first
+  end
+
   -- RECOVER and HOME have brought the arm out.
   function arm.set_free()
     local state = arm.state()
     state.inside, state.stopped = nil, nil
   end
 
-  --------------------------------------------------------------------------------------- planning and playing
-
-  -- The index of the first axis of the robot that carries this gripper.
-  function arm.first_axis(gripper)
-    return native.layout.robots[native.layout.grippers[gripper].robot].first
-  end
-
-  -- With two arms or wrists, moves the one that does not go to the point home.
-  local function fold_other(request)
-    local gripper = native.layout.grippers[request.to.gripper]
-    local robot = native.layout.robots[gripper.robot]
-    if robot.arms then
-      local other = robot.arms[3 - gripper.arm]
-      request.axes[other] = robot.home[other - robot.first + 1]
-    end
-  end
-
-  -- The turn nearest to `near` of an angle.
-  local function nearest_turn(angle, near)
-    return angle + 2 * math.pi * math.floor((near - angle) / (2 * math.pi) + 0.5)
-  end
-
-  -- A station's point in the form for native.plan, for a robot that goes there with `gripper`. Axes that the point does
-  -- not give are as in `axes`. With two arms or wrists it gives the axis of this gripper.
-  local function via_point(via, robot, gripper, axes)
-    local point, arm_number = { blend = via.blend }, native.layout.grippers[gripper].arm
-    for index in ipairs(robot.home) do
-      point[index] = via[index] or axes[robot.first + index - 1]
-    end
-    if robot.arms and arm_number == 2 then
-      local first, second = robot.arms[1] - robot.first + 1, robot.arms[2] - robot.first + 1
-      point[first], point[second] = axes[robot.arms[1]], via[first] or axes[robot.arms[2]]
-    end
-    if robot.headings and via[1] then
-      point[1] = nearest_turn(via[1] - robot.headings[arm_number], axes[robot.first])
-    end
-    return point
-  end
-
-  -- The list of a robot's points at a station; empty for no station, nil.
-  local function vias_of(robot, station)
-    return station and native.layout.stations[station].vias[robot] or {}
-  end
-
-  -- True if the robot has points at the station that it stands in front of or goes to: it then
-  -- moves by them.
-  local function has_points(robot, front, station)
-    return (not front or front.station ~= station) and #vias_of(robot, front and front.station) + #vias_of(robot, station) > 0
-  end
-
-  -- A robot's points on the way from the station that it stands in front of (`front`) to the next one (`goal`), or
-  -- nil: back along the points of the first, then along those of the second. Both are { station, gripper }, or nil for
-  -- elsewhere; `there` are the axes at the end.
-  local function vias_between(robot, front, goal, there)
-    local here, points, own = native.axes(), { robot = robot }, native.layout.robots[robot]
-    if not has_points(robot, front, goal and goal.station) then
-      return nil
-    end
-    local back = vias_of(robot, front and front.station)
-    for index = #back, 1, -1 do
-      points[#points + 1] = via_point(back[index], own, front.gripper, here)
-    end
-    for _, via in ipairs(vias_of(robot, goal and goal.station)) do
-      points[#points + 1] = via_point(via, own, goal.gripper, there)
-    end
-    return points
-  end
-
-  -- True if the running command's robot moves home by points.
-  function arm.goes_home_by_points()
-    return has_points(tasks.current().robot or 1, arm.state().front, nil)
-  end
-
-  -- The axes with both arms retracted, if the robot turns on its way to the point and has no points
-  -- for that.
-  local function retracted(request, front)
-    local number = native.layout.grippers[request.before.gripper].robot
-    local robot, axes = native.layout.robots[number], native.axes()
-    if has_points(number, front, request.target.station) then
-      return axes
-    end
-    local there = native.inverse { to = request.before, target = request.target, where = request.where }
-    for _, axis in ipairs(math.abs(there[robot.first] - axes[robot.first]) > 1e-9 and robot.arms or {}) do
-      axes[axis] = robot.home[axis - robot.first + 1]
-    end
-    return axes
-  end
-
-  -- The station in front of which the arm stands after a request; nil: elsewhere.
-  local function in_front(request)
-    local target = request.target
-    return target and { station = target.station, gripper = target.gripper }
-  end
-
-  -- The segment of a request, with the axes for the gripper's goal. Detour 1 turns theta the longer way
-  -- round, detour 2 the shorter way plus a whole turn. `front` is the station in front of which the arm
-  -- stands.
-  local function segment_of(request, target, front)
-    if request.before then
-      request.axes = retracted(request, front)
-    elseif request.to then
-      request.axes = native.inverse(request)
-      fold_other(request)
-      if request.detour then
-        local first = arm.first_axis(request.to.gripper)
-        local theta = request.axes[first]
-        local is_left = theta > native.axes()[first]
-        request.axes[first] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
-      end
-      request.via = request.target
-        and vias_between(native.layout.grippers[request.to.gripper].robot, front, in_front(request), request.axes) or nil
-    elseif request.homeward then
-      request.via = vias_between(tasks.current().robot or 1, front, nil, request.axes)
-    elseif request.line then
-      request.gripper = request.gripper or request.target and request.target.gripper or target.gripper
-    elseif request.moves then
-      request.axes = native.axes()
-      for axis, at in pairs(request.moves) do
-        request.axes[axis] = at
-      end
-    end
-    return request
-  end
-
-  -- The answer to a pattern while it is only planned: a segment runs to its end, a question has its own
-  -- assumption.
-  local function assumed(request)
-    return request.assume == nil or request.assume
-  end
-
-  -- Returns the pattern's requests, one for each call, with all that the pattern has `told` of passive
-  -- pads before it. `detours`: the detour of each way to a point, if any.
-  local function requests_of(pattern, detours)
-    local step, ways, told = coroutine.wrap(pattern), 0, {}
-    return function(answer)
-      local request = step(answer)
-      while type(request) == "table" and request.carries do
-        told[request.carries] = request.wafer
-        request = step()
-      end
-      if type(request) == "table" then
-        request.told = told
-        if request.to then
-          ways = ways + 1
-          request.way, request.detour = ways, detours[ways]
-        end
-      end
-      return request
-    end
-  end
-
-  -- Repeats a plan's pattern with its answers so far. Returns the function that steps it, and its next
-  -- request or its result.
-  local function forward(plan)
-    local step = requests_of(plan.pattern, plan.detours)
-    local request = step(plan.target)
-    for _, answer in ipairs(plan.answers) do
-      request = step(answer)
-    end
-    return step, request
-  end
-
-  local function plan_through(plan)
-    local step, request = forward(plan)
-    local front = arm.state().front
-    while type(request) == "table" do
-      local is_segment = request.assume == nil and not request.hold
-      if request.centre then
-        centring.check_room(request.centre)
-      end
-      plan.way = request.way or plan.way
-      request.planned = is_segment and native.plan(segment_of(request, plan.target, front)) or nil
-      front = request.to and in_front(request) or front
-      plan[#plan + 1] = request
-      request = step(assumed(request))
-    end
-    native.look_on()
-    plan.became = request
-  end
-
-  local function try(begun, judged, detours)
-    local plan = { pattern = begun.pattern, target = begun.target, answers = begun.answers, detours = detours }
-    native.rehearse(true, judged)
-    local ok, problem = pcall(plan_through, plan)
-    native.rehearse(false)
-    return plan, not ok and problem or nil
-  end
-
-  -- The shorter way to a station may end so near to the end of an axis's travel that the way in leaves it.
-  -- Then the longer way is tried, and last the one with a whole turn.
-  local function can_go_round(plan, problem)
-    return type(problem) == "table" and problem.number == lookup.errors.LIMIT_EXCEEDED.number and plan.way
-      and plan.detours[plan.way] ~= 2
-  end
-
-  -- Plans the rest of a begun pattern.
-  local function plan_ahead(begun, judged)
-    local detours = {}
-    for way, detour in pairs(begun.detours) do
-      detours[way] = detour
-    end
-    local plan, problem = try(begun, judged, detours)
-    local first = problem
-    while problem and can_go_round(plan, problem) do
-      detours[plan.way] = (detours[plan.way] or 0) + 1
-      plan, problem = try(begun, judged, detours)
-    end
-    if problem then
-      error(first, 0)
-    end
-    return plan
-  end
-
-  -- Plans all of a pattern from where the arm stands, without playing it; raises an error if something is
-  -- out of reach, and with `judged` for a collision ahead. Returns the plan: the requests in order and, as
-  -- `became`, what the pattern returned. It can be played until the next one is made.
-  function arm.rehearse(pattern, target, judged)
-    return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
-  end
-
-  -- The state of an edge grip's plunger. A target keeps the first state that is not the expected "open".
-  local function ask_plunger(request)
-    local does, s, excess = native.grip(request.grip)
-    local target = request.note
-    if target and not (does == "open" and request.assume == "open") and not target.plunger then
-      target.plunger = { does = does, s = s, excess = excess, is_on = native.sensor(request.grip) }
-    end
-    return does
-  end
-
-  -- True if the robot's arm leaves its place: chucks and doors are not its own, and a flip turns the blade without
-  -- leaving.
-  local function goes_away(request, robot)
-    local now, goes = native.axes(), request.line ~= nil
-    for _, axis in ipairs(request.axes and native.layout.robots[robot or tasks.current().robot or 1].axes or {}) do
-      goes = goes or axis.name ~= "flip" and request.axes[axis.index] ~= now[axis.index]
-    end
-    return goes
-  end
-
-  -- Plays a segment or asks a question. `target.watched`: a wafer lost on the way is an error after the
-  -- segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows whether a wafer is on a gripper's pads,
-  -- whatever its sensor says; in a real tool someone would look.
-  local function perform(request, target)
-    if request.centre then
-      return centring.answer(request.centre)
-    elseif request.is_on then
-      return native.sensor(request.is_on)
-    elseif request.is_loaded then
-      return native.held(request.is_loaded) ~= nil
-    elseif request.grip then
-      return ask_plunger(request)
-    end
-    local state = target.robot and state_of(target.robot) or arm.state()
-    if request.enters then
-      state.inside, state.since = request.enters, running[tasks.current()]
-      centring.begin(request.enters)
-    end
-    alarms.begin_motion(running[tasks.current()])
-    local segment = request.planned or segment_of(request, target, state.front)
-    if request.to or request.homeward or not request.target and goes_away(request, target.robot) then
-      state.front = nil   -- a stopped one ends somewhere between
-    end
-    local ended, lost = tasks.play(segment)
-    if request.leaves then
-      state.inside = nil
-    end
-    if request.to or request.leaves then
-      state.front = in_front(request)
-    end
-    if lost and lost ~= request.lets_go and target.watched then
-      local name, at = native.layout.grippers[lost].name, request.target
-      local way = request.to and "on the way to" or request.where
-      local where = at and (" %s %s slot %d"):format(way, at.station, at.slot) or ""
-      native.fail(target.lost_as or "WAFER_LOST_ON_WAY", ("the sensor of %s went off%s"):format(name, where))
-    end
-    return ended
-  end
-
-  -- The grippers whose sensors are on.
-  local function sensors_on()
-    local on = {}
-    for index in ipairs(native.layout.grippers) do
-      on[index] = native.sensor(index) or nil
-    end
-    return on
-  end
-
-  -- Holds the plan: the command ends here, but its plan does not.
-  local function hold(plan, phase)
-    plan.answers[#plan.answers + 1] = true
-    plan.phase, plan.text, plan.on = phase, plan.text or running[tasks.current()], sensors_on()
-    arm.state().held = plan
-    native.hold(tasks.current().robot, plan.text, phase)
-  end
-
-  -- Performs a request and keeps its answer; nil if it is held there instead.
-  local function answer_to(plan, request)
-    if request.hold then
-      return hold(plan, request.hold)
-    end
-    local answer = perform(request, plan.target)
-    plan.answers[#plan.answers + 1] = answer
-    return answer
-  end
-
-  -- Plans the rest again after an answer that was not assumed: the beams send the blade to another place.
-  local function plan_again(plan)
-    local again = plan_ahead(plan, true)
-    again.text, again.conclude = plan.text, plan.conclude
-    return again
-  end
-
-  -- Plans again after the beams have given the wafer's place. If the blade cannot go aside so far, the wafer
-  -- comes out again.
-  local function plan_aside(plan)
-    local ok, again = pcall(plan_again, plan)
-    if not ok and type(again) == "table" and plan.answers[#plan.answers] then
-      plan.target.refused = again
-      plan.answers[#plan.answers] = false
-      return plan_again(plan)
-    end
-    return ok and again or error(again, 0)
-  end
-
-  local function finish(plan, became)
-    if plan.conclude then
-      plan.conclude(became)
-    end
-    return became
-  end
-
-  -- Goes on after an answer that was not assumed: plans and plays again from there.
-  local function go_on(plan)
-    local step, request = forward(plan)
-    while type(request) == "table" do
-      local answer = answer_to(plan, request)
-      if answer == nil then
-        return nil
-      end
-      request = step(answer)
-    end
-    return finish(plan, request)
-  end
-
-  -- Plays what was planned, as long as the answers are the assumed ones. The result goes to `conclude`, if
-  -- given, and is returned. It is nil if the command is held before its end; a later CONTINUE then ends it.
-  function arm.drive(plan, conclude)
-    plan.conclude = conclude
-    for _, request in ipairs(plan) do
-      local answer = answer_to(plan, request)
-      if answer == nil then
-        return nil
-      elseif request.centre then
-        return arm.drive(plan_aside(plan), conclude)
-      elseif answer ~= assumed(request) then
-        return go_on(plan)
-      end
-    end
-    return finish(plan, plan.became)
-  end
-
-  function arm.play(pattern, target)
-    return arm.drive(arm.rehearse(pattern, target, true))
-  end
-
-  ------------------------------------------------------------------------------------------------------ phases
-
-  -- Checks that no wafer was lost while its command was held: no segment of the command has seen such a loss.
-  local function check_kept(begun)
-    for index, gripper in ipairs(begun.target.watched and native.layout.grippers or {}) do
-      if begun.on[index] and not native.sensor(index) then
-        local text = "the sensor of %s went off while %s was held: STOP comes first"
-        native.fail("WAFER_LOST_ON_WAY", text:format(gripper.name, begun.text))
-      end
-    end
-  end
-
-  local function go_on_held()
-    local robot = tasks.current().robot
-    local begun = robot and find_held(robot)
-    if not begun then
-      native.fail("NOT_IN_PHASE", "none is held")
-    end
-    check_kept(begun)
-    local plan = plan_ahead(begun, true)
-    plan.text, arm.state().held = begun.text, nil
-    native.release(robot)
-    arm.drive(plan, begun.conclude)
-    return plan.target.centred
-  end
-
-  -- Continues the held command, to its next hold or its end; for a PUT that centres it returns the beams'
-  -- result. If it is refused before anything moves, it is held as before. With several robots it is the one
-  -- that the word is bound to, or the only one with a held command.
-  function arm.continue()
-    local holding = find_holding()
-    local bound = lookup.bound()
-    local robot = bound or #holding == 1 and holding[1] or not lookup.has_several() and 1 or nil
-    local options = robot and { robot = native.layout.robots[robot].name }
-    local needs = robot and find_held(robot) and arm.needs_stand(options)
-      or arm.needs(robot ~= nil or #holding > 0, nil, options)
-    return arm.run(needs, "CONTINUE", go_on_held)
-  end
-
   -- Gives up held commands: of the robot that the word is bound to, or of all.
   function arm.stop()
-    for _, robot in ipairs(find_holding()) do
+    for _, robot in ipairs(arm.find_holding()) do
       if not lookup.bound() or lookup.bound() == robot then
         arm.run(arm.needs(true, nil, { robot = native.layout.robots[robot].name }), "STOP", function()
           give_up(robot)
@@ -766,7 +367,7 @@ return function(native, lookup, centring, tasks, alarms)
 
   -- Returns a function that restores the arm's present state, and one that tells whether it is unchanged.
   function arm.keep()
-    find_holding()
+    arm.find_holding()
     local kept, insides = copy_states(states), {}
     for robot, state in pairs(states) do
       insides[robot] = state.inside
@@ -775,7 +376,7 @@ return function(native, lookup, centring, tasks, alarms)
       states = copy_states(kept)
     end, function()
       for robot in ipairs(native.layout.robots) do
-        local was, is = kept[robot] or {}, state_of(robot)
+        local was, is = kept[robot] or {}, arm.state(robot)
         if is.inside ~= insides[robot] or is.stopped ~= was.stopped or is.homed ~= was.homed then
           return false
         end

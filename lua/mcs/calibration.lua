@@ -5,7 +5,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, patterns, lookup, arm, targets, align, carry)
+return function(native, patterns, lookup, arm, player, targets, align, carry)
   -- The wafer's way by default, mm, and its deviation when a robot carries it, mm.
   local WAY, SD = 14, 0.001
 
@@ -41,8 +41,8 @@ return function(native, patterns, lookup, arm, targets, align, carry)
   local function check_ways(station, way, robot)
     for _, side in ipairs { -way / 2, way / 2 } do
       local there, back = { dx = side, robot = robot }, { dx = side, centre = false, robot = robot }
-      arm.rehearse(patterns.get, targets.at("get", station.name, 1, there, nil, ""), true)
-      arm.rehearse(patterns.put, targets.at("put", station.name, 1, back, nil, ""), true)
+      player.rehearse(patterns.get, targets.at("get", station.name, 1, there, nil, ""), true)
+      player.rehearse(patterns.put, targets.at("put", station.name, 1, back, nil, ""), true)
     end
   end
 

@@ -1,48 +1,15 @@
--- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
+-- The operator's words for single moves, and for STOP and what follows it. Those that carry wafers are in
+-- lua/mcs/transfer.lua.
 
 -- Local copies: a script may set globals of these names.
-local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
+local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, patterns, lookup, alarms)
-  local stations = native.module("mcs/stations.lua")(native, lookup)
-  local centring = native.module("mcs/centring.lua")(native, lookup, stations)
-  local tasks = native.module("mcs/tasks.lua")(native, lookup)
-  local arm = native.module("mcs/arm.lua")(native, lookup, centring, tasks, alarms)
-  local mechanisms = native.module("mcs/mechanisms.lua")(native, patterns, lookup, arm)
-  local align = native.module("mcs/align.lua")(native, patterns, lookup, arm, mechanisms)
-  local targets = native.module("mcs/targets.lua")(native, lookup, align, mechanisms, stations)
-
-  function lookup.bound()
-    return tasks.current().bound or native.asked_robot()
-  end
-
-  function lookup.bound_station()
-    return tasks.current().station
-  end
-
-  lookup.phase, lookup.last_robot = arm.phase, arm.last_robot
-
-  local slot_map = native.module("mcs/slot_map.lua")(native)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets, align, centring,
-    alarms, slot_map)
-
-  ----------------------------------------------------------------------------------------------- single moves
+return function(native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers, stations)
+  local commands = {}
 
   -- Plays a segment. A wafer lost meanwhile is an error, except on the way out of trouble.
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = true, gripper = arm.leader() })
-  end
-
-  function alarms.robot()
-    return tasks.current().robot
-  end
-
-  function alarms.bearer()
-    return alarms.robot() or tasks.current()
-  end
-
-  function alarms.play(segment)
-    arm.play(patterns.single, { segment = segment })
+    player.play(patterns.single, { segment = segment, watched = true, gripper = arm.leader() })
   end
 
   local function rotate(station_name, degrees)
@@ -56,27 +23,6 @@ return function(native, patterns, lookup, alarms)
 
   function commands.rotate(station, degrees)
     arm.move(arm.needs(false, station), lookup.command("ROTATE", station, degrees), rotate, station, degrees)
-  end
-
-  commands.edge_scan, commands.align, commands.lift = align.edge_scan, align.align, mechanisms.lift
-
-  local doors = native.module("mcs/doors.lua")(native, patterns, lookup, arm, tasks, alarms)
-  commands.open, commands.close = doors.open, doors.close
-
-  local flippers = native.module("mcs/flippers.lua")(native, patterns, lookup, arm, mechanisms, alarms)
-
-  commands.flip_room = native.module("mcs/flip_room.lua")(native, patterns, lookup, arm, {
-    before = commands.before, try = commands.try })
-  commands.before, commands.try = nil, nil
-  commands.centring = centring.last
-  commands.calibrate = native.module("mcs/calibration.lua")(native, patterns, lookup, arm, targets, align,
-    commands.carry)
-  commands.carry = nil
-  commands.teach = native.module("mcs/teaching.lua")(native, patterns, lookup, arm, targets, stations, slot_map)
-
-  -- station("A"): the axes' places in its slot 1, degrees and mm.
-  function commands.station(name, options)
-    return stations.read(name, options)
   end
 
   -- set_station("A", { theta = , r = , z = , yaw = }): the station is where the gripper would be
@@ -219,7 +165,7 @@ return function(native, patterns, lookup, alarms)
       target.stands = native.gripper_pose(target.gripper).r
       target.loaded = native.sensor(target.gripper)
       target.watched = false
-      arm.play(patterns.recover, target)
+      player.play(patterns.recover, target)
     end
     arm.set_free()
   end
@@ -231,17 +177,17 @@ return function(native, patterns, lookup, alarms)
   local function home()
     recover()
     local axes, robot = native.axes(), native.layout.robots[tasks.current().robot]
-    local retracts = robot.retracts and not arm.goes_home_by_points()
+    local retracts = robot.retracts and not ways.goes_home_by_points()
     for _, axis in ipairs(retracts and robot.arms or {}) do
       axes[axis] = robot.home[axis - robot.first + 1]
     end
     if retracts then
-      arm.play(patterns.single, { segment = { axes = axes } })
+      player.play(patterns.single, { segment = { axes = axes } })
     end
     for axis, position in ipairs(robot.home) do
       axes[robot.first + axis - 1] = position
     end
-    arm.play(patterns.single, { segment = { axes = axes, homeward = true } })
+    player.play(patterns.single, { segment = { axes = axes, homeward = true } })
     arm.state().homed = true
   end
 
@@ -264,7 +210,7 @@ return function(native, patterns, lookup, alarms)
 
   -- Continues a GET, PUT or SWAP that its `stop` holds in a phase; returns the PUT's result.
   function commands.continue()
-    return arm.continue()
+    return player.continue()
   end
 
   -- Gives up the command that is held in a phase, like a STOP from outside; without one it does nothing.
@@ -272,46 +218,5 @@ return function(native, patterns, lookup, alarms)
     arm.stop()
   end
 
-  -- Keeps motion control's knowledge: returns a function that puts it back, and one that tells whether
-  -- the arm is unchanged.
-  function commands.keep()
-    local put_slots_back, put_found_back, put_broken_back = slot_map.keep(), align.keep(), alarms.keep()
-    local put_arm_back, is_arm_as_was = arm.keep()
-    local put_stations_back, are_stations_as_were = stations.keep()
-    return function()
-      put_slots_back()
-      put_found_back()
-      put_broken_back()
-      put_arm_back()
-      put_stations_back()
-    end, function()
-      return is_arm_as_was() and are_stations_as_were()
-    end
-  end
-
-  -- Runs a command that moves nothing.
-  function commands.run(text, action, ...)
-    return arm.run(nil, text, action, ...)
-  end
-
-  -- Calls a word for one of several robots: bound(index, word, ...).
-  function commands.bind(index, word, ...)
-    local task = tasks.current()
-    local function restore(before, ok, ...)
-      task.bound = before
-      if not ok then
-        error((...), 0)
-      end
-      return ...
-    end
-    local before = task.bound
-    task.bound = index
-    return restore(before, pcall(word, ...))
-  end
-
-  for name, word in pairs(tasks.words) do
-    commands[name] = word
-  end
-  commands.finish, commands.serve, commands.is_any_alive = tasks.finish, tasks.serve, tasks.is_any_alive
   return commands
 end

@@ -3,12 +3,12 @@
 -- commands look up.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, pairs, select, table, wh = ipairs, pairs, select, table, wh
+local ipairs, pairs, select, table = ipairs, pairs, select, table
 
 -- The type of all other fields of a table: a misspelt field then has a type that no value fits.
 local UNKNOWN = "waferhand.no_such_field"
 
-return function(native, lookup, targets, words)
+return function(native, lookup, targets, words, wh)
   local lines = {}
 
   local function add(text, ...)

@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, pairs, pcall = ipairs, pairs, pcall
 
-return function(native, patterns, lookup, arm, tasks, alarms)
+return function(native, patterns, lookup, arm, player, tasks, alarms)
   local doors = {}
 
   -- The stations that have this door, for any robot.
@@ -29,7 +29,7 @@ return function(native, patterns, lookup, arm, tasks, alarms)
   end
 
   local function await(door, index, word)
-    local arrived = arm.play(patterns.arrive, { segment = { arrives = { door = index }, timeout = door.timeout } })
+    local arrived = player.play(patterns.arrive, { segment = { arrives = { door = index }, timeout = door.timeout } })
     if not arrived then
       local _, at = native.door(index)
       local text = "%s is not %s within %.10g s: it has come to %.1f of %.10g mm"
@@ -46,7 +46,7 @@ return function(native, patterns, lookup, arm, tasks, alarms)
     local to = word == "open" and door.travel or 0
     alarms.break_door(word == "open" and "OPEN" or "CLOSE", door.name)
     if native.axes()[door.axis] ~= to then
-      arm.play(patterns.single, { segment = { moves = { [door.axis] = to } } })
+      player.play(patterns.single, { segment = { moves = { [door.axis] = to } } })
     end
     await(door, index, word)
   end

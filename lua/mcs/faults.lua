@@ -4,7 +4,9 @@
 local error, ipairs, math, pairs, pcall, table = error, ipairs, math, pairs, pcall, table
 local tostring, type = tostring, type
 
-return function(native, commands, run, lookup, alarms)
+return function(native, lookup, arm, alarms)
+  local words = {}
+
   local function text_of(value)
     if type(value) == "table" then
       local parts = {}
@@ -40,8 +42,8 @@ return function(native, commands, run, lookup, alarms)
 
   -- The fault begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is
   -- cleared. A fault with an `error` waits for a command. Returns its number.
-  function commands.fault(description)
-    return run(describe(description), function()
+  function words.fault(description)
+    return arm.run(nil, describe(description), function()
       if type(description) == "table" and description.error ~= nil then
         return arm_error(description)
       end
@@ -54,13 +56,15 @@ return function(native, commands, run, lookup, alarms)
   end
 
   -- The fault ends with the next slice.
-  function commands.clear_fault(number)
+  function words.clear_fault(number)
     local whole = type(number) == "number" and math.tointeger(number)
-    run("CLEAR " .. tostring(whole or number), function()
+    arm.run(nil, "CLEAR " .. tostring(whole or number), function()
       if not whole then
         native.fail("BAD_ARGUMENT", ("number: %s (expected a fault's number)"):format(lookup.quote(number)))
       end
       native.clear_fault(whole)
     end)
   end
+
+  return words
 end

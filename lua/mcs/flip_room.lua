@@ -4,14 +4,14 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pcall, tostring, type = ipairs, math, pcall, tostring, type
 
-return function(native, patterns, lookup, arm, transfer)
+return function(native, patterns, lookup, player, tryout)
   local room = {}
 
   -- By robot: FLIP at home has no room; FLIP at home takes too long to be played.
   local has_none_at_home, is_slow = {}, {}
 
   local function plan_turn(axis)
-    return arm.rehearse(patterns.single, { segment = { moves = { [axis] = math.pi } } })
+    return player.rehearse(patterns.single, { segment = { moves = { [axis] = math.pi } } })
   end
 
   local function reason_of(problem)
@@ -22,7 +22,7 @@ return function(native, patterns, lookup, arm, transfer)
   -- robot. If that is refused or the cell complains, calls failed(slot, what, reason) and returns true.
   local function fails(axis, cell, failed, slot, what)
     local good, problem = pcall(function()
-      arm.drive(plan_turn(axis))
+      player.drive(plan_turn(axis))
     end)
     problem = cell.complaint() or not good and problem
     if problem then
@@ -34,7 +34,7 @@ return function(native, patterns, lookup, arm, transfer)
   -- Places the robot there at rest, with its held wafers; earlier complaints do not count.
   local function stand(axes, cell)
     cell.move(axes)
-    arm.drive(arm.rehearse(patterns.single, { segment = { dwell = 4 * native.layout.slice } }))
+    player.drive(player.rehearse(patterns.single, { segment = { dwell = 4 * native.layout.slice } }))
     cell.begin()
   end
 
@@ -43,7 +43,7 @@ return function(native, patterns, lookup, arm, transfer)
     local blade = native.layout.grippers[gripper]
     local axis = lookup.axis("flip", blade.robot).index
     local what = "%s slot %d: FLIP of %s with a wafer in front of it"
-    if transfer.try("get", station.name, slot, cell, gripper)
+    if tryout.try("get", station.name, slot, cell, gripper)
       or fails(axis, cell, failed, slot, what:format(station.name, slot, blade.name))
       or has_none_at_home[blade.robot] then
       return
@@ -57,7 +57,7 @@ return function(native, patterns, lookup, arm, transfer)
   local function try_turned(place, cell, failed)
     local name, slot, blade = place.station.name, place.slot, native.layout.grippers[place.gripper].name
     for _, command in ipairs { "get", "put" } do
-      local problem = transfer.try(command, name, slot, cell, place.gripper)
+      local problem = tryout.try(command, name, slot, cell, place.gripper)
       if problem then
         failed(slot, ("%s slot %d: %s with %s turned over"):format(name, slot, command:upper(), blade), reason_of(problem))
         return
@@ -85,8 +85,8 @@ return function(native, patterns, lookup, arm, transfer)
   local function try_clamp(place, home, cell, failed)
     local name, gripper = place.station.name, place.gripper
     local axis = native.layout.grippers[place.station.chuck].axis
-    if not cell.stage(place.before, 0, name .. ": FLIP") or transfer.try("get", name, 1, cell, gripper)
-      or transfer.try("put", name, 1, cell, gripper) then
+    if not cell.stage(place.before, 0, name .. ": FLIP") or tryout.try("get", name, 1, cell, gripper)
+      or tryout.try("put", name, 1, cell, gripper) then
       return
     end
     local what = "%s: FLIP of its wafer with %s in front of it"
@@ -101,7 +101,7 @@ return function(native, patterns, lookup, arm, transfer)
     local places = {}
     for slot = 1, station.slots, math.max(station.slots - 1, 1) do
       for _, gripper in ipairs(servers) do
-        local before = transfer.before(station.name, slot, gripper)
+        local before = tryout.before(station.name, slot, gripper)
         places[#places + 1] = { station = station, slot = slot, gripper = gripper, before = before }
       end
     end

@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local pairs = pairs
 
-return function(native, patterns, lookup, arm, mechanisms, alarms)
+return function(native, patterns, lookup, arm, player, mechanisms, alarms)
   local flippers = {}
 
   -- The name of the flipper with this name, or whose clamp has it; or nil.
@@ -17,7 +17,7 @@ return function(native, patterns, lookup, arm, mechanisms, alarms)
 
   -- Waits until the gripper's carrier has arrived.
   function flippers.await(gripper, name, timeout)
-    if not arm.play(patterns.arrive, { segment = { arrives = { gripper = gripper }, timeout = timeout } }) then
+    if not player.play(patterns.arrive, { segment = { arrives = { gripper = gripper }, timeout = timeout } }) then
       native.fail("FLIP_TIMEOUT", ("%s has not turned over within %.10g s"):format(name, timeout))
     end
   end
@@ -39,7 +39,7 @@ return function(native, patterns, lookup, arm, mechanisms, alarms)
     alarms.break_flip(clamp.name)
     local to = native.axes()[clamp.axis] > clamp.high / 2 and 0 or clamp.high
     local segment = { moves = { [clamp.axis] = to } }
-    arm.play(patterns.single, { segment = segment, watched = station.vacuum_check ~= "none", lost_as = "WAFER_LOST" })
+    player.play(patterns.single, { segment = segment, watched = station.vacuum_check ~= "none", lost_as = "WAFER_LOST" })
     flippers.await(station.chuck, name, station.timeout)
   end
 

@@ -4,8 +4,8 @@
 -- `waferhand definitions` prints.
 
 -- Local copies: a script may set globals of these names.
-local error, ipairs, math, pairs, pcall, rawset, select = error, ipairs, math, pairs, pcall, rawset, select
-local setmetatable, tostring, type = setmetatable, tostring, type
+local error, ipairs, math, pairs, pcall, rawget, rawset, select = error, ipairs, math, pairs, pcall, rawget, rawset, select
+local setmetatable, tostring, type, wh = setmetatable, tostring, type, wh
 
 return function(native)
   -- native.layout: the cell's layout, a value that `cell` sets. Before that a read raises the missing
@@ -23,25 +23,9 @@ return function(native)
     fail(numbers[name], detail)
   end
 
-  local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
-  local alarms = native.module("mcs/alarms.lua")(native, lookup)
-  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup, alarms)
-  local queries = native.module("mcs/queries.lua")(native, lookup)
-  local run, keep, finish_tasks, serve = commands.run, commands.keep, commands.finish, commands.serve
-  local reach = native.module("mcs/reach.lua")(native, {
-    rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
-    try_out = commands.try_out, try_carrying = commands.try_carrying,
-    rehearse_centring = commands.rehearse_centring, rehearse_aside = commands.rehearse_aside,
-  }, commands.flip_room)
-  commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
-  local is_any_alive = commands.is_any_alive
-  commands.finish, commands.serve, commands.is_any_alive = nil, nil, nil
-  local bind = commands.bind
-  commands.bind = nil
-  commands.try_out, commands.try_carrying, commands.rehearse_centring = nil, nil, nil
-  commands.rehearse_aside, commands.flip_room = nil, nil
-  native.module("mcs/faults.lua")(native, commands, run, lookup, alarms)
-  queries.station, commands.station = commands.station, nil
+  local parts = native.module("mcs/parts.lua")(native, wh)
+  local lookup, alarms, reach = parts.lookup, parts.alarms, parts.reach
+  local commands, queries = parts.commands, parts.queries
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
   local words = native.module("mcs/words.lua")
   local flows = native.module("mcs/flow.lua")(native)
@@ -51,7 +35,11 @@ return function(native)
     if type(path) ~= "string" then
       error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
     end
+    if type(rawget(_G, "patterns")) == "string" then
+      error('patterns: it was assigned (expected the call patterns "FILE.lua", before cell)', 0)
+    end
     native.layout = native.cell(path)
+    parts.own.open(native.layout)
     for name, station in pairs(native.layout.stations) do
       reach.check(station, function(slot, _, reason, robot)
         local message = "%s: stations.%s%s: slot %d (expected one in reach: %s)"
@@ -93,6 +81,7 @@ return function(native)
       error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
     end
     return function(...)
+      parts.own.refuse(name)
       native.begin_word(name)
       flows.refuse(name)
       for place = known.any and math.maxinteger or most + 1, select("#", ...) do
@@ -109,7 +98,7 @@ return function(native)
     end
   end
 
-  for _, group in ipairs({ commands, queries, cycles, { flow = flows.flow }, { cell = cell, study = study } }) do
+  for _, group in ipairs({ commands, queries, cycles, { flow = flows.flow }, { cell = cell, study = study, patterns = parts.own.patterns } }) do
     for name, action in pairs(group) do
       rawset(_G, name, word(name, action))
     end
@@ -117,7 +106,7 @@ return function(native)
 
   -- The words that robot() binds.
   local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop", "station",
-    "set_station", "teach" }
+    "set_station", "teach", "pattern" }
 
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)
@@ -128,7 +117,7 @@ return function(native)
         if self ~= words_of_it then
           native.fail("BAD_ARGUMENT", ("%s: called with a dot (expected a colon, as in ROBOT:%s(...))"):format(bound, bound))
         end
-        return bind(index, action, ...)
+        return parts.bind(index, action, ...)
       end
     end
     return words_of_it
@@ -140,17 +129,19 @@ return function(native)
     local tokens = native.module("mcs/tokens.lua")(native)
     local states = native.module("mcs/saved_states.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
-    local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states, is_any_alive)
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep, background)
+    local background = native.module("mcs/prompt_tasks.lua")(native, commands, lookup, tokens, states,
+      parts.tasks.is_any_alive)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, parts.keep, background, parts.own)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states, alarms,
-      bind, background)
-    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), serve
+      parts.bind, background)
+    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens), parts.tasks.serve
   end
 
   -- For a layout that was already read: returns three functions with a station's name. They check a station, play
   -- there, and turn over there (without a name: at home). See lua/mcs/reach.lua.
   local function survey(layout)
     native.layout = layout
+    parts.own.open(layout)
     return function(name, found, missed)
       reach.check(layout.stations[name], found)
       reach.check_later(layout.stations[name], found)
@@ -169,9 +160,8 @@ return function(native)
   end
 
   local function define()
-    local targets = native.module("mcs/targets.lua")(native, lookup)
-    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
+    return native.module("mcs/definitions.lua")(native, lookup, parts.targets, words, wh)()
   end
 
-  return open_prompt, survey, define, finish_tasks
+  return open_prompt, survey, define, parts.tasks.finish
 end

@@ -176,16 +176,16 @@ return function(native, errors)
     return lookup.has_several() and "robot " .. native.layout.robots[index].name or "the robot"
   end
 
-  -- The robot that a command's words are bound to, or nil: set by lua/mcs/commands.lua.
+  -- The robot that a command's words are bound to, or nil: set by lua/mcs/parts.lua.
   function lookup.bound()
   end
 
-  -- The only station of the controller that sent the line, or nil: set by lua/mcs/commands.lua.
+  -- The only station of the controller that sent the line, or nil: set by lua/mcs/parts.lua.
   function lookup.bound_station()
   end
 
   -- lookup.phase(): the phase in which the current task's last command is held, or nil; lookup.last_robot(): that
-  -- command's robot. Both are set by lua/mcs/commands.lua.
+  -- command's robot. Both are set by lua/mcs/parts.lua.
 
   local function check_serves(station, robot)
     if station and not station.by[robot] then

@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local math, pairs = math, pairs
 
-return function(native, patterns, lookup, arm)
+return function(native, patterns, lookup, arm, player, grips)
   local mechanisms = {}
 
   local function gripper_of(index)
@@ -41,7 +41,7 @@ return function(native, patterns, lookup, arm)
   -- Moves the stage there with the wafer on the chuck; `lost_as`: the error if that is lost.
   function mechanisms.shift(station, x, y, lost_as)
     local segment = { moves = to(station, x, y) }
-    arm.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
+    player.play(patterns.single, { segment = segment, watched = true, lost_as = lost_as })
   end
 
   function mechanisms.send_home(station, lost_as)
@@ -101,14 +101,14 @@ return function(native, patterns, lookup, arm)
 
   local function target_of(station)
     local pins, asks = gripper_of(station.pins), station.vacuum_check ~= "none"
-    local pins_hold, is_passive = native.is_open(station.pins), pins.grip == "passive"
-    if is_passive then
+    local pins_hold = native.is_open(station.pins)
+    if pins.grip == "passive" then
       pins_hold = native.sensor(station.pins)
     end
     return {
       pins = station.pins, chuck = station.chuck, axis = pins.axis, low = pins.low, high = pins.high,
       handover = station.handover, vacuum_delay = station.vacuum_delay, timeout = station.timeout, asks = asks,
-      chuck_holds = native.is_open(station.chuck), pins_hold = pins_hold, is_passive = is_passive,
+      chuck_holds = native.is_open(station.chuck), pins_hold = pins_hold, grip = grips[pins.grip],
       vent = native.layout.vent,
       watched = asks, lost_as = "WAFER_LOST", station = station,
     }
@@ -146,7 +146,7 @@ return function(native, patterns, lookup, arm)
     check_arm(station)
     if up ~= are_up(station) then
       local target = target_of(station)
-      conclude(target, arm.play(up and patterns.raise or patterns.lower, target))
+      conclude(target, player.play(up and patterns.raise or patterns.lower, target))
     end
   end
 
@@ -161,7 +161,7 @@ return function(native, patterns, lookup, arm)
   function mechanisms.grip_again(station, x, y)
     local target = target_of(station)
     target.aside, target.home = to(station, x, y), to(station, 0, 0)
-    conclude(target, arm.play(patterns.grip_again, target))
+    conclude(target, player.play(patterns.grip_again, target))
   end
 
   ------------------------------------------------------------------------------------------------- what is asked

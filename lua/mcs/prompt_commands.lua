@@ -9,7 +9,7 @@
 -- keeps     true: it changes nothing that UNDO could take back, or handles UNDO itself
 -- alone     true: not while a task is alive
 
-return function(native, commands, queries, lookup, tokens, states, keep, background)
+return function(native, commands, queries, lookup, tokens, states, keep, background, own)
   local prompt_commands = {}
 
   -- WHERE stops after this many bytes: an answer is one line.
@@ -61,7 +61,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     teaching = function() return { "beam", "touch" } end,
     mark = function() return lookup.align_fields.mark.values end,
     up_or_down = function() return lookup.up_or_down.values end,
-    door = names_of "doors", robot = names_of "robots", flips = flips_names,
+    pattern = own.names, door = names_of "doors", robot = names_of "robots", flips = flips_names,
     name = function() return {} end, save = states.names,
   }
 
@@ -88,6 +88,10 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
 
   local get_options, put_options = carrying_options(""), carrying_options("")
   local swap_options = carrying_options("get_", "put_")
+  local pattern_options = {}
+  for name, kind in pairs(get_options) do
+    pattern_options[name] = name ~= "stop" and name ~= "centre" and kind or nil
+  end
   get_options.correct, swap_options.get_correct = "switch", "switch"
   swap_options.gripper = nil
 
@@ -450,6 +454,10 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     end
   end
 
+  local function pattern(arguments, options)
+    return tokens.pairs { timed(commands.pattern, arguments[1], arguments[2], arguments[3], options) }
+  end
+
   -- While a command runs, STOP bypasses the queue. Here no command runs, but one may be held.
   local function stop()
     background.stop()
@@ -517,6 +525,8 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
              does = "takes the wafer there with the empty gripper and puts down the other's" },
     READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
               does = "goes in front of the slot, to where GET or PUT enters" },
+    PATTERN = { takes = { "pattern", "station", "slot" }, options = pattern_options, run = pattern,
+                does = "plays a pattern that a file of patterns adds" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 3 protruded, 4 crossed, 5 thick, 6 thin" },
     TEACH = { takes = { "station" }, options = { by = "teaching", keep = "switch", yaw = "switch" }, run = teach,

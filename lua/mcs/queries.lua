@@ -1,9 +1,9 @@
 -- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
 
 -- Local copies: a script may set globals of these names.
-local math, select, tostring, type, wh = math, select, tostring, type, wh
+local math, select, tostring, type = math, select, tostring, type
 
-return function(native, lookup)
+return function(native, lookup, wh)
   local queries = {}
 
   -- dx, dy, dz (mm) and tilt (degrees) of a wafer in a slot's frame.

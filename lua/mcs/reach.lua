@@ -4,8 +4,8 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, tostring, type = ipairs, math, tostring, type
 
-return function(native, transfer, flip_room)
-  local rehearse, rehearse_map = transfer.rehearse, transfer.rehearse_map
+return function(native, tryout, flip_room)
+  local rehearse, rehearse_map = tryout.rehearse, tryout.rehearse_map
   local reach = {}
 
   -- In an upright stack only the height differs, so its ends stand for all slots. In a tilted one a
@@ -76,7 +76,7 @@ return function(native, transfer, flip_room)
       check_wound(station, slot, found)
       for _, gripper in ipairs(servers(station)) do
         local centres = station.centres[native.layout.grippers[gripper].robot]
-        local cannot = centres and transfer.rehearse_centring(station.name, slot, gripper)
+        local cannot = centres and tryout.rehearse_centring(station.name, slot, gripper)
         if cannot then
           found(slot, "PUT", reason_of(cannot))
         end
@@ -96,7 +96,7 @@ return function(native, transfer, flip_room)
     local most = native.layout.corrections
     for _, way in ipairs(ENDS) do
       local dx, dy = part * way[1] * most.dx, part * way[2] * most.dy
-      local problem = transfer.rehearse_aside(station.name, 1, dx, dy, retract)
+      local problem = tryout.rehearse_aside(station.name, 1, dx, dy, retract)
       if problem then
         return problem
       end
@@ -174,7 +174,7 @@ return function(native, transfer, flip_room)
   -- True if no slot of the station is refused to this gripper.
   local function is_reached(station, gripper)
     for _, slot in ipairs(slots_of(station)) do
-      if transfer.rehearse(station.name, slot, gripper) then
+      if tryout.rehearse(station.name, slot, gripper) then
         return false
       end
     end
@@ -182,10 +182,10 @@ return function(native, transfer, flip_room)
   end
 
   -- Calls failed(slot, word, reason) for the first GET or PUT that fails when it is played; `cell` as in
-  -- lua/mcs/transfer.lua. With `gripper`, a blade that is not the station's effector, if that reaches it.
+  -- lua/mcs/tryout.lua. With `gripper`, a blade that is not the station's effector, if that reaches it.
   function reach.play(station, cell, failed, gripper)
     for _, slots in ipairs((not gripper or is_reached(station, gripper)) and sequences_of(station) or {}) do
-      local slot, word, problem = transfer.try_out(station.name, slots, cell, gripper)
+      local slot, word, problem = tryout.try_out(station.name, slots, cell, gripper)
       if slot == false then
         return
       elseif slot then
@@ -199,7 +199,7 @@ return function(native, transfer, flip_room)
   -- taken again.
   function reach.play_carrying(from, station, cell, failed)
     for slot = 1, math.min(station.slots, 2) do
-      local word, problem = transfer.try_carrying(from.name, station.name, slot, cell, station.chuck)
+      local word, problem = tryout.try_carrying(from.name, station.name, slot, cell, station.chuck)
       if word then
         failed(slot, word .. " of a wafer from " .. from.name, reason_of(problem))
         return

@@ -88,6 +88,11 @@ return function(native)
     end
   end
 
+  -- Refuses only what no blade may enter.
+  function slot_map.check_way(target)
+    check_entry(target, function() end)
+  end
+
   function slot_map.check_get(target)
     check_entry(target, is_there)
   end

@@ -4,12 +4,12 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, type = ipairs, math, pairs, type
 
-return function(native, lookup, align, mechanisms, stations)
+return function(native, lookup, align, mechanisms, stations, grips, planes)
   local targets = {}
 
   local parameters = lookup.parameters
 
-  targets.shift = stations and stations.shift
+  targets.shift = stations.shift
 
   -- Other options of GET and PUT, and of SWAP for its GET and its PUT: the fields' kinds by name. The unit of
   -- a length or an angle has the index that it has in lookup.parameters.
@@ -164,13 +164,14 @@ return function(native, lookup, align, mechanisms, stations)
       target.release = 0 -- its wafer lies on no pads, which would be lower
     end
     read_centre(target, word, station, options, prefix)
-    target.is_passive = native.layout.grippers[target.gripper].grip == "passive"
+    local grip = native.layout.grippers[target.gripper].grip
+    target.grip, target.plane, target.is_passive = grips[grip], planes.below, grip == "passive"
     check(target, rules(target, station, native.layout), prefix)
     target.vent = target.is_passive and native.layout.vent or nil
     -- A blade that is turned over comes from above: its pads stop at `touch`, above the slot's plane.
     local flip = lookup.axis("flip", target.robot)
     if flip and math.abs(native.axes()[flip.index]) > math.pi / 2 then
-      target.vent = native.layout.vent
+      target.vent, target.plane = native.layout.vent, planes.above
       target.touch = native.layout.thickness + math.abs(target.release)
       if target.is_passive then
         local text = "%s is passive and turned over, where it holds nothing: FLIP or HOME comes first"

@@ -7,7 +7,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
 
-return function(native, patterns, lookup, arm, targets, stations, slot_map)
+return function(native, patterns, lookup, arm, player, targets, stations, slot_map)
   -- The search for the wafer: the distance from its expected height, mm, and the step.
   local SEARCH, STEP = 0.35, 0.01
   -- The motion through the beam: its speed, mm/s, and the distance before and after a rim, mm.
@@ -20,7 +20,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
   local LEAST_FLANK, MOST_FLANK = math.rad(0.05), math.rad(0.6)
 
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
+    player.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
   end
 
   local function along(place, way, height)
@@ -264,7 +264,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     end
   end
 
-  local touching = native.module("mcs/touching.lua")(native, patterns, lookup, arm, targets)
+  local touching = native.module("mcs/touching.lua")(native, patterns, lookup, arm, player, targets)
 
   local function to_rpy(R)
     return math.deg(math.atan(R[3][2], R[3][3])), math.deg(math.asin(-R[3][1]) + 0.0), math.deg(math.atan(R[2][1], R[1][1]))
@@ -329,7 +329,7 @@ return function(native, patterns, lookup, arm, targets, stations, slot_map)
     local release = math.min(math.max(height, target.offset - target.stroke), target.offset)
     local options = { release = release, centre = false, robot = native.layout.robots[target.robot].name }
     target = targets.at("put", name, 1, options, nil, "")
-    arm.drive(arm.rehearse(patterns.put, target, true))
+    player.drive(player.rehearse(patterns.put, target, true))
   end
 
   -- The angle of a robot's own way in from the station's x, rad; false: it comes along x.

@@ -5,7 +5,7 @@
 -- Local copies: a script may set globals of these names.
 local error, ipairs, math, pcall = error, ipairs, math, pcall
 
-return function(native, patterns, lookup, arm, targets)
+return function(native, patterns, lookup, arm, player, targets)
   -- The ball's start before a face, its longest way, its step, and its speed, mm and mm/s.
   local BEFORE, REACH, STEP, SPEED = 2, 4, 0.1, 5
   -- The ball touches an upright face this far below the upper edge, and crosses this far above the block,
@@ -17,7 +17,7 @@ return function(native, patterns, lookup, arm, targets)
   local FACES = { "towards the robot", "to the right", "upwards" }
 
   local function play(segment)
-    arm.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
+    player.play(patterns.single, { segment = segment, watched = false, gripper = arm.leader() })
   end
 
   -- A point of the station's frame in base, as motion control believes.

@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, targets, align, centring, alarms, slot_map)
+return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map)
   local transfer = {}
 
   ------------------------------------------------------------------------------------------------ GET and PUT
@@ -215,10 +215,8 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   end
 
   local transfers = {
-    get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get,
-            judge = judge_get, note = slot_map.note_taken },
-    put = { pattern = patterns.put, check_gripper = check_loaded, check_slot = slot_map.check_put,
-            judge = judge_put, note = slot_map.note_put },
+    get = { check_gripper = check_empty, check_slot = slot_map.check_get, judge = judge_get, note = slot_map.note_taken },
+    put = { check_gripper = check_loaded, check_slot = slot_map.check_put, judge = judge_put, note = slot_map.note_put },
   }
 
   local function carry(word, station, slot, options)
@@ -228,7 +226,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     kind.check_gripper(target)
     check_face(target)
     kind.check_slot(target)
-    local plan = arm.rehearse(kind.pattern, target, true)
+    local plan = player.rehearse(patterns[word], target, true)
     local wafer = word == "put" and native.held(target.gripper)
     local notch, deviation
     if word == "get" then
@@ -236,7 +234,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end
     slot_map.forget(target)
     align.forget(target.station)
-    arm.drive(plan, function(became)
+    player.drive(plan, function(became)
       kind.judge(target, became)
       if word == "get" then
         check_origin(target)
@@ -247,9 +245,6 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     end)
     return target.centred
   end
-
-  -- GET and PUT within another command.
-  transfer.carry = carry
 
   -- The options with an ALIGN's result for the GET, if they do not give a correction themselves.
   local function with_found(station, options, prefix)
@@ -337,12 +332,12 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     check_empty(take)
     check_face(give)
     slot_map.check_get(take)
-    local plan = arm.rehearse(patterns.swap, target, true)
+    local plan = player.rehearse(patterns.swap, target, true)
     local wafer = native.held(give.gripper)
     local notch, deviation = align.notch(take)
     slot_map.forget(take)
     align.forget(take.station)
-    arm.drive(plan, function(became)
+    player.drive(plan, function(became)
       judge_get(take, became)
       judge_put(give, became)
       expect_place(give, wafer)
@@ -366,7 +361,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     local target = targets.at("get", station, slot, options)
     arm.check_free()
     target.loaded = native.sensor(target.gripper)
-    arm.play(patterns.ready, target)
+    player.play(patterns.ready, target)
   end
 
   -- Moves in front of the slot, to where a GET or, with a wafer, a PUT enters.
@@ -390,7 +385,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
   local function map(name, options)
     local target, station = map_target(name, options)
     arm.check_free()
-    arm.play(patterns.map, target)
+    player.play(patterns.map, target)
     local codes = native.scan(station.index, target.robot, targets.shift(station, target.robot))
     slot_map.map(name, codes)
     return codes
@@ -401,120 +396,7 @@ return function(native, patterns, lookup, arm, targets, align, centring, alarms,
     return arm.move(arm.needs(true, station, options), lookup.command("MAP", station), map, station, options)
   end
 
-  -------------------------------------------------------------------------------------------------- rehearsal
-
-  local function plan(word, station, slot, gripper)
-    gripper = gripper or lookup.station(station).effector
-    return arm.rehearse(transfers[word].pattern, targets.at(word, station, slot, nil, gripper))
-  end
-
-  -- The axes in front of the slot that a plan goes to.
-  local function before_slot(planned)
-    for _, request in ipairs(planned) do
-      if request.to then
-        return request.axes
-      end
-    end
-  end
-
-  -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
-  -- or another gripper (an index). Returns the word of the refused one and the error, or nil, nil and theta
-  -- before the slot.
-  function transfer.rehearse(station, slot, gripper)
-    local can_get, got = pcall(plan, "get", station, slot, gripper)
-    if not can_get then
-      return "GET", got
-    end
-    local can_put, put = pcall(plan, "put", station, slot, gripper)
-    if not can_put then
-      return "PUT", put
-    end
-    return nil, nil, before_slot(got)[arm.first_axis(got.target.gripper)]
-  end
-
-  -- Plans a PUT with this gripper that goes aside by its beams' result. Returns the error if it is refused, or nil.
-  function transfer.rehearse_centring(station, slot, gripper)
-    local can, problem = pcall(function()
-      arm.rehearse(patterns.put, targets.at("put", station, slot, nil, gripper, ""))
-    end)
-    return not can and problem or nil
-  end
-
-  -- Plans a GET that goes aside by a possible ALIGN result. Its way in is as long as `retract`, if that is given.
-  -- Returns the error if it is refused, or nil.
-  function transfer.rehearse_aside(station, slot, dx, dy, retract)
-    local can, problem = pcall(function()
-      local options = { dx = dx, dy = dy, retract = retract }
-      arm.rehearse(patterns.get, targets.at("get", station, slot, options, lookup.station(station).effector, ""))
-    end)
-    return not can and problem or nil
-  end
-
-  ------------------------------------------------------------------------------------------------ trying out
-
-  -- Plays a command like a run, but without the sensors' check for wafers before it; returns the error. Here
-  -- and below `cell` is the cell in which lib/survey/survey.c places it.
-  local function try(word, station, slot, cell, gripper)
-    local good, problem = pcall(function()
-      gripper = gripper or lookup.station(station).effector
-      local kind, target = transfers[word], targets.at(word, station, slot, nil, gripper)
-      kind.judge(target, arm.drive(arm.rehearse(kind.pattern, target)))
-      if word == "get" and not native.held(target.gripper) then
-        judge_get(target, "missing")
-      end
-    end)
-    return cell.complaint() or not good and problem or nil
-  end
-
-  -- The axes in front of the slot that a GET goes to, from where the arm stands.
-  local function before(station, slot, gripper)
-    return before_slot(plan("get", station, slot, gripper))
-  end
-
-  transfer.try, transfer.before = try, before
-
-  -- GET and PUT at these slots, one after another in one cell, from in front of the first one; `gripper` as in
-  -- transfer.rehearse. Returns the slot at which a command fails, its word and the error; or nil; or false if
-  -- the cell is not possible.
-  function transfer.try_out(station, slots, cell, gripper)
-    if not cell.stage(before(station, slots[1], gripper)) then
-      return false
-    end
-    for step = 1, 2 * #slots do
-      local slot, word = slots[(step + 1) // 2], step % 2 == 1 and "get" or "put"
-      local problem = try(word, station, slot, cell, gripper)
-      if problem then
-        return slot, word:upper() .. (step > 2 and " after others" or ""), problem
-      end
-    end
-    return nil
-  end
-
-  -- Plays a GET at `from`, then a PUT at an empty slot: the wafer's place on the blade comes from the
-  -- other station. With `again` a GET follows. Returns the word of the failed one and the error; or nil.
-  function transfer.try_carrying(from, station, slot, cell, again)
-    cell.stage(before(from, 1), slot)
-    if try("get", from, 1, cell) then
-      return nil
-    end
-    cell.move(before_slot(plan("put", station, slot)))
-    local stand = { segment = { dwell = 4 * native.layout.slice } }
-    arm.drive(arm.rehearse(patterns.single, stand))
-    cell.begin()
-    local word, problem = "PUT", try("put", station, slot, cell)
-    if again and not problem then
-      word, problem = "GET", try("get", station, slot, cell)
-    end
-    return problem and word, problem
-  end
-
-  -- Plans a MAP: returns the error, or nil.
-  function transfer.rehearse_map(station)
-    local can_map, problem = pcall(function()
-      arm.rehearse(patterns.map, (map_target(station, nil, lookup.station(station).effector)))
-    end)
-    return not can_map and problem or nil
-  end
-
-  return transfer
+  -- For other commands and for trying out: GET and PUT within a command, how the result of either is judged, and
+  -- the target of a MAP.
+  return transfer, { carry = carry, judge = { get = judge_get, put = judge_put }, map_target = map_target }
 end

@@ -1,13 +1,13 @@
 # Static checks; the Makefile compiles with warnings as errors. The tools that look for bugs and broken rules do not fail
 # themselves: tests/check/deviations compares their reports with lib/DEVIATIONS.md.
 
-.PHONY: check check-words check-lengths check-format check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
+.PHONY: check check-words check-lengths check-natives check-format check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
 CXX_FILES := $(shell find lib -name '*.[ch]pp')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.[ch]pp' -o -name '*.java')
 SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
-check: check-format check-words check-lengths check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
+check: check-format check-words check-lengths check-natives check-shell check-lua check-scripts check-manual check-rooms check-libm check-paths check-proofs check-builds check-deviations
 
 check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
@@ -24,6 +24,10 @@ check-words:
 # It counts the words of manuals' chapters and of their tables' cells.
 check-lengths:
 	@! command -v python3 >/dev/null || tests/check/lengths
+
+# The list of the functions that Lua may call is that of the C sources.
+check-natives:
+	@! command -v python3 >/dev/null || tests/check/natives
 
 check-lua:
 	@$(foreach file,$(LUA_SOURCES),luac5.4 -p $(file) &&) true

@@ -78,7 +78,8 @@ function cases.wrong_values()
 
   local words = {
     get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
-    ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
+    ready = { station, slot, options },
+    pattern = { { "pattern: ", "look", { 5, "", {}, true, NIL } }, station, slot, options }, map = { station, options }, home = {}, recover = {},
     continue = {}, stop = {}, centring = {}, teach = { station, options }, rotate = { station, number("degrees", 5) },
     station = { station, options }, set_station = { station, { "axes: ", { z = 950 }, { 5, true, "z", NIL } } },
     edge_scan = { station }, align = { station, { "options: ", nil, { 5, true, "90" } } },
@@ -101,7 +102,7 @@ function cases.wrong_values()
       { "tolerance: ", 1, with(0, -1) } },
   }
   -- `flow` has a cell of its own kind: see tests/end_to_end/flows.
-  local no_commands = { cell = true, flow = true, study = true, assert = true, error = true, getmetatable = true, ipairs = true,
+  local no_commands = { cell = true, flow = true, patterns = true, study = true, assert = true, error = true, getmetatable = true, ipairs = true,
     load = true, next = true, pairs = true, pcall = true, print = true, rawequal = true, rawget = true, rawlen = true, require = true,
     rawset = true, select = true, setmetatable = true, tonumber = true, tostring = true, type = true, xpcall = true }
   for name, value in pairs(_G) do

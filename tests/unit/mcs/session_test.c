@@ -235,6 +235,7 @@ static const kind_t *find_kind(const char *name, size_t length) {
                                    {"VACUUM_CHECK", "both", {"never", "5"}},
                                    {"SWITCH", "true", {"yes", "1"}},
                                    {"NAME", "n", {NULL}},
+                                   {"PATTERN", "look", {"Q", "5"}},
                                    {"SAVE", "n", {"Q", "5"}},
                                    {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
                                    {"UP_OR_DOWN", "up", {"left", "5", "inf"}},
