@@ -76,18 +76,6 @@ static bool read_arms(const arguments_t *arguments, const wh_schedule_t *schedul
     return true;
 }
 
-/* The layout's tool; null, with a message, if it has none. */
-static const wh_flow_tool_t *load_tool(arguments_t *arguments) {
-    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
-    if (layout && !layout->tool) {
-        fprintf(stderr,
-                "%s: robots with axes: a schedule is neither held against them nor played by them (expected "
-                "robots of kind \"timed\")\n",
-                arguments->layout.path);
-    }
-    return layout ? layout->tool : NULL;
-}
-
 static int conclude(const arguments_t *arguments, const wh_schedule_report_t *report,
                     const wh_schedule_play_t *play) {
     const wh_style_t style = wh_style_of(stdout);
@@ -130,9 +118,9 @@ static int act(arguments_t *arguments) {
     char message[1600] = "";
     const wh_sandbox_limits_t limits = {.memory_bytes = (size_t)(arguments->layout.memory_mib * 1048576),
                                         .print_to = stderr};
-    const wh_flow_tool_t *tool = arguments->layout.path ? load_tool(arguments) : NULL;
+    const wh_layout_t *layout = arguments->layout.path ? wh_layout_arguments_load(&arguments->layout) : NULL;
     int status = WH_EXIT_USAGE;
-    if (arguments->layout.path && !tool) {
+    if (arguments->layout.path && !layout) {
         return status;
     }
     const bool read =
@@ -143,7 +131,7 @@ static int act(arguments_t *arguments) {
     } else {
         int32_t *arms = wh_array_new(schedule.robots.count + 1, sizeof *arms);
         if (read_arms(arguments, &schedule, arms)) {
-            status = look_at(arguments, &schedule, tool, arms);
+            status = look_at(arguments, &schedule, layout ? layout->tool : NULL, arms);
         }
         free(arms);
     }
@@ -152,7 +140,7 @@ static int act(arguments_t *arguments) {
 }
 
 int wh_app_schedule(int argc, char **argv) {
-    arguments_t arguments = {.path = NULL};
+    arguments_t arguments = {.layout = {.is_timed = true}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = act(&arguments);
     wh_layout_arguments_free(&arguments.layout);

@@ -170,14 +170,20 @@ static void read_map(lua_State *L, map_t *map) {
     keep_functions(L, map);
 }
 
+/* Leaves what the map's file returns on the stack. */
+static void evaluate(lua_State *L, const map_t *map) {
+    wh_sandbox_result_t result;
+    if (!wh_sandbox_evaluate(L, map->map, &result)) {
+        lua_pushstring(L, result.message);
+        (void)lua_error(L);
+    }
+}
+
 /* Runs protected, before the file is opened. */
 static int read_separator(lua_State *L) {
     map_t *map = lua_touserdata(L, 1);
     wh_reader_t reader;
-    if (!wh_sandbox_evaluate(L, map->map, NULL)) {
-        wh_sandbox_push_error(L);
-        return lua_error(L);
-    }
+    evaluate(L, map);
     if (!lua_istable(L, -1)) {
         return luaL_error(L, "%s: a table was expected: return { columns = { ... } }", map->map);
     }
@@ -293,10 +299,7 @@ static int read_rows(lua_State *L) {
     map_t *map = lua_touserdata(L, 1);
     wh_rows_t *rows = &map->schedule->rows;
     luaL_checkstack(L, 64, NULL);
-    if (!wh_sandbox_evaluate(L, map->map, NULL)) {
-        wh_sandbox_push_error(L);
-        return lua_error(L);
-    }
+    evaluate(L, map);
     read_map(L, map);
     map->fields = rows->count;
     lua_createtable(L, (int)map->fields, 0);
