@@ -102,7 +102,9 @@ static void take_field(wh_reader_t *reader, map_t *map, size_t number) {
     column_t *taken = &map->columns[number];
     char *name = map->theirs[number];
     if (lua_istable(reader->L, -1)) {
+        lua_pop(reader->L, 1); /* the reader enters it by its name */
         take_scaled(reader, column, taken, name);
+        lua_pushnil(reader->L);
     } else {
         (void)snprintf(name, sizeof map->theirs[0], "%s", lua_tostring(reader->L, -1));
     }
