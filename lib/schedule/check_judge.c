@@ -73,8 +73,8 @@ static void judge_needed(wh_check_t *check, const facts_t *facts) {
     judge(check, WH_SCHEDULE_RULE_ABSENT, picks > 0, picks > 0 ? NULL : "no robot picks");
     judge(check, WH_SCHEDULE_RULE_NOT_ABOARD, places > 0, places > 0 ? NULL : "no robot places");
     if (places > 0 && check->report->stacked > 0) {
-        judge(check, WH_SCHEDULE_RULE_FULL, true, "%zu places hold as many wafers as begin there",
-              check->report->stacked);
+        judge(check, WH_SCHEDULE_RULE_FULL, true,
+              "where several wafers begin in one slot, it holds as many: in %zu", check->report->stacked);
     } else {
         judge(check, WH_SCHEDULE_RULE_FULL, places > 0, places > 0 ? NULL : "no robot places");
     }
