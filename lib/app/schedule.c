@@ -52,22 +52,26 @@ static const wh_command_line_t command_line = {
     .operand = "schedule",
     .operand_variable = offsetof(arguments_t, path)};
 
+/* The number of the robot whose name is the first bytes of a text; WH_FLOW_NONE: the schedule has none. */
+static int32_t find_robot(const wh_schedule_names_t *robots, const char *text, size_t length) {
+    for (size_t i = 0; i < robots->count; ++i) {
+        if (strlen(robots->texts[i]) == length && strncmp(robots->texts[i], text, length) == 0) {
+            return (int32_t)i;
+        }
+    }
+    return WH_FLOW_NONE;
+}
+
 /* Reads --arms into counts by the numbers of the schedule's robots. */
 static bool read_arms(const arguments_t *arguments, const wh_schedule_t *schedule, int32_t *arms) {
-    const wh_schedule_names_t *robots = &schedule->robots;
     for (size_t i = 0; i < arguments->arms.count; ++i) {
         const char *text = arguments->arms.items[i], *equals = strrchr(text, '=');
-        const size_t length = equals ? (size_t)(equals - text) : 0;
-        size_t robot = 0;
         if (!equals || (strcmp(equals, "=1") != 0 && strcmp(equals, "=2") != 0)) {
             fprintf(stderr, "--arms: %s (expected ROBOT=1 or ROBOT=2)\n", text);
             return false;
         }
-        while (robot < robots->count &&
-               (strncmp(robots->texts[robot], text, length) != 0 || robots->texts[robot][length] != '\0')) {
-            ++robot;
-        }
-        if (robot == robots->count || arms[robot] != 0) {
+        const int32_t robot = find_robot(&schedule->robots, text, (size_t)(equals - text));
+        if (robot == WH_FLOW_NONE || arms[robot] != 0) {
             fprintf(stderr, "--arms: %s (expected a robot of the schedule, once)\n", text);
             return false;
         }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "../text/array.h"
-#include "../text/nearest.h"
 #include "check_internal.h"
 
 /* How often what takes no time is looked through at one instant for what can go first. */
@@ -31,9 +30,10 @@ const char *const wh_schedule_rules[WH_SCHEDULE_RULES] = {NULL,
                                                           "a wafer in two places",
                                                           "a wafer left aboard, or short of its route's end"};
 
-/* --------------------------------------------------------------------------------------------------- texts */
+/* -------------------------------------------------------------------------------------------------- texts */
 
-void wh_check_found(wh_check_t *check, int rule, int32_t row, int32_t other, const char *format, ...) {
+void wh_check_found(wh_schedule_state_t *check, int rule, int32_t row, int32_t other, const char *format,
+                    ...) {
     wh_schedule_report_t *report = check->report;
     char text[1200];
     va_list arguments;
@@ -52,14 +52,14 @@ void wh_check_found(wh_check_t *check, int rule, int32_t row, int32_t other, con
     ++report->rules[rule].found;
 }
 
-const char *wh_check_place_name(const wh_check_t *check, int32_t place, wh_check_text_t *text) {
+const char *wh_check_place_name(const wh_schedule_state_t *check, int32_t place, wh_check_text_t *text) {
     const wh_schedule_place_t *of = &check->schedule->places[place];
     (void)snprintf(text->text, sizeof text->text, "%s %d",
                    wh_schedule_text(&check->schedule->stations, of->station), (int)of->slot);
     return text->text;
 }
 
-const char *wh_check_describe(const wh_check_t *check, int32_t row, wh_check_text_t *text) {
+const char *wh_check_describe(const wh_schedule_state_t *check, int32_t row, wh_check_text_t *text) {
     const wh_schedule_t *schedule = check->schedule;
     const wh_schedule_row_t *of = &schedule->rows[row];
     (void)snprintf(text->text, sizeof text->text, "line %zu: %s%s%s%s%s at %s %d, %.10g to %.10g s", of->line,
@@ -71,7 +71,7 @@ const char *wh_check_describe(const wh_check_t *check, int32_t row, wh_check_tex
     return text->text;
 }
 
-const char *wh_check_where(const wh_check_t *check, int32_t number, wh_check_text_t *text) {
+const char *wh_check_where(const wh_schedule_state_t *check, int32_t number, wh_check_text_t *text) {
     const wh_check_wafer_t *wafer = &check->wafers[number];
     wh_check_text_t place = {""};
     const char *robot = wh_schedule_text(&check->schedule->robots, wafer->robot);
@@ -99,17 +99,17 @@ const char *wh_check_where(const wh_check_t *check, int32_t number, wh_check_tex
     return text->text;
 }
 
-const wh_flow_station_t *wh_check_station(const wh_check_t *check, int32_t station) {
+const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int32_t station) {
     return check->tool ? &check->tool->stations[check->stations[station].tool] : NULL;
 }
 
-size_t wh_check_pair(const wh_check_t *check, const wh_schedule_row_t *row) {
+size_t wh_check_pair(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
     return wh_flow_of(check->tool, check->robots[row->robot].tool, check->stations[row->station].tool);
 }
 
-/* ------------------------------------------------------------------------------------------------- actions */
+/* ------------------------------------------------------------------------------------------------ actions */
 
-static void begin_access(wh_check_t *check, int32_t row) {
+static void begin_access(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_robot_begins(check, row);
     wh_check_access(check, row);
@@ -130,38 +130,17 @@ static void begin_access(wh_check_t *check, int32_t row) {
     }
 }
 
-static void begin_row(wh_check_t *check, int32_t row) {
-    switch (wh_check_row(check, row)->action) {
-    case WH_SCHEDULE_START:
-        wh_check_begin_start(check, row);
-        break;
-    case WH_SCHEDULE_MOVE:
-        wh_check_robot_begins(check, row);
-        break;
-    case WH_SCHEDULE_PROCESS:
-        wh_check_begin_process(check, row);
-        break;
-    case WH_SCHEDULE_CLEAN:
-        wh_check_begin_clean(check, row);
-        break;
-    case WH_SCHEDULE_PUMP:
-        wh_check_begin_pump(check, row);
-        break;
-    case WH_SCHEDULE_OPEN:
-    case WH_SCHEDULE_CLOSE:
-        wh_check_begin_door(check, row);
-        break;
-    case WH_SCHEDULE_PICK:
-    case WH_SCHEDULE_PLACE:
-    case WH_SCHEDULE_SWAP:
-    case WH_SCHEDULE_ACTIONS:
-    default:
-        begin_access(check, row);
-        break;
-    }
+static void begin_row(wh_schedule_state_t *check, int32_t row) {
+    static void (*const begins[WH_SCHEDULE_ACTIONS])(wh_schedule_state_t * check, int32_t row) = {
+        [WH_SCHEDULE_START] = wh_check_begin_start, [WH_SCHEDULE_PICK] = begin_access,
+        [WH_SCHEDULE_PLACE] = begin_access,         [WH_SCHEDULE_SWAP] = begin_access,
+        [WH_SCHEDULE_MOVE] = wh_check_robot_begins, [WH_SCHEDULE_PROCESS] = wh_check_begin_process,
+        [WH_SCHEDULE_CLEAN] = wh_check_begin_clean, [WH_SCHEDULE_PUMP] = wh_check_begin_pump,
+        [WH_SCHEDULE_OPEN] = wh_check_begin_door,   [WH_SCHEDULE_CLOSE] = wh_check_begin_door};
+    begins[wh_check_row(check, row)->action](check, row);
 }
 
-static void end_row(wh_check_t *check, int32_t row) {
+static void end_row(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (of->action == WH_SCHEDULE_PICK) {
         wh_check_end_take(check, row, of->wafer);
@@ -177,9 +156,9 @@ static void end_row(wh_check_t *check, int32_t row) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- instants */
+/* ----------------------------------------------------------------------------------------------- instants */
 
-/* What happens at an instant, in this order. */
+/* An instant, in this order. */
 enum { ENDS, IN_NO_TIME, BEGINS };
 
 typedef struct {
@@ -196,7 +175,7 @@ static int by_time(const void *a, const void *b) {
     return one->phase != other->phase ? one->phase - other->phase : one->row < other->row ? -1 : 1;
 }
 
-/* A begin comes behind all that ends within an instant of it. What is shorter than an instant begins and ends
+/* A begin comes behind all that ends within an instant of it. A row that is shorter than an instant begins and ends
  * at once. */
 static size_t list_moments(const wh_schedule_t *schedule, moment_t moments[]) {
     size_t count = 0;
@@ -216,29 +195,33 @@ static size_t list_moments(const wh_schedule_t *schedule, moment_t moments[]) {
     return count;
 }
 
+static bool lies_there(const wh_schedule_state_t *check, int32_t wafer, int32_t place) {
+    return check->wafers[wafer].where == WH_CHECK_LIES && check->wafers[wafer].place == place;
+}
+
+static bool is_aboard(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    const wh_check_wafer_t *wafer = &check->wafers[row->wafer];
+    return wafer->where == WH_CHECK_ABOARD && wafer->robot == row->robot;
+}
+
 /* True if an action without duration fits what is so far. */
-static bool is_possible(const wh_check_t *check, int32_t row) {
+static bool is_possible(const wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
-    const wh_check_wafer_t *wafer = of->wafer == WH_FLOW_NONE ? NULL : &check->wafers[of->wafer];
     const wh_check_place_t *place = &check->places[of->place];
     if (of->action == WH_SCHEDULE_PICK) {
         const wh_check_robot_t *robot = &check->robots[of->robot];
-        return wafer->where == WH_CHECK_LIES && wafer->place == of->place &&
-               (robot->arms == 0 || robot->aboard < robot->arms);
+        const bool has_arm = robot->arms == 0 || robot->aboard < robot->arms;
+        return has_arm && lies_there(check, of->wafer, of->place);
     }
     if (of->action == WH_SCHEDULE_PLACE) {
-        return wafer->where == WH_CHECK_ABOARD && wafer->robot == of->robot && place->count < place->capacity;
+        return is_aboard(check, of) && place->count < place->capacity;
     }
-    if (of->action == WH_SCHEDULE_SWAP) {
-        const wh_check_wafer_t *out = &check->wafers[of->wafer2];
-        return wafer->where == WH_CHECK_ABOARD && wafer->robot == of->robot && out->where == WH_CHECK_LIES &&
-               out->place == of->place;
-    }
-    return true;
+    return of->action != WH_SCHEDULE_SWAP ||
+           (is_aboard(check, of) && lies_there(check, of->wafer2, of->place));
 }
 
 /* All that takes no time at one instant: what can go first goes first. */
-static void go_in_no_time(wh_check_t *check, moment_t moments[], size_t count) {
+static void go_in_no_time(wh_schedule_state_t *check, moment_t moments[], size_t count) {
     size_t left = count;
     for (int pass = 0; left > 0; ++pass) {
         size_t kept = 0;
@@ -256,7 +239,7 @@ static void go_in_no_time(wh_check_t *check, moment_t moments[], size_t count) {
     }
 }
 
-static void go(wh_check_t *check, moment_t moments[], size_t count) {
+static void go(wh_schedule_state_t *check, moment_t moments[], size_t count) {
     for (size_t i = 0; i < count;) {
         if (moments[i].phase != IN_NO_TIME) {
             if (moments[i].phase == ENDS &&
@@ -280,96 +263,126 @@ static void go(wh_check_t *check, moment_t moments[], size_t count) {
 /* ---------------------------------------------------------------------------------------------- beginning */
 
 /* The numbers of the schedule's names in the layout. */
-static bool find_names(wh_check_t *check) {
+static void find_names(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
-    char *message = check->report->message;
     for (size_t i = 0; i < schedule->robots.count; ++i) {
-        check->robots[i].tool = wh_flow_robot_named(check->tool, schedule->robots.texts[i]);
-        check->robots[i].station =
-            check->robots[i].tool == WH_FLOW_NONE ? 0 : check->tool->robots[check->robots[i].tool].at;
-        check->robots[i].arms =
-            check->robots[i].tool == WH_FLOW_NONE ? 0 : check->tool->robots[check->robots[i].tool].arms;
+        wh_check_robot_t *robot = &check->robots[i];
+        robot->tool = wh_flow_robot_named(check->tool, schedule->robots.texts[i]);
+        if (robot->tool != WH_FLOW_NONE) {
+            robot->station = check->tool->robots[robot->tool].at;
+            robot->arms = check->tool->robots[robot->tool].arms;
+        }
     }
     for (size_t i = 0; i < schedule->stations.count; ++i) {
-        check->stations[i].tool = wh_flow_station_named(check->tool, schedule->stations.texts[i]);
-        if (check->stations[i].tool != WH_FLOW_NONE) {
-            check->stations[i].side = check->tool->stations[check->stations[i].tool].side;
+        wh_check_station_t *station = &check->stations[i];
+        station->tool = wh_flow_station_named(check->tool, schedule->stations.texts[i]);
+        if (station->tool != WH_FLOW_NONE) {
+            station->side = check->tool->stations[station->tool].side;
         }
     }
-    for (size_t i = 0; i < schedule->count; ++i) {
-        const wh_schedule_row_t *row = &schedule->rows[i];
-        const bool is_robot = row->robot == WH_FLOW_NONE || check->robots[row->robot].tool != WH_FLOW_NONE;
-        const bool is_to = row->to == WH_FLOW_NONE || check->stations[row->to].tool != WH_FLOW_NONE;
-        const bool is_station = check->stations[row->station].tool != WH_FLOW_NONE;
-        if (!is_robot || !is_to || !is_station) {
-            (void)snprintf(message, sizeof check->report->message,
-                           "%.200s:%zu: %s: %s (expected a %s of the layout)", schedule->path, row->line,
-                           !is_robot     ? "robot"
-                           : !is_station ? "station"
-                                         : "to",
-                           !is_robot     ? wh_schedule_text(&schedule->robots, row->robot)
-                           : !is_station ? wh_schedule_text(&schedule->stations, row->station)
-                                         : wh_schedule_text(&schedule->stations, row->to),
-                           !is_robot ? "robot" : "station");
-            return false;
-        }
-        const int32_t slots = check->tool->stations[check->stations[row->station].tool].slots;
-        if (row->slot > slots) {
-            (void)snprintf(message, sizeof check->report->message,
-                           "%.200s:%zu: slot: %d (expected one of %s in the layout, 1 to %d)", schedule->path,
-                           row->line, (int)row->slot, wh_schedule_text(&schedule->stations, row->station),
-                           (int)slots);
+}
+
+/* A name that the layout does not have. */
+static bool refuse_name(const wh_schedule_state_t *check, const wh_schedule_row_t *row, const char *column,
+                        const char *name, const char *kind) {
+    (void)snprintf(check->report->message, sizeof check->report->message,
+                   "%.200s:%zu: %s: %s (expected a %s of the layout)", check->schedule->path, row->line,
+                   column, name, kind);
+    return false;
+}
+
+static bool check_names(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    const wh_schedule_t *schedule = check->schedule;
+    const int32_t station = check->stations[row->station].tool;
+    if (row->robot != WH_FLOW_NONE && check->robots[row->robot].tool == WH_FLOW_NONE) {
+        return refuse_name(check, row, "robot", schedule->robots.texts[row->robot], "robot");
+    }
+    if (station == WH_FLOW_NONE) {
+        return refuse_name(check, row, "station", schedule->stations.texts[row->station], "station");
+    }
+    if (row->to != WH_FLOW_NONE && check->stations[row->to].tool == WH_FLOW_NONE) {
+        return refuse_name(check, row, "to", schedule->stations.texts[row->to], "station");
+    }
+    if (row->slot > check->tool->stations[station].slots) {
+        (void)snprintf(check->report->message, sizeof check->report->message,
+                       "%.200s:%zu: slot: %d (expected one of %s in the layout, 1 to %d)", schedule->path,
+                       row->line, (int)row->slot, schedule->stations.texts[row->station],
+                       (int)check->tool->stations[station].slots);
+        return false;
+    }
+    return true;
+}
+
+/* False, with a message, if a row names what the layout does not have. */
+static bool take_names(wh_schedule_state_t *check) {
+    find_names(check);
+    for (size_t i = 0; i < check->schedule->count; ++i) {
+        if (!check_names(check, &check->schedule->rows[i])) {
             return false;
         }
     }
     return true;
 }
 
-/* A wafer without a start is where its first row, in time, finds it. */
-static void assume_wafer(wh_check_t *check, int32_t number) {
-    wh_check_wafer_t *wafer = &check->wafers[number];
-    if (wafer->row == WH_CHECK_NO_ROW || wafer->has_start) {
-        return;
-    }
-    const wh_schedule_row_t *first = wh_check_row(check, wafer->row);
-    const bool is_there = first->action == WH_SCHEDULE_PICK || first->action == WH_SCHEDULE_PROCESS ||
-                          (first->action == WH_SCHEDULE_SWAP && first->wafer2 == number);
-    if (!is_there) {
-        return;
-    }
-    wh_check_place_t *place = &check->places[first->place];
-    if (check->tool && place->count == 1) {
-        wh_check_text_t text;
-        wh_check_found(check, WH_SCHEDULE_RULE_FULL, wafer->row, check->wafers[place->head].row,
+/* True if the first row of a wafer finds it in its place. */
+static bool is_found(const wh_schedule_row_t *first, int32_t wafer) {
+    return first->action == WH_SCHEDULE_PICK || first->action == WH_SCHEDULE_PROCESS ||
+           (first->action == WH_SCHEDULE_SWAP && first->wafer2 == wafer);
+}
+
+/* Several wafers in one slot: as many as that it holds, unless the layout says otherwise. */
+static void stack(wh_schedule_state_t *check, int32_t row, wh_check_place_t *place) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *first = wh_check_row(check, row);
+    if (check->tool) {
+        wh_check_found(check, WH_SCHEDULE_RULE_FULL, row, check->wafers[place->head].row,
                        "slot: %d (expected another one: at the beginning %s is in %s, too)", (int)first->slot,
                        wh_schedule_text(&check->schedule->wafers, place->head),
                        wh_check_place_name(check, first->place, &text));
+        return;
     }
-    ++check->report->assumed;
-    check->report->stacked += !check->tool && place->count == 1;
-    wh_check_lay(check, number, first->place);
-    place->capacity = !check->tool && place->count > place->capacity ? place->count : place->capacity;
-    wafer->where = WH_CHECK_LIES;
-    wh_check_set_out(check, number, first->place);
+    check->report->stacked += place->count == 1;
+    ++place->capacity;
 }
 
-static bool is_sooner(const wh_check_t *check, int32_t row, int32_t than) {
+/* A wafer without a start is where its first row, in time, finds it. */
+static void assume_wafer(wh_schedule_state_t *check, int32_t number) {
+    wh_check_wafer_t *wafer = &check->wafers[number];
+    if (wafer->row == WH_CHECK_NO_ROW || wafer->has_start ||
+        !is_found(wh_check_row(check, wafer->row), number)) {
+        return;
+    }
+    const int32_t into = wh_check_row(check, wafer->row)->place;
+    if (check->places[into].count > 0) {
+        stack(check, wafer->row, &check->places[into]);
+    }
+    ++check->report->assumed;
+    wh_check_lay(check, number, into);
+    wafer->where = WH_CHECK_LIES;
+    wh_check_set_out(check, number, into);
+}
+
+static bool is_sooner(const wh_schedule_state_t *check, int32_t row, int32_t than) {
     return than == WH_CHECK_NO_ROW ||
            wh_check_row(check, row)->begin_us < wh_check_row(check, than)->begin_us;
 }
 
-static void note_row(wh_check_t *check, int32_t row) {
+static void note_wafer(wh_schedule_state_t *check, int32_t row, int32_t number) {
+    wh_check_wafer_t *wafer = &check->wafers[number];
+    wafer->has_start = wafer->has_start || wh_check_row(check, row)->action == WH_SCHEDULE_START;
+    wafer->row = is_sooner(check, row, wafer->row) ? row : wafer->row;
+}
+
+/* Notes all that must be known before the first instant. */
+static void note_row(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const bool tells_wafer = wh_schedule_is_access(of->action) || of->action == WH_SCHEDULE_START ||
                              of->action == WH_SCHEDULE_PROCESS;
     if (of->wafer != WH_FLOW_NONE && tells_wafer) {
-        wh_check_wafer_t *wafer = &check->wafers[of->wafer];
-        wafer->has_start = wafer->has_start || of->action == WH_SCHEDULE_START;
-        wafer->row = is_sooner(check, row, wafer->row) ? row : wafer->row;
+        note_wafer(check, row, of->wafer);
     }
     if (of->action == WH_SCHEDULE_SWAP) {
-        wh_check_wafer_t *wafer = &check->wafers[of->wafer2];
-        wafer->row = is_sooner(check, row, wafer->row) ? row : wafer->row;
+        note_wafer(check, row, of->wafer2);
     }
     if (of->action == WH_SCHEDULE_PICK && of->arm == 0) {
         check->robots[of->robot].tells_arms = false;
@@ -381,7 +394,7 @@ static void note_row(wh_check_t *check, int32_t row) {
     }
 }
 
-static void open_check(wh_check_t *check) {
+static void open_check(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
     check->wafers = wh_array_new(schedule->wafers.count + 1, sizeof *check->wafers);
     check->places = wh_array_new(schedule->place_count + 1, sizeof *check->places);
@@ -411,7 +424,7 @@ static void open_check(wh_check_t *check) {
     }
 }
 
-static void close_check(wh_check_t *check) {
+static void close_check(wh_schedule_state_t *check) {
     free(check->wafers);
     free(check->places);
     free(check->stations);
@@ -419,9 +432,9 @@ static void close_check(wh_check_t *check) {
     free(check->doors);
 }
 
-/* --------------------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------------------------- whole */
 
-static void check_all(wh_check_t *check) {
+static void check_all(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
     moment_t *moments = wh_array_new(2 * schedule->count + 1, sizeof *moments);
     const size_t count = list_moments(schedule, moments);
@@ -441,10 +454,10 @@ static void check_all(wh_check_t *check) {
 
 bool wh_schedule_check(wh_schedule_report_t *report, const wh_schedule_t *schedule,
                        const wh_schedule_given_t *given) {
-    wh_check_t check = {.schedule = schedule, .tool = given->tool, .report = report};
+    wh_schedule_state_t check = {.schedule = schedule, .tool = given->tool, .report = report};
     report->schedule = schedule;
     open_check(&check);
-    const bool good = !check.tool || find_names(&check);
+    const bool good = !check.tool || take_names(&check);
     for (size_t i = 0; given->arms && i < schedule->robots.count; ++i) {
         check.robots[i].arms = given->arms[i] > 0 ? given->arms[i] : check.robots[i].arms;
     }

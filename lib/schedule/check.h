@@ -1,8 +1,8 @@
 /* Holds a schedule against the rules that no tool can break, and says which of them it has looked at.
  *
- * All rows are taken in the order of time. At one instant what ends goes first. What a schedule does not tell,
- * such as a process without a row of its own, is taken to begin as soon as it can. After a finding it goes on
- * as if the row were right. */
+ * All rows are taken in the order of time. At one instant what ends goes first. A process, a clean or a pump
+ * without a row of its own is taken to begin as soon as it can. After a finding it goes on as if the row were
+ * right. */
 #ifndef WH_SCHEDULE_CHECK_H
 #define WH_SCHEDULE_CHECK_H
 
@@ -64,14 +64,14 @@ typedef struct {
     char message[600]; /* why it could not be looked at: a name that the layout does not have */
 } wh_schedule_report_t;
 
-/* What else is known. */
+/* All else that is known. */
 typedef struct {
     const wh_flow_tool_t *tool; /* null: no layout */
     const int32_t *arms;        /* by the number of the robot's name; 0: not known; null: of none */
 } wh_schedule_given_t;
 
-/* Fills a zero report, which is to be closed in any case. False, with a message, if a name or a slot is not the
- * layout's. Cost: a sort of the rows, then constant for each of them. */
+/* Fills a zero report, which is to be closed in any case. False, with a message, if a name or a slot is not
+ * the layout's. Cost: a sort of the rows, then constant for each of them. */
 bool wh_schedule_check(wh_schedule_report_t *report, const wh_schedule_t *schedule,
                        const wh_schedule_given_t *given);
 void wh_schedule_report_close(wh_schedule_report_t *report);

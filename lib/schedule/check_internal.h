@@ -77,27 +77,27 @@ typedef struct {
     wh_check_robot_t *robots;
     wh_check_door_t *doors; /* by station, then by key */
     size_t door_count;
-} wh_check_t;
+} wh_schedule_state_t;
 
 /* Adds a finding; the text is "COLUMN: VALUE (expected ...)". */
-__attribute__((format(printf, 5, 6))) void wh_check_found(wh_check_t *check, int rule, int32_t row,
+__attribute__((format(printf, 5, 6))) void wh_check_found(wh_schedule_state_t *check, int rule, int32_t row,
                                                           int32_t other, const char *format, ...);
 
 /* "R's pick of W1 at A 1, 5 to 8 s, line 3", for a text that lives until the function is called 4 times. */
 typedef struct {
     char text[700];
 } wh_check_text_t;
-const char *wh_check_describe(const wh_check_t *check, int32_t row, wh_check_text_t *text);
+const char *wh_check_describe(const wh_schedule_state_t *check, int32_t row, wh_check_text_t *text);
 
 /* "A 1", where a wafer is, or what it is in. */
-const char *wh_check_place_name(const wh_check_t *check, int32_t place, wh_check_text_t *text);
-const char *wh_check_where(const wh_check_t *check, int32_t wafer, wh_check_text_t *text);
+const char *wh_check_place_name(const wh_schedule_state_t *check, int32_t place, wh_check_text_t *text);
+const char *wh_check_where(const wh_schedule_state_t *check, int32_t wafer, wh_check_text_t *text);
 
 static inline double wh_check_seconds(int64_t us) {
     return (double)us / 1e6;
 }
 
-static inline const wh_schedule_row_t *wh_check_row(const wh_check_t *check, int32_t row) {
+static inline const wh_schedule_row_t *wh_check_row(const wh_schedule_state_t *check, int32_t row) {
     return &check->schedule->rows[row];
 }
 
@@ -107,48 +107,48 @@ static inline bool wh_check_is_behind(int64_t us, int64_t other_us) {
 }
 
 /* The layout's station of a row's; null: there is no layout. */
-const wh_flow_station_t *wh_check_station(const wh_check_t *check, int32_t station);
+const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int32_t station);
 
 /* The index of robot and station of a row in the layout's tables; only with a layout, and a robot. */
-size_t wh_check_pair(const wh_check_t *check, const wh_schedule_row_t *row);
+size_t wh_check_pair(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
 
-/* ---- robots: rules 1, 2, 6, 7, 14 */
-void wh_check_robot_begins(wh_check_t *check, int32_t row);
-void wh_check_length(wh_check_t *check, int32_t row, int64_t least_us);
-void wh_check_takes_aboard(wh_check_t *check, int32_t row, int32_t wafer, int32_t arm);
+/* --------------------------------------------------------------------------- robots: rules 1, 2, 6, 7, 14 */
+void wh_check_robot_begins(wh_schedule_state_t *check, int32_t row);
+void wh_check_length(wh_schedule_state_t *check, int32_t row, int64_t least_us);
+void wh_check_takes_aboard(wh_schedule_state_t *check, int32_t row, int32_t wafer, int32_t arm);
 
-/* ---- places: rules 3, 4, 5, 8, 9, 10, 16 */
-void wh_check_lay(wh_check_t *check, int32_t wafer, int32_t place);
-void wh_check_begin_start(wh_check_t *check, int32_t row);
-void wh_check_begin_take(wh_check_t *check, int32_t row, int32_t wafer);
-void wh_check_end_take(wh_check_t *check, int32_t row, int32_t wafer);
-void wh_check_begin_put(wh_check_t *check, int32_t row, int32_t wafer, int32_t leaving);
-void wh_check_end_put(wh_check_t *check, int32_t row, int32_t wafer);
-void wh_check_need_aboard(wh_check_t *check, int32_t row, int32_t wafer);
+/* -------------------------------------------------------------------- places: rules 3, 4, 5, 8, 9, 10, 16 */
+void wh_check_lay(wh_schedule_state_t *check, int32_t wafer, int32_t place);
+void wh_check_begin_start(wh_schedule_state_t *check, int32_t row);
+void wh_check_begin_take(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_end_take(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_begin_put(wh_schedule_state_t *check, int32_t row, int32_t wafer, int32_t leaving);
+void wh_check_end_put(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_need_aboard(wh_schedule_state_t *check, int32_t row, int32_t wafer);
 
-/* ---- processes and cleans: rules 8, 9, 10, 16 */
-void wh_check_begin_process(wh_check_t *check, int32_t row);
-void wh_check_begin_clean(wh_check_t *check, int32_t row);
-void wh_check_leave(wh_check_t *check, int32_t row, int32_t wafer);
-void wh_check_enter(wh_check_t *check, int32_t row, int32_t leaving);
-int64_t wh_check_process_us(const wh_check_t *check, int32_t wafer);
-void wh_check_finish_stays(wh_check_t *check);
+/* --------------------------------------------------------------- processes and cleans: rules 8, 9, 10, 16 */
+void wh_check_begin_process(wh_schedule_state_t *check, int32_t row);
+void wh_check_begin_clean(wh_schedule_state_t *check, int32_t row);
+void wh_check_leave(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_enter(wh_schedule_state_t *check, int32_t row, int32_t leaving);
+int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t wafer);
+void wh_check_finish_stays(wh_schedule_state_t *check);
 
-/* ---- locks and doors: rules 11, 12, 13 */
-void wh_check_open_doors(wh_check_t *check);
-void wh_check_access(wh_check_t *check, int32_t row);
-void wh_check_begin_pump(wh_check_t *check, int32_t row);
-void wh_check_end_pump(wh_check_t *check, int32_t row);
-void wh_check_begin_door(wh_check_t *check, int32_t row);
-void wh_check_end_door(wh_check_t *check, int32_t row);
-wh_check_door_t *wh_check_door_of(const wh_check_t *check, const wh_schedule_row_t *row);
+/* ---------------------------------------------------------------------- locks and doors: rules 11, 12, 13 */
+void wh_check_open_doors(wh_schedule_state_t *check);
+void wh_check_access(wh_schedule_state_t *check, int32_t row);
+void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row);
+void wh_check_end_pump(wh_schedule_state_t *check, int32_t row);
+void wh_check_begin_door(wh_schedule_state_t *check, int32_t row);
+void wh_check_end_door(wh_schedule_state_t *check, int32_t row);
+wh_check_door_t *wh_check_door_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
 
-/* ---- routes: rules 15, 17 */
-void wh_check_set_out(wh_check_t *check, int32_t wafer, int32_t place);
-void wh_check_visit(wh_check_t *check, int32_t row, int32_t wafer);
-void wh_check_finish_routes(wh_check_t *check);
+/* ----------------------------------------------------------------------------------- routes: rules 15, 17 */
+void wh_check_set_out(wh_schedule_state_t *check, int32_t wafer, int32_t place);
+void wh_check_visit(wh_schedule_state_t *check, int32_t row, int32_t wafer);
+void wh_check_finish_routes(wh_schedule_state_t *check);
 
-/* ---- what was looked at */
-void wh_check_judge(wh_check_t *check);
+/* ------------------------------------------------------------------------------------- what was looked at */
+void wh_check_judge(wh_schedule_state_t *check);
 
 #endif

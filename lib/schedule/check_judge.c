@@ -1,4 +1,4 @@
-/* What was looked at: each rule, and why not. */
+/* Which rules were looked at, and why others were not. */
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -10,7 +10,7 @@ typedef struct {
     bool has_windows, has_cleans, has_locks;
 } facts_t;
 
-static facts_t find_facts(const wh_check_t *check) {
+static facts_t find_facts(const wh_schedule_state_t *check) {
     facts_t facts = {{0}, false, false, false};
     for (size_t i = 0; i < check->schedule->count; ++i) {
         ++facts.rows[check->schedule->rows[i].action];
@@ -25,7 +25,7 @@ static facts_t find_facts(const wh_check_t *check) {
 }
 
 /* `but`: why not, or what was left out; null: nothing was. */
-__attribute__((format(printf, 4, 5))) static void judge(wh_check_t *check, int rule, bool is_looked,
+__attribute__((format(printf, 4, 5))) static void judge(wh_schedule_state_t *check, int rule, bool is_looked,
                                                         const char *but, ...) {
     wh_schedule_verdict_t *verdict = &check->report->rules[rule];
     char text[600];
@@ -40,7 +40,7 @@ __attribute__((format(printf, 4, 5))) static void judge(wh_check_t *check, int r
 }
 
 /* Robots that pick, and whose arms nobody knows. */
-static void judge_arms(wh_check_t *check, bool has_picks) {
+static void judge_arms(wh_schedule_state_t *check, bool has_picks) {
     char names[400] = "";
     const char *first = NULL;
     size_t length = 0;
@@ -63,7 +63,7 @@ static void judge_arms(wh_check_t *check, bool has_picks) {
     }
 }
 
-static void judge_needed(wh_check_t *check, const facts_t *facts) {
+static void judge_needed(wh_schedule_state_t *check, const facts_t *facts) {
     const size_t picks = facts->rows[WH_SCHEDULE_PICK] + facts->rows[WH_SCHEDULE_SWAP];
     const size_t places = facts->rows[WH_SCHEDULE_PLACE] + facts->rows[WH_SCHEDULE_SWAP];
     const size_t moves = facts->rows[WH_SCHEDULE_MOVE];
@@ -80,10 +80,19 @@ static void judge_needed(wh_check_t *check, const facts_t *facts) {
     }
 }
 
-static void judge_times(wh_check_t *check, const facts_t *facts) {
-    const char *no_layout = check->tool ? NULL : "no layout";
-    judge(check, WH_SCHEDULE_RULE_MOVE, check->tool != NULL, no_layout ? "%s" : NULL, no_layout);
-    judge(check, WH_SCHEDULE_RULE_SHORT, check->tool != NULL, no_layout ? "%s" : NULL, no_layout);
+/* A rule for which the layout has what is needed, or not; `without` says what is missing then. */
+static void judge_layout(wh_schedule_state_t *check, int rule, bool has_it, const char *without) {
+    if (has_it) {
+        judge(check, rule, true, NULL);
+    } else {
+        judge(check, rule, false, "%s", check->tool ? without : "no layout");
+    }
+}
+
+static void judge_times(wh_schedule_state_t *check, const facts_t *facts) {
+    judge_layout(check, WH_SCHEDULE_RULE_MOVE, check->tool != NULL, "");
+    judge_layout(check, WH_SCHEDULE_RULE_SHORT, check->tool != NULL, "");
+    judge_layout(check, WH_SCHEDULE_RULE_WINDOW, facts->has_windows, "no window in the layout");
     if (check->tool) {
         judge(check, WH_SCHEDULE_RULE_PROCESS, true, NULL);
     } else if (facts->rows[WH_SCHEDULE_PROCESS] > 0) {
@@ -91,10 +100,9 @@ static void judge_times(wh_check_t *check, const facts_t *facts) {
     } else {
         judge(check, WH_SCHEDULE_RULE_PROCESS, false, "no layout, and no process in the schedule");
     }
-    judge(check, WH_SCHEDULE_RULE_WINDOW, facts->has_windows,
-          facts->has_windows ? NULL
-          : check->tool      ? "no window in the layout"
-                             : "no layout");
+}
+
+static void judge_cleans(wh_schedule_state_t *check, const facts_t *facts) {
     if (facts->has_cleans) {
         judge(check, WH_SCHEDULE_RULE_CLEAN, true, NULL);
     } else if (facts->rows[WH_SCHEDULE_CLEAN] > 0) {
@@ -106,37 +114,58 @@ static void judge_times(wh_check_t *check, const facts_t *facts) {
     }
 }
 
-static void judge_locks(wh_check_t *check, const facts_t *facts) {
-    const char *no_lock = check->tool ? "no load lock in the layout" : "no layout";
-    const size_t doors = facts->rows[WH_SCHEDULE_OPEN] + facts->rows[WH_SCHEDULE_CLOSE];
-    bool has_two = false, has_other = false;
-    for (size_t i = 0; i < check->door_count; ++i) {
-        const wh_check_door_t *door = &check->doors[i];
-        has_two = has_two || (door->key == 1 && i > 0 && check->doors[i - 1].key == 0 &&
-                              check->doors[i - 1].station == door->station);
+/* True if the schedule tells of both doors of a load lock. */
+static bool has_two_doors(const wh_schedule_state_t *check) {
+    for (size_t i = 1; i < check->door_count; ++i) {
+        const wh_check_door_t *one = &check->doors[i - 1], *other = &check->doors[i];
+        if (one->station == other->station && one->key == 0 && other->key == 1) {
+            return true;
+        }
     }
-    for (size_t i = 0; i < check->schedule->count && !has_other; ++i) {
-        const wh_schedule_row_t *row = &check->schedule->rows[i];
-        has_other = wh_schedule_is_access(row->action) && !wh_check_door_of(check, row);
-    }
-    judge(check, WH_SCHEDULE_RULE_PRESSURE, facts->has_locks, facts->has_locks ? NULL : "%s", no_lock);
-    judge(check, WH_SCHEDULE_RULE_BOTH_OPEN, has_two,
-          has_two ? NULL : "no load lock whose doors both open or close in the schedule");
-    judge(check, WH_SCHEDULE_RULE_DOOR, doors > 0,
-          doors == 0  ? "no door opens or closes in the schedule"
-          : has_other ? "but for the stations whose doors the schedule does not tell of"
-                      : NULL);
+    return false;
 }
 
-void wh_check_judge(wh_check_t *check) {
+/* True if a robot reaches into a station of whose door the schedule does not tell. */
+static bool has_other_stations(const wh_schedule_state_t *check) {
+    for (size_t i = 0; i < check->schedule->count; ++i) {
+        const wh_schedule_row_t *row = &check->schedule->rows[i];
+        if (wh_schedule_is_access(row->action) && !wh_check_door_of(check, row)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void judge_locks(wh_schedule_state_t *check, const facts_t *facts) {
+    judge_layout(check, WH_SCHEDULE_RULE_PRESSURE, facts->has_locks, "no load lock in the layout");
+    if (has_two_doors(check)) {
+        judge(check, WH_SCHEDULE_RULE_BOTH_OPEN, true, NULL);
+    } else {
+        judge(check, WH_SCHEDULE_RULE_BOTH_OPEN, false, "no load lock with two doors in the schedule");
+    }
+    if (check->door_count == 0) {
+        judge(check, WH_SCHEDULE_RULE_DOOR, false, "no door opens or closes in the schedule");
+    } else if (has_other_stations(check)) {
+        judge(check, WH_SCHEDULE_RULE_DOOR, true, "at the stations of whose doors the schedule tells");
+    } else {
+        judge(check, WH_SCHEDULE_RULE_DOOR, true, NULL);
+    }
+}
+
+void wh_check_judge(wh_schedule_state_t *check) {
     const facts_t facts = find_facts(check);
     const bool has_routes = check->tool && check->tool->route_count > 0;
-    const char *no_routes = check->tool ? "no routes in the layout" : "no layout";
     judge_needed(check, &facts);
     judge_times(check, &facts);
+    judge_cleans(check, &facts);
     judge_locks(check, &facts);
-    judge(check, WH_SCHEDULE_RULE_SERVES, check->tool != NULL, check->tool ? NULL : "no layout");
-    judge(check, WH_SCHEDULE_RULE_ROUTE, has_routes, has_routes ? NULL : "%s", no_routes);
+    judge_layout(check, WH_SCHEDULE_RULE_SERVES, check->tool != NULL, "");
+    judge_layout(check, WH_SCHEDULE_RULE_ROUTE, has_routes, "no routes in the layout");
     judge(check, WH_SCHEDULE_RULE_TWO_PLACES, true, NULL);
-    judge(check, WH_SCHEDULE_RULE_LEFT, true, has_routes ? NULL : "wafers aboard alone: %s", no_routes);
+    if (has_routes) {
+        judge(check, WH_SCHEDULE_RULE_LEFT, true, NULL);
+    } else {
+        judge(check, WH_SCHEDULE_RULE_LEFT, true, "wafers aboard alone: %s",
+              check->tool ? "no routes in the layout" : "no layout");
+    }
 }

@@ -7,16 +7,19 @@
 static const char *const sides[] = {"atmosphere", "vacuum"};
 
 /* The side of a robot's row at a lock of the layout; WH_FLOW_BOTH: none. */
-static wh_flow_side_t side_of(const wh_check_t *check, const wh_schedule_row_t *row) {
+static wh_flow_side_t side_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
     return check->tool && row->robot != WH_FLOW_NONE ? check->tool->sides[wh_check_pair(check, row)]
                                                      : WH_FLOW_BOTH;
 }
 
 /* -------------------------------------------------------------------------------------------------- doors */
 
-static int32_t key_of(const wh_check_t *check, const wh_schedule_row_t *row) {
-    const bool is_door = row->action == WH_SCHEDULE_OPEN || row->action == WH_SCHEDULE_CLOSE;
-    const wh_flow_side_t side = is_door && row->side != WH_FLOW_BOTH ? row->side : side_of(check, row);
+static bool is_door(const wh_schedule_row_t *row) {
+    return row->action == WH_SCHEDULE_OPEN || row->action == WH_SCHEDULE_CLOSE;
+}
+
+static int32_t key_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    const wh_flow_side_t side = is_door(row) && row->side != WH_FLOW_BOTH ? row->side : side_of(check, row);
     return side != WH_FLOW_BOTH ? (int32_t)side : 2 + row->robot;
 }
 
@@ -29,7 +32,7 @@ static int by_door(const void *a, const void *b) {
 }
 
 /* The first row of a door says what it was before. */
-static void begin_door_shut(const wh_check_t *check, wh_check_door_t *door, int32_t row) {
+static void begin_door_shut(const wh_schedule_state_t *check, wh_check_door_t *door, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (door->row == WH_CHECK_NO_ROW || of->begin_us < wh_check_row(check, door->row)->begin_us) {
         door->row = row;
@@ -37,15 +40,15 @@ static void begin_door_shut(const wh_check_t *check, wh_check_door_t *door, int3
     }
 }
 
-void wh_check_open_doors(wh_check_t *check) {
+/* All doors of which rows tell, each once. */
+static void list_doors(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
     size_t capacity = 0, count = 0;
     for (size_t i = 0; i < schedule->count; ++i) {
-        const wh_schedule_row_t *row = &schedule->rows[i];
-        if (row->action == WH_SCHEDULE_OPEN || row->action == WH_SCHEDULE_CLOSE) {
+        if (is_door(&schedule->rows[i])) {
             check->doors = wh_array_grow(check->doors, count, &capacity, sizeof *check->doors);
-            check->doors[count++] = (wh_check_door_t){.station = row->station,
-                                                      .key = key_of(check, row),
+            check->doors[count++] = (wh_check_door_t){.station = schedule->rows[i].station,
+                                                      .key = key_of(check, &schedule->rows[i]),
                                                       .row = WH_CHECK_NO_ROW,
                                                       .access_row = WH_CHECK_NO_ROW};
         }
@@ -58,29 +61,33 @@ void wh_check_open_doors(wh_check_t *check) {
             check->doors[check->door_count++] = check->doors[i];
         }
     }
+}
+
+void wh_check_open_doors(wh_schedule_state_t *check) {
+    const wh_schedule_t *schedule = check->schedule;
+    list_doors(check);
     for (size_t i = 0; i < schedule->count; ++i) {
-        const wh_schedule_action_t action = schedule->rows[i].action;
-        if (action == WH_SCHEDULE_OPEN || action == WH_SCHEDULE_CLOSE) {
+        if (is_door(&schedule->rows[i])) {
             begin_door_shut(check, wh_check_door_of(check, &schedule->rows[i]), (int32_t)i);
         }
     }
 }
 
-wh_check_door_t *wh_check_door_of(const wh_check_t *check, const wh_schedule_row_t *row) {
+wh_check_door_t *wh_check_door_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
     const wh_check_door_t key = {.station = row->station, .key = key_of(check, row)};
     return check->door_count == 0 ? NULL
                                   : bsearch(&key, check->doors, check->door_count, sizeof key, by_door);
 }
 
 /* A lock's door on this side; null: none is told of. */
-static const wh_check_door_t *door_on(const wh_check_t *check, int32_t station, int32_t side) {
+static const wh_check_door_t *door_on(const wh_schedule_state_t *check, int32_t station, int32_t side) {
     const wh_check_door_t key = {.station = station, .key = side};
     return check->door_count == 0 ? NULL
                                   : bsearch(&key, check->doors, check->door_count, sizeof key, by_door);
 }
 
 /* Rule 12. The other side of a lock. */
-static void check_other_door(wh_check_t *check, int32_t row, const wh_check_door_t *door) {
+static void check_other_door(wh_schedule_state_t *check, int32_t row, const wh_check_door_t *door) {
     wh_check_text_t text;
     const wh_check_door_t *other = door->key < 2 ? door_on(check, door->station, 1 - door->key) : NULL;
     if (other && other->state != WH_CHECK_SHUT) {
@@ -91,20 +98,26 @@ static void check_other_door(wh_check_t *check, int32_t row, const wh_check_door
     }
 }
 
-void wh_check_begin_door(wh_check_t *check, int32_t row) {
-    wh_check_text_t text;
+/* Rule 11 of a door: its side has the lock's pressure. */
+static void check_door_side(wh_schedule_state_t *check, int32_t row, const wh_check_door_t *door) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_check_station_t *station = &check->stations[of->station];
+    const bool is_lock = check->tool && check->tool->stations[station->tool].is_lock;
+    if (is_lock && door->key < 2 && station->has_pumps && (int32_t)station->side != door->key) {
+        wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
+                       "begin_s: %.10g (expected a time when %s is at %s)", wh_check_seconds(of->begin_us),
+                       wh_schedule_text(&check->schedule->stations, of->station), sides[door->key]);
+    }
+}
+
+void wh_check_begin_door(wh_schedule_state_t *check, int32_t row) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const bool opens = of->action == WH_SCHEDULE_OPEN;
     wh_check_door_t *door = wh_check_door_of(check, of);
-    if (of->action == WH_SCHEDULE_OPEN) {
+    if (opens) {
         check_other_door(check, row, door);
-        const bool is_lock = check->tool && check->tool->stations[station->tool].is_lock;
-        if (is_lock && door->key < 2 && station->has_pumps && (int32_t)station->side != door->key) {
-            wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
-                           "begin_s: %.10g (expected a time when %s is at %s)",
-                           wh_check_seconds(of->begin_us),
-                           wh_schedule_text(&check->schedule->stations, of->station), sides[door->key]);
-        }
+        check_door_side(check, row, door);
     } else if (wh_check_is_behind(door->access_us, of->begin_us)) {
         wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, door->access_row,
                        "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
@@ -112,13 +125,13 @@ void wh_check_begin_door(wh_check_t *check, int32_t row) {
     }
     if (check->tool && of->robot != WH_FLOW_NONE) {
         const wh_flow_door_t *times = &check->tool->doors[wh_check_pair(check, of)];
-        wh_check_length(check, row, of->action == WH_SCHEDULE_OPEN ? times->open_us : times->close_us);
+        wh_check_length(check, row, opens ? times->open_us : times->close_us);
     }
-    door->state = of->action == WH_SCHEDULE_OPEN ? WH_CHECK_OPENING : WH_CHECK_CLOSING;
+    door->state = opens ? WH_CHECK_OPENING : WH_CHECK_CLOSING;
     door->row = row;
 }
 
-void wh_check_end_door(wh_check_t *check, int32_t row) {
+void wh_check_end_door(wh_schedule_state_t *check, int32_t row) {
     wh_check_door_t *door = wh_check_door_of(check, wh_check_row(check, row));
     if (door->row == row) {
         door->state = door->state == WH_CHECK_OPENING ? WH_CHECK_OPEN : WH_CHECK_SHUT;
@@ -127,13 +140,13 @@ void wh_check_end_door(wh_check_t *check, int32_t row) {
 
 /* -------------------------------------------------------------------------------------------------- locks */
 
-static int64_t pump_us(const wh_check_t *check, int32_t station, wh_flow_side_t to) {
+static int64_t pump_us(const wh_schedule_state_t *check, int32_t station, wh_flow_side_t to) {
     const wh_flow_station_t *of = wh_check_station(check, station);
     return check->stations[station].wafers == 0 ? of->empty_pump_us[to] : of->pump_us[to];
 }
 
 /* A lock without pumps in the schedule turns as soon as nobody is in it. */
-static bool is_turned(const wh_check_t *check, const wh_schedule_row_t *of, wh_flow_side_t side) {
+static bool is_turned(const wh_schedule_state_t *check, const wh_schedule_row_t *of, wh_flow_side_t side) {
     const wh_check_station_t *station = &check->stations[of->station];
     const int64_t open_us = check->tool->doors[wh_check_pair(check, of)].open_us;
     return !station->has_pumps && !wh_check_is_behind(station->access_us + pump_us(check, of->station, side),
@@ -141,7 +154,7 @@ static bool is_turned(const wh_check_t *check, const wh_schedule_row_t *of, wh_f
 }
 
 /* Rule 11. */
-static void check_pressure(wh_check_t *check, int32_t row) {
+static void check_pressure(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
@@ -165,7 +178,7 @@ static void check_pressure(wh_check_t *check, int32_t row) {
 }
 
 /* Rule 13. */
-static void check_door(wh_check_t *check, int32_t row) {
+static void check_door(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_door_t *door = wh_check_door_of(check, of);
     if (!door) {
@@ -183,7 +196,7 @@ static void check_door(wh_check_t *check, int32_t row) {
     }
 }
 
-void wh_check_access(wh_check_t *check, int32_t row) {
+void wh_check_access(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
     int64_t end_us = of->end_us;
@@ -198,7 +211,7 @@ void wh_check_access(wh_check_t *check, int32_t row) {
     }
 }
 
-void wh_check_begin_pump(wh_check_t *check, int32_t row) {
+void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
@@ -223,7 +236,7 @@ void wh_check_begin_pump(wh_check_t *check, int32_t row) {
     station->pump_row = row;
 }
 
-void wh_check_end_pump(wh_check_t *check, int32_t row) {
+void wh_check_end_pump(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     check->stations[of->station].side = of->side;
 }

@@ -3,13 +3,13 @@
 
 #include <string.h>
 
-static const char *name_of(const wh_check_t *check, int32_t wafer) {
+static const char *name_of(const wh_schedule_state_t *check, int32_t wafer) {
     return wh_schedule_text(&check->schedule->wafers, wafer);
 }
 
-/* --------------------------------------------------------------------------------------------- lists of places */
+/* ---------------------------------------------------------------------------------------- lists of places */
 
-void wh_check_lay(wh_check_t *check, int32_t wafer, int32_t place) {
+void wh_check_lay(wh_schedule_state_t *check, int32_t wafer, int32_t place) {
     wh_check_place_t *into = &check->places[place];
     check->wafers[wafer].place = place;
     check->wafers[wafer].next = into->head;
@@ -18,7 +18,7 @@ void wh_check_lay(wh_check_t *check, int32_t wafer, int32_t place) {
     ++check->stations[check->schedule->places[place].station].wafers;
 }
 
-static void lift(wh_check_t *check, int32_t wafer) {
+static void lift(wh_schedule_state_t *check, int32_t wafer) {
     wh_check_wafer_t *lifted = &check->wafers[wafer];
     wh_check_place_t *from = &check->places[lifted->place];
     int32_t *link = &from->head;
@@ -31,7 +31,7 @@ static void lift(wh_check_t *check, int32_t wafer) {
     lifted->place = WH_FLOW_NONE;
 }
 
-static void drop(wh_check_t *check, int32_t wafer) {
+static void drop(wh_schedule_state_t *check, int32_t wafer) {
     wh_check_wafer_t *dropped = &check->wafers[wafer];
     if (dropped->robot != WH_FLOW_NONE) {
         wh_check_robot_t *robot = &check->robots[dropped->robot];
@@ -45,7 +45,7 @@ static void drop(wh_check_t *check, int32_t wafer) {
 }
 
 /* After a finding the wafer is where the row says, and nowhere else. */
-static void detach(wh_check_t *check, int32_t wafer) {
+static void detach(wh_schedule_state_t *check, int32_t wafer) {
     if (check->wafers[wafer].place != WH_FLOW_NONE) {
         lift(check, wafer);
     }
@@ -53,10 +53,10 @@ static void detach(wh_check_t *check, int32_t wafer) {
     check->wafers[wafer].where = WH_CHECK_NOWHERE;
 }
 
-/* -------------------------------------------------------------------------------------------------- starts */
+/* ------------------------------------------------------------------------------------------------- starts */
 
 /* The wafers of a carrier that is over make room for those of the next one. */
-static void change_carrier(wh_check_t *check, int32_t place, int64_t begin_us) {
+static void change_carrier(wh_schedule_state_t *check, int32_t place, int64_t begin_us) {
     const wh_flow_station_t *station = wh_check_station(check, check->schedule->places[place].station);
     int32_t there = check->places[place].head;
     if (!station || !station->is_load_port || begin_us == 0) {
@@ -71,7 +71,7 @@ static void change_carrier(wh_check_t *check, int32_t place, int64_t begin_us) {
     }
 }
 
-void wh_check_begin_start(wh_check_t *check, int32_t row) {
+void wh_check_begin_start(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[of->wafer];
@@ -95,9 +95,9 @@ void wh_check_begin_start(wh_check_t *check, int32_t row) {
     wh_check_set_out(check, of->wafer, of->place);
 }
 
-/* --------------------------------------------------------------------------------------------------- takes */
+/* -------------------------------------------------------------------------------------------------- takes */
 
-void wh_check_begin_take(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_begin_take(wh_schedule_state_t *check, int32_t row, int32_t number) {
     wh_check_text_t text, place;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
@@ -115,7 +115,7 @@ void wh_check_begin_take(wh_check_t *check, int32_t row, int32_t number) {
     wafer->row = row;
 }
 
-void wh_check_end_take(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_end_take(wh_schedule_state_t *check, int32_t row, int32_t number) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
     if (wafer->where != WH_CHECK_TAKEN || wafer->row != row) {
@@ -130,13 +130,13 @@ void wh_check_end_take(wh_check_t *check, int32_t row, int32_t number) {
     wafer->where = WH_CHECK_ABOARD;
 }
 
-/* ---------------------------------------------------------------------------------------------------- puts */
+/* --------------------------------------------------------------------------------------------------- puts */
 
 static bool is_on_other_arm(const wh_check_wafer_t *wafer, const wh_schedule_row_t *row) {
     return wafer->arm > 0 && row->arm > 0 && wafer->arm != row->arm;
 }
 
-void wh_check_need_aboard(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_need_aboard(wh_schedule_state_t *check, int32_t row, int32_t number) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
@@ -160,7 +160,7 @@ void wh_check_need_aboard(wh_check_t *check, int32_t row, int32_t number) {
 }
 
 /* `leaving` wafers come out of the place in the same action. */
-void wh_check_begin_put(wh_check_t *check, int32_t row, int32_t number, int32_t leaving) {
+void wh_check_begin_put(wh_schedule_state_t *check, int32_t row, int32_t number, int32_t leaving) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
@@ -179,7 +179,7 @@ void wh_check_begin_put(wh_check_t *check, int32_t row, int32_t number, int32_t 
     place->placing_row = row;
 }
 
-void wh_check_end_put(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_end_put(wh_schedule_state_t *check, int32_t row, int32_t number) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
     if (wafer->where != WH_CHECK_PLACED || wafer->row != row) {

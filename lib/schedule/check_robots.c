@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* Rule 1. An action that begins while another one runs. */
-static bool is_busy(wh_check_t *check, int32_t row, wh_check_robot_t *robot) {
+static bool is_busy(wh_schedule_state_t *check, int32_t row, wh_check_robot_t *robot) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (robot->row == WH_CHECK_NO_ROW ||
@@ -19,7 +19,7 @@ static bool is_busy(wh_check_t *check, int32_t row, wh_check_robot_t *robot) {
 }
 
 /* Rule 6. From where it stands to where the row begins, and of a move to where it ends. */
-static void check_way(wh_check_t *check, int32_t row, const wh_check_robot_t *robot) {
+static void check_way(wh_schedule_state_t *check, int32_t row, const wh_check_robot_t *robot) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const int32_t to = check->stations[of->station].tool;
     const int64_t way_us = wh_flow_move_us(check->tool, robot->tool, robot->station, to);
@@ -43,7 +43,7 @@ static void check_way(wh_check_t *check, int32_t row, const wh_check_robot_t *ro
     }
 }
 
-void wh_check_length(wh_check_t *check, int32_t row, int64_t least_us) {
+void wh_check_length(wh_schedule_state_t *check, int32_t row, int64_t least_us) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (wh_check_is_behind(of->begin_us + least_us, of->end_us)) {
         wh_check_found(check, WH_SCHEDULE_RULE_SHORT, row, WH_CHECK_NO_ROW,
@@ -53,7 +53,7 @@ void wh_check_length(wh_check_t *check, int32_t row, int64_t least_us) {
     }
 }
 
-static void check_access_length(wh_check_t *check, int32_t row) {
+static void check_access_length(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const size_t pair = wh_check_pair(check, of);
     if (of->action == WH_SCHEDULE_PICK) {
@@ -66,7 +66,7 @@ static void check_access_length(wh_check_t *check, int32_t row) {
 }
 
 /* Rule 14. */
-static void check_serves(wh_check_t *check, int32_t row, int32_t station) {
+static void check_serves(wh_schedule_state_t *check, int32_t row, int32_t station) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const int32_t robot = check->robots[of->robot].tool;
     if (!check->tool->serves[wh_flow_of(check->tool, robot, check->stations[station].tool)]) {
@@ -77,7 +77,7 @@ static void check_serves(wh_check_t *check, int32_t row, int32_t station) {
     }
 }
 
-void wh_check_robot_begins(wh_check_t *check, int32_t row) {
+void wh_check_robot_begins(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_robot_t *robot = &check->robots[of->robot];
     const bool busy = is_busy(check, row, robot);
@@ -99,7 +99,7 @@ void wh_check_robot_begins(wh_check_t *check, int32_t row) {
 }
 
 /* Rule 2. */
-void wh_check_takes_aboard(wh_check_t *check, int32_t row, int32_t wafer, int32_t arm) {
+void wh_check_takes_aboard(wh_schedule_state_t *check, int32_t row, int32_t wafer, int32_t arm) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_robot_t *robot = &check->robots[of->robot];
     const char *name = wh_schedule_text(&check->schedule->robots, of->robot);

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* A wafer whose first place is known may go by each of the layout's routes. */
-void wh_check_set_out(wh_check_t *check, int32_t wafer, int32_t place) {
+void wh_check_set_out(wh_schedule_state_t *check, int32_t wafer, int32_t place) {
     check->wafers[wafer].home = check->stations[check->schedule->places[place].station].tool;
     check->wafers[wafer].routes = UINT64_MAX;
     check->wafers[wafer].visits = 0;
@@ -12,8 +12,8 @@ void wh_check_set_out(wh_check_t *check, int32_t wafer, int32_t place) {
 }
 
 /* True if the route's step is this station, or the wafer goes home behind its last one. */
-static bool is_next(const wh_check_t *check, const wh_flow_route_t *route, const wh_check_wafer_t *wafer,
-                    int32_t station) {
+static bool is_next(const wh_schedule_state_t *check, const wh_flow_route_t *route,
+                    const wh_check_wafer_t *wafer, int32_t station) {
     if ((size_t)wafer->visits < route->step_count) {
         return wh_flow_step_has(&route->steps[wafer->visits], station);
     }
@@ -21,30 +21,35 @@ static bool is_next(const wh_check_t *check, const wh_flow_route_t *route, const
            (station == wafer->home || check->tool->stations[station].is_load_port);
 }
 
-static void name_steps(const wh_check_t *check, const wh_check_wafer_t *wafer, uint64_t routes,
+/* "route A: PM1 or PM2", the next step of a wafer there. */
+static size_t name_step(const wh_schedule_state_t *check, const wh_flow_route_t *route, int32_t visits,
+                        char text[], size_t size) {
+    const bool is_step = (size_t)visits < route->step_count;
+    size_t length = (size_t)snprintf(text, size, "route %s: ", route->name);
+    const wh_flow_step_t *step = is_step ? &route->steps[visits] : NULL;
+    for (size_t i = 0; is_step && i < step->station_count && length + 80 < size; ++i) {
+        length += (size_t)snprintf(text + length, size - length, "%s%s", i > 0 ? " or " : "",
+                                   check->tool->stations[step->stations[i]].name);
+    }
+    return is_step ? length : length + (size_t)snprintf(text + length, size - length, "its end");
+}
+
+static void name_steps(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer,
                        wh_check_text_t *text) {
+    const size_t size = sizeof text->text;
     size_t length = 0;
     text->text[0] = '\0';
-    for (size_t r = 0; r < check->tool->route_count && length < 200; ++r) {
-        const wh_flow_route_t *route = &check->tool->routes[r];
-        if ((routes >> r & 1U) == 0) {
-            continue;
+    for (size_t r = 0; r < check->tool->route_count && length + 200 < size; ++r) {
+        if ((wafer->routes >> r & 1U) != 0) {
+            length += (size_t)snprintf(text->text + length, size - length, "%s", length > 0 ? "; " : "");
+            length +=
+                name_step(check, &check->tool->routes[r], wafer->visits, text->text + length, size - length);
         }
-        const bool is_step = (size_t)wafer->visits < route->step_count;
-        const wh_flow_step_t *step = is_step ? &route->steps[wafer->visits] : NULL;
-        length += (size_t)snprintf(text->text + length, sizeof text->text - length,
-                                   "%sroute %s: ", length > 0 ? "; " : "", route->name);
-        for (size_t i = 0; is_step && i < step->station_count && length < 400; ++i) {
-            length += (size_t)snprintf(text->text + length, sizeof text->text - length, "%s%s",
-                                       i > 0 ? " or " : "", check->tool->stations[step->stations[i]].name);
-        }
-        length +=
-            (size_t)snprintf(text->text + length, sizeof text->text - length, "%s", is_step ? "" : "its end");
     }
 }
 
 /* Rule 15. The wafer is placed in the station of the row. */
-void wh_check_visit(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_visit(wh_schedule_state_t *check, int32_t row, int32_t number) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_wafer_t *wafer = &check->wafers[number];
@@ -61,7 +66,7 @@ void wh_check_visit(wh_check_t *check, int32_t row, int32_t number) {
         routes |= (uint64_t)goes << r;
     }
     if (routes == 0) {
-        name_steps(check, wafer, wafer->routes, &text);
+        name_steps(check, wafer, &text);
         wh_check_found(check, WH_SCHEDULE_RULE_ROUTE, row, WH_CHECK_NO_ROW,
                        "station: %s (expected the next step of %s, %s)",
                        wh_schedule_text(&check->schedule->stations, of->station),
@@ -72,7 +77,7 @@ void wh_check_visit(wh_check_t *check, int32_t row, int32_t number) {
     wafer->routes = routes;
 }
 
-static bool is_at_end(const wh_check_t *check, const wh_check_wafer_t *wafer) {
+static bool is_at_end(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer) {
     for (size_t r = 0; r < check->tool->route_count; ++r) {
         if ((wafer->routes >> r & 1U) != 0 &&
             (size_t)wafer->visits + 1 >= check->tool->routes[r].step_count) {
@@ -83,7 +88,7 @@ static bool is_at_end(const wh_check_t *check, const wh_check_wafer_t *wafer) {
 }
 
 /* Rule 17. */
-void wh_check_finish_routes(wh_check_t *check) {
+void wh_check_finish_routes(wh_schedule_state_t *check) {
     wh_check_text_t text;
     const bool has_routes = check->tool && check->tool->route_count > 0;
     for (int32_t w = 0; w < (int32_t)check->schedule->wafers.count; ++w) {

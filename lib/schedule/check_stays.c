@@ -1,12 +1,18 @@
 /* Processes, windows and cleans: rules 8, 9, 10, and 16 of a process. */
 #include "check_internal.h"
 
-static const char *name_of(const wh_check_t *check, int32_t wafer) {
+static const char *name_of(const wh_schedule_state_t *check, int32_t wafer) {
     return wh_schedule_text(&check->schedule->wafers, wafer);
 }
 
+/* The process of a route's step; in the route's last station, and behind it, there is none of its own. */
+static int64_t step_us(const wh_flow_route_t *route, int32_t visits, int64_t own_us) {
+    const int64_t us = (size_t)visits < route->step_count ? route->steps[visits].process_us : 0;
+    return us == WH_FLOW_NONE ? own_us : us;
+}
+
 /* The time for which the layout processes a wafer where it lies: of the shortest route that it may go. */
-int64_t wh_check_process_us(const wh_check_t *check, int32_t number) {
+int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
     const wh_check_wafer_t *wafer = &check->wafers[number];
     if (!check->tool || wafer->place == WH_FLOW_NONE || wafer->visits == 0) {
         return 0;
@@ -14,13 +20,10 @@ int64_t wh_check_process_us(const wh_check_t *check, int32_t number) {
     const int32_t station = check->stations[check->schedule->places[wafer->place].station].tool;
     const int64_t own_us = check->tool->stations[station].process_us;
     int64_t least_us = WH_FLOW_NEVER;
-    for (size_t r = 0; r < check->tool->route_count; ++r) {
-        const wh_flow_route_t *route = &check->tool->routes[r];
-        if ((wafer->routes >> r & 1U) != 0 && !wafer->is_lost) {
-            const bool is_step = (size_t)wafer->visits < route->step_count;
-            const int64_t us = is_step ? route->steps[wafer->visits].process_us : 0;
-            const int64_t step_us = us == WH_FLOW_NONE ? own_us : us;
-            least_us = step_us < least_us ? step_us : least_us;
+    for (size_t r = 0; r < check->tool->route_count && !wafer->is_lost; ++r) {
+        if ((wafer->routes >> r & 1U) != 0) {
+            const int64_t us = step_us(&check->tool->routes[r], wafer->visits, own_us);
+            least_us = us < least_us ? us : least_us;
         }
     }
     return least_us == WH_FLOW_NEVER ? own_us : least_us;
@@ -28,7 +31,7 @@ int64_t wh_check_process_us(const wh_check_t *check, int32_t number) {
 
 /* ---------------------------------------------------------------------------------------------- processes */
 
-void wh_check_begin_process(wh_check_t *check, int32_t row) {
+void wh_check_begin_process(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text, place;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const int32_t number = of->wafer != WH_FLOW_NONE ? of->wafer : check->places[of->place].head;
@@ -49,7 +52,8 @@ void wh_check_begin_process(wh_check_t *check, int32_t row) {
 }
 
 /* Rule 8. The row that takes the wafer out is `row`; WH_CHECK_NO_ROW: it stays until the end. */
-static void check_process(wh_check_t *check, int32_t row, const wh_check_wafer_t *wafer, int32_t number) {
+static void check_process(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer,
+                          int32_t number) {
     const int64_t needed_us = wh_check_process_us(check, number);
     const bool is_told = wafer->process_row != WH_CHECK_NO_ROW;
     if (is_told && wh_check_is_behind(needed_us, wafer->processed_us)) {
@@ -69,7 +73,7 @@ static void check_process(wh_check_t *check, int32_t row, const wh_check_wafer_t
 }
 
 /* Rule 9. A clean around the wafer belongs to its process. */
-static void check_window(wh_check_t *check, int32_t row, int32_t number, int64_t until_us) {
+static void check_window(wh_schedule_state_t *check, int32_t row, int32_t number, int64_t until_us) {
     const wh_check_wafer_t *wafer = &check->wafers[number];
     const int32_t of = check->schedule->places[wafer->place].station;
     const wh_flow_station_t *station = wh_check_station(check, of);
@@ -88,7 +92,7 @@ static void check_window(wh_check_t *check, int32_t row, int32_t number, int64_t
     }
 }
 
-void wh_check_finish_stays(wh_check_t *check) {
+void wh_check_finish_stays(wh_schedule_state_t *check) {
     for (int32_t w = 0; w < (int32_t)check->schedule->wafers.count; ++w) {
         const wh_check_wafer_t *wafer = &check->wafers[w];
         if (wafer->where == WH_CHECK_LIES && wafer->row != WH_CHECK_NO_ROW) {
@@ -101,7 +105,7 @@ void wh_check_finish_stays(wh_check_t *check) {
 /* ------------------------------------------------------------------------------------------------- cleans */
 
 /* A clean with the wafer inside, that is due before the wafer leaves. */
-static void check_clean_inside(wh_check_t *check, int32_t row, wh_check_wafer_t *wafer) {
+static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check_wafer_t *wafer) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];
@@ -122,7 +126,7 @@ static void check_clean_inside(wh_check_t *check, int32_t row, wh_check_wafer_t 
 }
 
 /* The wafer is taken out of its place. */
-void wh_check_leave(wh_check_t *check, int32_t row, int32_t number) {
+void wh_check_leave(wh_schedule_state_t *check, int32_t row, int32_t number) {
     wh_check_wafer_t *wafer = &check->wafers[number];
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_check_place_t *place = &check->places[of->place];
@@ -136,7 +140,7 @@ void wh_check_leave(wh_check_t *check, int32_t row, int32_t number) {
     }
 }
 
-void wh_check_begin_clean(wh_check_t *check, int32_t row) {
+void wh_check_begin_clean(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
@@ -162,7 +166,7 @@ void wh_check_begin_clean(wh_check_t *check, int32_t row) {
 }
 
 /* Since when a clean must have run before this placing; WH_FLOW_NEVER: none is due. */
-static int64_t clean_due_us(const wh_check_t *check, int32_t row, int32_t leaving) {
+static int64_t clean_due_us(const wh_schedule_state_t *check, int32_t row, int32_t leaving) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     const wh_check_place_t *place = &check->places[of->place];
@@ -180,7 +184,7 @@ static int64_t clean_due_us(const wh_check_t *check, int32_t row, int32_t leavin
 }
 
 /* A wafer is placed there: no clean runs, and none that is due was left out. */
-void wh_check_enter(wh_check_t *check, int32_t row, int32_t leaving) {
+void wh_check_enter(wh_schedule_state_t *check, int32_t row, int32_t leaving) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];

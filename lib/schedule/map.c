@@ -46,7 +46,7 @@ typedef struct {
     bool is_refused;
 } map_t;
 
-/* --------------------------------------------------------------------------------------------- the map */
+/* ------------------------------------------------------------------------------------------------ the map */
 
 static int take_function(wh_reader_t *reader, map_t *map, const char *field) {
     const int type = wh_reader_push(reader, field);
@@ -199,7 +199,7 @@ static int read_separator(lua_State *L) {
     return 0;
 }
 
-/* ---------------------------------------------------------------------------------------------- a row */
+/* -------------------------------------------------------------------------------------------------- a row */
 
 /* The value at the top of the stack as a cell; it must stay on the stack while the cell is used. */
 static void take_cell(lua_State *L, const map_t *map, size_t column, wh_schedule_cell_t *cell) {
@@ -332,7 +332,7 @@ static int read_rows(lua_State *L) {
     return 0;
 }
 
-/* ----------------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------------------------- whole */
 
 /* An error of the map while it reads a row is told with that row. */
 static void tell_error(const map_t *map, const wh_sandbox_result_t *result, char message[1600]) {

@@ -60,7 +60,7 @@ static bool refuse(maker_t *maker, size_t row, const char *what) {
     return false;
 }
 
-/* -------------------------------------------------------------------------------------------------- legs */
+/* --------------------------------------------------------------------------------------------------- legs */
 
 /* The wafer that a row takes out of a place, and the one that it puts into one. */
 static int32_t taken_by(const wh_schedule_row_t *row) {
@@ -101,29 +101,44 @@ static leg_t *last_leg(const maker_t *maker, int32_t wafer) {
     return maker->done[wafer] == 0 ? NULL : &maker->legs[maker->first[wafer] + maker->done[wafer] - 1];
 }
 
+/* The wafer comes into the place that its last leg goes to. */
+static void end_leg(maker_t *maker, size_t number, int32_t wafer) {
+    const wh_schedule_row_t *row = &maker->schedule->rows[number];
+    wh_schedule_play_t *play = maker->play;
+    if (last_leg(maker, wafer)) {
+        last_leg(maker, wafer)->put_row = number;
+        play->makespan_us = row->end_us > play->makespan_us ? row->end_us : play->makespan_us;
+    }
+}
+
+static void begin_leg(maker_t *maker, size_t number, int32_t wafer) {
+    if (maker->homes[wafer] == WH_FLOW_NONE) {
+        maker->homes[wafer] = place_of(maker, &maker->schedule->rows[number]);
+    }
+    ++maker->done[wafer];
+    *last_leg(maker, wafer) = (leg_t){number, NO_ROW, wafer, WH_FLOW_NONE};
+}
+
+static void add_process(leg_t *leg, int64_t us) {
+    if (leg) {
+        leg->process_us = (leg->process_us == WH_FLOW_NONE ? 0 : leg->process_us) + us;
+    }
+}
+
 static void take_row(maker_t *maker, size_t number) {
     const wh_schedule_row_t *row = &maker->schedule->rows[number];
-    const int32_t taken = taken_by(row), put = put_by(row);
     if (row->action == WH_SCHEDULE_START) {
         maker->homes[row->wafer] = place_of(maker, row);
         maker->comes_us[row->wafer] = row->begin_us;
     }
-    if (put != WH_FLOW_NONE && last_leg(maker, put)) {
-        last_leg(maker, put)->put_row = number;
-        maker->play->makespan_us =
-            row->end_us > maker->play->makespan_us ? row->end_us : maker->play->makespan_us;
+    if (put_by(row) != WH_FLOW_NONE) {
+        end_leg(maker, number, put_by(row));
     }
-    if (taken != WH_FLOW_NONE) {
-        if (maker->homes[taken] == WH_FLOW_NONE) {
-            maker->homes[taken] = place_of(maker, row);
-        }
-        ++maker->done[taken];
-        *last_leg(maker, taken) = (leg_t){number, NO_ROW, taken, WH_FLOW_NONE};
+    if (taken_by(row) != WH_FLOW_NONE) {
+        begin_leg(maker, number, taken_by(row));
     }
-    if (row->action == WH_SCHEDULE_PROCESS && row->wafer != WH_FLOW_NONE && last_leg(maker, row->wafer)) {
-        leg_t *leg = last_leg(maker, row->wafer);
-        leg->process_us =
-            (leg->process_us == WH_FLOW_NONE ? 0 : leg->process_us) + row->end_us - row->begin_us;
+    if (row->action == WH_SCHEDULE_PROCESS && row->wafer != WH_FLOW_NONE) {
+        add_process(last_leg(maker, row->wafer), row->end_us - row->begin_us);
     }
     maker->play->swaps += row->action == WH_SCHEDULE_SWAP;
 }

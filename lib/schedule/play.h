@@ -20,8 +20,9 @@ typedef struct {
     char message[600];            /* why it was not played; empty: it was */
 } wh_schedule_play_t;
 
-/* False, with a message, if no flow can be made of it: a wafer that is left aboard, or that is placed where it
- * was picked. The tool is a layout's, and the schedule was found good with it. Close the play in any case. */
+/* False, with a message, if no flow can be made of it: a wafer that is left aboard, or that is placed where
+ * it was picked. The tool is a layout's, and the schedule was found good with it. Close the play in any
+ * case. */
 bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, const wh_flow_tool_t *tool);
 void wh_schedule_play_close(wh_schedule_play_t *play, const wh_flow_tool_t *tool);
 

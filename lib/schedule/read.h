@@ -1,7 +1,8 @@
 /* Reads a schedule from a table: UTF-8, a line that names the columns, commas or tabs, # comments.
  *
- * Columns: robot, action, wafer, station, slot (empty: 1), begin_s, end_s, and perhaps arm, wafer2, to, value.
- * Nothing is guessed: what is not understood is refused with file, line, column, value and what was expected. */
+ * * Columns: robot, action, wafer, station, slot (empty: 1), begin_s, end_s, and perhaps arm, wafer2, to,
+ * value. Nothing is guessed: what is not understood is refused with file, line, column, value and what was
+ * expected. */
 #ifndef WH_SCHEDULE_READ_H
 #define WH_SCHEDULE_READ_H
 

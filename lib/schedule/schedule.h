@@ -1,7 +1,7 @@
 /* A schedule: who does what to which wafer, where and when. Its rows are in any order.
  *
- * Names are numbered in the order in which they come. Times are whole microseconds. A place is one slot of one
- * station. */
+ * * Names are numbered in the order in which they come. Times are whole microseconds. A place is one slot
+ * of one station. */
 #ifndef WH_SCHEDULE_SCHEDULE_H
 #define WH_SCHEDULE_SCHEDULE_H
 

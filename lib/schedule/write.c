@@ -89,10 +89,20 @@ static const wh_flow_visit_t *find_swap(const lines_t *lines, const wh_flow_visi
                                                                                                : NULL;
 }
 
-/* True if the wafer came out of its place by an exchange, which tells it. */
-static bool is_swapped_out(const bool *swapped, const wh_flow_figures_t *figures,
-                           const wh_flow_visit_t *visit) {
-    return swapped[visit - figures->visits];
+static void add_visit(lines_t *lines, const wh_flow_visit_t *visit, bool is_swapped_out) {
+    const wh_flow_visit_t *out = find_swap(lines, visit);
+    if (visit->picked_us != WH_FLOW_NEVER && !is_swapped_out) {
+        add_access(lines, WH_SCHEDULE_PICK, visit, visit->from, WH_FLOW_NONE);
+    }
+    if (visit->placed_us != WH_FLOW_NEVER) {
+        add_access(lines, out ? WH_SCHEDULE_SWAP : WH_SCHEDULE_PLACE, visit, visit->place,
+                   out ? out->wafer : WH_FLOW_NONE);
+    }
+    if (visit->process_us != WH_FLOW_NEVER && visit->done_us > visit->process_us) {
+        line_t *line = add_line(lines, WH_SCHEDULE_PROCESS, visit->process_us, visit->done_us);
+        line->wafer = visit->wafer;
+        put_place(lines, line, visit->place);
+    }
 }
 
 static void add_visits(lines_t *lines) {
@@ -105,20 +115,7 @@ static void add_visits(lines_t *lines) {
         }
     }
     for (size_t i = 0; i < figures->visit_count; ++i) {
-        const wh_flow_visit_t *visit = &figures->visits[i];
-        const wh_flow_visit_t *out = find_swap(lines, visit);
-        if (visit->picked_us != WH_FLOW_NEVER && !is_swapped_out(swapped, figures, visit)) {
-            add_access(lines, WH_SCHEDULE_PICK, visit, visit->from, WH_FLOW_NONE);
-        }
-        if (visit->placed_us != WH_FLOW_NEVER) {
-            add_access(lines, out ? WH_SCHEDULE_SWAP : WH_SCHEDULE_PLACE, visit, visit->place,
-                       out ? out->wafer : WH_FLOW_NONE);
-        }
-        if (visit->process_us != WH_FLOW_NEVER && visit->done_us > visit->process_us) {
-            line_t *line = add_line(lines, WH_SCHEDULE_PROCESS, visit->process_us, visit->done_us);
-            line->wafer = visit->wafer;
-            put_place(lines, line, visit->place);
-        }
+        add_visit(lines, &figures->visits[i], swapped[i]);
     }
     free(swapped);
 }

@@ -57,7 +57,7 @@ static bool read_line(wh_csv_t *csv) {
     return csv->rows.count <= WH_CSV_COLUMNS || refuse(csv, "more than %d fields", WH_CSV_COLUMNS);
 }
 
-/* ---------------------------------------------------------------------------------------------- columns */
+/* ------------------------------------------------------------------------------------------------ columns */
 
 static bool refuse_name(wh_csv_t *csv, const char *name) {
     const char *names[WH_CSV_COLUMNS];
@@ -114,7 +114,7 @@ bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------- rows */
+/* --------------------------------------------------------------------------------------------------- rows */
 
 static bool take_number(wh_csv_t *csv, size_t column, const char *text) {
     const wh_csv_column_t *of = &csv->columns[column];

@@ -1,7 +1,8 @@
 /* A table of comma-separated values (rows.h), read strictly. Nothing is guessed; input that is not
  * understood is refused with its file, line, column and value.
  *
- * The first line names the columns, in any order. Every other line has as many fields as the first. Numbers are decimal, with a point: no NaN, no infinity, no hex. */
+ * * The first line names the columns, in any order. Every other line has as many fields as the first.
+ * Numbers are decimal, with a point: no NaN, no infinity, no hex. */
 #ifndef WH_TEXT_CSV_H
 #define WH_TEXT_CSV_H
 

@@ -25,7 +25,7 @@ bool wh_rows_refuse_file(wh_rows_t *rows, const char *why) {
     return false;
 }
 
-/* --------------------------------------------------------------------------------------------- the file */
+/* ----------------------------------------------------------------------------------------------- the file */
 
 static bool take_bytes(wh_rows_t *rows, FILE *file, size_t told) {
     char why[80];
@@ -68,7 +68,7 @@ static bool load(wh_rows_t *rows) {
     return taken;
 }
 
-/* ----------------------------------------------------------------------------------------------- fields */
+/* ------------------------------------------------------------------------------------------------- fields */
 
 /* A tab that separates is no blank. */
 static bool is_blank(const wh_rows_t *rows, char byte) {
@@ -198,7 +198,7 @@ void wh_rows_close(wh_rows_t *rows) {
     rows->bytes = rows->at = NULL;
 }
 
-/* ----------------------------------------------------------------------------------------------- values */
+/* ------------------------------------------------------------------------------------------------- values */
 
 bool wh_rows_number(const char *text, double least, double most, double *value) {
     char *end = NULL;
