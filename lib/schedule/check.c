@@ -175,7 +175,7 @@ static int by_time(const void *a, const void *b) {
     return one->phase != other->phase ? one->phase - other->phase : one->row < other->row ? -1 : 1;
 }
 
-/* A begin comes behind all that ends within an instant of it. A row that is shorter than an instant begins and ends
+/* A begin comes behind all that ends within an instant of it. A row shorter than that begins and ends
  * at once. */
 static size_t list_moments(const wh_schedule_t *schedule, moment_t moments[]) {
     size_t count = 0;
