@@ -83,9 +83,19 @@ static void check_window(wh_schedule_state_t *check, int32_t row, int32_t number
     }
     const bool is_around = place->cleaned_us >= wafer->placed_us && place->clean_us > wafer->done_us;
     const int64_t done_us = is_around ? place->clean_us : wafer->done_us;
-    if (wh_check_is_behind(until_us, done_us + station->window_us)) {
+    if (!wh_check_is_behind(until_us, done_us + station->window_us)) {
+        return;
+    }
+    if (row == wafer->row) {
         wh_check_found(
-            check, WH_SCHEDULE_RULE_WINDOW, row, wafer->row == row ? WH_CHECK_NO_ROW : wafer->row,
+            check, WH_SCHEDULE_RULE_WINDOW, row, WH_CHECK_NO_ROW,
+            "wafer: %s (expected a pick of it until %.10g s: it may stay for %.10g s behind its process, and "
+            "lies there at the end, at %.10g s)",
+            name_of(check, number), wh_check_seconds(done_us + station->window_us),
+            wh_check_seconds(station->window_us), wh_check_seconds(until_us));
+    } else {
+        wh_check_found(
+            check, WH_SCHEDULE_RULE_WINDOW, row, wafer->row,
             "begin_s: %.10g (expected %.10g or sooner: %s may stay for %.10g s behind its process)",
             wh_check_seconds(until_us), wh_check_seconds(done_us + station->window_us),
             name_of(check, number), wh_check_seconds(station->window_us));

@@ -206,6 +206,18 @@ static bool take_names(wh_schedule_reader_t *reader, const wh_schedule_cell_t ce
            take_name(reader, WH_SCHEDULE_TO, &cells[WH_SCHEDULE_TO], &schedule->stations, &row->to);
 }
 
+/* Cells that the action does not need are left aside, but for their names' being good ones. */
+static void leave_aside(wh_schedule_row_t *row) {
+    const bool is_access = wh_schedule_is_access(row->action);
+    const bool is_door = row->action == WH_SCHEDULE_OPEN || row->action == WH_SCHEDULE_CLOSE;
+    const bool is_move = row->action == WH_SCHEDULE_MOVE;
+    row->robot = is_access || is_door || is_move ? row->robot : WH_FLOW_NONE;
+    row->wafer2 = row->action == WH_SCHEDULE_SWAP ? row->wafer2 : WH_FLOW_NONE;
+    row->to = is_move ? row->to : WH_FLOW_NONE;
+    row->arm = is_access ? row->arm : 0;
+    row->side = is_door || row->action == WH_SCHEDULE_PUMP ? row->side : WH_FLOW_BOTH;
+}
+
 bool wh_schedule_add(wh_schedule_reader_t *reader, const wh_schedule_cell_t cells[WH_SCHEDULE_COLUMNS]) {
     wh_schedule_t *schedule = reader->schedule;
     wh_schedule_row_t row = {.line = reader->rows.line, .slot = 1};
@@ -220,6 +232,7 @@ bool wh_schedule_add(wh_schedule_reader_t *reader, const wh_schedule_cell_t cell
     if (schedule->count == MOST_ROWS) {
         return refuse(reader, "more than %d rows", MOST_ROWS);
     }
+    leave_aside(&row);
     schedule->rows = wh_array_grow(schedule->rows, schedule->count, &schedule->capacity, sizeof row);
     schedule->rows[schedule->count++] = row;
     return true;
