@@ -43,5 +43,6 @@ int wh_app_new(int argc, char **argv);
 int wh_app_serve(int argc, char **argv);
 int wh_app_dialect(int argc, char **argv);
 int wh_app_converse(int argc, char **argv);
+int wh_app_schedule(int argc, char **argv);
 
 #endif

@@ -27,7 +27,10 @@ const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     const wh_sandbox_limits_t limits = {.memory_bytes = (size_t)(arguments->memory_mib * 1048576)};
     wh_sandbox_t *sandbox =
         wh_sandbox_new_with(&limits, arguments->parameters.items, arguments->parameters.count, &result);
-    const wh_layout_t *layout = sandbox ? wh_layout_load(sandbox, arguments->path, &result) : NULL;
+    const wh_layout_t *layout = !sandbox ? NULL
+                                : arguments->is_timed
+                                    ? wh_layout_load_timed(sandbox, arguments->path, &result)
+                                    : wh_layout_load(sandbox, arguments->path, &result);
     arguments->sandbox = sandbox;
     if (!layout) {
         fprintf(stderr, "%s\n", result.message);

@@ -11,6 +11,7 @@ typedef struct {
     wh_option_list_t parameters;
     double memory_mib;     /* that the layout may use; 0: the sandbox's default */
     wh_sandbox_t *sandbox; /* in which the layout is read, and which owns it */
+    bool is_timed;         /* its robots must be times alone; else they must not */
 } wh_layout_arguments_t;
 
 /* --set and --memory, into a wh_layout_arguments_t; the path is the subcommand's operand. */

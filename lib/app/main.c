@@ -30,6 +30,7 @@ static const struct {
     {"csv", "print a recording's slices as a table", wh_app_csv},
     {"check", "hold a recording against what a Lua file expects of it", wh_app_check},
     {"estimate", "fit frames, limits and robots to measurements", wh_app_estimate},
+    {"schedule", "hold a schedule of others against what no tool can break", wh_app_schedule},
     {"new", "make a cell to start from: a layout and a script", wh_app_new},
     {"definitions", "print what layouts and scripts may say, for editors", wh_app_definitions},
 };

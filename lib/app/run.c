@@ -21,6 +21,8 @@ static const wh_option_t options[] = {
      "Write each wafer's history in a flow in the words of E90 and E116: JSON lines, or CSV if FILE ends in "
      ".csv",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
+    {"schedule", 0, "FILE", "Write the schedule that a flow played, as waferhand schedule reads it",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.schedule_path)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 

@@ -11,6 +11,7 @@
 #include "../print/flow_history.h"
 #include "../report/page.h"
 #include "../report/plots.h"
+#include "../schedule/write.h"
 #include "../text/array.h"
 #include "../text/output.h"
 #include "../text/style.h"
@@ -220,6 +221,7 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
                                      {"--svg", files->plots, true},
                                      {"--segments", arguments->segments_path, true},
                                      {"--history", arguments->history_path, true},
+                                     {"--schedule", arguments->schedule_path, true},
                                      {arguments->record_option, record, true},
                                      {"--outputs", arguments->outputs, true}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
@@ -336,13 +338,16 @@ static bool write_history(void *user, FILE *out) {
     return wh_flow_history_write(((const history_t *)user)->figures, end && strcmp(end, ".csv") == 0, out);
 }
 
-/* False, with a message, for a run without what a history tells. */
-static bool has_history(const wh_run_arguments_t *arguments, const wh_record_t *record) {
-    if (!arguments->history_path || record->flow) {
-        return true;
+static bool write_schedule(void *user, FILE *out) {
+    return wh_schedule_write(((const history_t *)user)->figures, out);
+}
+
+/* False, with a message, for a run without the flow that the file of an option tells of. */
+static bool has_flow(const char *option, const char *path, const wh_record_t *record) {
+    if (path && !record->flow) {
+        fprintf(stderr, "%s: %s: not written (expected a script with a flow)\n", option, path);
     }
-    fprintf(stderr, "--history: %s: not written (expected a script with a flow)\n", arguments->history_path);
-    return false;
+    return !path || record->flow;
 }
 
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
@@ -351,8 +356,10 @@ static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run
     wh_segments_t segments = {&run->mcs, arguments->segments_path};
     history_t history = {arguments, run->record.flow ? &run->record.flow->figures : NULL};
     return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
-           has_history(arguments, &run->record) &&
+           has_flow("--history", arguments->history_path, &run->record) &&
+           has_flow("--schedule", arguments->schedule_path, &run->record) &&
            wh_file_write("--history", arguments->history_path, write_history, &history, NULL) &&
+           wh_file_write("--schedule", arguments->schedule_path, write_schedule, &history, NULL) &&
            wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }
@@ -440,9 +447,9 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
 }
 
 int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
-    const char *const outputs[] = {arguments->files.page,     arguments->files.scene,
-                                   arguments->files.document, arguments->files.plots,
-                                   arguments->segments_path,  arguments->history_path};
+    const char *const outputs[] = {
+        arguments->files.page,    arguments->files.scene,  arguments->files.document, arguments->files.plots,
+        arguments->segments_path, arguments->history_path, arguments->schedule_path};
     const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
     return wh_watch(&options);
 }

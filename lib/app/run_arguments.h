@@ -32,6 +32,7 @@ typedef struct {
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
     const char *history_path;     /* null: not wanted */
+    const char *schedule_path;    /* likewise */
     const char *record, *outputs; /* files that others write; null: none */
     const char *record_option;    /* that gave `record` */
     wh_recording_t *recording; /* that goes into `record`: if it does not keep the run, the run has failed; or

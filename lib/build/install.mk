@@ -22,7 +22,8 @@ PROGRAM_PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/lua/5.4/wh.so $(PREFIX)/shar
 PLACES := $(LIBRARY_PLACES) $(COLLISION_PLACES) $(PROGRAM_PLACES)
 SHARE := $(PREFIX)/share/waferhand
 DOCUMENTS := $(PREFIX)/share/doc/waferhand
-EXAMPLES := $(filter lua/layouts/% lua/examples/% lua/patterns/% lua/dialects/%,$(LUA_SOURCES))
+EXAMPLES := $(filter lua/layouts/% lua/examples/% lua/patterns/% lua/dialects/% lua/schedules/%,$(LUA_SOURCES)) \
+            $(wildcard lua/schedules/*.csv)
 # The manuals as they stand in the tree, so that the links between them lead somewhere. Other programs are generated from the messages.
 MANUALS := README.md LICENSE $(wildcard lib/*.md lib/manual/*.md lib/*/README.md lua/*.md lua/manual/* lua/dialects/*.md \
            lcm_types/*.md lcm_types/*.lcm tests/README.md lib/*/*.png lib/*/*/*.png lua/layouts/*.svg)

@@ -197,6 +197,15 @@ static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event)
                                                                 event->side, event->begin_us, event->end_us};
 }
 
+static void note_way(wh_flow_figures_t *figures, const wh_flow_event_t *event) {
+    if (event->end_us > event->begin_us) {
+        figures->ways =
+            wh_array_grow(figures->ways, figures->way_count, &figures->way_capacity, sizeof *figures->ways);
+        figures->ways[figures->way_count++] =
+            (wh_flow_way_t){event->robot, event->from, event->station, event->begin_us, event->end_us};
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------- events */
 
 static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh_flow_event_t *event) {
@@ -247,6 +256,8 @@ static void note_event(measure_t *measure, const wh_flow_event_t *event) {
         measure->open[event->wafer].picked_us = event->end_us;
     } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
         note_process(measure, event);
+    } else if (event->kind == WH_FLOW_EVENT_MOVE) {
+        note_way(measure->figures, event);
     } else if (is_doing) {
         note_doing(measure->figures, event);
     }
@@ -390,6 +401,7 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->gains);
     free(figures->visits);
     free(figures->doings);
+    free(figures->ways);
     free(figures->came_us);
     wh_flow_result_close(&figures->result);
     memset(figures, 0, sizeof *figures);

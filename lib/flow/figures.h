@@ -44,6 +44,12 @@ typedef struct {
     int64_t begin_us, end_us;
 } wh_flow_doing_t;
 
+/* A robot's way between two stations; one that takes no time is left out. */
+typedef struct {
+    int32_t robot, from, to;
+    int64_t begin_us, end_us;
+} wh_flow_way_t;
+
 typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
@@ -60,6 +66,8 @@ typedef struct {
     int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
+    wh_flow_way_t *ways; /* likewise */
+    size_t way_count, way_capacity;
     wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
     size_t part_count;
     wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
@@ -86,7 +94,7 @@ bool wh_flow_has_moved(const wh_flow_t *flow);
 /* True if it was cut: wafers are not at their ends then. */
 bool wh_flow_is_cut(const wh_flow_t *flow);
 
-/* wh_flow_play, with figures. `keeps_visits`: about 100 bytes for each placing. Close them in any case. */
+/* wh_flow_play, with figures. `keeps_visits`: about 170 bytes for each placing. Close them in any case. */
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,
                      wh_flow_figures_t *figures);
 void wh_flow_figures_close(wh_flow_figures_t *figures);

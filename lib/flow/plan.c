@@ -7,14 +7,6 @@
 
 #include "../text/array.h"
 
-void wh_flow_route_close(wh_flow_route_t *route) {
-    for (size_t k = 0; k < route->step_count; ++k) {
-        free(route->steps[k].stations);
-    }
-    free(route->steps);
-    free(route->name);
-}
-
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     for (size_t i = 0; plan->backs && i < tool->station_count; ++i) {
         free(plan->backs[i].stations);
@@ -56,15 +48,6 @@ const wh_flow_step_t *wh_flow_step_of(const wh_flow_plan_t *plan, int32_t wafer,
 
 int32_t wh_flow_end_of(const wh_flow_plan_t *plan, int32_t wafer, int32_t step) {
     return step == wh_flow_last_step(plan, wafer) ? plan->wafers[wafer].back : WH_FLOW_NONE;
-}
-
-bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station) {
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (step->stations[i] == station) {
-            return true;
-        }
-    }
-    return false;
 }
 
 bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot) {

@@ -4,22 +4,6 @@
 
 #include "tool.h"
 
-/* Step 0 of a route is where the lot lies at first; its steps count from 1 on. */
-typedef struct {
-    int32_t *stations; /* parallel ones, as listed */
-    size_t station_count;
-    int64_t process_us; /* WH_FLOW_NONE: that of the station */
-    int32_t kept_empty; /* places of the step that stay empty */
-    bool second_arm;    /* the second arm alone takes out of it */
-} wh_flow_step_t;
-
-typedef struct {
-    char *name;
-    wh_flow_step_t *steps; /* steps[0] is empty */
-    size_t step_count;     /* with step 0 */
-    size_t first_step;     /* the index of its step 0 among the steps of all routes */
-} wh_flow_route_t;
-
 typedef struct {
     char *name;
     int32_t lot, home; /* home: a place */
@@ -112,16 +96,12 @@ typedef struct {
 /* The plan is zero, or filled by what frees like this: all arrays and names by malloc. */
 void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* Frees what the route holds. */
-void wh_flow_route_close(wh_flow_route_t *route);
-
 /* To be called once when all is filled: numbers the steps, and finds the ways back. Returns null, or what
  * is wrong, to be freed by the caller: a wafer that no robot can carry on, two wafers in one place, a step
  * whose places are all kept empty, the same station twice in succession, a process in the last step. */
 char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool);
 
-/* True if the step has this station; if the robot serves one of its stations. */
-bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
+/* True if the robot serves one of the step's stations. */
 bool wh_flow_step_is_served(const wh_flow_tool_t *tool, const wh_flow_step_t *step, int32_t robot);
 
 static inline int32_t wh_flow_priority(const wh_flow_plan_t *plan, int32_t wafer) {

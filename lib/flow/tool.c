@@ -51,6 +51,23 @@ void wh_flow_tool_number(wh_flow_tool_t *tool) {
     }
 }
 
+void wh_flow_route_close(wh_flow_route_t *route) {
+    for (size_t k = 0; k < route->step_count; ++k) {
+        free(route->steps[k].stations);
+    }
+    free(route->steps);
+    free(route->name);
+}
+
+bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        if (step->stations[i] == station) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void wh_flow_tool_close(wh_flow_tool_t *tool) {
     for (size_t i = 0; i < tool->station_count; ++i) {
         free(tool->stations[i].name);
@@ -58,6 +75,10 @@ void wh_flow_tool_close(wh_flow_tool_t *tool) {
     for (size_t i = 0; i < tool->robot_count; ++i) {
         free(tool->robots[i].name);
     }
+    for (size_t i = 0; i < tool->route_count; ++i) {
+        wh_flow_route_close(&tool->routes[i]);
+    }
+    free(tool->routes);
     free(tool->stations);
     free(tool->robots);
     free(tool->pick_us);
@@ -81,6 +102,8 @@ static void *copy_of(const void *items, size_t count, size_t size) {
 void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool) {
     const size_t pairs = tool->robot_count * tool->station_count;
     *copy = *tool;
+    copy->routes = NULL;
+    copy->route_count = 0;
     copy->stations = copy_of(tool->stations, tool->station_count, sizeof *copy->stations);
     copy->robots = copy_of(tool->robots, tool->robot_count, sizeof *copy->robots);
     copy->pick_us = copy_of(tool->pick_us, pairs, sizeof *copy->pick_us);
@@ -136,6 +159,19 @@ static uint64_t hash_station(uint64_t hash, const wh_flow_station_t *station) {
     return wh_hash_int(hash, (int32_t)station->side);
 }
 
+static uint64_t hash_route(uint64_t hash, const wh_flow_route_t *route) {
+    hash = wh_hash_text(hash, route->name);
+    for (size_t k = 1; k < route->step_count; ++k) {
+        const wh_flow_step_t *step = &route->steps[k];
+        hash = hash_times(hash, &step->process_us, 1);
+        hash = wh_hash_int(wh_hash_int(hash, step->kept_empty), step->second_arm);
+        for (size_t i = 0; i < step->station_count; ++i) {
+            hash = wh_hash_int(hash, step->stations[i]);
+        }
+    }
+    return hash;
+}
+
 uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
     const size_t pairs = tool->robot_count * tool->station_count;
     for (size_t i = 0; i < tool->station_count; ++i) {
@@ -155,6 +191,9 @@ uint64_t wh_flow_tool_hash(const wh_flow_tool_t *tool, uint64_t hash) {
     }
     for (size_t i = 0; i < tool->place_count; ++i) {
         hash = wh_hash_int(hash, (int32_t)tool->slot_sides[i]);
+    }
+    for (size_t i = 0; i < tool->route_count; ++i) {
+        hash = hash_route(hash, &tool->routes[i]);
     }
     return hash;
 }

@@ -45,6 +45,22 @@ typedef struct {
     int64_t open_us, close_us;
 } wh_flow_door_t;
 
+/* Step 0 of a route is where the lot lies at first; its steps count from 1 on. */
+typedef struct {
+    int32_t *stations; /* parallel ones, as listed */
+    size_t station_count;
+    int64_t process_us; /* WH_FLOW_NONE: that of the station */
+    int32_t kept_empty; /* places of the step that stay empty */
+    bool second_arm;    /* the second arm alone takes out of it */
+} wh_flow_step_t;
+
+typedef struct {
+    char *name;
+    wh_flow_step_t *steps; /* steps[0] is empty */
+    size_t step_count;     /* with step 0 */
+    size_t first_step;     /* the index of its step 0 among the steps of all routes */
+} wh_flow_route_t;
+
 /* Rows by robot, then by station: see wh_flow_of. */
 typedef struct {
     wh_flow_station_t *stations;
@@ -57,6 +73,8 @@ typedef struct {
     int64_t *move_us;           /* by robot, station from, station to */
     int32_t *place_stations;    /* by place */
     wh_flow_side_t *slot_sides; /* by place: the side whose robots may bring a wafer there */
+    wh_flow_route_t *routes;    /* by which wafers go; flows have their own */
+    size_t route_count;
 } wh_flow_tool_t;
 
 /* Makes room for so many robots and stations. Names are null, times are 0, no robot serves a station, each
@@ -64,7 +82,13 @@ typedef struct {
 void wh_flow_tool_open(wh_flow_tool_t *tool, size_t robot_count, size_t station_count);
 void wh_flow_tool_close(wh_flow_tool_t *tool);
 
-/* A tool of its own, equal to a numbered one. */
+/* Frees what the route holds. */
+void wh_flow_route_close(wh_flow_route_t *route);
+
+/* True if the step has this station. */
+bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
+
+/* A tool of its own, equal to a numbered one, but without its routes. */
 void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool);
 
 /* To be called once after each station has its number of slots: numbers the places. */

@@ -134,7 +134,7 @@ static void heed_told(wh_controller_t *controller, unsigned what) {
     }
 }
 
-/* What a client that has gone had sent last, without an end. */
+/* Hears the rest that a client had sent without an end before it went. */
 static void hear_rest(wh_controller_t *controller) {
     wh_frame_t frame;
     if (wh_framer_finish(&controller->line.framer, &frame)) {

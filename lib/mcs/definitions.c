@@ -4,6 +4,7 @@
 
 #include "../layout/layout_fields.h"
 #include "../reading/layout_tool.h"
+#include "../reading/tool_routes.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "flow_plan.h"

@@ -8,6 +8,7 @@
 
 #include "../reading/layout_internal.h"
 #include "../reading/layout_tool.h"
+#include "../reading/tool_routes.h"
 #include "../text/array.h"
 
 #define END                                                                                                  \
@@ -49,16 +50,9 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     {"dummy", "boolean", "true: its wafers are moved and not counted", false},
     END};
 
-const wh_reader_field_t wh_flow_step_fields[] = {
-    {"process", "number", "s, in place of the station's", false},
-    {"hot", "boolean", "true: the second arm alone takes from it", false},
-    END};
-
 const wh_reader_field_t wh_flow_down_fields[] = {
     {"at", "number", "s", true}, {"seconds", "number", "s", true}, END};
 
-const wh_reader_field_t wh_flow_route_fields[] = {
-    {"partial", "table<integer, integer>", "by step: places that stay empty", false}, END};
 const wh_reader_field_t wh_flow_list_fields[] = {
     {"order", "table<string, string[][]>", "each robot's transfers in order", true}, END};
 
@@ -66,132 +60,19 @@ static int64_t read_us(wh_reader_t *reader, const char *field, double fallback) 
     return wh_layout_us(wh_reader_number(reader, field, fallback, 0, LONGEST));
 }
 
-/* ------------------------------------------------------------------------------------------------ readers */
-
-/* How many entries the table at which the reader is has, beside the known fields. Others are refused. */
-static size_t count_entries(wh_reader_t *reader, const wh_reader_field_t *known) {
-    lua_State *L = reader->L;
-    const size_t count = lua_rawlen(L, -1);
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        bool is_good =
-            lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 && (size_t)lua_tointeger(L, -2) <= count;
-        char field[80] = "an entry", names[200] = "";
-        for (size_t i = 0; known[i].name; ++i) {
-            const size_t used = strlen(names);
-            (void)snprintf(names + used, sizeof names - used, " %s", known[i].name);
-            is_good = is_good ||
-                      (lua_type(L, -2) == LUA_TSTRING && strcmp(lua_tostring(L, -2), known[i].name) == 0);
-        }
-        if (!is_good) {
-            if (lua_type(L, -2) == LUA_TSTRING) {
-                (void)snprintf(field, sizeof field, "%.60s", lua_tostring(L, -2));
-            }
-            wh_reader_fail(reader, field, "entries 1, 2, ... and the fields%s", names);
-        }
-    }
-    return count;
-}
-
-const char *wh_flow_entry(wh_reader_t *reader, size_t index, char text[WH_NAME_SIZE]) {
-    char field[32];
-    size_t length = 0;
-    (void)snprintf(field, sizeof field, "[%zu]", index);
-    const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
-    const char *name = type == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : "";
-    if (type != LUA_TNIL && (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length))) {
-        wh_reader_fail(reader, field, "a name of 1 to %d bytes", WH_NAME_SIZE - 1);
-    }
-    (void)snprintf(text, WH_NAME_SIZE, "%s", name);
-    lua_pop(reader->L, 1);
-    return text;
-}
-
-/* ------------------------------------------------------------------------------------------------- routes */
-
-static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step,
-                        const char *field, const char *name) {
-    const int32_t station = wh_timed_find_station(reader, tool, field, name);
-    for (size_t i = 0; i < step->station_count; ++i) {
-        if (step->stations[i] == station) {
-            wh_reader_refuse(reader, field, name, "each station once in a step");
-        }
-    }
-    step->stations = realloc(step->stations, (step->station_count + 1) * sizeof *step->stations);
-    step->stations = wh_memory_need(step->stations);
-    step->stations[step->station_count++] = station;
-}
-
-static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t index, wh_flow_step_t *step) {
-    char name[WH_NAME_SIZE], field[32];
-    (void)snprintf(field, sizeof field, "[%zu]", index);
-    step->process_us = WH_FLOW_NONE;
-    const int type = lua_rawgeti(reader->L, -1, (lua_Integer)index);
-    lua_pop(reader->L, 1);
-    if (type == LUA_TSTRING) {
-        add_station(reader, tool, step, field, wh_flow_entry(reader, index, name));
-        return;
-    }
-    if (!wh_reader_enter_item(reader, (lua_Integer)index)) {
-        wh_reader_fail(reader, field, "a station's name, or { STATION, STATION, process = }");
-    }
-    const size_t count = count_entries(reader, wh_flow_step_fields);
-    for (size_t i = 1; i <= count; ++i) {
-        (void)snprintf(field, sizeof field, "[%zu]", i);
-        add_station(reader, tool, step, field, wh_flow_entry(reader, i, name));
-    }
-    if (count == 0) {
-        wh_reader_fail(reader, NULL, "at least one station");
-    }
-    step->process_us = wh_reader_has(reader, "process") ? read_us(reader, "process", 0) : WH_FLOW_NONE;
-    step->second_arm = wh_reader_boolean(reader, "hot", false);
-    wh_reader_leave(reader);
-}
-
-/* partial = { [2] = 1 }: step 2 keeps one place empty. */
-static void read_partial(wh_reader_t *reader, wh_flow_route_t *route) {
-    if (!wh_reader_enter(reader, "partial")) {
-        return;
-    }
-    lua_State *L = reader->L;
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        int is_step = 0, is_count = 0;
-        const lua_Integer step = lua_tointegerx(L, -2, &is_step), count = lua_tointegerx(L, -1, &is_count);
-        if (!is_step || step < 1 || (size_t)step >= route->step_count || !is_count || count < 0 ||
-            count > 1000) {
-            wh_reader_fail(reader, NULL, "[STEP] = PLACES, with steps from 1 to %d",
-                           (int)route->step_count - 1);
-        }
-        route->steps[step].kept_empty = (int32_t)count;
-    }
-    wh_reader_leave(reader);
-}
+/* --------------------------------------------------------------------------------------------------- lots */
 
 static int32_t add_route(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan,
                          const char *name) {
     plan->routes = realloc(plan->routes, (plan->route_count + 1) * sizeof *plan->routes);
     plan->routes = wh_memory_need(plan->routes);
     wh_flow_route_t *route = &plan->routes[plan->route_count++];
-    *route = (wh_flow_route_t){.name = wh_text_copy(name)};
+    memset(route, 0, sizeof *route);
     (void)wh_reader_enter(reader, "routes");
-    if (!wh_reader_enter(reader, name)) {
-        wh_reader_refuse(reader, name, NULL, "a route: { STATION, STATION, ... }");
-    }
-    const size_t count = count_entries(reader, wh_flow_route_fields);
-    if (count == 0) {
-        wh_reader_fail(reader, NULL, "at least one step");
-    }
-    route->steps = wh_array_new(count + 2, sizeof *route->steps);
-    route->step_count = 1;
-    for (size_t i = 1; i <= count; ++i) {
-        read_step(reader, tool, i, &route->steps[route->step_count++]);
-    }
-    read_partial(reader, route);
-    wh_reader_leave(reader);
+    wh_timed_read_route(reader, tool, name, route);
     wh_reader_leave(reader);
     return (int32_t)plan->route_count - 1;
 }
-
-/* --------------------------------------------------------------------------------------------------- lots */
 
 /* A lot's part of the plan, before lots are put in order. */
 typedef struct {
@@ -223,7 +104,7 @@ static void read_wafers(wh_reader_t *reader, const wh_flow_tool_t *tool, lot_t *
     if (wh_reader_list(reader) != 3) {
         wh_reader_fail(reader, NULL, "{ STATION, FIRST SLOT, LAST SLOT }");
     }
-    lot->station = wh_timed_find_station(reader, tool, "[1]", wh_flow_entry(reader, 1, name));
+    lot->station = wh_timed_find_station(reader, tool, "[1]", wh_timed_read_entry(reader, 1, name));
     const int32_t slots = tool->stations[lot->station].slots;
     lot->first = whole_entry(reader, 2, 1, slots, "a slot");
     lot->last = whole_entry(reader, 3, lot->first, slots, "a slot not below the first");
@@ -420,11 +301,11 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
     for (size_t i = 0; i < count; ++i) {
         char name[WH_NAME_SIZE];
         (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        if (count_entries(reader, wh_flow_down_fields) != 1) {
+        if (wh_timed_count_entries(reader, wh_flow_down_fields) != 1) {
             wh_reader_fail(reader, NULL, "{ STATION, at = , seconds = }");
         }
         wh_flow_down_t *down = &plan->downs[plan->down_count];
-        down->station = wh_timed_find_station(reader, tool, "[1]", wh_flow_entry(reader, 1, name));
+        down->station = wh_timed_find_station(reader, tool, "[1]", wh_timed_read_entry(reader, 1, name));
         down->at_us = read_us(reader, "at", NAN);
         down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, LONGEST));
         ++plan->down_count;

@@ -15,16 +15,10 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
 /* Reads the field `rule` of that table, once lots and routes are read. */
 void wh_flow_read_rule(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan);
 
-/* The text that is entry `index` of the table at which the reader is, "" if there is none; refused if it
- * is something else. */
-const char *wh_flow_entry(wh_reader_t *reader, size_t index, char text[WH_NAME_SIZE]);
-
 /* The fields of the table and of those in it. */
 extern const wh_reader_field_t wh_flow_fields[];
 extern const wh_reader_field_t wh_flow_lot_fields[];
-extern const wh_reader_field_t wh_flow_step_fields[];
 extern const wh_reader_field_t wh_flow_down_fields[];
-extern const wh_reader_field_t wh_flow_route_fields[];
 extern const wh_reader_field_t wh_flow_list_fields[];
 
 #endif

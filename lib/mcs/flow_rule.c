@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../reading/layout_internal.h"
-#include "../reading/layout_tool.h"
+#include "../reading/tool_routes.h"
 #include "../text/array.h"
 #include "flow_plan.h"
 
@@ -47,9 +47,9 @@ static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_
     if (count < 2 || count > 3) {
         wh_reader_fail(reader, NULL, "{ FROM, TO }, with a wafer's name if another than the first is meant");
     }
-    (void)wh_flow_entry(reader, 1, first);
-    (void)wh_flow_entry(reader, 2, second);
-    (void)wh_flow_entry(reader, 3, third);
+    (void)wh_timed_read_entry(reader, 1, first);
+    (void)wh_timed_read_entry(reader, 2, second);
+    (void)wh_timed_read_entry(reader, 3, third);
     *line = (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
     if (strcmp(first, "pump") == 0) {
         read_pump(reader, tool, second, third, line);

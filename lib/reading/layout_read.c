@@ -359,6 +359,7 @@ int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layo
 
 typedef struct {
     const char *path;
+    bool is_timed;
     const wh_layout_t *layout;
 } load_t;
 
@@ -371,16 +372,28 @@ static int load(lua_State *L) {
         return lua_error(L);
     }
     job->layout = wh_layout_read(L, job->path);
-    if (job->layout->tool) {
+    if (job->layout->tool && !job->is_timed) {
         return luaL_error(
             L,
             "%s: robots that are times alone (expected robots with axes; a script with `flow` takes these)",
             job->path);
     }
+    if (!job->layout->tool && job->is_timed) {
+        return luaL_error(L,
+                          "%s: robots with axes: a schedule is neither held against them nor played by them "
+                          "(expected robots of kind \"timed\")",
+                          job->path);
+    }
     return 0;
 }
 
 const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result) {
-    load_t job = {path, NULL};
+    load_t job = {path, false, NULL};
+    return wh_sandbox_protect(wh_sandbox_state(sandbox), load, &job, result) ? job.layout : NULL;
+}
+
+const wh_layout_t *wh_layout_load_timed(wh_sandbox_t *sandbox, const char *path,
+                                        wh_sandbox_result_t *result) {
+    load_t job = {path, true, NULL};
     return wh_sandbox_protect(wh_sandbox_state(sandbox), load, &job, result) ? job.layout : NULL;
 }

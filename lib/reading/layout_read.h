@@ -18,6 +18,10 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path);
  * The layout lives as long as the sandbox. */
 const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
 
+/* wh_layout_load of a cell whose robots are times alone, for those who hold a schedule against it. Others are
+ * refused, as these are by wh_layout_load. */
+const wh_layout_t *wh_layout_load_timed(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
+
 /* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
  * reader's errors. `wafers` are the layout's as they lie now, and `first` is the slice that `after = 0`
  * means. */

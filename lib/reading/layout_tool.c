@@ -8,6 +8,7 @@
 #include "../text/array.h"
 #include "../text/nearest.h"
 #include "layout_internal.h"
+#include "tool_routes.h"
 
 int64_t wh_layout_us(double seconds) {
     return (int64_t)llround(seconds * 1e6);
@@ -360,6 +361,7 @@ const wh_flow_tool_t *wh_layout_read_tool(wh_reader_t *reader) {
     }
     open_named(reader, tool, is_one);
     read_stations(reader, tool);
+    wh_timed_read_routes(reader, tool);
     wh_vec3_t *at = lua_newuserdatauv(reader->L, tool->station_count * sizeof *at, 0);
     lua_insert(reader->L, -2); /* below the table being read */
     read_places(reader, tool, at, is_any_flying(reader, tool, is_one));

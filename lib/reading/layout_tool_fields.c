@@ -9,6 +9,8 @@ const wh_reader_field_t wh_layout_timed_fields[] = {
     {"robot", "waferhand.timed_robot", "the one robot, of kind \"timed\"", false},
     {"robots", "table<string, waferhand.timed_robot>", "several of them by name", false},
     {"stations", "table<string, waferhand.timed_station>", "the stations by name", true},
+    {"routes", "table<string, waferhand.route>",
+     "by which wafers go, by name: a schedule is held against them; flows have their own", false},
     END};
 
 const wh_reader_field_t wh_layout_timed_robot_fields[] = {

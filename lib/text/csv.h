@@ -1,15 +1,12 @@
-/* A table of comma-separated values (RFC 4180), read strictly. Nothing is guessed; input that is not
+/* A table of comma-separated values (rows.h), read strictly. Nothing is guessed; input that is not
  * understood is refused with its file, line, column and value.
  *
- * The first line names the columns, in any order. Every other line has as many fields as the first. Fields
- * may stand in quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around
- * a field without quotes are ignored. Lines end in LF or CRLF. Blank lines are ignored, and so is a byte
- * order mark of UTF-8. Numbers are decimal, with a point: no NaN, no infinity, no hex. */
+ * * The first line names the columns, in any order. Every other line has as many fields as the first.
+ * Numbers are decimal, with a point: no NaN, no infinity, no hex. */
 #ifndef WH_TEXT_CSV_H
 #define WH_TEXT_CSV_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "rows.h"
 
 /* The longest file; the most columns; the longest text, with its terminator. */
 #define WH_CSV_BYTES 16777216
@@ -30,13 +27,12 @@ typedef struct {
     const wh_csv_column_t *columns;
     size_t column_count;
     bool has[WH_CSV_COLUMNS]; /* the file has the column */
-    size_t line;              /* of the fields below, from 1 */
+    size_t line;              /* of the values below, from 1 */
     double numbers[WH_CSV_COLUMNS];
     const char *texts[WH_CSV_COLUMNS]; /* until wh_csv_close */
     char message[512];                 /* the error: "a.csv:3: x: 1,5 (expected ...)"; empty: none */
-    /* the place of reading */
-    char *bytes, *at;
-    size_t size, next_line, field_count;
+    wh_rows_t rows;
+    size_t field_count;
     size_t order[WH_CSV_COLUMNS]; /* the column of each field */
 } wh_csv_t;
 

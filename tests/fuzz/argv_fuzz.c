@@ -370,14 +370,14 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run,         wh_app_mcs,    wh_app_sim,      wh_app_replay,  wh_app_report,
-        wh_app_layout,      wh_app_study,  wh_app_estimate, wh_app_test,    wh_app_diff,
-        wh_app_events,      wh_app_csv,    wh_app_check,    wh_app_sweep,   wh_app_new,
-        wh_app_definitions, wh_app_budget, wh_app_serve,    wh_app_dialect, wh_app_converse};
-    static const char *const names[] = {"run",         "mcs",    "sim",      "replay",  "report",
-                                        "layout",      "study",  "estimate", "test",    "diff",
-                                        "events",      "csv",    "check",    "sweep",   "new",
-                                        "definitions", "budget", "serve",    "dialect", "converse"};
+        wh_app_run,     wh_app_mcs,      wh_app_sim,     wh_app_replay,      wh_app_report, wh_app_layout,
+        wh_app_study,   wh_app_estimate, wh_app_test,    wh_app_diff,        wh_app_events, wh_app_csv,
+        wh_app_check,   wh_app_sweep,    wh_app_new,     wh_app_definitions, wh_app_budget, wh_app_serve,
+        wh_app_dialect, wh_app_converse, wh_app_schedule};
+    static const char *const names[] = {"run",     "mcs",      "sim",     "replay",      "report", "layout",
+                                        "study",   "estimate", "test",    "diff",        "events", "csv",
+                                        "check",   "sweep",    "new",     "definitions", "budget", "serve",
+                                        "dialect", "converse", "schedule"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

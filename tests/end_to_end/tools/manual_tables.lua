@@ -21,7 +21,7 @@ local alarms = dofile "lua/mcs/alarms.lua" ({}, { errors = errors })
 local NONE = ""
 
 -- The order of the words in the manual.
-local ORDER = "cell flow study get put swap continue stop ready map home recover stop_in rotate centring teach station " ..
+local ORDER = "cell patterns flow study get put swap continue stop ready pattern map home recover stop_in rotate centring teach station " ..
   "set_station edge_scan align calibrate open close lift valve move flip robot line wait task join signal await fault " ..
   "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset cycle"
 

@@ -1,0 +1,498 @@
+#include "check.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/array.h"
+#include "check_internal.h"
+
+/* How often what takes no time is looked through at one instant for what can go first. */
+#define MOST_PASSES 64
+
+const char *const wh_schedule_rules[WH_SCHEDULE_RULES] = {NULL,
+                                                          "two actions of a robot at once",
+                                                          "more wafers aboard than arms",
+                                                          "a pick of a wafer that is not there",
+                                                          "a place of a wafer that is not aboard",
+                                                          "a place into a full one",
+                                                          "less time than a move between two stations",
+                                                          "an action shorter than the layout says",
+                                                          "a process cut short",
+                                                          "a stay beyond the window",
+                                                          "a place during a clean, or a clean left out",
+                                                          "wrong pressure in a load lock",
+                                                          "both doors of a load lock open",
+                                                          "a shut door",
+                                                          "a robot that does not serve the station",
+                                                          "a step out of the route's order",
+                                                          "a wafer in two places",
+                                                          "a wafer left aboard, or short of its route's end"};
+
+/* -------------------------------------------------------------------------------------------------- texts */
+
+void wh_check_found(wh_schedule_state_t *check, int rule, int32_t row, int32_t other, const char *format,
+                    ...) {
+    wh_schedule_report_t *report = check->report;
+    char text[1200];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    report->findings =
+        wh_array_grow(report->findings, report->count, &report->capacity, sizeof *report->findings);
+    report->findings[report->count++] = (wh_schedule_finding_t){
+        .rule = rule,
+        .row = (size_t)row,
+        .other = other == WH_CHECK_NO_ROW || other == row ? WH_SCHEDULE_NO_ROW : (size_t)other,
+        .is_warning = rule == WH_SCHEDULE_RULE_LEFT,
+        .text = wh_text_copy(text)};
+    report->warnings += rule == WH_SCHEDULE_RULE_LEFT;
+    ++report->rules[rule].found;
+}
+
+const char *wh_check_place_name(const wh_schedule_state_t *check, int32_t place, wh_check_text_t *text) {
+    const wh_schedule_place_t *of = &check->schedule->places[place];
+    (void)snprintf(text->text, sizeof text->text, "%s %d",
+                   wh_schedule_text(&check->schedule->stations, of->station), (int)of->slot);
+    return text->text;
+}
+
+const char *wh_check_describe(const wh_schedule_state_t *check, int32_t row, wh_check_text_t *text) {
+    const wh_schedule_t *schedule = check->schedule;
+    const wh_schedule_row_t *of = &schedule->rows[row];
+    (void)snprintf(text->text, sizeof text->text, "line %zu: %s%s%s%s%s at %s %d, %.10g to %.10g s", of->line,
+                   wh_schedule_text(&schedule->robots, of->robot), of->robot == WH_FLOW_NONE ? "" : "'s ",
+                   wh_schedule_words[of->action], of->wafer == WH_FLOW_NONE ? "" : " of ",
+                   wh_schedule_text(&schedule->wafers, of->wafer),
+                   wh_schedule_text(&schedule->stations, of->station), (int)of->slot,
+                   wh_check_seconds(of->begin_us), wh_check_seconds(of->end_us));
+    return text->text;
+}
+
+const char *wh_check_where(const wh_schedule_state_t *check, int32_t number, wh_check_text_t *text) {
+    const wh_check_wafer_t *wafer = &check->wafers[number];
+    wh_check_text_t place = {""};
+    const char *robot = wh_schedule_text(&check->schedule->robots, wafer->robot);
+    if (wafer->place != WH_FLOW_NONE) {
+        (void)wh_check_place_name(check, wafer->place, &place);
+    }
+    switch (wafer->where) {
+    case WH_CHECK_LIES:
+        (void)snprintf(text->text, sizeof text->text, "lies in %.300s", place.text);
+        break;
+    case WH_CHECK_TAKEN:
+        (void)snprintf(text->text, sizeof text->text, "is being picked by %s", robot);
+        break;
+    case WH_CHECK_ABOARD:
+        (void)snprintf(text->text, sizeof text->text, "is aboard %s", robot);
+        break;
+    case WH_CHECK_PLACED:
+        (void)snprintf(text->text, sizeof text->text, "is being placed into %.300s", place.text);
+        break;
+    case WH_CHECK_NOWHERE:
+    default:
+        (void)snprintf(text->text, sizeof text->text, "is nowhere yet");
+        break;
+    }
+    return text->text;
+}
+
+const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int32_t station) {
+    return check->tool ? &check->tool->stations[check->stations[station].tool] : NULL;
+}
+
+size_t wh_check_pair(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    return wh_flow_of(check->tool, check->robots[row->robot].tool, check->stations[row->station].tool);
+}
+
+/* ------------------------------------------------------------------------------------------------ actions */
+
+static void begin_access(wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    wh_check_robot_begins(check, row);
+    wh_check_access(check, row);
+    if (of->action == WH_SCHEDULE_PICK) {
+        wh_check_begin_take(check, row, of->wafer);
+        wh_check_takes_aboard(check, row, of->wafer, of->arm);
+        return;
+    }
+    wh_check_need_aboard(check, row, of->wafer);
+    if (of->action == WH_SCHEDULE_SWAP) {
+        const int32_t arm = check->wafers[of->wafer].arm;
+        wh_check_begin_take(check, row, of->wafer2);
+        wh_check_takes_aboard(check, row, of->wafer2, arm > 0 ? 3 - arm : 0);
+        const wh_check_wafer_t *out = &check->wafers[of->wafer2];
+        wh_check_begin_put(check, row, of->wafer, out->place == of->place ? 1 : 0);
+    } else {
+        wh_check_begin_put(check, row, of->wafer, 0);
+    }
+}
+
+static void begin_row(wh_schedule_state_t *check, int32_t row) {
+    static void (*const begins[WH_SCHEDULE_ACTIONS])(wh_schedule_state_t * check, int32_t row) = {
+        [WH_SCHEDULE_START] = wh_check_begin_start, [WH_SCHEDULE_PICK] = begin_access,
+        [WH_SCHEDULE_PLACE] = begin_access,         [WH_SCHEDULE_SWAP] = begin_access,
+        [WH_SCHEDULE_MOVE] = wh_check_robot_begins, [WH_SCHEDULE_PROCESS] = wh_check_begin_process,
+        [WH_SCHEDULE_CLEAN] = wh_check_begin_clean, [WH_SCHEDULE_PUMP] = wh_check_begin_pump,
+        [WH_SCHEDULE_OPEN] = wh_check_begin_door,   [WH_SCHEDULE_CLOSE] = wh_check_begin_door};
+    begins[wh_check_row(check, row)->action](check, row);
+}
+
+static void end_row(wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    if (of->action == WH_SCHEDULE_PICK) {
+        wh_check_end_take(check, row, of->wafer);
+    } else if (of->action == WH_SCHEDULE_PLACE) {
+        wh_check_end_put(check, row, of->wafer);
+    } else if (of->action == WH_SCHEDULE_SWAP) {
+        wh_check_end_take(check, row, of->wafer2);
+        wh_check_end_put(check, row, of->wafer);
+    } else if (of->action == WH_SCHEDULE_PUMP) {
+        wh_check_end_pump(check, row);
+    } else if (of->action == WH_SCHEDULE_OPEN || of->action == WH_SCHEDULE_CLOSE) {
+        wh_check_end_door(check, row);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- instants */
+
+/* An instant, in this order. */
+enum { ENDS, IN_NO_TIME, BEGINS };
+
+typedef struct {
+    int64_t us;
+    int32_t row;
+    int32_t phase;
+} moment_t;
+
+static int by_time(const void *a, const void *b) {
+    const moment_t *one = a, *other = b;
+    if (one->us != other->us) {
+        return one->us < other->us ? -1 : 1;
+    }
+    return one->phase != other->phase ? one->phase - other->phase : one->row < other->row ? -1 : 1;
+}
+
+/* A begin comes behind all that ends within an instant of it. A row shorter than that begins and ends
+ * at once. */
+static size_t list_moments(const wh_schedule_t *schedule, moment_t moments[]) {
+    size_t count = 0;
+    for (int32_t i = 0; i < (int32_t)schedule->count; ++i) {
+        const wh_schedule_row_t *row = &schedule->rows[i];
+        const int64_t begin_us = row->begin_us + WH_SCHEDULE_INSTANT_US;
+        if (row->action == WH_SCHEDULE_START) {
+            moments[count++] = (moment_t){row->begin_us, i, ENDS};
+        } else if (row->end_us <= begin_us) {
+            moments[count++] = (moment_t){begin_us, i, IN_NO_TIME};
+        } else {
+            moments[count++] = (moment_t){begin_us, i, BEGINS};
+            moments[count++] = (moment_t){row->end_us, i, ENDS};
+        }
+    }
+    qsort(moments, count, sizeof *moments, by_time);
+    return count;
+}
+
+static bool lies_there(const wh_schedule_state_t *check, int32_t wafer, int32_t place) {
+    return check->wafers[wafer].where == WH_CHECK_LIES && check->wafers[wafer].place == place;
+}
+
+static bool is_aboard(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    const wh_check_wafer_t *wafer = &check->wafers[row->wafer];
+    return wafer->where == WH_CHECK_ABOARD && wafer->robot == row->robot;
+}
+
+/* True if an action without duration fits what is so far. */
+static bool is_possible(const wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const wh_check_place_t *place = &check->places[of->place];
+    if (of->action == WH_SCHEDULE_PICK) {
+        const wh_check_robot_t *robot = &check->robots[of->robot];
+        const bool has_arm = robot->arms == 0 || robot->aboard < robot->arms;
+        return has_arm && lies_there(check, of->wafer, of->place);
+    }
+    if (of->action == WH_SCHEDULE_PLACE) {
+        return is_aboard(check, of) && place->count < place->capacity;
+    }
+    return of->action != WH_SCHEDULE_SWAP ||
+           (is_aboard(check, of) && lies_there(check, of->wafer2, of->place));
+}
+
+/* All that takes no time at one instant: what can go first goes first. */
+static void go_in_no_time(wh_schedule_state_t *check, moment_t moments[], size_t count) {
+    size_t left = count;
+    for (int pass = 0; left > 0; ++pass) {
+        size_t kept = 0;
+        for (size_t i = 0; i < left; ++i) {
+            const bool is_forced = pass >= MOST_PASSES;
+            if (is_forced || is_possible(check, moments[i].row)) {
+                begin_row(check, moments[i].row);
+                end_row(check, moments[i].row);
+            } else {
+                moments[kept++] = moments[i];
+            }
+        }
+        pass = kept == left ? MOST_PASSES : pass; /* none can: they go as they stand */
+        left = kept;
+    }
+}
+
+static void go(wh_schedule_state_t *check, moment_t moments[], size_t count) {
+    for (size_t i = 0; i < count;) {
+        if (moments[i].phase != IN_NO_TIME) {
+            if (moments[i].phase == ENDS &&
+                wh_check_row(check, moments[i].row)->action != WH_SCHEDULE_START) {
+                end_row(check, moments[i].row);
+            } else {
+                begin_row(check, moments[i].row);
+            }
+            ++i;
+            continue;
+        }
+        size_t end = i;
+        while (end < count && moments[end].us == moments[i].us && moments[end].phase == IN_NO_TIME) {
+            ++end;
+        }
+        go_in_no_time(check, moments + i, end - i);
+        i = end;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- beginning */
+
+/* The numbers of the schedule's names in the layout. */
+static void find_names(wh_schedule_state_t *check) {
+    const wh_schedule_t *schedule = check->schedule;
+    for (size_t i = 0; i < schedule->robots.count; ++i) {
+        wh_check_robot_t *robot = &check->robots[i];
+        robot->tool = wh_flow_robot_named(check->tool, schedule->robots.texts[i]);
+        if (robot->tool != WH_FLOW_NONE) {
+            robot->station = check->tool->robots[robot->tool].at;
+            robot->arms = check->tool->robots[robot->tool].arms;
+        }
+    }
+    for (size_t i = 0; i < schedule->stations.count; ++i) {
+        wh_check_station_t *station = &check->stations[i];
+        station->tool = wh_flow_station_named(check->tool, schedule->stations.texts[i]);
+        if (station->tool != WH_FLOW_NONE) {
+            station->side = check->tool->stations[station->tool].side;
+        }
+    }
+}
+
+/* A name that the layout does not have. */
+static bool refuse_name(const wh_schedule_state_t *check, const wh_schedule_row_t *row, const char *column,
+                        const char *name, const char *kind) {
+    (void)snprintf(check->report->message, sizeof check->report->message,
+                   "%.200s:%zu: %s: %s (expected a %s of the layout)", check->schedule->path, row->line,
+                   column, name, kind);
+    return false;
+}
+
+static bool check_names(const wh_schedule_state_t *check, const wh_schedule_row_t *row) {
+    const wh_schedule_t *schedule = check->schedule;
+    const int32_t station = check->stations[row->station].tool;
+    if (row->robot != WH_FLOW_NONE && check->robots[row->robot].tool == WH_FLOW_NONE) {
+        return refuse_name(check, row, "robot", schedule->robots.texts[row->robot], "robot");
+    }
+    if (station == WH_FLOW_NONE) {
+        return refuse_name(check, row, "station", schedule->stations.texts[row->station], "station");
+    }
+    if (row->to != WH_FLOW_NONE && check->stations[row->to].tool == WH_FLOW_NONE) {
+        return refuse_name(check, row, "to", schedule->stations.texts[row->to], "station");
+    }
+    if (row->slot > check->tool->stations[station].slots) {
+        (void)snprintf(check->report->message, sizeof check->report->message,
+                       "%.200s:%zu: slot: %d (expected one of %s in the layout, 1 to %d)", schedule->path,
+                       row->line, (int)row->slot, schedule->stations.texts[row->station],
+                       (int)check->tool->stations[station].slots);
+        return false;
+    }
+    return true;
+}
+
+/* False, with a message, if a row names what the layout does not have. */
+static bool take_names(wh_schedule_state_t *check) {
+    find_names(check);
+    for (size_t i = 0; i < check->schedule->count; ++i) {
+        if (!check_names(check, &check->schedule->rows[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* True if the first row of a wafer finds it in its place. */
+static bool is_found(const wh_schedule_row_t *first, int32_t wafer) {
+    return first->action == WH_SCHEDULE_PICK || first->action == WH_SCHEDULE_PROCESS ||
+           (first->action == WH_SCHEDULE_SWAP && first->wafer2 == wafer);
+}
+
+/* Several wafers in one slot: as many as that it holds, unless the layout says otherwise. */
+static void stack(wh_schedule_state_t *check, int32_t row, wh_check_place_t *place) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *first = wh_check_row(check, row);
+    if (check->tool) {
+        wh_check_found(check, WH_SCHEDULE_RULE_FULL, row, check->wafers[place->head].row,
+                       "slot: %d (expected another one: at the beginning %s is in %s, too)", (int)first->slot,
+                       wh_schedule_text(&check->schedule->wafers, place->head),
+                       wh_check_place_name(check, first->place, &text));
+        return;
+    }
+    check->report->stacked += place->count == 1;
+    ++place->capacity;
+}
+
+/* A wafer without a start is where its first row, in time, finds it. */
+static void assume_wafer(wh_schedule_state_t *check, int32_t number) {
+    wh_check_wafer_t *wafer = &check->wafers[number];
+    if (wafer->row == WH_CHECK_NO_ROW || wafer->has_start ||
+        !is_found(wh_check_row(check, wafer->row), number)) {
+        return;
+    }
+    const int32_t into = wh_check_row(check, wafer->row)->place;
+    if (check->places[into].count > 0) {
+        stack(check, wafer->row, &check->places[into]);
+    }
+    ++check->report->assumed;
+    wh_check_lay(check, number, into);
+    wafer->where = WH_CHECK_LIES;
+    wh_check_set_out(check, number, into);
+}
+
+static bool is_sooner(const wh_schedule_state_t *check, int32_t row, int32_t than) {
+    return than == WH_CHECK_NO_ROW ||
+           wh_check_row(check, row)->begin_us < wh_check_row(check, than)->begin_us;
+}
+
+static void note_wafer(wh_schedule_state_t *check, int32_t row, int32_t number) {
+    wh_check_wafer_t *wafer = &check->wafers[number];
+    wafer->has_start = wafer->has_start || wh_check_row(check, row)->action == WH_SCHEDULE_START;
+    wafer->row = is_sooner(check, row, wafer->row) ? row : wafer->row;
+}
+
+/* Notes all that must be known before the first instant. */
+static void note_row(wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const bool tells_wafer = wh_schedule_is_access(of->action) || of->action == WH_SCHEDULE_START ||
+                             of->action == WH_SCHEDULE_PROCESS;
+    if (of->wafer != WH_FLOW_NONE && tells_wafer) {
+        note_wafer(check, row, of->wafer);
+    }
+    if (of->action == WH_SCHEDULE_SWAP) {
+        note_wafer(check, row, of->wafer2);
+    }
+    if (of->action == WH_SCHEDULE_PICK && of->arm == 0) {
+        check->robots[of->robot].tells_arms = false;
+    }
+    check->stations[of->station].has_pumps |= of->action == WH_SCHEDULE_PUMP;
+    check->stations[of->station].has_cleans |= of->action == WH_SCHEDULE_CLEAN;
+    if (of->action != WH_SCHEDULE_START && of->end_us > check->report->end_us) {
+        check->report->end_us = of->end_us;
+    }
+}
+
+static void open_check(wh_schedule_state_t *check) {
+    const wh_schedule_t *schedule = check->schedule;
+    check->wafers = wh_array_new(schedule->wafers.count + 1, sizeof *check->wafers);
+    check->places = wh_array_new(schedule->place_count + 1, sizeof *check->places);
+    check->stations = wh_array_new(schedule->stations.count + 1, sizeof *check->stations);
+    check->robots = wh_array_new(schedule->robots.count + 1, sizeof *check->robots);
+    for (size_t i = 0; i < schedule->wafers.count; ++i) {
+        wh_check_wafer_t *wafer = &check->wafers[i];
+        wafer->place = wafer->robot = wafer->next = wafer->home = WH_FLOW_NONE;
+        wafer->row = wafer->process_row = WH_CHECK_NO_ROW;
+    }
+    for (size_t i = 0; i < schedule->place_count; ++i) {
+        wh_check_place_t *place = &check->places[i];
+        place->head = WH_FLOW_NONE;
+        place->capacity = 1;
+        place->cleaned_us = -1;
+        place->clean_row = place->placing_row = WH_CHECK_NO_ROW;
+    }
+    for (size_t i = 0; i < schedule->stations.count; ++i) {
+        check->stations[i].tool = WH_FLOW_NONE;
+        check->stations[i].pump_row = check->stations[i].access_row = WH_CHECK_NO_ROW;
+    }
+    for (size_t i = 0; i < schedule->robots.count; ++i) {
+        wh_check_robot_t *robot = &check->robots[i];
+        robot->tool = robot->on[0] = robot->on[1] = WH_FLOW_NONE;
+        robot->row = WH_CHECK_NO_ROW;
+        robot->tells_arms = true;
+    }
+}
+
+static void close_check(wh_schedule_state_t *check) {
+    free(check->wafers);
+    free(check->places);
+    free(check->stations);
+    free(check->robots);
+    free(check->doors);
+}
+
+/* -------------------------------------------------------------------------------------------------- whole */
+
+static void check_all(wh_schedule_state_t *check) {
+    const wh_schedule_t *schedule = check->schedule;
+    moment_t *moments = wh_array_new(2 * schedule->count + 1, sizeof *moments);
+    const size_t count = list_moments(schedule, moments);
+    for (int32_t i = 0; i < (int32_t)schedule->count; ++i) {
+        note_row(check, i);
+    }
+    wh_check_open_doors(check);
+    for (int32_t w = 0; w < (int32_t)schedule->wafers.count; ++w) {
+        assume_wafer(check, w);
+    }
+    go(check, moments, count);
+    wh_check_finish_stays(check);
+    wh_check_finish_routes(check);
+    wh_check_judge(check);
+    free(moments);
+}
+
+bool wh_schedule_check(wh_schedule_report_t *report, const wh_schedule_t *schedule,
+                       const wh_schedule_given_t *given) {
+    wh_schedule_state_t check = {.schedule = schedule, .tool = given->tool, .report = report};
+    report->schedule = schedule;
+    open_check(&check);
+    const bool good = !check.tool || take_names(&check);
+    for (size_t i = 0; given->arms && i < schedule->robots.count; ++i) {
+        check.robots[i].arms = given->arms[i] > 0 ? given->arms[i] : check.robots[i].arms;
+    }
+    if (good) {
+        check_all(&check);
+    }
+    close_check(&check);
+    return good;
+}
+
+void wh_schedule_report_close(wh_schedule_report_t *report) {
+    for (size_t i = 0; i < report->count; ++i) {
+        free(report->findings[i].text);
+    }
+    for (size_t i = 0; i < WH_SCHEDULE_RULES; ++i) {
+        free(report->rules[i].but);
+    }
+    free(report->findings);
+    memset(report, 0, sizeof *report);
+}
+
+const wh_schedule_finding_t *wh_schedule_first(const wh_schedule_report_t *report) {
+    for (size_t i = 0; i < report->count; ++i) {
+        if (!report->findings[i].is_warning) {
+            return &report->findings[i];
+        }
+    }
+    return NULL;
+}
+
+bool wh_schedule_is_looked(const wh_schedule_report_t *report) {
+    for (int i = 1; i <= WH_SCHEDULE_NEEDED; ++i) {
+        if (!report->rules[i].is_looked) {
+            return false;
+        }
+    }
+    return true;
+}
