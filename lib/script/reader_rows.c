@@ -61,18 +61,23 @@ void wh_reader_scalars(wh_reader_t *reader, void *into) {
     }
 }
 
+/* The default of a word, a switch or a whole number; below the range: it is required. */
+static int32_t whole_default(const wh_reader_field_t *row, double fallback) {
+    return (int32_t)(isfinite(fallback) ? fallback : row->least - 1);
+}
+
 double wh_reader_apart_from(wh_reader_t *reader, const char *field, double fallback) {
     const wh_reader_field_t *row = wh_reader_row(reader, field);
     if (row->words) {
-        return wh_reader_choice(reader, field, (int)fallback, row->words);
+        return wh_reader_choice(reader, field, whole_default(row, fallback), row->words);
     }
     if (strcmp(row->type, "boolean") == 0) {
-        return wh_reader_boolean(reader, field, fallback > 0) ? 1 : 0;
+        return wh_reader_boolean(reader, field, whole_default(row, fallback) > 0) ? 1 : 0;
     }
-    return strcmp(row->type, "integer") == 0
-               ? wh_reader_whole(reader, field, (int32_t)fallback, (int32_t)row->least, (int32_t)row->most)
-               : wh_reader_number(reader, field, (wh_real_t)fallback, (wh_real_t)row->least,
-                                  (wh_real_t)row->most);
+    return strcmp(row->type, "integer") == 0 ? wh_reader_whole(reader, field, whole_default(row, fallback),
+                                                               (int32_t)row->least, (int32_t)row->most)
+                                             : wh_reader_number(reader, field, (wh_real_t)fallback,
+                                                                (wh_real_t)row->least, (wh_real_t)row->most);
 }
 
 double wh_reader_apart(wh_reader_t *reader, const char *field) {
