@@ -116,7 +116,7 @@ return function(native, lookup, tasks, alarms)
   end
 
   -- The robot that stands there, or nil; robot `but` does not count.
-  function tasks.stands_in(resource, but)
+  function arm.stands_in(resource, but)
     for robot, state in pairs(states) do
       if robot ~= but and state.inside and STATION:format(state.inside.station) == resource then
         return robot
@@ -124,7 +124,8 @@ return function(native, lookup, tasks, alarms)
     end
   end
 
-  function tasks.is_inside(resource, robot)
+  -- True if that robot stands there.
+  function arm.is_inside(resource, robot)
     local state = robot and states[robot]
     return state and state.inside ~= nil and STATION:format(state.inside.station) == resource
   end

@@ -189,6 +189,9 @@ return function(native, lookup, targets, words, wh)
     add_layouts()
     add_all_options()
     add_results()
+    add("")
+    add("---@alias waferhand.pattern fun(target: waferhand.pattern_target, steps: waferhand.pattern_steps, "
+      .. "shipped: table<string, fun(target: waferhand.pattern_target): string|nil>): string|nil, string|nil")
     for name, word in pairs(words.scripts) do
       add_function(name, word)
     end

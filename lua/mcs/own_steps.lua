@@ -2,7 +2,7 @@
 -- sees its target as a table of plain values, a view, and names its grippers "gripper" and "chuck".
 
 -- Local copies: a script may set globals of these names.
-local error, ipairs, math, pairs, pcall, type = error, ipairs, math, pairs, pcall, type
+local coroutine, error, ipairs, math, pairs, pcall, type = coroutine, error, ipairs, math, pairs, pcall, type
 local yield = coroutine.yield
 
 -- The longest way and the longest time of a step, mm and s.
@@ -206,8 +206,8 @@ return function(native, lookup, steps)
 
   ------------------------------------------------------------------------------------------------------- one run
 
-  -- The view of a target, the steps for one run of a pattern, which `run.thread` is, and our own patterns that it may use. While one of them
-  -- works, `run.is_ours` is true: requests come from nowhere else. `shipped`: our own patterns by name.
+  -- The view of a target, the steps for one run of a pattern, which `run.thread` is, and our own patterns that it may
+  -- use, from `shipped`. While one of them works, `run.is_ours` is true: requests come from nowhere else.
   function own.make(run, target, shipped)
     local targets, made, ours = {}, {}, {}
 

@@ -38,6 +38,7 @@ return function(native, wh)
   end
 
   lookup.phase, lookup.last_robot = arm.phase, arm.last_robot
+  tasks.stands_in, tasks.is_inside = arm.stands_in, arm.is_inside
 
   function alarms.robot()
     return tasks.current().robot

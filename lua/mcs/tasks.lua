@@ -387,7 +387,7 @@ return function(native, lookup)
   end
 
   -- module.stands_in(resource, but): the robot, other than `but`, that stands in it, or nil; and
-  -- module.is_inside(resource, robot): whether that robot does. Both are set by lua/mcs/arm.lua.
+  -- module.is_inside(resource, robot): whether that robot does. Both are set by lua/mcs/parts.lua.
 
   -- The command has ended.
   function module.give_back()

@@ -181,6 +181,13 @@ words.options = {
   turns = "so many turns are taken for each of the two scans, together",
 }
 
+-- A step of a pattern, and whose valve or sensor it is about.
+local WHO = "who: \"gripper\"|\"chuck\""
+
+local function step(rest)
+  return ("fun(target: waferhand.pattern_target%s)"):format(rest and ", " .. rest or "")
+end
+
 -- The classes of parameters and results, except those of the layout's reader.
 words.classes = {
   { "wanted_events", "Which recorded events: times in seconds.",
@@ -276,6 +283,41 @@ words.classes = {
     { "pattern", "fun(self: table, name: string, station: string, slot: integer, options: waferhand.get_options?)",
       "as pattern" },
     { "stop", "fun(self: table)", "as stop" } },
+  { "patterns", "The table that a file of patterns returns.",
+    { "get", "waferhand.pattern?", "in place of GET's" }, { "put", "waferhand.pattern?", "in place of PUT's" },
+    { "swap", "waferhand.pattern?", "in place of SWAP's" }, { "ready", "waferhand.pattern?", "in place of READY's" },
+    { "map", "waferhand.pattern?", "in place of MAP's" }, { "recover", "waferhand.pattern?", "in place of RECOVER's" },
+    { "added", "table<string, waferhand.pattern>?", "others, which pattern() plays" } },
+  { "pattern_target", "The target of a pattern: heights in mm above the slot's plane.",
+    { "station", "string", "its name" }, { "slot", "integer", "its number" }, { "robot", "string", "its name" },
+    { "gripper", "string", "its name" }, { "chuck", "string?", "the chuck's name; nil at plain slots" },
+    { "grip", "\"vacuum\"|\"edge\"|\"passive\"", "of the gripper" },
+    { "side", "\"below\"|\"above\"", "from which the blade comes" },
+    { "enters_empty", "number", "where the shipped GET moves in" }, { "enters_loaded", "number", "where the shipped PUT does" },
+    { "touch", "number?", "from above: where pads touch the wafer" }, { "offset", "number", "mm" }, { "stroke", "number", "mm" },
+    { "release", "number", "mm" }, { "retract", "number", "mm" }, { "wait", "number", "s" }, { "vacuum_delay", "number", "s" },
+    { "timeout", "number", "s" }, { "pickup_speed", "number", "mm/s" }, { "pickup_acceleration", "number", "mm/s^2" },
+    { "map_speed", "number", "mm/s" }, { "retries", "integer", "how often a GET tries again" },
+    { "handover", "\"new_first\"|\"same_slice\"", "in which order valves switch" },
+    { "asks", "boolean", "if the vacuum sensor decides" }, { "stop", "\"extended\"|\"up\"|nil", "where the command halts" },
+    { "centre", "boolean", "if this PUT goes aside by the beams" }, { "loaded", "boolean?", "if the blade has a wafer" },
+    { "margin", "number?", "of MAP: beyond the stack's ends" }, { "height", "number?", "of MAP: from the first slot to the last" },
+    { "above", "number?", "of RECOVER: how high the pads stand" }, { "inside", "number?", "of RECOVER: how far in, mm" },
+    { "get", "waferhand.pattern_target?", "of SWAP" }, { "put", "waferhand.pattern_target?", "of SWAP" } },
+  { "pattern_steps", "The steps of a pattern: each begins with the target, but wait.",
+    { "approach", step("height: number"), "in front of the slot, mm" }, { "enter", step(), "straight in" },
+    { "leave", step(), "straight out" }, { "stroke", step("by: number, limits: waferhand.step_limits?"), "mm up" },
+    { "line", step("inward: number, left: number, up: number, limits: waferhand.step_limits?"), "mm along the way in" },
+    { "wait", "fun(seconds: number)", "stands still" }, { "pause", step("phase: \"extended\"|\"up\""), "halts if the command asks" },
+    { "open", step(WHO), "a valve" }, { "close", step(WHO), "a valve" },
+    { "hand_over", step("from: \"gripper\"|\"chuck\", to: \"gripper\"|\"chuck\""), "both valves" },
+    { "await", step(WHO .. ", seconds: number") .. ": boolean", "waits for a sensor" },
+    { "holds", step(WHO) .. ": boolean", "waits for it as shipped" },
+    { "is_on", step(WHO .. ", assume: boolean?") .. ": boolean", "asks a sensor" },
+    { "is_loaded", step(WHO .. ", assume: boolean?") .. ": boolean", "if a wafer lies there" },
+    { "ready", step("loaded: boolean") .. ": string|nil", "before the way in" }, { "take", step() .. ": string", "the grip's strokes" },
+    { "give", step() .. ": string", "the grip's strokes" }, { "centre", step() .. ": boolean", "goes aside by the beams" } },
+  { "step_limits", "The limits of a step.", { "speed", "number?", "mm/s" }, { "acceleration", "number?", "mm/s^2" } },
   { "relation", "How a frame lies as seen from another: mm and degrees.",
     { "distance", "number", "of the origins" }, { "dx", "number", "by the first's axes" },
     { "dy", "number", "likewise" }, { "dz", "number", "likewise" }, { "angle", "number", "between the z axes" },
