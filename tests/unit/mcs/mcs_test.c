@@ -286,10 +286,10 @@ static void centring_is_as_near_as_it_says(void **state) {
                    "expect(math.abs(x - 1) < near and math.abs(y - 1) < near and worst < 5,\n"
                    "       x .. ' ' .. y .. ' ' .. worst)\n",
                    WH_TEST_SHARE > 1 ? 30 : 300, WH_TEST_SHARE > 1 ? 0.5 : 0.15);
-    assert_texts(
-        DOORS "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
-              "} } } }\n",
-        script);
+    assert_texts(DOORS
+                 "wafers = { { name = 'W', station = 'A', slot = 1, dx = 2, dy = -1.5, rpy = { 0, 0, 90 "
+                 "} } } }\n",
+                 script);
 }
 
 /* The notch passes one of the beams' crossings, 0.02 degrees further each time. */
