@@ -164,8 +164,8 @@ int32_t wh_flow_free_arm(const wh_flow_state_t *state, int32_t robot, int32_t wa
 
 /* True if a clean by the number of wafers is due when one more has been in the place. */
 static inline bool wh_flow_is_clean_next(const wh_flow_state_t *state, int32_t place) {
-    const int32_t after = state->tool->stations[state->tool->place_stations[place]].clean_after;
-    return after > 0 && state->places[place].since_clean + 1 >= after;
+    return wh_flow_is_clean_due(&state->tool->stations[state->tool->place_stations[place]],
+                                state->places[place].since_clean);
 }
 
 /* True if such a clean begins as soon as the place's wafer is out of it. */

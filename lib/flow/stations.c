@@ -153,8 +153,7 @@ static void end_cleans(wh_flow_state_t *state, int32_t number) {
 }
 
 static int64_t pump_us(const wh_flow_state_t *state, int32_t number, wh_flow_side_t to) {
-    const wh_flow_station_t *of = &state->tool->stations[number];
-    return state->stations[number].wafers == 0 ? of->empty_pump_us[to] : of->pump_us[to];
+    return wh_flow_pump_us(&state->tool->stations[number], to, state->stations[number].wafers == 0);
 }
 
 void wh_flow_stations_end(wh_flow_state_t *state) {

@@ -109,6 +109,17 @@ static inline bool wh_flow_sides_agree(wh_flow_side_t a, wh_flow_side_t b) {
     return a == WH_FLOW_BOTH || b == WH_FLOW_BOTH || a == b;
 }
 
+/* True if a clean by the number of wafers is due when one more has been in a place, in which `since_clean`
+ * have been since its last clean. */
+static inline bool wh_flow_is_clean_due(const wh_flow_station_t *station, int32_t since_clean) {
+    return station->clean_after > 0 && since_clean + 1 >= station->clean_after;
+}
+
+/* How long a lock takes to this side. */
+static inline int64_t wh_flow_pump_us(const wh_flow_station_t *station, wh_flow_side_t to, bool is_empty) {
+    return is_empty ? station->empty_pump_us[to] : station->pump_us[to];
+}
+
 /* The number of the station or robot of this name, or WH_FLOW_NONE. */
 int32_t wh_flow_station_named(const wh_flow_tool_t *tool, const char *name);
 int32_t wh_flow_robot_named(const wh_flow_tool_t *tool, const char *name);

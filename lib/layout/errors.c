@@ -75,6 +75,10 @@ wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *tria
                          : wh_real_abs(wh_spread_draw(&errors->valves[gripper], trial, 0x300, gripper));
 }
 
+wh_real_t wh_errors_draw_process(const wh_errors_t *errors, const wh_trial_t *trial, size_t station) {
+    return errors->given ? 0 : wh_spread_draw(&errors->process, trial, 0x410, station);
+}
+
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial) {
     return errors->given ? errors->given->vacuum
                          : wh_real_abs(wh_spread_draw(&errors->vacuum, trial, 0x400, 0));

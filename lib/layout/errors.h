@@ -57,6 +57,7 @@ typedef struct {
     wh_rim_spreads_t *rims; /* of each wafer */
     wh_beam_spreads_t beams[WH_BEAMS];
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
+    wh_spread_t process;             /* of each station's process, longer or shorter, s */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
 } wh_errors_t;
 
@@ -74,6 +75,9 @@ void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size
                         double drawn[WH_RIM_DRAWS]);
 void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, size_t beam,
                          double drawn[WH_BEAM_DRAWS]);
+
+/* By how much the station's process is longer, s; 0 if the errors are given. */
+wh_real_t wh_errors_draw_process(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
 
 /* True if any of it is not 0. */
@@ -91,5 +95,6 @@ wh_real_t *wh_displacement_part(wh_displacement_t *displacement, size_t axis);
 #define WH_ERRORS_MOST_DEG 45
 #define WH_ERRORS_MOST_TURN_DEG 180
 #define WH_ERRORS_MOST_S 1
+#define WH_ERRORS_MOST_PROCESS_S 3600
 
 #endif

@@ -76,6 +76,17 @@ const wh_reader_field_t wh_layout_fault_of_edge_sensor[] = {
     {"value", NUMBER,
      "stuck: the part of its line that seems to be covered, 0 to 1; late: s by which they are", true},
     END};
+const wh_reader_field_t wh_layout_fault_station_stuck[] = {
+    {"kind", "\"station_stuck\"", "a process, clean or pump does not go on", true},
+    OF_EVERY_FAULT,
+    STATION,
+    END};
+const wh_reader_field_t wh_layout_fault_station_slow[] = {
+    {"kind", "\"station_slow\"", "a process, clean or pump takes longer", true},
+    OF_EVERY_FAULT,
+    STATION,
+    {"value", NUMBER, "how many times as long", true},
+    END};
 const wh_reader_field_t wh_layout_fault_missing[] = {
     {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};
 const wh_reader_field_t wh_layout_fault_doubled[] = {
@@ -130,6 +141,8 @@ const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
     [WH_FAULT_PROBE_OPEN] = wh_layout_fault_of_probe,
     [WH_FAULT_EDGE_SENSOR_STUCK] = wh_layout_fault_of_edge_sensor,
     [WH_FAULT_EDGE_SENSOR_LATE] = wh_layout_fault_of_edge_sensor,
+    [WH_FAULT_STATION_STUCK] = wh_layout_fault_station_stuck,
+    [WH_FAULT_STATION_SLOW] = wh_layout_fault_station_slow,
 };
 
 /* ---------------------------------------------------------------------------------------------- studies */
@@ -159,7 +172,7 @@ const wh_reader_field_t wh_layout_study_fields[] = {
     {"shape", WORD, "how all errors are spread", false, APART_WORD(WH_SHAPE_NORMAL, wh_layout_shape_words)},
     {"placement", "waferhand.placement", "of every wafer in its slot", false},
     {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
-    {"timing", "waferhand.timing", "of valves and vacuum", false},
+    {"timing", "waferhand.timing", "of valves, vacuum and processes", false},
     {"rim", "waferhand.rim_width", "of every wafer's rim, which edge sensors see", false},
     {"beam", "waferhand.beam_width", "of every beam, beside where it is taken to stand", false},
     {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
@@ -174,6 +187,8 @@ const wh_reader_field_t wh_layout_teaching_fields[] = {TEACHING_FIELDS, END};
 const wh_reader_field_t wh_layout_timing_fields[] = {
     {"valve", NUMBER, "s by which a valve acts late", false, WIDTH(WH_ERRORS_MOST_S)},
     {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false, WIDTH(WH_ERRORS_MOST_S)},
+    {"process", NUMBER, "s by which a station's process is longer or shorter", false,
+     WIDTH(WH_ERRORS_MOST_PROCESS_S)},
     {"shape", WORD, "how they are spread", false, SHAPE},
     END};
 const wh_reader_field_t wh_layout_valve_fields[] = {

@@ -65,6 +65,35 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"via", "waferhand.via[]", "where the arm passes on its way there, and back on its way away", false},
     {"by", "table<string, waferhand.approach>", "with several robots: those that serve it, by name", false,
      .otherwise = "those that come there"},
+    {"process", NUMBER, "s, from when the wafer lies there, the blade is out and its doors are shut", false},
+    {"window", NUMBER, "s: the longest stay after the process", false},
+    {"clean", "waferhand.clean", "a clean that comes after some wafers, or without them", false},
+    {"pump", "waferhand.lock", "makes it a load lock", false},
+    {"state", "\"vacuum\"|\"atmosphere\"", "of a load lock when a run begins; atmosphere", false},
+    {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock: where the one robot comes", false},
+    END};
+
+const wh_reader_field_t wh_layout_clean_fields[] = {
+    {"after", "integer", "wafers", false},
+    {"idle", NUMBER, "s without a wafer", false},
+    {"seconds", NUMBER, "s: how long it takes", true},
+    {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside; true", false},
+    END};
+
+#define PUMP_TIMES                                                                                           \
+    {"down", NUMBER, "s to vacuum, above 0", true}, {"up", NUMBER, "s to atmosphere, above 0", true},        \
+        {"empty_down", NUMBER, "s to vacuum without a wafer; down", false}, {                                \
+        "empty_up", NUMBER, "s to atmosphere without a wafer; up", false                                     \
+    }
+
+const wh_reader_field_t wh_layout_pump_fields[] = {PUMP_TIMES, END};
+
+const wh_reader_field_t wh_layout_lock_fields[] = {
+    PUMP_TIMES, {"doors", "waferhand.lock_doors", "doors through which no robot of `by` comes", false}, END};
+
+const wh_reader_field_t wh_layout_lock_doors_fields[] = {
+    {"atmosphere", "string", "the door on this side, by name", false},
+    {"vacuum", "string", "the door on this side, by name", false},
     END};
 
 const wh_reader_field_t wh_layout_approach_fields[] = {
@@ -78,6 +107,7 @@ const wh_reader_field_t wh_layout_approach_fields[] = {
      .otherwise = "the robot's"},
     {"door", "string", "the door through which it comes, by name", false, .otherwise = "the station's"},
     {"via", "waferhand.via[]", "where it passes on its way there, and back on its way away", false},
+    {"side", "\"vacuum\"|\"atmosphere\"", "of a load lock: where it comes", false},
     END};
 
 const wh_reader_field_t wh_layout_axes_fields[] = {

@@ -88,6 +88,9 @@ typedef struct {
 /* The farthest that a robot's taught place may be from the station's, mm. */
 #define WH_LAYOUT_ASIDE 5
 
+/* The times of a station: times.h. */
+typedef struct wh_layout_times wh_layout_times_t;
+
 /* How one of several robots comes to a station. */
 typedef struct {
     bool serves;      /* the layout says so, or the robot alone decides by its reach */
@@ -103,6 +106,7 @@ typedef struct {
     int32_t first_beam, beam_count; /* those of the station's beams that it passes on its way in */
     bool centre;                    /* its PUT corrects by what these say */
     wh_layout_vias_t vias;
+    wh_flow_side_t side; /* of a load lock */
 } wh_layout_approach_t;
 
 /* The order in which the valves switch when a chuck and an end-effector pass a wafer on. */
@@ -180,6 +184,7 @@ typedef struct {
      * WH_NONE: a command must say. Else null and 0. */
     wh_layout_approach_t *by;
     int32_t robot;
+    const wh_layout_times_t *times; /* null: it takes no time */
 } wh_layout_station_t;
 
 typedef struct {

@@ -10,6 +10,7 @@
 #include "../text/style.h"
 #include "../text/utf8.h"
 #include "outputs.h"
+#include "station_told.h"
 
 #define HEARTBEAT_US 200000
 /* The end of a free-running command waits this long for the state of its last slice. */
@@ -91,6 +92,17 @@ static void tell_cycle(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
     tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
 }
 
+/* The own doing of a station is told with its slice. */
+static void tell_station(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    char text[WH_STATION_TOLD_BYTES];
+    const wh_record_t *record = wh_mcs_record(mcs);
+    const wh_station_event_record_t *event = &record->station_events[record->station_event_count - 1];
+    ++control->stations_told;
+    wh_station_told_write(event, text);
+    wh_mcs_process_tell(control, 0, WH_LINK_PHASE_STATION, 0, (wh_status_t)control->stations_told,
+                        wh_mcs_layout(mcs)->stations[event->station].name, text);
+}
+
 static void judge_run(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
     const wh_record_t *record = wh_mcs_record(mcs);
     const bool is_written = control->client.counters.unwritten == 0;
@@ -114,6 +126,7 @@ void wh_mcs_process_tell_over(wh_mcs_process_t *control) {
     wh_outcome_write(&control->outcome, control->reason, text, sizeof text);
     wh_mcs_process_tell(control, 0, WH_LINK_PHASE_OVER, 0, WH_OK, "", text);
     memset(&control->outcome, 0, sizeof control->outcome);
+    control->stations_told = 0;
     control->reason[0] = '\0';
 }
 
@@ -193,6 +206,9 @@ static void tell_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news,
         break;
     case WH_MCS_CYCLE_BEGINS:
         tell_cycle(control, mcs);
+        break;
+    case WH_MCS_STATION_TOLD:
+        tell_station(control, mcs);
         break;
     case WH_MCS_EDGE_SCANNED:
         wh_mcs_process_tell_edge(control, mcs);

@@ -79,6 +79,7 @@ typedef struct {
     size_t answered_count;
     uint64_t garbage;                      /* datagrams on WAFERHAND_REQUEST that are no request */
     wh_senders_t speakers;                 /* motion controls on WAFERHAND_MCS */
+    int32_t stations_told;                 /* what stations did by themselves, in this run */
     wh_run_told_t outcome;                 /* the messages so far, and the verdict once there is one */
     char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
     uint64_t simulator_layout;             /* as the last cell gave them: the hash, and the path, printable */

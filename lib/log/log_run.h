@@ -83,7 +83,7 @@ typedef struct {
     bool has_passes;               /* there may be some */
     uint32_t pass_number;          /* of that arming */
     wh_run_told_t outcome;
-    int32_t last_expectation, last_cycle; /* the highest numbers in the messages */
+    int32_t last_expectation, last_cycle, last_station; /* the highest numbers in the messages */
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
     const char *notes[WH_LOG_NOTES];
     size_t note_count;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../link/station_told.h"
 #include "../text/array.h"
 
 /* A command begins once, however often a message says so. */
@@ -89,6 +90,17 @@ static bool take_command(wh_log_run_t *run, const waferhand_mcs *told) {
     return is_taken;
 }
 
+/* A repeated message is known by its number. */
+static void take_station(wh_log_run_t *run, const waferhand_mcs *told) {
+    const wh_layout_t *layout = run->cell.layout;
+    wh_station_event_record_t event;
+    if (told->error > run->last_station &&
+        wh_station_told_read(told->text, layout->station_count, layout->wafer_count, &event)) {
+        run->last_station = told->error;
+        wh_record_add_station_event(&run->record, &event);
+    }
+}
+
 static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
     if (take_command(run, told)) {
         return;
@@ -104,6 +116,9 @@ static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
         if (is_new(run, told)) {
             wh_record_add_cycle(&run->record, told->line, told->text, told->seq);
         }
+        break;
+    case WH_LINK_PHASE_STATION:
+        take_station(run, told);
         break;
     default:
         break;

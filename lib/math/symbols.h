@@ -97,6 +97,7 @@
 #define wh_face_turn_over WH_SYMBOL_RENAMED(wh_face_turn_over)
 #define wh_fault_is_of_beam WH_SYMBOL_RENAMED(wh_fault_is_of_beam)
 #define wh_fault_is_of_door WH_SYMBOL_RENAMED(wh_fault_is_of_door)
+#define wh_fault_is_of_station WH_SYMBOL_RENAMED(wh_fault_is_of_station)
 #define wh_fault_is_of_wafer WH_SYMBOL_RENAMED(wh_fault_is_of_wafer)
 #define wh_fault_make WH_SYMBOL_RENAMED(wh_fault_make)
 #define wh_fault_most WH_SYMBOL_RENAMED(wh_fault_most)

@@ -2,6 +2,7 @@
  * commanded it. A state tells their true places; the switches are good to a tenth of a millimetre and of a
  * degree. */
 #include "../script/wh_module_values.h"
+#include "clocks.h"
 #include "native.h"
 #include "playing.h"
 
@@ -37,6 +38,12 @@ static bool has_arrived(const wh_mcs_t *mcs, const wh_awaited_t *awaited) {
         const size_t axis = wh_machine_door_axis(&mcs->layout->machine, (size_t)awaited->index);
         return is_door_there(mcs, awaited->index, mcs->track.axes[axis]);
     }
+    if (awaited->kind == WH_AWAITED_STATION) {
+        return wh_mcs_is_station_idle(mcs, awaited->index);
+    }
+    if (awaited->kind == WH_AWAITED_LOCK) {
+        return !wh_mcs_is_pumping(mcs, awaited->index);
+    }
     return is_gripper_there(mcs, awaited->index);
 }
 
@@ -48,12 +55,19 @@ uint32_t wh_mcs_sensors(const wh_mcs_t *mcs, const wh_awaited_t *awaited) {
 }
 
 void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh_awaited_t *awaited) {
-    static const char *const fields[] = {"door", "gripper"};
     const wh_machine_t *machine = &mcs->layout->machine;
-    for (int kind = 0; kind < 2; ++kind) {
-        if (lua_getfield(L, -1, fields[kind]) != LUA_TNIL) {
-            awaited->kind = kind == 0 ? WH_AWAITED_DOOR : WH_AWAITED_GRIPPER;
-            awaited->index = wh_mcs_index(L, -1, kind == 0 ? machine->door_count : machine->gripper_count);
+    const struct {
+        const char *field;
+        int kind;
+        size_t count;
+    } kinds[] = {{"door", WH_AWAITED_DOOR, machine->door_count},
+                 {"gripper", WH_AWAITED_GRIPPER, machine->gripper_count},
+                 {"station", WH_AWAITED_STATION, mcs->layout->station_count},
+                 {"lock", WH_AWAITED_LOCK, mcs->layout->station_count}};
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
+        if (lua_getfield(L, -1, kinds[i].field) != LUA_TNIL) {
+            awaited->kind = kinds[i].kind;
+            awaited->index = wh_mcs_index(L, -1, kinds[i].count);
         }
         lua_pop(L, 1);
     }
@@ -62,7 +76,8 @@ void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh
     segment->gripper = 0; /* any gripper: all sensor bits are on, or none */
     segment->seconds = luaL_checknumber(L, -1);
     lua_pop(L, 1);
-    mcs->kept.unplayed = "waits for a door or a flipper";
+    mcs->kept.unplayed = awaited->kind >= WH_AWAITED_STATION ? "waits for what a station does"
+                                                             : "waits for a door or a flipper";
     wh_decisions_measured(mcs->wanted.decisions, "if a mechanism has arrived");
 }
 

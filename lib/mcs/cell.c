@@ -10,6 +10,7 @@
 #include "../text/output.h"
 #include "../trial/given.h"
 #include "carrying.h"
+#include "clocks.h"
 #include "native.h"
 
 /* Shortens "lua/examples/../layouts" to "lua/layouts", if that is the same file: a symbolic link may make it
@@ -256,7 +257,9 @@ static int set_up_cell(lua_State *L) {
         wh_layout_give_errors(L, layout, mcs->wanted.errors, mcs->wanted.error_count);
     }
     layout->collision = layout->collision && !mcs->wanted.without_collisions;
-    wh_mcs_set_up(L, mcs, layout);
+    set_up_run(L, mcs, layout);
+    wh_mcs_begin_clocks(L, mcs);
+    wh_mcs_push_layout(L, layout);
     return 1;
 }
 

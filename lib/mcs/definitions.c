@@ -30,7 +30,6 @@ const wh_layout_class_t wh_flow_classes[] = {
     {"timed_station", "A station of such a cell.", wh_layout_timed_station_fields},
     {"timed_by", "How one of several robots comes to it.", wh_layout_timed_by_fields},
     {"timed_door", "Times of a door.", wh_layout_timed_door_fields},
-    {"clean", "A clean of a station's places.", wh_layout_clean_fields},
     {"pump", "Times of a load lock.", wh_layout_pump_fields},
     {"flow", "Lots along their routes.", wh_flow_fields},
     {"lot", "Wafers that arrive together.", wh_flow_lot_fields},

@@ -8,7 +8,7 @@
 #include "../layout/axes.h"
 #include "../math/trig.h"
 #include "../text/utf8.h"
-#include "native.h"
+#include "clocks.h"
 
 typedef struct {
     char *text; /* of WH_MCS_DESCRIPTION_BYTES */
@@ -135,6 +135,31 @@ static void put_doors(description_t *to, const wh_mcs_t *mcs) {
         put(to, " ");
         put_name(to, mcs->layout->door_list[d].name);
         put(to, ".door=%s", wh_mcs_door_word(mcs, d));
+    }
+}
+
+/* A process, clean or pump that runs with its rest in s; and a load lock's pressure. */
+static void put_stations(description_t *to, const wh_mcs_t *mcs) {
+    for (size_t s = 0; mcs->clocks && s < mcs->layout->station_count; ++s) {
+        double left_us = 0;
+        const char *word = wh_mcs_station_word(mcs, (int32_t)s, &left_us);
+        const char *pressure = wh_mcs_pressure_word(mcs, (int32_t)s);
+        if (word) {
+            put(to, " ");
+            put_name(to, mcs->layout->stations[s].name);
+            put(to, ".is=%s", word);
+        }
+        if (word && left_us > 0) {
+            put(to, " ");
+            put_name(to, mcs->layout->stations[s].name);
+            put(to, ".left");
+            put_value(to, left_us / 1e6);
+        }
+        if (pressure) {
+            put(to, " ");
+            put_name(to, mcs->layout->stations[s].name);
+            put(to, ".pressure=%s", pressure);
+        }
     }
 }
 
@@ -287,6 +312,7 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
         put_robots(&to, mcs->layout, seen.axes);
         put_grippers(&to, mcs->layout, seen.held);
         put_doors(&to, mcs);
+        put_stations(&to, mcs);
     }
     put_error(&to, mcs->recorder.record);
 }

@@ -1,6 +1,8 @@
 /* A layout as lua/mcs sees it: a table of what motion control may know of the cell. */
+#include "../flow/clock.h"
 #include "../layout/axes.h"
 #include "../layout/layout_fields.h"
+#include "../layout/times.h"
 #include "../layout/words.h"
 #include "../script/wh_module_values.h"
 #include "native.h"
@@ -47,6 +49,35 @@ static void push_doors_of(lua_State *L, const wh_layout_t *layout, size_t statio
         lua_pushnil(L);
     }
     lua_setfield(L, -2, "doors");
+}
+
+/* takes_time; and of a load lock sides: by robot where it comes; door_sides: by door. */
+static void push_times(lua_State *L, const wh_layout_t *layout, size_t station) {
+    const wh_layout_times_t *times = layout->stations[station].times;
+    wh_lua_set_boolean(L, "takes_time", times != NULL);
+    if (!times || !times->of.is_lock) {
+        return;
+    }
+    lua_createtable(L, (int)layout->robot_count, 0);
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        const wh_flow_side_t side = wh_layout_side_of(layout, station, r);
+        if (side == WH_FLOW_BOTH) {
+            lua_pushboolean(L, false);
+        } else {
+            lua_pushstring(L, wh_clock_side_name(side));
+        }
+        lua_rawseti(L, -2, (lua_Integer)r + 1);
+    }
+    lua_setfield(L, -2, "sides");
+    lua_newtable(L);
+    for (size_t d = 0; d < layout->machine.door_count; ++d) {
+        if ((times->doors >> d & 1U) != 0) {
+            const bool is_vacuum = (times->side_doors[WH_FLOW_VACUUM] >> d & 1U) != 0;
+            lua_pushstring(L, wh_clock_side_name(is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE));
+            lua_rawseti(L, -2, (lua_Integer)d + 1);
+        }
+    }
+    lua_setfield(L, -2, "door_sides");
 }
 
 /* A point: the robot's axes that the layout gives, by number from 1, rad and mm; and blend. */
@@ -120,6 +151,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_index(L, "effector", station->effector);
     push_servers(L, layout, station);
     push_doors_of(L, layout, index);
+    push_times(L, layout, index);
     push_vias(L, layout, index);
     wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "flipper", station->flipper);

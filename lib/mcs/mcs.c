@@ -7,6 +7,7 @@
 #include "../script/embedded.h"
 #include "../script/wh_module.h"
 #include "../script/wh_module_values.h"
+#include "clocks.h"
 #include "native.h"
 
 wh_mcs_t *wh_mcs_of(lua_State *L) {
@@ -243,7 +244,8 @@ static int open_words(lua_State *L) {
                                       wh_mcs_arrival_functions,  wh_mcs_centring_functions,
                                       wh_mcs_teaching_functions, wh_mcs_lane_functions,
                                       wh_mcs_job_functions,      wh_mcs_believed_functions,
-                                      wh_mcs_flow_functions,     wh_mcs_own_functions};
+                                      wh_mcs_flow_functions,     wh_mcs_own_functions,
+                                      wh_mcs_clock_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -346,6 +348,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         judge_heard(mcs);
     }
     judge_held(mcs);
+    wh_mcs_judge_stays(mcs);
     if (!mcs->recorder.record->failure && mcs->layout) {
         free(mcs->recorder.record->never_came);
         mcs->recorder.record->never_came = wh_mcs_tell_never_came(mcs);

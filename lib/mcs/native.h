@@ -103,6 +103,7 @@ extern const luaL_Reg wh_mcs_flow_functions[];
 extern const luaL_Reg wh_mcs_calibration_functions[];
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];
+extern const luaL_Reg wh_mcs_clock_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
 extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];

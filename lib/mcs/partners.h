@@ -18,6 +18,7 @@ typedef enum {
     WH_MCS_COMMAND_ENDED,
     WH_MCS_EXPECTED,     /* an expectation was added to the record, as its last one */
     WH_MCS_CYCLE_BEGINS, /* likewise a cycle */
+    WH_MCS_STATION_TOLD, /* likewise what a station does by itself */
     WH_MCS_EDGE_SCANNED, /* the scan of wh_mcs_measuring has ended */
     WH_MCS_CENTRED,      /* wh_mcs_measuring has the result of a pass through beams */
     WH_MCS_FINISHED /* the record is closed: the run has ended, also by an error. Not told without a cell,

@@ -26,8 +26,8 @@ wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]);
 /* The sensors for a track that awaits this. For an end switch all bits are on, or none. */
 uint32_t wh_mcs_sensors(const wh_mcs_t *mcs, const wh_awaited_t *awaited);
 
-/* Reads what is awaited from the table on top of the stack, { door = } or { gripper = }; the segment at
- * stack index 1 has the timeout. */
+/* Reads what is awaited from the table on top of the stack, { door = }, { gripper = } or { station = }; the
+ * segment at stack index 1 has the timeout. */
 void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh_awaited_t *awaited);
 
 /* Call it before the first slice of a portion. A slice that was given up may be refused later; the next one

@@ -41,10 +41,10 @@ typedef struct {
 typedef bool wh_look_ahead_t(void *user, const wh_track_t *track, const wh_ahead_start_t *start,
                              int64_t *slices, char *reason);
 
-/* The sensor that a segment of kind SENSOR awaits: its gripper's vacuum sensor, or the end switch of a door
- * or of a gripper's carrier. */
+/* The sensor that a segment of kind SENSOR awaits: its gripper's vacuum sensor, the end switch of a door or
+ * of a gripper's carrier, a station until nothing runs in it, or a load lock until it has pumped. */
 typedef struct {
-    enum { WH_AWAITED_VACUUM, WH_AWAITED_DOOR, WH_AWAITED_GRIPPER } kind;
+    enum { WH_AWAITED_VACUUM, WH_AWAITED_DOOR, WH_AWAITED_GRIPPER, WH_AWAITED_STATION, WH_AWAITED_LOCK } kind;
     int32_t index;
 } wh_awaited_t;
 

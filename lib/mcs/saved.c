@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../sim/snapshot.h"
-#include "native.h"
+#include "clocks.h"
 
 /* The name of the type of userdata. */
 #define SAVED "wh.saved_state"
@@ -68,9 +68,26 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->local.collision.world = NULL;
 }
 
+/* Keeps the stations' clockwork beside the userdata on top of the stack. */
+static void keep_clocks(lua_State *L, const wh_mcs_t *mcs) {
+    if (mcs->clocks) {
+        void *bytes = lua_newuserdatauv(L, mcs->clocks->state_bytes, 0);
+        memcpy(bytes, mcs->clocks->state, mcs->clocks->state_bytes);
+        (void)lua_setiuservalue(L, -2, 1);
+    }
+}
+
+static void put_clocks_back(lua_State *L, const wh_mcs_t *mcs, int saved) {
+    if (mcs->clocks && lua_getiuservalue(L, saved, 1) == LUA_TUSERDATA) {
+        memcpy(mcs->clocks->state, lua_touserdata(L, -1), mcs->clocks->state_bytes);
+        lua_pop(L, 1);
+    }
+}
+
 /* Pushes room for these bytes, with the state of motion control. */
 static saved_t *push_saved(lua_State *L, const wh_mcs_t *mcs, size_t size) {
-    saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 0);
+    saved_t *saved = lua_newuserdatauv(L, sizeof *saved + size, 1);
+    keep_clocks(L, mcs);
     memset(saved, 0, sizeof *saved);
     keep_state(mcs, saved);
     saved->size = size;
@@ -154,6 +171,7 @@ static int restore_state(lua_State *L) {
         wh_mcs_raise(L, mcs, status, status == WH_STATUS_NOT_RESTORED ? "all is as it was" : why);
     }
     put_back(mcs, saved);
+    put_clocks_back(L, mcs, 1);
     return 0;
 }
 

@@ -15,8 +15,8 @@
 #include "rehearsal.h"
 
 /* The listeners for slices: decisions, recorder, origins, the collected scan, the data of STATUS, a collision
- * check beside a remote simulator, and the run's listener. */
-#define WH_MCS_LISTENERS 7
+ * check beside a remote simulator, the stations' clockwork, and the run's listener. */
+#define WH_MCS_LISTENERS 8
 
 /* The most lines of a script that are listed as calling lines, for a command within functions. */
 #define WH_MCS_CALLERS 4
@@ -259,7 +259,8 @@ struct wh_mcs {
     const wh_layout_t *layout; /* null until then */
     const wh_layout_t *real;   /* the same, or with a trial's errors: for the simulator and reports */
     wh_local_cell_t local;
-    wh_link_t *link; /* the local cell's, or its replacement; null until connected */
+    struct wh_clocks *clocks; /* of stations that take time, see clocks.h; null: there are none */
+    wh_link_t *link;          /* the local cell's, or its replacement; null until connected */
 
     /* A slice. */
     wh_track_t track;

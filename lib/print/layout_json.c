@@ -8,6 +8,7 @@
 #include "../math/trig.h"
 #include "../text/json.h"
 #include "layout_print.h"
+#include "layout_times.h"
 
 #define FORMAT 1
 
@@ -195,6 +196,9 @@ static json_t *station(const void *subject, size_t i) {
     if (from->by) {
         wh_json_put(object, "by", servers(layout, from));
     }
+    if (from->times) {
+        wh_json_put(object, "times", wh_layout_times_to_json(from->times));
+    }
     return object;
 }
 
@@ -259,27 +263,33 @@ static void put_target(json_t *object, const char *key, bool is_its, const char 
     wh_json_put(object, key, is_its ? wh_json_text(name) : json_null());
 }
 
+/* The door, the station or the beam that a fault concerns. */
+static void put_place(json_t *object, const wh_layout_t *layout, const wh_fault_t *from) {
+    if (wh_fault_is_of_door(from->kind)) {
+        put_target(object, "door", true, layout->door_list[from->target].name);
+    } else if (wh_fault_is_of_station(from->kind)) {
+        put_target(object, "station", true, layout->stations[from->target].name);
+    } else if (wh_fault_is_of_beam(from->kind)) {
+        const int32_t station = layout->beams[from->target].station;
+        const int32_t first = wh_layout_beams_at(layout, (size_t)station).first;
+        put_target(object, "station", true, layout->stations[station].name);
+        (void)wh_json_set(object, "beam %d", from->target - first + 1);
+    }
+}
+
 static json_t *fault(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
     const wh_fault_t *from = &layout->physics.faults[i];
     const double slice_s = (double)layout->slice_us / 1e6;
     const bool endless = from->until == WH_FAULT_FOREVER;
     const bool of_wafer = wh_fault_is_of_wafer(from->kind);
-    const bool of_door = wh_fault_is_of_door(from->kind);
-    const bool of_beam = wh_fault_is_of_beam(from->kind);
-    const bool of_gripper = from->target != WH_NONE && !of_wafer && !of_door && !of_beam;
+    const bool of_place = wh_fault_is_of_door(from->kind) || wh_fault_is_of_beam(from->kind) ||
+                          wh_fault_is_of_station(from->kind);
+    const bool of_gripper = from->target != WH_NONE && !of_wafer && !of_place;
     json_t *object = wh_json_set(json_object(), "kind %s", wh_fault_name(from->kind));
     put_target(object, "gripper", of_gripper, of_gripper ? layout->grippers[from->target].name : "");
     put_target(object, "wafer", of_wafer, of_wafer ? layout->wafers[from->target].name : "");
-    if (of_door) {
-        put_target(object, "door", true, layout->door_list[from->target].name);
-    }
-    if (of_beam) {
-        const int32_t station = layout->beams[from->target].station;
-        const int32_t first = wh_layout_beams_at(layout, (size_t)station).first;
-        put_target(object, "station", true, layout->stations[station].name);
-        (void)wh_json_set(object, "beam %d", from->target - first + 1);
-    }
+    put_place(object, layout, from);
     return wh_json_set(object, "from_s %g until_s %g value %g", (double)(from->from - 1) * slice_s,
                        endless ? HUGE_VAL : (double)(from->until - 1) * slice_s, from->value);
 }

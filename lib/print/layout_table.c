@@ -9,6 +9,7 @@
 #include "../math/trig.h"
 #include "../text/array.h"
 #include "layout_print.h"
+#include "layout_times.h"
 #include "print_internal.h"
 
 #define MS WH_REAL(1e3)
@@ -191,6 +192,12 @@ static void print_stations(const listing_t *listing) {
 }
 
 /* Prints which of several robots come to a station, and which one does so unless a command says otherwise. */
+static void print_times(const listing_t *listing) {
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, WH_LAYOUT_TIMES_COLUMNS);
+    wh_layout_times_fill(listing->layout, grid);
+    wh_print_titled(&listing->frame, "Stations that take time", grid);
+}
+
 static void print_servers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     if (layout->robot_count < 2) {
@@ -276,6 +283,9 @@ static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault)
     if (wh_fault_is_of_beam(fault->kind)) {
         return layout->stations[layout->beams[fault->target].station].name;
     }
+    if (wh_fault_is_of_station(fault->kind)) {
+        return layout->stations[fault->target].name;
+    }
     return wh_fault_is_of_wafer(fault->kind) ? layout->wafers[fault->target].name
                                              : layout->grippers[fault->target].name;
 }
@@ -289,6 +299,8 @@ static const char *unit_of(wh_fault_kind_t kind) {
     case WH_FAULT_PLUNGER_SLOW:
     case WH_FAULT_DOOR_SLOW:
         return " mm/s";
+    case WH_FAULT_STATION_SLOW:
+        return " times";
     default:
         return " s";
     }
@@ -381,6 +393,7 @@ int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_sty
     print_grippers(&listing);
     print_doors(&listing);
     print_stations(&listing);
+    print_times(&listing);
     print_servers(&listing);
     print_room(&listing);
     print_holding(&listing);

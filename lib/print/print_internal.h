@@ -30,6 +30,7 @@ bool wh_print_is_within(const wh_printer_t *printer, const wh_print_window_t *wi
 void wh_print_commands(const wh_printer_t *printer);
 void wh_print_errors(const wh_printer_t *printer);
 void wh_print_handovers(const wh_printer_t *printer);
+void wh_print_stations(const wh_printer_t *printer);
 void wh_print_clearances(const wh_printer_t *printer);
 void wh_print_gantt(const wh_printer_t *printer, const wh_print_window_t *window);
 void wh_print_times(const wh_printer_t *printer, const wh_print_window_t *window);

@@ -5,6 +5,7 @@
 
 #include "../layout/axes.h"
 #include "../layout/grips.h"
+#include "../layout/times.h"
 #include "../math/trig.h"
 #include "../record/steady.h"
 #include "../sim/faults.h"
@@ -448,6 +449,14 @@ static void put_head(const wh_record_t *record, json_t *root) {
     wh_json_put(root, "split", split_of(record, record->activity.shares));
 }
 
+/* A cell without stations that take time tells nothing of them. */
+static void put_stations(const wh_record_t *record, json_t *root) {
+    if (record->station_event_count > 0 || (record->layout && wh_layout_takes_time(record->layout))) {
+        wh_json_put(root, "station_events",
+                    wh_json_list(wh_station_event_to_json, record, record->station_event_count));
+    }
+}
+
 static void put_lists(const wh_record_t *record, json_t *root) {
     const size_t wafers = record->layout ? record->layout->wafer_count : 0;
     const size_t stations = record->layout && record->reach ? record->layout->station_count : 0;
@@ -455,6 +464,7 @@ static void put_lists(const wh_record_t *record, json_t *root) {
     wh_json_put(root, "commands", wh_json_list(command, record, record->command_count));
     wh_json_put(root, "wafers", wh_json_list(wafer, record, wafers));
     wh_json_put(root, "events", wh_json_list(event, record, record->event_count));
+    put_stations(record, root);
     if (record->checked) {
         wh_json_put(root, "clearances", wh_json_list(clearance, record, WH_CLEARANCES));
     }

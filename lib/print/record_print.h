@@ -3,8 +3,8 @@
  * The tables come in this order; empty ones are left out: the script, its tolerance, and the errors of the
  * cell; the commands, each with the wafers that it took and the values (2)-(5) of each pick beside their
  * limits; the messages of failed commands; each hand-over as the chuck saw it; misses and complaints in
- * plain words; where the wafers are, and which of them a gripper carries tilted; the expectations; wafers
- * per hour; and the verdict.
+ * plain words; what stations did by themselves; where the wafers are, and which of them a gripper carries
+ * tilted; the expectations; wafers per hour; and the verdict.
  *
  * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have enough decimals that rounding
  * never moves them onto a limit or across it; offsets show 1e-9 mm. Equal records give equal bytes, except
@@ -46,6 +46,11 @@
  *                 (bad_input, whose measured values are null), seat { dx, dy, s (mm), held } (picked and
  *                 handed_over by an edge grip: where the wafer lies in the pocket, gripper's frame, once the
  *                 plunger has closed, and the plunger then)
+ *   station_events: only if stations take time: utime (us), kind ("process_begins", "process_ends",
+ *                 "process_cut", "taken", "clean_begins", "clean_ends", "pump_begins", "pump_ends"), station,
+ *                 slot and wafer (or null), side (of a pump: "vacuum" or "atmosphere"; else null), seconds:
+ *                 how long what begins takes, what ends took, and how long a taken wafer stayed after its
+ *                 process
  *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
  *                 none): the smallest gaps of a run whose collisions were checked
  *   clearance_curves: kind, times_s, gaps (mm; null: wider than 20): for the kinds that were ever near, the
@@ -115,8 +120,10 @@ json_t *wh_throughput_to_json(const wh_record_t *record);
 json_t *wh_record_to_json(const wh_record_t *record);
 json_t *wh_flow_to_json(const wh_flow_t *flow);
 
-/* One element of `events`, and of `centrings`; the caller releases it. `record` is a wh_record_t. */
+/* One element of `events`, of `station_events`, and of `centrings`; the caller releases it. `record` is a
+ * wh_record_t. */
 json_t *wh_event_to_json(const wh_record_t *record, size_t i);
+json_t *wh_station_event_to_json(const void *record, size_t i);
 json_t *wh_centring_to_json(const void *record, size_t i);
 
 #endif

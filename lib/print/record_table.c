@@ -464,6 +464,7 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     wh_print_errors(&printer);
     wh_print_handovers(&printer);
     print_complaints(&printer);
+    wh_print_stations(&printer);
     wh_print_clearances(&printer);
     print_wafers(&printer);
     if (wanted->gantt) {

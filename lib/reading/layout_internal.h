@@ -50,6 +50,9 @@ void wh_layout_read_taught(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_move_chucks(wh_layout_t *layout);
 void wh_layout_read_doors(wh_reader_t *reader, wh_layout_t *layout);
 
+/* Reads the times of stations, once doors and servers are read. */
+void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout);
+
 /* The points that the arm passes on its way to stations. */
 void wh_layout_read_vias(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);

@@ -157,6 +157,15 @@ static int32_t read_station(wh_reader_t *reader, const wh_layout_t *layout) {
                                "the name of a station of this layout");
 }
 
+static int32_t read_timed_station(wh_reader_t *reader, const wh_layout_t *layout) {
+    const int32_t station = read_station(reader, layout);
+    if (!layout->stations[station].times) {
+        wh_reader_refuse(reader, "station", layout->stations[station].name,
+                         "a station that takes time: with `process`, `clean` or `pump`");
+    }
+    return station;
+}
+
 static int32_t read_beam(wh_reader_t *reader, const wh_layout_t *layout) {
     const int32_t station = read_station(reader, layout);
     const wh_latch_order_t beams = wh_layout_beams_at(layout, (size_t)station);
@@ -199,6 +208,8 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
                                             "the name of a door of this layout");
     } else if (wh_fault_is_of_beam(fault->kind)) {
         fault->target = read_beam(reader, layout);
+    } else if (wh_fault_is_of_station(fault->kind)) {
+        fault->target = read_timed_station(reader, layout);
     } else if (is_of_edge_sensor(fault->kind)) {
         fault->target = read_edge_sensor(reader, layout);
     } else if (is_of_probe(fault->kind)) {

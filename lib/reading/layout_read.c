@@ -271,6 +271,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_doors(&reader, layout);
     wh_layout_read_vias(&reader, layout);
     wh_layout_read_effectors(&reader, layout);
+    wh_layout_read_times(&reader, layout);
     wh_layout_read_wafers(&reader, layout);
     wh_layout_find_faces(layout);
     wh_layout_read_sensing(&reader, layout);

@@ -40,6 +40,8 @@ static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread
 static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_errors_t *errors) {
     errors->vacuum.shape = wh_layout_read_spread_shape(reader, errors->vacuum.shape);
     errors->vacuum.width = wh_reader_apart(reader, "vacuum");
+    errors->process.shape = errors->vacuum.shape;
+    errors->process.width = wh_reader_apart(reader, "process");
     errors->valves[0].shape = errors->vacuum.shape;
     read_valve(reader, layout, &errors->valves[0]);
     for (size_t g = 1; g < layout->machine.gripper_count; ++g) {

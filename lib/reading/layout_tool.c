@@ -10,14 +10,6 @@
 #include "layout_internal.h"
 #include "tool_routes.h"
 
-int64_t wh_layout_us(double seconds) {
-    return (int64_t)llround(seconds * 1e6);
-}
-
-int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback) {
-    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
-}
-
 /* -------------------------------------------------------------------------------------------------- kinds */
 
 static bool is_kind_timed(const wh_reader_t *reader) {
@@ -91,60 +83,12 @@ static void read_door(wh_reader_t *reader, wh_flow_door_t *door) {
     }
 }
 
-static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
-    if (!wh_reader_open(reader, "clean", wh_layout_clean_fields)) {
-        return;
-    }
-    if (!wh_reader_has(reader, "after") && !wh_reader_has(reader, "idle")) {
-        wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
-    }
-    station->clean_after = wh_reader_whole(reader, "after", 0, 0, 1000000);
-    station->clean_us = wh_timed_read_us(reader, "seconds", NAN);
-    station->cleans_full = !wh_reader_boolean(reader, "empty", true);
-    if (wh_reader_has(reader, "idle")) {
-        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
-    }
-    wh_reader_leave(reader);
-}
-
-/* A lock that turns in no time would turn again and again at one instant. */
-static int64_t read_pump_us(wh_reader_t *reader, const char *field, double fallback) {
-    const int64_t us = wh_timed_read_us(reader, field, fallback);
-    if (us == 0) {
-        (void)wh_reader_push(reader, field);
-        wh_reader_fail(reader, field, "at least 0.000001 s");
-    }
-    return us;
-}
-
-static void read_pump(wh_reader_t *reader, wh_flow_station_t *station) {
-    static const char *const states[] = {"atmosphere", "vacuum", NULL};
-    station->is_lock = wh_reader_open(reader, "pump", wh_layout_pump_fields);
-    if (station->is_lock) {
-        station->pump_us[WH_FLOW_VACUUM] = read_pump_us(reader, "down", NAN);
-        station->pump_us[WH_FLOW_ATMOSPHERE] = read_pump_us(reader, "up", NAN);
-        station->empty_pump_us[WH_FLOW_VACUUM] =
-            read_pump_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
-        station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
-            read_pump_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
-        wh_reader_leave(reader);
-    } else if (wh_reader_has(reader, "state")) {
-        wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");
-    }
-    station->side = wh_reader_choice(reader, "state", 0, states) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
-}
-
 static void read_station(wh_reader_t *reader, wh_flow_station_t *station) {
     static const char *const kinds[] = {"slots", "load_port", NULL};
     wh_reader_refuse_unknown(reader, wh_layout_timed_station_fields);
     station->is_load_port = wh_reader_choice(reader, "kind", 0, kinds) == 1;
     station->slots = wh_reader_whole(reader, "slots", station->is_load_port ? 25 : 1, 1, 100000);
-    station->process_us = wh_timed_read_us(reader, "process", 0);
-    if (wh_reader_has(reader, "window")) {
-        station->window_us = wh_timed_read_us(reader, "window", 0);
-    }
-    read_clean(reader, station);
-    read_pump(reader, station);
+    wh_layout_read_clockwork(reader, station, wh_layout_pump_fields);
 }
 
 /* Marks the slots that one side alone fills. */

@@ -3,7 +3,7 @@
 #define WH_READING_LAYOUT_TOOL_H
 
 #include "../flow/tool.h"
-#include "../layout/layout.h"
+#include "../layout/times.h"
 #include "../script/reader.h"
 
 /* True if the robots of the layout at which the reader is are of kind "timed"; raises if some are and
@@ -19,8 +19,8 @@ int64_t wh_layout_us(double seconds);
 
 /* ---- shared by the files that read such a cell and its flows; each raises the first fault */
 
-/* The longest time of a station or a robot, s: a week. */
-#define WH_TIMED_LONGEST_S 604800.0
+/* The longest time of a station or a robot, s. */
+#define WH_TIMED_LONGEST_S WH_LAYOUT_LONGEST_S
 
 typedef struct {
     char name[WH_NAME_SIZE];
@@ -39,12 +39,15 @@ int32_t wh_timed_find_station(wh_reader_t *reader, const wh_flow_tool_t *tool, c
 /* `at`: the stations' places, for robots with a speed. */
 void wh_timed_read_robot(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot, const wh_vec3_t at[]);
 
+/* `process`, `window`, `clean`, `pump` and `state` of the station at which the reader is; `pump_fields` are
+ * those that a pump may have there. */
+void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
+                              const wh_reader_field_t *pump_fields);
+
 extern const wh_reader_field_t wh_layout_timed_fields[];
 extern const wh_reader_field_t wh_layout_timed_robot_fields[];
 extern const wh_reader_field_t wh_layout_timed_station_fields[];
 extern const wh_reader_field_t wh_layout_timed_by_fields[];
 extern const wh_reader_field_t wh_layout_timed_door_fields[];
-extern const wh_reader_field_t wh_layout_clean_fields[];
-extern const wh_reader_field_t wh_layout_pump_fields[];
 
 #endif

@@ -47,17 +47,3 @@ const wh_reader_field_t wh_layout_timed_by_fields[] = {
 
 const wh_reader_field_t wh_layout_timed_door_fields[] = {
     {"open", "number", "s", true}, {"close", "number", "s", true}, END};
-
-const wh_reader_field_t wh_layout_clean_fields[] = {
-    {"after", "integer", "wafers", false},
-    {"idle", "number", "s without a wafer", false},
-    {"seconds", "number", "s: how long it takes", true},
-    {"empty", "boolean", "false: after the last wafer's process, with the wafer inside; true", false},
-    END};
-
-const wh_reader_field_t wh_layout_pump_fields[] = {
-    {"down", "number", "s to vacuum, above 0", true},
-    {"up", "number", "s to atmosphere, above 0", true},
-    {"empty_down", "number", "s to vacuum without a wafer; down", false},
-    {"empty_up", "number", "s to atmosphere without a wafer; up", false},
-    END};

@@ -94,6 +94,12 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
 }
 
+void wh_record_add_station_event(wh_record_t *record, const wh_station_event_record_t *event) {
+    record->station_events = wh_array_grow(record->station_events, record->station_event_count,
+                                           &record->station_event_capacity, sizeof *record->station_events);
+    record->station_events[record->station_event_count++] = *event;
+}
+
 bool wh_record_is_teaching(const wh_record_t *record, int32_t command) {
     static const char teach[] = "TEACH ";
     return command != WH_NONE && strncmp(record->commands[command].text, teach, strlen(teach)) == 0;
@@ -214,7 +220,7 @@ void wh_record_forget(wh_record_t *record) {
     }
     record->command_count = record->event_count = 0;
     record->expectation_count = record->implied_count = 0;
-    record->put_count = record->cycle_count = record->wait_count = 0;
+    record->put_count = record->cycle_count = record->wait_count = record->station_event_count = 0;
     record->centring_count = record->centrings_left_out = 0;
     record->activity.interval_count = 0;
 }
@@ -245,6 +251,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->puts);
     free(record->cycles);
     free(record->waits);
+    free(record->station_events);
     free(record->centrings);
     free(record->reach);
     free(record->wafers);

@@ -2,6 +2,7 @@
 #ifndef WH_RECORD_RECORD_H
 #define WH_RECORD_RECORD_H
 
+#include "../flow/clock.h"
 #include "../flow/figures.h"
 #include "../layout/layout.h"
 #include "activity.h"
@@ -54,6 +55,12 @@ typedef struct {
     int64_t begin, end; /* slices before; `end` is later, unless it is open */
     bool is_open;       /* the wait goes on */
 } wh_wait_record_t;
+
+/* Something that a station did by itself. */
+typedef struct {
+    int32_t station;
+    wh_clock_event_t event;
+} wh_station_event_record_t;
 
 /* A cycle that the script marked. */
 typedef struct {
@@ -125,6 +132,8 @@ typedef struct {
     size_t cycle_count, cycle_capacity;
     wh_wait_record_t *waits; /* in the order in which they began */
     size_t wait_count, wait_capacity;
+    wh_station_event_record_t *station_events; /* in order */
+    size_t station_event_count, station_event_capacity;
     wh_centring_record_t *centrings; /* in order */
     size_t centring_count, centring_capacity;
     size_t centrings_left_out; /* centrings after WH_RECORD_CENTRINGS */
@@ -150,6 +159,8 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; later calls do nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
 
+void wh_record_add_station_event(wh_record_t *record, const wh_station_event_record_t *event);
+
 /* True if the command of this number is a TEACH; WH_NONE: none. A TEACH seeks beams and puts the taken
  * wafer back; neither counts. */
 bool wh_record_is_teaching(const wh_record_t *record, int32_t command);
@@ -160,8 +171,8 @@ void wh_record_add_centring(wh_record_t *record, const wh_centring_record_t *cen
 /* Adds an open wait, from the end of slice `begin` on. */
 void wh_record_add_wait(wh_record_t *record, int32_t task, int32_t command, const char *what, int64_t begin);
 
-/* Drops commands, events, expectations, puts, cycles, waits, centrings and intervals; script, layout, reach
- * and the sums stay. */
+/* Drops commands, events, expectations, puts, cycles, waits, stations' events, centrings and intervals;
+ * script, layout, reach and the sums stay. */
 void wh_record_forget(wh_record_t *record);
 
 /* Drops the same, except the last command that failed; it is for sessions without an end, which tell that

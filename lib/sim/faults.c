@@ -6,11 +6,12 @@
 
 const char *wh_fault_name(wh_fault_kind_t kind) {
     static const char *const names[WH_FAULT_KINDS] = {
-        "no_vacuum",     "slow_vacuum",   "sensor_on",         "sensor_off",      "leak",
-        "valve_stuck",   "axis_stopped",  "command_lost",      "wafer_missing",   "wafer_doubled",
-        "wafer_crossed", "wafer_shifted", "wafer_tilted",      "plunger_stuck",   "plunger_slow",
-        "door_stuck",    "door_slow",     "beam_dark",         "beam_lit",        "beam_late",
-        "probe_closed",  "probe_open",    "edge_sensor_stuck", "edge_sensor_late"};
+        "no_vacuum",     "slow_vacuum",   "sensor_on",         "sensor_off",       "leak",
+        "valve_stuck",   "axis_stopped",  "command_lost",      "wafer_missing",    "wafer_doubled",
+        "wafer_crossed", "wafer_shifted", "wafer_tilted",      "plunger_stuck",    "plunger_slow",
+        "door_stuck",    "door_slow",     "beam_dark",         "beam_lit",         "beam_late",
+        "probe_closed",  "probe_open",    "edge_sensor_stuck", "edge_sensor_late", "station_stuck",
+        "station_slow"};
     return (unsigned)kind < WH_FAULT_KINDS ? names[kind] : "unknown";
 }
 
@@ -26,15 +27,19 @@ bool wh_fault_is_of_beam(wh_fault_kind_t kind) {
     return kind >= WH_FAULT_BEAM_DARK && kind <= WH_FAULT_BEAM_LATE;
 }
 
+bool wh_fault_is_of_station(wh_fault_kind_t kind) {
+    return kind == WH_FAULT_STATION_STUCK || kind == WH_FAULT_STATION_SLOW;
+}
+
 wh_real_t wh_fault_most(wh_fault_kind_t kind) {
     static const struct {
         wh_fault_kind_t kind;
         wh_real_t most;
     } limits[] = {
-        {WH_FAULT_SLOW_VACUUM, WH_REAL(3600)},      {WH_FAULT_LEAK, WH_REAL(1)},
-        {WH_FAULT_EDGE_SENSOR_STUCK, WH_REAL(1)},   {WH_FAULT_PLUNGER_SLOW, (wh_real_t)WH_PLUNGER_FAST},
-        {WH_FAULT_DOOR_SLOW, WH_REAL(1e4)},         {WH_FAULT_BEAM_LATE, WH_REAL(0.01)},
-        {WH_FAULT_EDGE_SENSOR_LATE, WH_REAL(0.001)}};
+        {WH_FAULT_SLOW_VACUUM, WH_REAL(3600)},       {WH_FAULT_LEAK, WH_REAL(1)},
+        {WH_FAULT_EDGE_SENSOR_STUCK, WH_REAL(1)},    {WH_FAULT_PLUNGER_SLOW, (wh_real_t)WH_PLUNGER_FAST},
+        {WH_FAULT_DOOR_SLOW, WH_REAL(1e4)},          {WH_FAULT_BEAM_LATE, WH_REAL(0.01)},
+        {WH_FAULT_EDGE_SENSOR_LATE, WH_REAL(0.001)}, {WH_FAULT_STATION_SLOW, WH_REAL(1000)}};
     wh_real_t most = 0;
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; ++i) {
         most = limits[i].kind == kind ? limits[i].most : most;
@@ -63,10 +68,11 @@ static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafe
     if (fault->kind == WH_FAULT_COMMAND_LOST) {
         return fault->target == WH_NONE && fault->other == WH_NONE;
     }
-    const size_t count = wh_fault_is_of_wafer(fault->kind)  ? wafer_count
-                         : wh_fault_is_of_door(fault->kind) ? WH_DOORS
-                         : wh_fault_is_of_beam(fault->kind) ? WH_BEAMS
-                                                            : gripper_count;
+    const size_t count = wh_fault_is_of_wafer(fault->kind)     ? wafer_count
+                         : wh_fault_is_of_door(fault->kind)    ? WH_DOORS
+                         : wh_fault_is_of_beam(fault->kind)    ? WH_BEAMS
+                         : wh_fault_is_of_station(fault->kind) ? WH_FAULT_STATIONS
+                                                               : gripper_count;
     if (!wh_is_index(fault->target, count)) {
         return false;
     }

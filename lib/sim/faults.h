@@ -22,6 +22,8 @@
  *   PROBE_CLOSED/_OPEN  the switch of the gripper's probe is closed or open, whatever it touches
  *   EDGE_SENSOR_STUCK   each sample of the chuck's edge sensor has the same part `value` of its pixels
  *   EDGE_SENSOR_LATE    the samples are taken `value` s later
+ *   STATION_STUCK   what goes on in the station by itself stands; the simulator has no part in it
+ *   STATION_SLOW    it takes `value` times as long
  *
  * The wafer, or the one that it is doubled onto, may be held when its fault is due to begin. Then the fault
  * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
@@ -70,6 +72,8 @@ WH_REFUSE_PACKING(faults);
 #define WH_PLUNGER_FAST 10000
 /* The most beams of a cell (latching.h). */
 #define WH_BEAMS 16
+/* The most stations that a fault can name. */
+#define WH_FAULT_STATIONS 1000
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
@@ -97,17 +101,19 @@ typedef enum WH_FOUR_BYTES {
     WH_FAULT_PROBE_CLOSED,
     WH_FAULT_PROBE_OPEN,
     WH_FAULT_EDGE_SENSOR_STUCK,
-    WH_FAULT_EDGE_SENSOR_LATE
+    WH_FAULT_EDGE_SENSOR_LATE,
+    WH_FAULT_STATION_STUCK,
+    WH_FAULT_STATION_SLOW
 } wh_fault_kind_t;
 
-#define WH_FAULT_KINDS 24
+#define WH_FAULT_KINDS 26
 
 typedef struct {
     wh_fault_kind_t kind;
-    int32_t target; /* gripper, wafer, door or beam; WH_NONE for COMMAND_LOST */
+    int32_t target; /* gripper, wafer, door, beam or station; WH_NONE for COMMAND_LOST */
     int32_t other;  /* DOUBLED: the wafer underneath; otherwise WH_NONE */
     /* SLOW_VACUUM: s, 0 to 3600; LEAK and EDGE_SENSOR_STUCK: 0 to 1; PLUNGER_SLOW and DOOR_SLOW: mm/s, 0 to
-     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; otherwise 0 */
+     * 1e4; BEAM_LATE and EDGE_SENSOR_LATE: s, 0 to 0.01 and 0.001; STATION_SLOW: 0 to 1000; otherwise 0 */
     wh_real_t value;
     wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; otherwise the identity */
     int64_t from, until; /* slices, seq: 1 <= from, 0 <= until; WH_FAULT_FOREVER: until it is cleared */
@@ -144,7 +150,7 @@ typedef struct {
     uint32_t armed, cleared;
 } wh_fault_changes_t;
 
-/* The kind's name as layouts and scripts spell it: no_vacuum to edge_sensor_late, or "unknown". Never
+/* The kind's name as layouts and scripts spell it: no_vacuum to station_slow, or "unknown". Never
  * null. */
 const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
@@ -157,26 +163,30 @@ bool wh_fault_is_of_door(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_door);
 /* True if the kind is about a beam. */
 bool wh_fault_is_of_beam(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_beam);
 
+/* True if the kind is about what goes on in a station by itself. */
+bool wh_fault_is_of_station(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_station);
+
 /* The largest `value` that a fault of this kind may have; 0: the kind has none. */
 wh_real_t wh_fault_most(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_most);
 
 /* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
- * is a gripper, a wafer, a door or a beam; COMMAND_LOST has none (WH_NONE replaces it). `value` counts for
- * kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the identity; that
- * of WAFER_MISSING points 100 m down, out of every cell. The caller sets the other values that the kind
- * needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED. Nothing is
- * checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
+ * is a gripper, a wafer, a door, a beam or a station; COMMAND_LOST has none (WH_NONE replaces it). `value`
+ * counts for kinds with a wh_fault_most; for others 0 replaces it. `other` is WH_NONE, the offset the
+ * identity; that of WAFER_MISSING points 100 m down, out of every cell. The caller sets the other values that
+ * the kind needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED.
+ * Nothing is checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
  *
  *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
  *     physics.fault_count = 1; */
 wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
     WH_SYMBOL(wh_fault_make);
 
-/* Returns WH_OK, or the reason why a cell with these counts, WH_DOORS doors and WH_BEAMS beams cannot have
- * the fault. WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for an offset that
- * wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind, target, other, from or until, for a `value`
- * out of its range or NaN, and for an offset beyond WH_FAULT_REACH, or other than the identity if the kind
- * is not about a wafer. A fault that never acts (until <= from) is valid. Cost: wh_pose_validate. */
+/* Returns WH_OK, or the reason why a cell with these counts, WH_DOORS doors, WH_BEAMS beams and
+ * WH_FAULT_STATIONS stations cannot have the fault. WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE or
+ * WH_STATUS_NOT_A_ROTATION for an offset that wh_pose_validate refuses; WH_STATUS_OUT_OF_RANGE for kind,
+ * target, other, from or until, for a `value` out of its range or NaN, and for an offset beyond
+ * WH_FAULT_REACH, or other than the identity if the kind is not about a wafer. A fault that never acts
+ * (until <= from) is valid. Cost: wh_pose_validate. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_fault_validate);
 

@@ -1,6 +1,7 @@
 #include "causes.h"
 
 #include "../layout/beam_errors.h"
+#include "../layout/times.h"
 #include "../text/array.h"
 
 #define COMPONENTS 6
@@ -60,6 +61,14 @@ static void add_beam(list_t *list, const wh_layout_t *layout, size_t beam) {
     }
 }
 
+static void add_processes(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        if (layout->stations[s].times && layout->stations[s].times->of.process_us > 0) {
+            add(list, WH_CAUSE_PROCESS, s, 0, errors->process.width);
+        }
+    }
+}
+
 static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *errors) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         add_spreads(list, WH_CAUSE_WAFER, w, &errors->wafers[w]);
@@ -75,6 +84,7 @@ static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *
         add(list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
     }
     add(list, WH_CAUSE_VACUUM, 0, 0, errors->vacuum.width);
+    add_processes(list, layout, errors);
     for (size_t w = 0; errors->rims && w < layout->wafer_count; ++w) {
         add_rim(list, layout, w);
     }
@@ -124,10 +134,11 @@ static bool is_displacement(wh_cause_kind_t kind) {
 
 static double draw_other(const wh_layout_t *layout, const wh_trial_t *trial, const wh_cause_t *cause) {
     const wh_errors_t *errors = layout->errors;
-    return cause->kind == WH_CAUSE_VALVE    ? wh_errors_draw_valve(errors, trial, cause->index)
-           : cause->kind == WH_CAUSE_VACUUM ? wh_errors_draw_vacuum(errors, trial)
-           : cause->kind == WH_CAUSE_RIM    ? draw_rim(layout, trial, cause)
-                                            : draw_beam(errors, trial, cause);
+    return cause->kind == WH_CAUSE_VALVE     ? wh_errors_draw_valve(errors, trial, cause->index)
+           : cause->kind == WH_CAUSE_VACUUM  ? wh_errors_draw_vacuum(errors, trial)
+           : cause->kind == WH_CAUSE_PROCESS ? wh_errors_draw_process(errors, trial, cause->index)
+           : cause->kind == WH_CAUSE_RIM     ? draw_rim(layout, trial, cause)
+                                             : draw_beam(errors, trial, cause);
 }
 
 /* A displacement is drawn once, for all of its components that follow each other. */
@@ -159,6 +170,7 @@ const char *wh_cause_what(const wh_cause_t *cause) {
            : cause->kind == WH_CAUSE_RIM     ? wh_rim_draw_name((wh_rim_draw_t)cause->component)
            : cause->kind == WH_CAUSE_BEAM    ? wh_beam_draw_name((wh_beam_draw_t)cause->component)
            : cause->kind == WH_CAUSE_VALVE   ? "valve"
+           : cause->kind == WH_CAUSE_PROCESS ? "process"
                                              : "vacuum";
 }
 
@@ -180,7 +192,7 @@ const char *wh_cause_unit(const wh_cause_t *cause) {
     if (cause->kind == WH_CAUSE_BEAM) {
         return wh_beam_draw_unit((wh_beam_draw_t)cause->component);
     }
-    return is_delay(cause) ? "s" : cause->component < 3 ? "mm" : "deg";
+    return is_delay(cause) || cause->kind == WH_CAUSE_PROCESS ? "s" : cause->component < 3 ? "mm" : "deg";
 }
 
 const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
@@ -189,9 +201,10 @@ const char *wh_cause_robot(const wh_cause_t *cause, const wh_layout_t *layout) {
 
 const char *wh_cause_of(const wh_cause_t *cause, const wh_layout_t *layout) {
     const bool is_wafer = cause->kind == WH_CAUSE_WAFER || cause->kind == WH_CAUSE_RIM;
-    return is_wafer                          ? layout->wafers[cause->index].name
-           : cause->kind == WH_CAUSE_STATION ? layout->stations[cause->index].name
-           : cause->kind == WH_CAUSE_VALVE   ? layout->grippers[cause->index].name
-           : cause->kind == WH_CAUSE_BEAM    ? layout->beams[cause->index].name
-                                             : NULL;
+    return is_wafer ? layout->wafers[cause->index].name
+           : cause->kind == WH_CAUSE_STATION || cause->kind == WH_CAUSE_PROCESS
+               ? layout->stations[cause->index].name
+           : cause->kind == WH_CAUSE_VALVE ? layout->grippers[cause->index].name
+           : cause->kind == WH_CAUSE_BEAM  ? layout->beams[cause->index].name
+                                           : NULL;
 }

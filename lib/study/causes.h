@@ -9,6 +9,7 @@ typedef enum {
     WH_CAUSE_STATION,
     WH_CAUSE_VALVE,
     WH_CAUSE_VACUUM,
+    WH_CAUSE_PROCESS,
     WH_CAUSE_RIM,
     WH_CAUSE_BEAM
 } wh_cause_kind_t;

@@ -98,6 +98,7 @@ static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
         return concerns->stations[layout->beams[cause->index].station];
     case WH_CAUSE_VALVE:
     case WH_CAUSE_VACUUM:
+    case WH_CAUSE_PROCESS:
         break;
     }
     return true;

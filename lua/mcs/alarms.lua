@@ -15,6 +15,7 @@ return function(native, lookup)
   local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
   local PLANNED = STATION .. " LINE"
   local MOVING = STATION .. " PATTERN CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
+    .. " PUMP WAIT_FOR"
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
 
@@ -68,6 +69,12 @@ return function(native, lookup)
     DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH" },
     DOOR_BLOCKED = { "check", "CLOSE" },
     DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
+    PROCESS_RUNNING = { "check", "GET SWAP" },
+    CLEANING = { "check", "GET PUT SWAP" },
+    STATION_TIMEOUT = { "check", "PUMP WAIT_FOR" },
+    WRONG_PRESSURE = { "check", "GET PUT SWAP OPEN PUMP" },
+    BOTH_OPEN = { "check", "OPEN" },
+    DOOR_OPEN = { "check", "PUMP" },
     NOT_IN_PHASE = { "check", "CONTINUE" },
     NO_SUCH_SAVE = { "check", "RESTORE" },
     NOTHING_TO_UNDO = { "check", "UNDO" },

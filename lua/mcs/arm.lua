@@ -80,10 +80,25 @@ return function(native, lookup, tasks, alarms)
     end
   end
 
-  -- OPEN and CLOSE need only the door. No robot takes part in them.
+  -- OPEN and CLOSE need only the door, and the other doors of its load lock. No robot takes part in them.
   function arm.needs_door(door)
-    local name = native.layout.doors[door].name
-    return { DOOR:format(name), chucks = { #native.layout.grippers + door }, is_lone = true }
+    local needs = { DOOR:format(native.layout.doors[door].name), chucks = { #native.layout.grippers + door }, is_lone = true }
+    for _, station in pairs(native.layout.stations) do
+      for other in pairs(station.door_sides and station.door_sides[door] and station.door_sides or {}) do
+        needs[#needs + 1] = other ~= door and DOOR:format(native.layout.doors[other].name) or nil
+      end
+    end
+    return needs
+  end
+
+  -- PUMP needs the load lock and all of its doors.
+  function arm.needs_lock(station_name)
+    local station = type(station_name) == "string" and native.layout.stations[station_name]
+    local needs = { station and STATION:format(station_name) or nil, chucks = {}, is_lone = true }
+    for door in pairs(station and station.door_sides or {}) do
+      needs[#needs + 1] = DOOR:format(native.layout.doors[door].name)
+    end
+    return needs
   end
 
   -- Adds a station's own grippers, which are not on the robot.
@@ -315,6 +330,7 @@ return function(native, lookup, tasks, alarms)
   function arm.set_free()
     local state = arm.state()
     state.inside, state.stopped = nil, nil
+    native.stands_in(tasks.current().robot or 1)
   end
 
   -- Gives up held commands: of the robot that the word is bound to, or of all.

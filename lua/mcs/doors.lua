@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, pairs, pcall = ipairs, pairs, pcall
 
-return function(native, patterns, lookup, arm, player, tasks, alarms)
+return function(native, patterns, lookup, arm, player, tasks, alarms, times)
   local doors = {}
 
   -- The stations that have this door, for any robot.
@@ -42,6 +42,8 @@ return function(native, patterns, lookup, arm, player, tasks, alarms)
     local door = native.layout.doors[index]
     if word == "shut" then
       check_free(index, door.name)
+    else
+      times.check_door(index)
     end
     local to = word == "open" and door.travel or 0
     alarms.break_door(word == "open" and "OPEN" or "CLOSE", door.name)

@@ -53,6 +53,7 @@ return function(native)
       end
     end
     native.connect()
+    native.begin_clocks()
   end
 
   -- study { placement = { dx = 0.3 }, ... }, before cell: the errors that a study draws, in place of the

@@ -57,18 +57,19 @@ return function(native, wh)
   local mechanisms = make("mechanisms", native, patterns, lookup, arm, player, grips)
   local align = make("align", native, patterns, lookup, arm, player, mechanisms)
   local targets = make("targets", native, lookup, align, mechanisms, stations, grips, planes)
+  local times = make("times", native, patterns, lookup, arm, player)
   local transfer, carrying = make("transfer", native, patterns, lookup, arm, player, targets, align, centring, alarms,
-    slot_map)
+    slot_map, times)
   local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying, own.attempt)
   local flippers = make("flippers", native, patterns, lookup, arm, player, mechanisms, alarms)
-  local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms)
+  local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms, times)
   local singles = make("commands", native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers,
     stations)
 
   -- The words that move something, by name.
   local commands = {
     edge_scan = align.edge_scan, align = align.align, lift = mechanisms.lift, open = doors.open, close = doors.close,
-    centring = centring.last,
+    centring = centring.last, wait_for = times.wait_for, pump = times.pump, late = times.late,
     calibrate = make("calibration", native, patterns, lookup, arm, player, targets, align, carrying.carry),
     teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map),
   }
@@ -80,8 +81,8 @@ return function(native, wh)
   end
 
   -- The words that only ask.
-  local queries = make("queries", native, lookup, wh)
-  queries.station = stations.read
+  local queries = make("queries", native, lookup, wh, times.judge_stay)
+  queries.station, queries.now = stations.read, times.now
 
   ------------------------------------------------------------------------------------------------------- the whole
 

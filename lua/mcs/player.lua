@@ -139,8 +139,9 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
     elseif request.grip then
       return ask_plunger(request)
     end
-    local state = arm.state(target.robot)
+    local state, robot = arm.state(target.robot), target.robot or tasks.current().robot or 1
     if request.enters then
+      native.stands_in(robot, native.layout.stations[request.enters.station].index)
       state.inside, state.since = request.enters, arm.running()
       centring.begin(request.enters)
     end
@@ -151,6 +152,7 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
     end
     local ended, lost = tasks.play(segment)
     if request.leaves then
+      native.stands_in(robot)
       state.inside = nil
     end
     if request.to or request.leaves then

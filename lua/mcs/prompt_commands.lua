@@ -61,6 +61,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     teaching = function() return { "beam", "touch" } end,
     mark = function() return lookup.align_fields.mark.values end,
     up_or_down = function() return lookup.up_or_down.values end,
+    side = function() return lookup.sides end,
     pattern = own.names, door = names_of "doors", robot = names_of "robots", flips = flips_names,
     name = function() return {} end, save = states.names,
   }
@@ -581,6 +582,10 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
              run = moving_by_name(commands.line),
              does = "moves the end-effector straight by so much, mm and mm/s; "
                .. "without a speed as fast as the axes go" },
+    WAIT_FOR = { takes = { "station", "seconds" }, optional = true, run = moving(commands.wait_for),
+                 does = "waits until nothing runs in the station by itself, at most so long" },
+    PUMP = { takes = { "station", "side" }, run = moving(commands.pump),
+             does = "brings a load lock to vacuum or to atmosphere, and waits until it has it" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
     FAULT = { takes = { "fault" }, optional = true, options = fault_options, run = fault, breaks = true,
               does = "lets a fault begin, and tells its number; error=NUMBER as ALARM" },

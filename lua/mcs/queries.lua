@@ -3,7 +3,7 @@
 -- Local copies: a script may set globals of these names.
 local math, select, tostring, type = math, select, tostring, type
 
-return function(native, lookup, wh)
+return function(native, lookup, wh, judge_stay)
   local queries = {}
 
   -- dx, dy, dz (mm) and tilt (degrees) of a wafer in a slot's frame.
@@ -118,6 +118,12 @@ return function(native, lookup, wh)
         or ("%s, dZ %s (expected within %.10g mm of the slot's plane)"):format(text, found_text(z, 0, most), most)
     end
     return queries.expect(verdict == 2, text)
+  end
+
+  -- Expects that the wafer's last stay in the station, from its process's end until it was taken, or until now, lasts at
+  -- most so many seconds.
+  function queries.expect_within(wafer, station, seconds)
+    return queries.expect(judge_stay(wafer, station, seconds))
   end
 
   return queries

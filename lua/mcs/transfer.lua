@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
 
-return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map)
+return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times)
   local transfer = {}
 
   ------------------------------------------------------------------------------------------------ GET and PUT
@@ -222,6 +222,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
   local function carry(word, station, slot, options)
     local kind, target = transfers[word], targets.at(word, station, slot, options, nil, "")
     arm.check_free()
+    times.check(word, target)
     alarms.break_at(word:upper(), word, target)
     kind.check_gripper(target)
     check_face(target)
@@ -328,6 +329,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     end
     local target = { get = take, put = give, watched = take.watched, robot = robot }
     arm.check_free()
+    times.check("swap", take)
     alarms.break_at("SWAP", "get", take)
     check_empty(take)
     check_face(give)

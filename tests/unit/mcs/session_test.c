@@ -238,6 +238,7 @@ static const kind_t *find_kind(const char *name, size_t length) {
                                    {"PATTERN", "look", {"Q", "5"}},
                                    {"SAVE", "n", {"Q", "5"}},
                                    {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
+                                   {"SIDE", "vacuum", {"air", "5"}},
                                    {"UP_OR_DOWN", "up", {"left", "5", "inf"}},
                                    {"SECONDS", "1", {"-1", "2000000", "x", "inf", "nan"}}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
@@ -591,7 +592,7 @@ static void completion(void **state) {
     assert_candidates("WHERE \"Wafer 1\" \"w", 16, "\"Wafer 1\"|\"Wafer 2\"|");
     assert_candidates("MEASURE b/2", 8, "B/2|B/20|B/21|B/22|B/23|B/24|B/25|");
     assert_candidates("MEASURE EE ba", 11, "base|");
-    assert_candidates("HELP wa", 5, "WAIT|");
+    assert_candidates("HELP wa", 5, "WAIT|WAIT_FOR|");
     assert_candidates("FLY ", 4, "");
     assert_candidates("GET \"A\"B ", 9, "");
     assert_candidates("AXES ", 5, "");

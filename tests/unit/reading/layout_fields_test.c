@@ -20,7 +20,9 @@ static const char base[] =
     " doors = { D = { at = { 0, -900, 0 }, open = { 0, 0, 9 }, box = { 1, 1, 1 } },"
     "   D2 = { at = { 0, -900, 0 }, open = { 0, 0, 9 }, cylinder = { radius = 1, height = 1 } },"
     "   D3 = { at = { 0, -900, 0 }, open = { 0, 0, 9 }, capsule = { radius = 1, height = 1 } } },"
-    " stations = { A = { at = { 700, 0, 900 }, slots = 2, block = {}, via = { { r = 400 } }, beams = { { y = "
+    " stations = { A = { process = 1, window = 1, clean = { after = 1, seconds = 1 }, side = 'vacuum',"
+    "   pump = { down = 1, up = 1, doors = {} }, at = { 700, 0, 900 }, slots = 2, block = {}, via = { { r = "
+    "400 } }, beams = { { y = "
     "60 }, { y = 9 } } }, B = { at = { "
     "0, 700, 900 "
     "} },"
@@ -48,6 +50,9 @@ static const char base[] =
 
 /* The fault tables follow one another in the list as the base's faults do. */
 static const char first_fault[] = "fault.gripper";
+
+/* A cell has at most 16 faults: those behind them are tried in a list of their own. */
+static bool is_later_fault;
 
 /* Room for the path of a field. */
 #define PATH_BYTES 300
@@ -170,6 +175,11 @@ static const char *mend_path(const char *path, const char *field) {
 
 /* Needs of a field of wafers and obstacles: an edge grip takes no wafers with flats. */
 static const char *prepare_body(const char *path) {
+    if (is_later_fault && strncmp(path, "faults[", strlen("faults[")) == 0) {
+        return "cell.faults = { { kind = 'station_stuck', station = 'A' }, { kind = 'station_slow', station "
+               "= "
+               "'A', value = 2 } } ";
+    }
     if (strncmp(path, "wafers[1].rim.flats", strlen("wafers[1].rim.flats")) == 0) {
         return "cell.grippers[4].grip, cell.faults = nil cell.wafers[1].rim.flats = { { at = 0, length = 50 "
                "} } ";
@@ -280,11 +290,12 @@ static const char *prepare(const char *path) {
 }
 
 /* Without it, another entry that names it may be missed. An obstacle needs one of its shapes, a SCARA its
- * links, a URDF its tools, and a station `at` or the axes that its arm has. */
+ * links, a URDF its tools, a load lock its side, and a station `at` or the axes that its arm has. */
 static bool is_needed_in_turn(const char *path, const char *name) {
     return begins_with(path, "obstacles") || begins_with(path, "doors") || strcmp(name, "links") == 0 ||
            begins_with(path, "stations.A.axes.") ||
-           (begins_with(path, "stations.") && strcmp(name, "at") == 0) || begins_with(path, "robot.tool");
+           (begins_with(path, "stations.") && (strcmp(name, "at") == 0 || strcmp(name, "side") == 0)) ||
+           begins_with(path, "robot.tool");
 }
 
 /* ------------------------------------------------------------------------------------------------ scalars */
@@ -477,9 +488,11 @@ static void try_tables(const char *path, const char *type) {
     } else if (strcmp(type, "waferhand.fault[]") == 0) {
         class = find_class(first_fault, strlen(first_fault));
         for (int i = 1; strncmp(class->name, "fault.", 6) == 0; ++i, ++class) {
-            (void)snprintf(inner, sizeof inner, "%.200s[%d]", path, i);
+            is_later_fault = i > WH_FAULTS;
+            (void)snprintf(inner, sizeof inner, "%.200s[%d]", path, is_later_fault ? i - WH_FAULTS : i);
             try_class(inner, class);
         }
+        is_later_fault = false;
     } else {
         (void)snprintf(inner, sizeof inner, "%.200s%s", path, strstr(type, "[]") ? "[1]" : "");
         try_class(inner, class);

@@ -103,7 +103,8 @@ static void faults_are_made_ready_to_be_taken(void **state) {
         assert_int_equal(answer.event_count, 0);
         step(880, CLOSED);
         const bool of_none = wh_fault_is_of_wafer(kind) || wh_fault_is_of_door(kind) ||
-                             wh_fault_is_of_beam(kind) || kind == WH_FAULT_COMMAND_LOST;
+                             wh_fault_is_of_beam(kind) || wh_fault_is_of_station(kind) ||
+                             kind == WH_FAULT_COMMAND_LOST;
         expect_event(WH_EVENT_FAULT_ARMED, wh_fault_is_of_wafer(kind) ? 0 : WH_NONE, of_none ? WH_NONE : 0,
                      3);
         assert_true(kind != WH_FAULT_WAFER_MISSING || wafers[0].base_from_wafer.r.z == WH_REAL(900 - 1e5));
@@ -122,6 +123,7 @@ static void values_have_their_ranges(void **state) {
                  {WH_FAULT_BEAM_LATE, {-1e-9, 0.0101}},
                  {WH_FAULT_EDGE_SENSOR_STUCK, {-1e-9, 1.001}},
                  {WH_FAULT_EDGE_SENSOR_LATE, {-1e-9, 0.00101}},
+                 {WH_FAULT_STATION_SLOW, {-1e-9, 1001}},
                  {WH_FAULT_SENSOR_ON, {-1, 1}}};
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {

@@ -1,0 +1,231 @@
+#include "clock.h"
+
+#include <string.h>
+
+const char *wh_clock_kind_name(wh_clock_kind_t kind) {
+    static const char *const names[WH_CLOCK_KINDS] = {"process_begins", "process_ends", "process_cut",
+                                                      "taken",          "clean_begins", "clean_ends",
+                                                      "pump_begins",    "pump_ends"};
+    return (unsigned)kind < WH_CLOCK_KINDS ? names[kind] : "unknown";
+}
+
+const char *wh_clock_side_name(wh_flow_side_t side) {
+    return side == WH_FLOW_VACUUM ? "vacuum" : "atmosphere";
+}
+
+const char *wh_clock_phase_name(wh_clock_phase_t phase) {
+    static const char *const names[] = {"empty", "waiting", "processing", "cleaning", "done"};
+    return names[phase];
+}
+
+void wh_clock_start(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[]) {
+    memset(clock, 0, sizeof *clock);
+    clock->side = clock->pump_to = of->side;
+    for (int32_t i = 0; i < of->slots; ++i) {
+        memset(&places[i], 0, sizeof places[i]);
+        places[i].wafer = WH_FLOW_NONE;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ telling */
+
+static void tell_place(const wh_clock_teller_t *teller, wh_clock_kind_t kind, int32_t slot, int32_t wafer,
+                       int64_t at_us, int64_t us) {
+    const wh_clock_event_t event = {
+        .kind = kind, .slot = slot, .wafer = wafer, .side = WH_FLOW_BOTH, .at_us = at_us, .us = us};
+    teller->tell(teller->user, &event);
+}
+
+static void tell_pump(const wh_clock_teller_t *teller, wh_clock_kind_t kind, wh_flow_side_t side,
+                      int64_t at_us, int64_t us) {
+    const wh_clock_event_t event = {
+        .kind = kind, .slot = WH_FLOW_NONE, .wafer = WH_FLOW_NONE, .side = side, .at_us = at_us, .us = us};
+    teller->tell(teller->user, &event);
+}
+
+/* -------------------------------------------------------------------------------------------- time passes */
+
+bool wh_clock_cleans_next(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    return wh_flow_is_clean_due(of, place->since_clean);
+}
+
+static bool cleans_around(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    return of->cleans_full && place->wafer != WH_FLOW_NONE && wh_clock_cleans_next(of, place);
+}
+
+static void begin_clean(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                        const wh_clock_teller_t *teller) {
+    place->phase = WH_CLOCK_CLEANING;
+    place->is_around = place->wafer != WH_FLOW_NONE;
+    place->left_us = (double)of->clean_us;
+    place->begun_us = now_us;
+    tell_place(teller, WH_CLOCK_CLEAN_BEGINS, slot, place->wafer, now_us, of->clean_us);
+}
+
+static void set_done(wh_clock_place_t *place, int64_t now_us) {
+    place->phase = WH_CLOCK_DONE;
+    place->left_us = 0;
+    place->done_us = now_us;
+}
+
+static void end_process(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                        const wh_clock_teller_t *teller) {
+    tell_place(teller, WH_CLOCK_PROCESS_ENDS, slot, place->wafer, now_us, now_us - place->begun_us);
+    if (cleans_around(of, place)) {
+        begin_clean(of, place, slot, now_us, teller);
+    } else {
+        set_done(place, now_us);
+    }
+}
+
+/* A wafer in a place: it waits for its process, or there is none for it. */
+static void settle(const wh_flow_station_t *of, wh_clock_place_t *place, int64_t now_us) {
+    if (of->process_us > 0 || cleans_around(of, place)) {
+        place->phase = WH_CLOCK_WAITING;
+    } else {
+        set_done(place, now_us);
+    }
+}
+
+/* A wafer around which a place was cleaned is still to leave. */
+static void end_clean(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                      const wh_clock_teller_t *teller) {
+    const bool is_around = place->is_around && place->wafer != WH_FLOW_NONE;
+    tell_place(teller, WH_CLOCK_CLEAN_ENDS, slot, place->wafer, now_us, now_us - place->begun_us);
+    place->is_clean_due = place->is_around = false;
+    place->since_clean = is_around ? -1 : 0;
+    place->left_us = 0;
+    place->empty_us = now_us;
+    if (is_around) {
+        set_done(place, now_us);
+    } else if (place->wafer != WH_FLOW_NONE) {
+        settle(of, place, now_us);
+    } else {
+        place->phase = WH_CLOCK_FREE;
+    }
+}
+
+void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[], double us,
+                   double rate, int64_t now_us, const wh_clock_teller_t *teller) {
+    for (int32_t i = 0; i < of->slots; ++i) {
+        wh_clock_place_t *place = &places[i];
+        if (place->phase != WH_CLOCK_PROCESSING && place->phase != WH_CLOCK_CLEANING) {
+            continue;
+        }
+        place->left_us -= us * rate;
+        if (place->left_us <= 0 && place->phase == WH_CLOCK_PROCESSING) {
+            end_process(of, place, i, now_us, teller);
+        } else if (place->left_us <= 0) {
+            end_clean(of, place, i, now_us, teller);
+        }
+    }
+    clock->left_us -= clock->is_pumping ? us * rate : 0;
+    if (clock->is_pumping && clock->left_us <= 0) {
+        clock->is_pumping = false;
+        clock->left_us = 0;
+        clock->side = clock->pump_to;
+        tell_pump(teller, WH_CLOCK_PUMP_ENDS, clock->side, now_us, now_us - clock->begun_us);
+    }
+}
+
+/* ------------------------------------------------------------------------------------ wafers come and go */
+
+static void leave(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                  const wh_clock_teller_t *teller) {
+    if (place->phase == WH_CLOCK_PROCESSING) {
+        tell_place(teller, WH_CLOCK_PROCESS_CUT, slot, place->wafer, now_us, now_us - place->begun_us);
+    } else if (place->phase == WH_CLOCK_DONE) {
+        tell_place(teller, WH_CLOCK_TAKEN, slot, place->wafer, now_us, now_us - place->done_us);
+    }
+    place->is_clean_due = !of->cleans_full && wh_clock_cleans_next(of, place);
+    ++place->since_clean;
+    place->wafer = WH_FLOW_NONE;
+    place->empty_us = now_us;
+    if (place->phase != WH_CLOCK_CLEANING) {
+        place->phase = WH_CLOCK_FREE;
+        place->left_us = 0;
+    }
+}
+
+/* A wafer that comes into a running clean waits for its end. */
+static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t wafer, int64_t now_us) {
+    place->wafer = wafer;
+    if (place->phase != WH_CLOCK_CLEANING) {
+        settle(of, place, now_us);
+    }
+}
+
+static bool is_idle_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
+    return of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= of->idle_us;
+}
+
+static void begin(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                  const wh_clock_teller_t *teller) {
+    if (place->phase == WH_CLOCK_WAITING && of->process_us > 0) {
+        place->phase = WH_CLOCK_PROCESSING;
+        place->left_us = (double)of->process_us;
+        place->begun_us = now_us;
+        tell_place(teller, WH_CLOCK_PROCESS_BEGINS, slot, place->wafer, now_us, of->process_us);
+    } else if (place->phase == WH_CLOCK_WAITING ||
+               (place->phase == WH_CLOCK_FREE &&
+                (place->is_clean_due || is_idle_clean_due(of, place, now_us)))) {
+        begin_clean(of, place, slot, now_us, teller);
+    }
+}
+
+void wh_clock_look(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[],
+                   const int32_t wafers[], bool is_closed, int64_t now_us, const wh_clock_teller_t *teller) {
+    for (int32_t i = 0; i < of->slots; ++i) {
+        wh_clock_place_t *place = &places[i];
+        if (place->wafer != wafers[i] && place->wafer != WH_FLOW_NONE) {
+            leave(of, place, i, now_us, teller);
+        }
+        if (place->wafer != wafers[i]) {
+            enter(of, place, wafers[i], now_us);
+        }
+        if (is_closed && !clock->is_pumping) {
+            begin(of, place, i, now_us, teller);
+        }
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- pumping */
+
+static bool is_empty(const wh_flow_station_t *of, const wh_clock_place_t places[]) {
+    bool is_empty = true;
+    for (int32_t i = 0; i < of->slots; ++i) {
+        is_empty = is_empty && places[i].wafer == WH_FLOW_NONE;
+    }
+    return is_empty;
+}
+
+bool wh_clock_pump(const wh_flow_station_t *of, wh_clock_t *clock, const wh_clock_place_t places[],
+                   wh_flow_side_t to, int64_t now_us, const wh_clock_teller_t *teller) {
+    if (clock->is_pumping || clock->side == to) {
+        return clock->is_pumping ? clock->pump_to == to : true;
+    }
+    const int64_t us = wh_flow_pump_us(of, to, is_empty(of, places));
+    clock->is_pumping = true;
+    clock->pump_to = to;
+    clock->left_us = (double)us;
+    clock->begun_us = now_us;
+    tell_pump(teller, WH_CLOCK_PUMP_BEGINS, to, now_us, us);
+    return true;
+}
+
+double wh_clock_left_us(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    const double around = cleans_around(of, place) ? (double)of->clean_us : 0;
+    switch (place->phase) {
+    case WH_CLOCK_WAITING:
+        return (double)of->process_us + around;
+    case WH_CLOCK_PROCESSING:
+        return place->left_us + around;
+    case WH_CLOCK_CLEANING:
+        return place->left_us;
+    case WH_CLOCK_FREE:
+        return place->is_clean_due ? (double)of->clean_us : 0;
+    case WH_CLOCK_DONE:
+        break;
+    }
+    return 0;
+}

@@ -1,0 +1,60 @@
+/* Within motion control: the clockwork of the stations that take time (flow/clock.h), stepped with each
+ * slice.
+ *
+ * What a station does by itself is the work of its own controller, not of the simulator: no motion depends
+ * on it. Motion control carries it out from what it knows of the cell: the states, and in which stations
+ * its arms stand. So all of it is here, with the rest of what a session saves. */
+#ifndef WH_MCS_CLOCKS_H
+#define WH_MCS_CLOCKS_H
+
+#include "../flow/clock.h"
+#include "../layout/times.h"
+#include "native.h"
+
+/* A station that takes time. */
+typedef struct {
+    int32_t station;
+    const wh_layout_times_t *times;
+    wh_flow_station_t of; /* as it truly is: a study draws times */
+    size_t first;         /* of its places */
+} wh_clocked_t;
+
+/* All that changes, one block of memory; the arrays follow it. */
+typedef struct {
+    int64_t seq, utime;            /* of the last slice that was heard; 0: none */
+    int32_t inside[WH_MCS_ROBOTS]; /* the station in which the robot stands, or WH_NONE */
+    bool tells_late;               /* a stay beyond a window is told, and fails nothing */
+} wh_clocks_state_t;
+
+struct wh_clocks {
+    wh_mcs_t *mcs;
+    size_t count, place_count;
+    wh_clocked_t *of;
+    int32_t *by_station; /* the number among them of each of the layout's stations, or WH_NONE */
+    wh_clocks_state_t *state;
+    size_t state_bytes;
+    wh_clock_t *clocks;       /* by number; within the state's block, as the next two */
+    wh_clock_place_t *places; /* by place */
+    int32_t *lying;           /* by place: the wafer that lies there, or WH_NONE */
+};
+
+/* Sets them up if the layout has any; else nothing. Call it before the first slice. */
+void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs);
+
+/* True if nothing runs in the station, and nothing is to begin. */
+bool wh_mcs_is_station_idle(const wh_mcs_t *mcs, int32_t station);
+
+bool wh_mcs_is_pumping(const wh_mcs_t *mcs, int32_t station);
+
+/* At the end of a run: stays beyond windows of wafers that still lie there. */
+void wh_mcs_judge_stays(const wh_mcs_t *mcs);
+
+/* The state of a station in one word: the process or the clean that runs in any of its slots, or the pumping.
+ * With a wafer that waits, or is done, that; `left_us` is what is left of what runs, else 0. Null: the
+ * station takes no time. */
+const char *wh_mcs_station_word(const wh_mcs_t *mcs, int32_t station, double *left_us);
+
+/* "vacuum" or "atmosphere"; null: the station is no lock. While it pumps: what it had. */
+const char *wh_mcs_pressure_word(const wh_mcs_t *mcs, int32_t station);
+
+#endif

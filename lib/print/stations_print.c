@@ -1,0 +1,113 @@
+/* The own doings of stations: as a table, and as JSON. */
+#include <math.h>
+
+#include "../layout/times.h"
+#include "../text/grid.h"
+#include "../text/json.h"
+#include "print_internal.h"
+#include "record_print.h"
+
+json_t *wh_station_event_to_json(const void *subject, size_t i) {
+    const wh_record_t *record = subject;
+    const wh_station_event_record_t *from = &record->station_events[i];
+    const wh_clock_event_t *event = &from->event;
+    const bool of_place = event->slot != WH_FLOW_NONE;
+    return wh_json_set(
+        json_object(), "utime %lld kind %s station %s slot %lld wafer %s side %s seconds %g",
+        (json_int_t)event->at_us, wh_clock_kind_name(event->kind),
+        wh_record_station_name(record, from->station), of_place ? (json_int_t)event->slot + 1 : WH_JSON_NONE,
+        wh_record_wafer_name(record, event->wafer),
+        event->side == WH_FLOW_BOTH ? NULL : wh_clock_side_name(event->side), (double)event->us / 1e6);
+}
+
+/* --------------------------------------------------------------------------------------------- as a table */
+
+enum { BEGINS, STATION, SLOT, WHAT, WAFER, ENDS, STAYS };
+
+/* The word for the thing that an event begins; null: it begins nothing. */
+static const char *begins_what(const wh_clock_event_t *event) {
+    switch ((int)event->kind) {
+    case WH_CLOCK_PROCESS_BEGINS:
+        return "process";
+    case WH_CLOCK_CLEAN_BEGINS:
+        return "clean";
+    case WH_CLOCK_PUMP_BEGINS:
+        return event->side == WH_FLOW_VACUUM ? "to vacuum" : "to atmosphere";
+    default:
+        return NULL;
+    }
+}
+
+static bool ends(wh_clock_kind_t kind) {
+    return kind == WH_CLOCK_PROCESS_ENDS || kind == WH_CLOCK_PROCESS_CUT || kind == WH_CLOCK_CLEAN_ENDS ||
+           kind == WH_CLOCK_PUMP_ENDS;
+}
+
+/* The next event of the same slot, or of the station, behind this one; null: there is none. */
+static const wh_clock_event_t *next_of(const wh_record_t *record, size_t *i) {
+    const wh_station_event_record_t *from = &record->station_events[*i];
+    for (size_t k = *i + 1; k < record->station_event_count; ++k) {
+        const wh_station_event_record_t *event = &record->station_events[k];
+        if (event->station == from->station && event->event.slot == from->event.slot) {
+            *i = k;
+            return &event->event;
+        }
+    }
+    return NULL;
+}
+
+static double window_s(const wh_record_t *record, int32_t station) {
+    const wh_layout_times_t *times = record->layout ? record->layout->stations[station].times : NULL;
+    return times && times->of.window_us != WH_FLOW_NEVER ? (double)times->of.window_us / 1e6 : HUGE_VAL;
+}
+
+static void put_end(wh_grid_t *grid, const wh_clock_event_t *end) {
+    if (end && end->kind == WH_CLOCK_PROCESS_CUT) {
+        wh_grid_text(grid, ENDS, WH_INK_BAD, "cut at %.3f", (double)end->at_us / 1e6);
+    } else if (end && ends(end->kind)) {
+        wh_grid_number(grid, ENDS, WH_INK_PLAIN, (double)end->at_us / 1e6);
+    } else {
+        wh_grid_text(grid, ENDS, WH_INK_DIM, "goes on");
+    }
+}
+
+static void put_stay(const wh_printer_t *printer, wh_grid_t *grid, int32_t station,
+                     const wh_clock_event_t *taken) {
+    if (taken && taken->kind == WH_CLOCK_TAKEN) {
+        const double stay_s = (double)taken->us / 1e6;
+        const bool is_late = stay_s > window_s(printer->record, station);
+        wh_grid_number(grid, STAYS, is_late ? WH_INK_BAD : WH_INK_PLAIN, stay_s);
+    }
+}
+
+static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t i, const char *what) {
+    const wh_record_t *record = printer->record;
+    const wh_station_event_record_t *from = &record->station_events[i];
+    const char *name = wh_record_station_name(record, from->station);
+    const wh_clock_event_t *end = next_of(record, &i);
+    wh_grid_row(grid);
+    wh_grid_number(grid, BEGINS, WH_INK_PLAIN, (double)from->event.at_us / 1e6);
+    wh_grid_text(grid, STATION, WH_INK_PLAIN, "%s", name ? name : "-");
+    if (from->event.slot != WH_FLOW_NONE) {
+        wh_grid_text(grid, SLOT, WH_INK_PLAIN, "%d", (int)from->event.slot + 1);
+    }
+    wh_grid_text(grid, WHAT, WH_INK_PLAIN, "%s", what);
+    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(printer, from->event.wafer));
+    put_end(grid, end);
+    if (end && end->kind == WH_CLOCK_PROCESS_ENDS) {
+        put_stay(printer, grid, from->station, next_of(record, &i));
+    }
+}
+
+void wh_print_stations(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 1, "begins s{3,6};station;slot{0};what;wafer;ends s{3,6};stays s{3,6}");
+    for (size_t i = 0; i < record->station_event_count; ++i) {
+        const char *what = begins_what(&record->station_events[i].event);
+        if (what) {
+            add_row(printer, grid, i, what);
+        }
+    }
+    wh_print_titled(printer, "Stations", grid);
+}

@@ -1,0 +1,220 @@
+/* The times of stations: those that a tool of times alone and a cell with axes have alike, and of the latter
+ * which doors and sides go with them. */
+#include <math.h>
+
+#include "layout_internal.h"
+#include "layout_tool.h"
+
+int64_t wh_layout_us(double seconds) {
+    return (int64_t)llround(seconds * 1e6);
+}
+
+int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback) {
+    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
+}
+
+static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
+    if (!wh_reader_open(reader, "clean", wh_layout_clean_fields)) {
+        return;
+    }
+    if (!wh_reader_has(reader, "after") && !wh_reader_has(reader, "idle")) {
+        wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
+    }
+    station->clean_after = wh_reader_whole(reader, "after", 0, 0, 1000000);
+    station->clean_us = wh_timed_read_us(reader, "seconds", NAN);
+    station->cleans_full = !wh_reader_boolean(reader, "empty", true);
+    if (wh_reader_has(reader, "idle")) {
+        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
+    }
+    wh_reader_leave(reader);
+}
+
+/* A lock that turns in no time would turn again and again at one instant. */
+static int64_t read_pump_us(wh_reader_t *reader, const char *field, double fallback) {
+    const int64_t us = wh_timed_read_us(reader, field, fallback);
+    if (us == 0) {
+        (void)wh_reader_push(reader, field);
+        wh_reader_fail(reader, field, "at least 0.000001 s");
+    }
+    return us;
+}
+
+static void read_pump(wh_reader_t *reader, wh_flow_station_t *station, const wh_reader_field_t *pump_fields) {
+    static const char *const states[] = {"atmosphere", "vacuum", NULL};
+    station->is_lock = wh_reader_open(reader, "pump", pump_fields);
+    if (station->is_lock) {
+        station->pump_us[WH_FLOW_VACUUM] = read_pump_us(reader, "down", NAN);
+        station->pump_us[WH_FLOW_ATMOSPHERE] = read_pump_us(reader, "up", NAN);
+        station->empty_pump_us[WH_FLOW_VACUUM] =
+            read_pump_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
+        station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
+            read_pump_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
+        wh_reader_leave(reader);
+    } else if (wh_reader_has(reader, "state")) {
+        wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");
+    }
+    station->side = wh_reader_choice(reader, "state", 0, states) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+}
+
+void wh_layout_read_clockwork(wh_reader_t *reader, wh_flow_station_t *station,
+                              const wh_reader_field_t *pump_fields) {
+    station->process_us = wh_timed_read_us(reader, "process", 0);
+    if (wh_reader_has(reader, "window")) {
+        station->window_us = wh_timed_read_us(reader, "window", 0);
+    }
+    read_clean(reader, station);
+    read_pump(reader, station, pump_fields);
+}
+
+/* ------------------------------------------------------------------------------------ in a cell with axes */
+
+static const char *const sides[] = {"atmosphere", "vacuum", NULL};
+
+static bool says_any(const wh_reader_t *reader) {
+    static const char *const fields[] = {"process", "window", "clean", "pump", "state", "side"};
+    bool says = false;
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
+        says = says || wh_reader_has(reader, fields[i]);
+    }
+    return says;
+}
+
+/* Wafers on a chuck are turned and scanned, not processed. */
+static void refuse_chuck(wh_reader_t *reader, const wh_layout_station_t *station) {
+    static const char *const fields[] = {"process", "window", "clean", "pump"};
+    for (size_t i = 0; (station->prealigner || station->flipper) && i < sizeof fields / sizeof fields[0];
+         ++i) {
+        wh_layout_refuse_field(reader, fields[i], "nothing: the station is a prealigner or a flipper");
+    }
+}
+
+static wh_flow_side_t read_side(wh_reader_t *reader, const wh_layout_times_t *times, const char *who) {
+    if (!times->of.is_lock) {
+        wh_layout_refuse_field(reader, "side", "nothing: the station has no `pump`");
+        return WH_FLOW_BOTH;
+    }
+    if (!wh_reader_has(reader, "side")) {
+        wh_reader_refuse(reader, "side", NULL,
+                         "\"vacuum\" or \"atmosphere\": where %s comes into the load lock", who);
+    }
+    return wh_reader_choice(reader, "side", 0, sides) == 0 ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
+}
+
+/* A door stands between the lock and one side. */
+static void add_door(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_times_t *times, int32_t door,
+                     wh_flow_side_t side) {
+    if (door == WH_NONE) {
+        return;
+    }
+    times->doors |= UINT32_C(1) << door;
+    if (!times->of.is_lock) {
+        return;
+    }
+    times->side_doors[side] |= UINT32_C(1) << door;
+    if ((times->side_doors[WH_FLOW_ATMOSPHERE] & times->side_doors[WH_FLOW_VACUUM]) != 0) {
+        wh_reader_refuse(reader, "door", layout->door_list[door].name,
+                         "a door of one side: on the load lock's other side it leads in, too");
+    }
+}
+
+/* With several robots: the side and the door of each that serves the station. */
+static void read_servers(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
+                         wh_layout_times_t *times) {
+    const bool is_said = wh_reader_enter(reader, "by");
+    wh_layout_refuse_field(reader, "side", "nothing: with several robots `by` says it of each");
+    if (times->of.is_lock && !is_said) {
+        wh_reader_refuse(reader, "by", NULL, "the load lock's robots by name, each with its `side`");
+    }
+    for (size_t r = 0; r < layout->robot_count; ++r) {
+        if (is_said && wh_reader_enter(reader, layout->robots[r].name)) {
+            station->by[r].side = read_side(reader, times, layout->robots[r].name);
+            add_door(reader, layout, times, station->by[r].door, station->by[r].side);
+            wh_reader_leave(reader);
+        } else if (!is_said && station->by[r].serves) {
+            add_door(reader, layout, times, station->by[r].door, WH_FLOW_BOTH);
+        }
+    }
+    if (is_said) {
+        wh_reader_leave(reader);
+    }
+}
+
+/* Doors of a lock through which no robot comes. */
+static void read_pump_doors(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_times_t *times) {
+    if (!wh_reader_enter(reader, "pump")) {
+        return;
+    }
+    if (wh_reader_open(reader, "doors", wh_layout_lock_doors_fields)) {
+        for (int side = 0; side < 2; ++side) {
+            if (wh_reader_has(reader, sides[side])) {
+                const int32_t door =
+                    wh_layout_read_name(reader, layout, sides[side], NULL, wh_layout_find_door,
+                                        "the name of one of this layout's doors");
+                add_door(reader, layout, times, door, (wh_flow_side_t)side);
+            }
+        }
+        wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+}
+
+/* When a run begins no door of a lock may be open but to the side whose pressure it has. */
+static void check_homes(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_times_t *times) {
+    for (size_t d = 0; times->of.is_lock && d < layout->machine.door_count; ++d) {
+        const bool is_wrong = (times->side_doors[1 - (int)times->of.side] >> d & 1U) != 0;
+        if (is_wrong && layout->machine.doors[d].is_open) {
+            wh_reader_refuse(reader, "state", sides[times->of.side],
+                             "the pressure behind %s, whose home is open", layout->door_list[d].name);
+        }
+    }
+}
+
+static const wh_layout_times_t *read_times(wh_reader_t *reader, const wh_layout_t *layout, size_t s) {
+    const wh_layout_station_t *station = &layout->stations[s];
+    wh_layout_times_t *times = wh_layout_memory(reader->L, 1, sizeof *times);
+    times->of.slots = layout->places[s].slots;
+    times->of.window_us = times->of.idle_us = WH_FLOW_NEVER;
+    times->side = WH_FLOW_BOTH;
+    wh_layout_read_clockwork(reader, &times->of, wh_layout_lock_fields);
+    if (station->by) {
+        read_servers(reader, layout, station, times);
+    } else {
+        times->side = read_side(reader, times, "the robot");
+        add_door(reader, layout, times, station->door, times->side);
+    }
+    read_pump_doors(reader, layout, times);
+    check_homes(reader, layout, times);
+    return times;
+}
+
+/* `side` goes with a lock alone. */
+static void refuse_sides(wh_reader_t *reader, const wh_layout_t *layout) {
+    if (wh_reader_enter(reader, "by")) {
+        for (size_t r = 0; r < layout->robot_count; ++r) {
+            if (wh_reader_enter(reader, layout->robots[r].name)) {
+                wh_layout_refuse_field(reader, "side", "nothing: the station has no `pump`");
+                wh_reader_leave(reader);
+            }
+        }
+        wh_reader_leave(reader);
+    }
+}
+
+void wh_layout_read_times(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_reader_enter(reader, "stations");
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        wh_layout_station_t *station = &layout->stations[s];
+        wh_reader_enter(reader, station->name);
+        refuse_chuck(reader, station);
+        for (size_t r = 0; station->by && r < layout->robot_count; ++r) {
+            station->by[r].side = WH_FLOW_BOTH;
+        }
+        if (says_any(reader)) {
+            station->times = read_times(reader, layout, s);
+        } else {
+            refuse_sides(reader, layout);
+        }
+        wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+}

@@ -1,0 +1,224 @@
+/* The clockwork of a station, slice by slice. */
+#include "flow/clock.h"
+#include "support/support.h"
+
+#define S INT64_C(1000000)
+#define SLICE 1000
+
+static wh_flow_station_t station;
+static wh_clock_t clock_;
+static wh_clock_place_t places[2];
+static int32_t lying[2];
+static bool is_closed;
+static double rate;
+static int64_t now_us;
+static wh_clock_event_t told[20];
+static size_t told_count;
+
+static void take(void *user, const wh_clock_event_t *event) {
+    (void)user;
+    assert_true(told_count < sizeof told / sizeof told[0]);
+    told[told_count++] = *event;
+}
+
+static const wh_clock_teller_t teller = {take, NULL};
+
+static void look(void) {
+    wh_clock_look(&station, &clock_, places, lying, is_closed, now_us, &teller);
+}
+
+static void begin(int64_t process_us, int32_t clean_after, int64_t clean_us) {
+    station = (wh_flow_station_t){.slots = 2,
+                                  .process_us = process_us,
+                                  .window_us = WH_FLOW_NEVER,
+                                  .idle_us = WH_FLOW_NEVER,
+                                  .clean_after = clean_after,
+                                  .clean_us = clean_us};
+    now_us = 0;
+    told_count = 0;
+    rate = 1;
+    is_closed = true;
+    lying[0] = lying[1] = WH_FLOW_NONE;
+    wh_clock_start(&station, &clock_, places);
+    look();
+}
+
+/* Slices pass, of SLICE us each. */
+static void pass(int64_t us) {
+    for (const int64_t until_us = now_us + us; now_us < until_us;) {
+        now_us += SLICE;
+        wh_clock_pass(&station, &clock_, places, SLICE, rate, now_us, &teller);
+        look();
+    }
+}
+
+static void assert_told(size_t i, wh_clock_kind_t kind, int32_t wafer, int64_t at_us, int64_t us) {
+    assert_true(i < told_count);
+    assert_int_equal(told[i].kind, kind);
+    assert_int_equal(told[i].wafer, wafer);
+    assert_int_equal(told[i].at_us, at_us);
+    assert_int_equal(told[i].us, us);
+}
+
+static void a_process_waits_until_it_is_closed_and_is_rounded_up(void **state) {
+    (void)state;
+    begin(2 * S + 1, 0, 0);
+    is_closed = false;
+    lying[1] = 7;
+    pass(S);
+    assert_int_equal(places[1].phase, WH_CLOCK_WAITING);
+    assert_true(wh_clock_left_us(&station, &places[1]) == 2e6 + 1);
+    is_closed = true;
+    look();
+    assert_int_equal(places[1].phase, WH_CLOCK_PROCESSING);
+    pass(2 * S);
+    assert_int_equal(places[1].phase, WH_CLOCK_PROCESSING);
+    pass(SLICE);
+    assert_int_equal(places[1].phase, WH_CLOCK_DONE);
+    pass(S / 2);
+    lying[1] = WH_FLOW_NONE;
+    look();
+    assert_told(0, WH_CLOCK_PROCESS_BEGINS, 7, S, 2 * S + 1);
+    assert_told(1, WH_CLOCK_PROCESS_ENDS, 7, 3 * S + SLICE, 2 * S + SLICE);
+    assert_told(2, WH_CLOCK_TAKEN, 7, 3 * S + SLICE + S / 2, S / 2);
+    assert_int_equal(told[0].slot, 1);
+    assert_int_equal(told_count, 3);
+}
+
+static void a_door_that_opens_does_not_end_a_process_but_taking_its_wafer_does(void **state) {
+    (void)state;
+    begin(2 * S, 0, 0);
+    lying[0] = 1;
+    look();
+    is_closed = false;
+    pass(S);
+    assert_int_equal(places[0].phase, WH_CLOCK_PROCESSING);
+    lying[0] = 2;
+    pass(SLICE);
+    assert_told(1, WH_CLOCK_PROCESS_CUT, 1, S + SLICE, S + SLICE);
+    assert_int_equal(places[0].phase, WH_CLOCK_WAITING);
+    assert_int_equal(places[0].wafer, 2);
+}
+
+static void faults_make_it_slow_or_stop_it(void **state) {
+    (void)state;
+    begin(S, 0, 0);
+    lying[0] = 1;
+    look();
+    rate = 0;
+    pass(S);
+    rate = 0.25;
+    pass(4 * S - SLICE);
+    assert_int_equal(places[0].phase, WH_CLOCK_PROCESSING);
+    pass(SLICE);
+    assert_told(1, WH_CLOCK_PROCESS_ENDS, 1, 5 * S, 5 * S);
+}
+
+static void bring_and_take(int32_t wafer) {
+    lying[0] = wafer;
+    pass(S);
+    lying[0] = WH_FLOW_NONE;
+    look();
+}
+
+static void a_clean_comes_after_its_wafers(void **state) {
+    (void)state;
+    begin(S, 2, 3 * S);
+    bring_and_take(1);
+    assert_true(wh_clock_cleans_next(&station, &places[0]));
+    assert_false(wh_clock_cleans_next(&station, &places[1]));
+    is_closed = false;
+    bring_and_take(2);
+    assert_int_equal(places[0].phase, WH_CLOCK_FREE);
+    is_closed = true;
+    lying[0] = WH_FLOW_NONE;
+    bring_and_take(3);
+    told_count = 0;
+    assert_true(wh_clock_left_us(&station, &places[0]) == 3e6);
+    look();
+    assert_int_equal(places[0].phase, WH_CLOCK_CLEANING);
+    pass(3 * S);
+    assert_int_equal(places[0].phase, WH_CLOCK_FREE);
+    assert_false(wh_clock_cleans_next(&station, &places[0]));
+}
+
+static void a_clean_around_a_wafer_follows_its_process(void **state) {
+    (void)state;
+    begin(S, 1, 2 * S);
+    station.cleans_full = true;
+    lying[0] = 1;
+    look();
+    assert_true(wh_clock_left_us(&station, &places[0]) == 3e6);
+    pass(S);
+    assert_int_equal(places[0].phase, WH_CLOCK_CLEANING);
+    pass(2 * S);
+    assert_told(3, WH_CLOCK_CLEAN_ENDS, 1, 3 * S, 2 * S);
+    assert_int_equal(places[0].phase, WH_CLOCK_DONE);
+    lying[0] = WH_FLOW_NONE;
+    look();
+    assert_int_equal(places[0].phase, WH_CLOCK_FREE);
+    assert_int_equal(places[0].since_clean, 0);
+    assert_false(places[0].is_clean_due);
+}
+
+static void a_clean_comes_without_wafers(void **state) {
+    (void)state;
+    begin(0, 0, S);
+    station.idle_us = 4 * S;
+    pass(4 * S);
+    assert_int_equal(told_count, 2);
+    assert_told(0, WH_CLOCK_CLEAN_BEGINS, WH_FLOW_NONE, 4 * S, S);
+    lying[0] = 5; /* by somebody who did not ask */
+    pass(S);
+    assert_int_equal(places[0].phase, WH_CLOCK_DONE);
+}
+
+static void a_lock_pumps_with_and_without_a_wafer(void **state) {
+    (void)state;
+    begin(0, 0, 0);
+    station.is_lock = true;
+    station.pump_us[WH_FLOW_VACUUM] = 2 * S;
+    station.pump_us[WH_FLOW_ATMOSPHERE] = 3 * S;
+    station.empty_pump_us[WH_FLOW_VACUUM] = S;
+    station.empty_pump_us[WH_FLOW_ATMOSPHERE] = S;
+    assert_true(wh_clock_pump(&station, &clock_, places, WH_FLOW_ATMOSPHERE, now_us, &teller));
+    assert_int_equal(told_count, 0);
+    assert_true(wh_clock_pump(&station, &clock_, places, WH_FLOW_VACUUM, now_us, &teller));
+    assert_true(wh_clock_pump(&station, &clock_, places, WH_FLOW_VACUUM, now_us, &teller));
+    assert_false(wh_clock_pump(&station, &clock_, places, WH_FLOW_ATMOSPHERE, now_us, &teller));
+    assert_int_equal(clock_.side, WH_FLOW_ATMOSPHERE);
+    pass(S);
+    assert_false(clock_.is_pumping);
+    assert_int_equal(clock_.side, WH_FLOW_VACUUM);
+    lying[1] = 3;
+    look();
+    assert_true(wh_clock_pump(&station, &clock_, places, WH_FLOW_ATMOSPHERE, now_us, &teller));
+    pass(3 * S - SLICE);
+    assert_true(clock_.is_pumping);
+    pass(SLICE);
+    assert_told(3, WH_CLOCK_PUMP_ENDS, WH_FLOW_NONE, 4 * S, 3 * S);
+    assert_string_equal(wh_clock_side_name(told[3].side), "atmosphere");
+}
+
+static void kinds_have_names(void **state) {
+    (void)state;
+    for (int kind = 0; kind < WH_CLOCK_KINDS; ++kind) {
+        assert_string_not_equal(wh_clock_kind_name((wh_clock_kind_t)kind), "unknown");
+    }
+    assert_string_equal(wh_clock_kind_name((wh_clock_kind_t)WH_CLOCK_KINDS), "unknown");
+    assert_string_equal(wh_clock_phase_name(WH_CLOCK_DONE), "done");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_process_waits_until_it_is_closed_and_is_rounded_up),
+        cmocka_unit_test(a_door_that_opens_does_not_end_a_process_but_taking_its_wafer_does),
+        cmocka_unit_test(faults_make_it_slow_or_stop_it),
+        cmocka_unit_test(a_clean_comes_after_its_wafers),
+        cmocka_unit_test(a_clean_around_a_wafer_follows_its_process),
+        cmocka_unit_test(a_clean_comes_without_wafers),
+        cmocka_unit_test(a_lock_pumps_with_and_without_a_wafer),
+        cmocka_unit_test(kinds_have_names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
