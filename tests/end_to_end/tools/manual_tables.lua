@@ -22,8 +22,8 @@ local NONE = ""
 
 -- The order of the words in the manual.
 local ORDER = "cell patterns flow study get put swap continue stop ready pattern map home recover stop_in rotate centring teach station " ..
-  "set_station edge_scan align calibrate open close lift valve move flip robot line wait task join signal await fault " ..
-  "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset cycle"
+  "set_station edge_scan align calibrate open close lift valve move flip robot line wait wait_for pump late now task join signal await fault " ..
+  "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset expect_within cycle"
 
 -- Errors on purpose: what breaks, or for whom else a check is.
 local NOTES = {
