@@ -75,6 +75,22 @@ function cases.clean()
   close "SLIT"
 end
 
+-- Two blades: SWAP waits for the process, and leaves no time for a clean that is due.
+function cases.swap()
+  get("A", 1, { gripper = "EE" }) open "SLIT" put("PM", 1, { gripper = "EE" }) close "SLIT"
+  get("A", 2, { gripper = "B2" })
+  open "SLIT"
+  fails("PROCESS_RUNNING", swap, "PM", 1)
+  wait_for "PM"
+  swap("PM", 1)
+  close "SLIT"
+  wait_for "PM"
+  open "SLIT"
+  fails("CLEANING", swap, "PM", 1)
+  put("A", 1, { gripper = "EE" })
+  late "tell"
+end
+
 -- A load lock: a door opens at its pressure alone, never both, and it pumps with both shut.
 function cases.lock()
   fails("WRONG_PRESSURE", open, "VAC")

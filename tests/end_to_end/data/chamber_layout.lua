@@ -1,7 +1,8 @@
 -- A chamber behind a slit, and a load lock between atmosphere and vacuum; one robot, on the atmosphere's side.
 return {
   wafer = { diameter = 300 },
-  grippers = { { name = "EE" }, params.two and { name = "B2" } or nil },
+  robot = params.two and { kind = "TRZ", arms = { { heading = 0 }, { heading = 180, height = 10 } } } or nil,
+  grippers = { { name = "EE" }, params.two and { name = "B2", arm = 2 } or nil },
   doors = {
     AIR = { at = { -500, 0, 900 }, box = { 10, 300, 100 }, open = { 0, 0, -200 }, seconds = 0.5 },
     SLIT = { at = { 0, 450, 900 }, box = { 300, 10, 100 }, open = { 0, 0, -200 }, seconds = 0.5 },
