@@ -84,13 +84,13 @@ static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *
         add(list, WH_CAUSE_VALVE, g, 0, errors->valves[g].width);
     }
     add(list, WH_CAUSE_VACUUM, 0, 0, errors->vacuum.width);
-    add_processes(list, layout, errors);
     for (size_t w = 0; errors->rims && w < layout->wafer_count; ++w) {
         add_rim(list, layout, w);
     }
     for (size_t b = 0; b < layout->beam_count; ++b) {
         add_beam(list, layout, b);
     }
+    add_processes(list, layout, errors);
 }
 
 wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {

@@ -9,9 +9,9 @@ typedef enum {
     WH_CAUSE_STATION,
     WH_CAUSE_VALVE,
     WH_CAUSE_VACUUM,
-    WH_CAUSE_PROCESS,
     WH_CAUSE_RIM,
-    WH_CAUSE_BEAM
+    WH_CAUSE_BEAM,
+    WH_CAUSE_PROCESS
 } wh_cause_kind_t;
 
 typedef struct {
