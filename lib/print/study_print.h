@@ -22,7 +22,8 @@
  *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
  *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
  *   drawn:        the errors that are drawn and concern the run (study/concerns.h), the one that goes with
- *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam, process), of (a name;
+ *                 failing most strongly first: kind (wafer, station, gripper, vacuum, rim, beam,
+ *                 process), of (a name;
  *                 null: of all), what, unit, width,
  *                 failing: { by_size, by_value }, ends: of each wafer { wafer, dx, dy, dz, tilt_deg, off }.
  *                 Each is { r, low, high }, a correlation with its interval (study/relations.h), or null: not
