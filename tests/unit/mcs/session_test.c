@@ -835,8 +835,9 @@ static void so_many_are_taken_back_and_no_more(void **state) {
         (void)snprintf(expected, sizeof expected, "OK undone=\"WAIT 0.001\" left=%d time=", i);
         assert_answer("UNDO", expected);
     }
-    assert_answer("UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; of the last 50 commands "
-                          "that changed something, which are taken back");
+    assert_answer("UNDO",
+                  "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; of the last 50 commands "
+                  "that changed something, which are taken back");
     assert_int_equal(wh_session_slice(&session), 3);
 }
 
@@ -850,8 +851,9 @@ static void a_task_is_named_as_the_end_of_what_is_taken_back(void **state) {
         {"UNDO", "ERROR 54 BUSY"},
         {"JOIN 1", "OK"},
         {"HOLDER \"Wafer 1\"", "OK holder=EE"},
-        {"UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since task 1 was begun: UNDO takes "
-                 "back nothing from before a task's end"},
+        {"UNDO",
+         "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since task 1 was begun: UNDO takes "
+         "back nothing from before a task's end"},
         {"HOLDER \"Wafer 1\"", "OK holder=EE"},
         {"PUT B 2", "OK"},
         {"UNDO", "OK undone=\"PUT B 2\" left=0"},
