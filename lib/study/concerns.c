@@ -99,6 +99,7 @@ static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
     case WH_CAUSE_VALVE:
     case WH_CAUSE_VACUUM:
     case WH_CAUSE_PROCESS:
+    case WH_CAUSE_DEBOUNCE:
         break;
     }
     return true;

@@ -226,12 +226,15 @@ static void give(lua_State *L, const wh_layout_t *layout, given_t *given, wh_giv
     } else if (strcmp(given->field, "vacuum") == 0 && given->name[0] == '\0') {
         check_range(L, given, 0, WH_ERRORS_MOST_S, "s");
         to->vacuum = (wh_real_t)given->value;
+    } else if (strcmp(given->field, "debounce") == 0 && given->name[0] == '\0') {
+        check_range(L, given, 0, WH_ERRORS_MOST_S, "s");
+        to->debounce = (wh_real_t)given->value;
     } else {
         refuse(
             L, given,
             "no such error (expected of a station x, y, z, roll, pitch, yaw, of a wafer dx, dy, dz, tilt_x, "
             "tilt_y, turn, of its rim what a study draws, of a beam such as A.beam1 dx, dy, late, of a "
-            "gripper valve, or vacuum)");
+            "gripper valve, or vacuum or debounce)");
     }
 }
 
