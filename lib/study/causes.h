@@ -33,8 +33,8 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count);
 void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
                     const wh_trial_t *trial, double drawn[]);
 
-/* The name of the drawn error, such as "dx", "tilt_x", "yaw", "valve", "vacuum", "debounce", "notch_depth" or "late", and
- * its unit: "mm", "deg", "s" or "". Both are constant texts. */
+/* The name of the drawn error, such as "dx", "tilt_x", "yaw", "valve", "vacuum", "debounce", "notch_depth" or
+ * "late", and its unit: "mm", "deg", "s" or "". Both are constant texts. */
 const char *wh_cause_what(const wh_cause_t *cause);
 const char *wh_cause_unit(const wh_cause_t *cause);
 

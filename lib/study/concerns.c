@@ -88,7 +88,7 @@ static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
     if (cause->robot != WH_NONE) {
         return was_visited(&concerns->study->decisions, cause->index, cause->robot);
     }
-    switch (cause->kind) {
+    switch ((int)cause->kind) {
     case WH_CAUSE_WAFER:
     case WH_CAUSE_RIM:
         return layout->collision || concerns->wafers[cause->index];
@@ -96,10 +96,7 @@ static bool is_concerned(const concerns_t *concerns, const wh_cause_t *cause) {
         return layout->collision || concerns->stations[cause->index];
     case WH_CAUSE_BEAM:
         return concerns->stations[layout->beams[cause->index].station];
-    case WH_CAUSE_VALVE:
-    case WH_CAUSE_VACUUM:
-    case WH_CAUSE_PROCESS:
-    case WH_CAUSE_DEBOUNCE:
+    default:
         break;
     }
     return true;
