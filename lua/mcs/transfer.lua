@@ -206,6 +206,10 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck, target.hindered))
     elseif became == "loose" then
       fail_late(target, target.chuck)
+    elseif became == "feigned" then
+      local text = "the sensor of %s stayed on, though %s slot %d had taken the wafer over: %s came up again and took it"
+      local name = name_of(target.gripper)
+      native.fail("WAFER_LOST", text:format(name, target.station, target.slot, name))
     elseif became == "stuck" then
       local kept, name = native.held(target.gripper), name_of(target.gripper)
       if kept and target.is_passive then
