@@ -70,7 +70,7 @@ static bool is_answered(wh_status_t status) {
                                             {WH_STATUS_RUN_OVER, WH_STATUS_RUN_OVER},
                                             {WH_STATUS_BAD_LIMITS, WH_STATUS_BAD_SCAN},
                                             {WH_STATUS_NO_ANSWER, WH_STATUS_NOT_TOUCHED},
-                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_WRONG_SLOT}};
+                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_DOOR_OPEN}};
     bool is_answered = false;
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; ++i) {
         is_answered = is_answered || (status >= ranges[i][0] && status <= ranges[i][1]);

@@ -1,4 +1,4 @@
-/* Held wafers that go through the ledges of a slot, or through a chuck. */
+/* Held wafers that go through the ledges of a slot, through a chuck, or through other wafers (meeting.c). */
 #include "station.h"
 
 /* How far up through the station's slots a place is above slot 1. */
@@ -149,55 +149,93 @@ static bool is_pushed(const wh_cell_t *cell, const wh_grasp_t *table, const wh_g
            goes_through(cell, table, input, gripper, base_from_wafer, passing);
 }
 
+/* True if the gripper's wafer is pushed through a slot or a wafer, or if its blade goes through one. */
+static bool begins_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
+                           uint32_t shut, size_t g, wh_passing_t *passing) {
+    const int32_t wafer = table->storage.grippers[g].wafer;
+    if (!wh_is_index(wafer, table->storage.wafer_count)) {
+        return wafer == WH_NONE && (shut >> g & 1U) != 0 &&
+               wh_cell_meets(cell, table, inputs, shut, g, passing);
+    }
+    if (!is_pushed(cell, table, &inputs[g], (int32_t)g, &table->storage.wafers[wafer].base_from_wafer,
+                   passing) &&
+        !wh_cell_meets(cell, table, inputs, shut, g, passing)) {
+        return false;
+    }
+    passing->wafer = wafer;
+    return true;
+}
+
 bool wh_cell_begin_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
-                           wh_passing_t passing[]) {
+                           uint32_t shut, wh_passing_t passing[]) {
     bool found = false;
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        const int32_t wafer = table->storage.grippers[g].wafer;
         passing[g].wafer = WH_NONE;
         passing[g].station = 0;
         passing[g].slot = 0;
         passing[g].goes_up = false;
-        if (wh_is_index(wafer, table->storage.wafer_count) &&
-            is_pushed(cell, table, &inputs[g], (int32_t)g, &table->storage.wafers[wafer].base_from_wafer,
-                      &passing[g])) {
-            passing[g].wafer = wafer;
-            found = true;
-        }
+        passing[g].other = WH_NONE;
+        found = begins_passing(cell, table, inputs, shut, g, &passing[g]) || found;
     }
     return found;
 }
 
-/* Passive pads leave a wafer at the plane, whatever they go on to do. */
-static void judge(const wh_cell_t *cell, const wh_grasp_t *table, size_t g, const wh_passing_t *passing,
-                  wh_event_list_t *list) {
+static wh_event_t *say_pushed(const wh_grasp_t *table, size_t g, const wh_passing_t *passing,
+                              wh_event_list_t *list) {
     static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
+    wh_event_t *said = &list->events[list->count++];
+    *said = blank;
+    said->kind = WH_EVENT_PUSHED_THROUGH;
+    said->slice = table->slice;
+    said->measured_slice = table->slice;
+    said->wafer = passing->wafer;
+    said->gripper = (int32_t)g;
+    said->other = passing->other;
+    return said;
+}
+
+/* Passive pads leave a wafer at the plane, whatever they go on to do. */
+static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
+                          const wh_passing_t *passing, wh_event_list_t *list) {
     const wh_pose_t *pose = &table->storage.wafers[passing->wafer].base_from_wafer;
     const wh_station_t *station = &cell->stations[passing->station];
     const wh_place_t place = wh_cell_measure(cell, station, passing->slot, pose);
     const wh_real_t depth = depth_of(cell, station, passing->goes_up);
     const bool is_above = count_below(station, height_over(cell, station, pose), depth) >= passing->slot;
-    if (list->count >= list->capacity || is_above != passing->goes_up) {
-        return;
+    if (is_above == passing->goes_up) {
+        wh_event_t *said = say_pushed(table, g, passing, list);
+        said->face = place.face;
+        said->value = -place.dz;
+        said->limit = depth;
+        said->at = pose->r;
     }
-    wh_event_t *said = &list->events[list->count++];
-    *said = blank;
-    said->kind = WH_EVENT_PUSHED_THROUGH;
-    said->face = place.face;
-    said->slice = table->slice;
-    said->measured_slice = table->slice;
-    said->wafer = passing->wafer;
-    said->gripper = (int32_t)g;
-    said->value = -place.dz;
-    said->limit = depth;
-    said->at = pose->r;
+}
+
+/* How high the wafer, or the blade, now is over the wafer that it went through, along that one's normal; as
+ * far as supports have let it go there. */
+static void judge_in_wafer(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
+                           const wh_passing_t *passing, wh_event_list_t *list) {
+    const wh_grasp_storage_t *storage = &table->storage;
+    const wh_pose_t *other = &storage->wafers[passing->other].base_from_wafer;
+    const wh_vec3_t *own = passing->wafer == WH_NONE ? &storage->grippers[g].base_from_gripper.r
+                                                     : &storage->wafers[passing->wafer].base_from_wafer.r;
+    const wh_vec3_t up = wh_mat3_column(&other->R, 2);
+    const wh_vec3_t from = wh_vec3_subtract(own, &other->r);
+    const wh_real_t height = wh_vec3_dot(&up, &from);
+    if (passing->wafer == WH_NONE || passing->goes_up || height < -cell->tolerance.projz / 2) {
+        wh_event_t *said = say_pushed(table, g, passing, list);
+        said->value = height;
+        said->at = *own;
+    }
 }
 
 void wh_cell_end_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_passing_t passing[],
                          wh_event_list_t *list) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        if (passing[g].wafer != WH_NONE) {
-            judge(cell, table, g, &passing[g], list);
+        if (list->count < list->capacity && passing[g].other != WH_NONE) {
+            judge_in_wafer(cell, table, g, &passing[g], list);
+        } else if (list->count < list->capacity && passing[g].wafer != WH_NONE) {
+            judge_in_slot(cell, table, g, &passing[g], list);
         }
     }
 }

@@ -59,11 +59,12 @@ typedef struct {
     wh_face_t face;       /* the face towards the slot, which is measured; the front of a wafer face down */
 } wh_place_t;
 
-/* A wafer that a gripper pushes through a slot. */
+/* A wafer that a gripper pushes through a slot or another wafer, or an empty blade that goes through one. */
 typedef struct {
-    int32_t wafer; /* WH_NONE: none */
+    int32_t wafer; /* that is pushed; WH_NONE: none */
     int32_t station, slot;
     bool goes_up;
+    int32_t other; /* the wafer that something goes through; WH_NONE: none, or a slot */
 } wh_passing_t;
 
 /* Returns WH_OK, or the reason why the functions below cannot use this cell with a table of `gripper_count`
@@ -141,14 +142,39 @@ void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *l
 bool wh_cell_passes(const wh_cell_t *cell, int32_t gripper, const wh_pose_t *base_from_wafer,
                     const wh_pose_t *next, wh_passing_t *passing) WH_SYMBOL(wh_cell_passes);
 
-/* Before a step of the table: which wafers these inputs, checked or not, would push through; one entry of
- * `passing` for each gripper. False: none. Cost: wh_cell_passes for each wafer that is held. */
-bool wh_cell_begin_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
-                           wh_passing_t passing[]) WH_SYMBOL(wh_cell_begin_passing);
+/* True if a wafer goes through another one in a slice; each has its pose as the slice begins and as it ends,
+ * and goes straight between. The middle of the first passes the other one's middle on the way up, or on the
+ * way down the height tolerance.projz below that, both along the other one's normal. There it is nearer to
+ * the other one's centre than 25 mm, or than tolerance.projxy if that is more: wafers whose rims alone meet
+ * do not count. Without a thickness the back faces stand for the middles. Arguments are not checked; numbers
+ * that are not finite give false. Cost: 30 products. */
+bool wh_cell_wafer_crosses(const wh_cell_t *cell, const wh_pose_t wafer[2], const wh_pose_t other[2],
+                           bool *goes_up) WH_SYMBOL(wh_cell_wafer_crosses);
 
-/* After that step: appends WH_EVENT_PUSHED_THROUGH for each of them that is beyond its slot indeed, while the
- * list has room. The gripper is the one that held the wafer as the step began. Cost: wh_station_measure for
- * each of them. */
+/* Likewise, if a gripper goes through a wafer: along its own normal its contact plane passes the height
+ * tolerance.projz above the face that looks at it, up or down. */
+bool wh_cell_blade_crosses(const wh_cell_t *cell, const wh_pose_t blade[2], const wh_pose_t other[2],
+                           bool *goes_up) WH_SYMBOL(wh_cell_blade_crosses);
+
+/* Before a step of the table: true if the gripper, with these inputs, would go through a wafer: with the
+ * wafer that it holds, else with its empty blade. `passing` then says which one, and which way; else it is
+ * unchanged. The first wafer counts. Not looked at: the first slice, a slice without a motion along the
+ * gripper's normal, an empty blade that goes down, and one that goes together with a gripper that is not in
+ * `shut` (bit g): two blades of a wrist may be described in one place though they point away from each other.
+ * Cost: 9 products; with such a motion a comparison for each wafer. */
+bool wh_cell_meets(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
+                   uint32_t shut, size_t gripper, wh_passing_t *passing) WH_SYMBOL(wh_cell_meets);
+
+/* Before a step of the table: which wafers these inputs, checked or not, would push through a slot or another
+ * wafer, and which of the grippers in `shut` (bit g) would go through one with an empty blade; one entry of
+ * `passing` for each gripper. False: none. Cost: wh_cell_passes for each wafer that is held, wh_cell_meets
+ * for each gripper. */
+bool wh_cell_begin_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_gripper_input_t inputs[],
+                           uint32_t shut, wh_passing_t passing[]) WH_SYMBOL(wh_cell_begin_passing);
+
+/* After that step: appends WH_EVENT_PUSHED_THROUGH for each of them that is beyond its slot or wafer indeed,
+ * while the list has room. The gripper is the one that held the wafer as the step began. Cost:
+ * wh_station_measure for each of them. */
 void wh_cell_end_passing(const wh_cell_t *cell, const wh_grasp_t *table, const wh_passing_t passing[],
                          wh_event_list_t *list) WH_SYMBOL(wh_cell_end_passing);
 

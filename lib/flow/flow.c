@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "repeat.h"
 #include "robots.h"
 #include "stations.h"
 
@@ -51,6 +52,16 @@ static void end_all(wh_flow_state_t *state) {
     }
 }
 
+/* A robot that begins anything but an empty way ends the time in which nobody waits for steps to fill. */
+static bool begin_order(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
+    const bool begun = wh_flow_robot_begin(state, robot, order);
+    const wh_flow_action_t action = state->robots[robot].action;
+    if (begun && action != WH_FLOW_MOVING && action != WH_FLOW_IDLE) {
+        state->is_relaxed = false;
+    }
+    return begun;
+}
+
 /* A free robot is asked, one in front of its place places. True if something began. */
 static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, int32_t robot,
                         uint64_t *asked) {
@@ -68,7 +79,7 @@ static bool begin_robot(wh_flow_state_t *state, const wh_flow_rules_t *rules, in
         return false;
     }
     state->robots[robot].wish = order;
-    return wh_flow_robot_begin(state, robot, &order);
+    return begin_order(state, robot, &order);
 }
 
 static bool is_any_over(const wh_flow_state_t *state) {
@@ -116,12 +127,13 @@ static bool relax(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t
     if (state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN) {
         return false;
     }
+    const bool was_relaxed = state->is_relaxed;
     bool begun = false;
     state->is_relaxed = true;
     for (int32_t r = 0; r < (int32_t)state->tool->robot_count && !begun; ++r) {
         begun = begin_robot(state, rules, r, asked);
     }
-    state->is_relaxed = false;
+    state->is_relaxed = state->is_relaxed && was_relaxed;
     return begun;
 }
 
@@ -145,27 +157,46 @@ static wh_flow_end_t cut(wh_flow_state_t *state) {
     return state->cause ? WH_FLOW_BROKEN : WH_FLOW_CUT;
 }
 
-static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, uint64_t *asked) {
+/* Nobody makes progress: true if shipped rules wait for no fuller step from now on, as where nobody can go
+ * on; false if they do not even so. */
+static bool relax_on(wh_flow_state_t *state, wh_flow_repeat_t *repeat) {
+    if (state->is_relaxed || state->plan->rule == WH_FLOW_LISTS || state->plan->rule == WH_FLOW_OWN) {
+        return false;
+    }
+    wh_flow_repeat_anew(repeat);
+    state->is_relaxed = true;
+    return true;
+}
+
+/* The next instant; this one, if robots begin something now after all; WH_FLOW_NEVER: nobody can go on. */
+static int64_t find_next(wh_flow_state_t *state, const wh_flow_rules_t *rules, wh_flow_repeat_t *repeat,
+                         uint64_t *asked) {
+    if (wh_flow_repeats(repeat, state) && !relax_on(state, repeat)) {
+        return WH_FLOW_NEVER;
+    }
+    state->is_relaxed = state->is_relaxed && !repeat->is_anew;
+    const int64_t next_us = next_instant(state);
+    return next_us == WH_FLOW_NEVER && relax(state, rules, asked) ? state->now_us : next_us;
+}
+
+static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rules, wh_flow_repeat_t *repeat,
+                             uint64_t *asked) {
     while (true) {
         play_instant(state, rules, asked);
-        if (state->cause) {
-            return WH_FLOW_BROKEN;
+        if (state->cause || state->over == state->plan->wafer_count) {
+            return state->cause ? WH_FLOW_BROKEN : WH_FLOW_DONE;
         }
-        if (state->over == state->plan->wafer_count) {
-            return WH_FLOW_DONE;
-        }
-        const int64_t next_us = next_instant(state);
-        if (next_us == WH_FLOW_NEVER && !relax(state, rules, asked)) {
-            return WH_FLOW_STUCK;
-        }
+        const int64_t next_us = find_next(state, rules, repeat, asked);
         if (next_us == WH_FLOW_NEVER) {
-            continue;
+            return WH_FLOW_STUCK;
         }
         if (next_us > state->plan->until_us) {
             return cut(state);
         }
-        state->listener.advance(state->listener.context, state, next_us);
-        state->now_us = next_us;
+        if (next_us > state->now_us) {
+            state->listener.advance(state->listener.context, state, next_us);
+            state->now_us = next_us;
+        }
     }
 }
 
@@ -174,6 +205,7 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     play_t play = {0};
     wh_flow_state_t state;
     wh_flow_rules_t rules;
+    wh_flow_repeat_t repeat = {0};
     if (listener) {
         play.listener = *listener;
     }
@@ -181,7 +213,8 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     wh_flow_state_open(&state, tool, plan);
     state.listener = (wh_flow_listener_t){&play, hear, pass_on, NULL};
     wh_flow_rules_open(&rules, &state);
-    result->end = play_on(&state, &rules, &result->asked);
+    result->end = play_on(&state, &rules, &repeat, &result->asked);
+    wh_flow_repeat_close(&repeat);
     result->makespan_us = state.last_us;
     if (play.listener.end) {
         play.listener.end(play.listener.context, &state);

@@ -92,17 +92,42 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
     }
 }
 
-char *wh_flow_stuck_text(const wh_flow_state_t *state) {
-    text_t text = {0};
+/* True if the wafer lies in its first place, and no place of its next step is free for it. */
+static bool is_kept_out(const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    bool kept_out = at->place != WH_FLOW_NONE && at->step == 0 && !at->is_over;
+    if (kept_out) {
+        const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, 1);
+        for (size_t i = 0; i < next->station_count; ++i) {
+            const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
+            kept_out = kept_out && find_other(state, wafer, station) != WH_FLOW_NONE;
+        }
+    }
+    return kept_out;
+}
+
+static bool is_inside(const wh_flow_state_t *state, int32_t wafer) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    return !at->is_over && (at->robot != WH_FLOW_NONE || (at->place != WH_FLOW_NONE && at->step > 0));
+}
+
+/* Says these wafers, up to a dozen; returns how many there are. */
+static int say_all(const wh_flow_state_t *state, bool (*is_meant)(const wh_flow_state_t *, int32_t),
+                   text_t *text) {
     int said = 0;
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count && said < 12; ++w) {
-        const wh_flow_wafer_state_t *at = &state->wafers[w];
-        if (!at->is_over && (at->robot != WH_FLOW_NONE || (at->place != WH_FLOW_NONE && at->step > 0))) {
-            say_wafer(state, w, &text);
+        if (is_meant(state, w)) {
+            say_wafer(state, w, text);
             ++said;
         }
     }
-    if (said == 0) {
+    return said;
+}
+
+/* The wafers inside; if there are none, those that cannot leave their first places. */
+char *wh_flow_stuck_text(const wh_flow_state_t *state) {
+    text_t text = {0};
+    if (say_all(state, is_inside, &text) == 0 && say_all(state, is_kept_out, &text) == 0) {
         say(&text, "no robot takes the next wafer out of its first place");
     }
     return text.text;

@@ -72,7 +72,9 @@ typedef enum WH_FOUR_BYTES {
     /* From the cell: the gripper took the wafer that it held through the ledges of a slot, or through a
      * chuck. After that its face's centre is `value` mm below that plane: more than `limit`, eps_projz, if it
      * went down, at most `limit`, twice eps_projz, or above the plane (negative), if it went up. `at` is the
-     * wafer's place in base. Reported once, in the slice in which it passes. */
+     * wafer's place in base. Reported once, in the slice in which it passes. With `other` it went through
+     * that wafer, or the empty blade did if `wafer` is WH_NONE: then it is `value` mm over that one's back
+     * face now, negative below it, and `limit` is 0. */
     WH_EVENT_PUSHED_THROUGH
 } wh_event_kind_t;
 

@@ -84,6 +84,11 @@ wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *tri
                          : wh_real_abs(wh_spread_draw(&errors->vacuum, trial, 0x400, 0));
 }
 
+wh_real_t wh_errors_draw_debounce(const wh_errors_t *errors, const wh_trial_t *trial) {
+    return errors->given ? errors->given->debounce
+                         : wh_real_abs(wh_spread_draw(&errors->debounce, trial, 0x401, 0));
+}
+
 void wh_errors_draw_rim(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer, const wh_rim_t *rim,
                         double drawn[WH_RIM_DRAWS]) {
     if (errors->given) {

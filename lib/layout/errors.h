@@ -45,7 +45,7 @@ typedef struct {
     wh_vec3_t *taught;            /* robot_count times of each station; null: all 0 */
     double (*rims)[WH_RIM_DRAWS]; /* of each wafer */
     double beams[WH_BEAMS][WH_BEAM_DRAWS];
-    wh_real_t valves[WH_GRIPPERS], vacuum; /* s, at least 0 */
+    wh_real_t valves[WH_GRIPPERS], vacuum, debounce; /* s, at least 0 */
 } wh_given_t;
 
 /* One entry for each wafer, station, gripper and beam of a layout. A delay is the magnitude of the draw:
@@ -59,6 +59,7 @@ typedef struct {
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
     wh_spread_t process;             /* of each station's process, longer or shorter, s */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
+    wh_spread_t debounce;            /* added to that of the vacuum sensors */
 } wh_errors_t;
 
 /* Each draw depends on seed, trial, field and index alone. Cost: about 70 ns for each width that is not 0. */
@@ -79,6 +80,7 @@ void wh_errors_draw_beam(const wh_errors_t *errors, const wh_trial_t *trial, siz
 /* By how much the station's process is longer, s; 0 if the errors are given. */
 wh_real_t wh_errors_draw_process(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
+wh_real_t wh_errors_draw_debounce(const wh_errors_t *errors, const wh_trial_t *trial);
 
 /* True if any of it is not 0. */
 bool wh_displacement_is_any(const wh_displacement_t *displacement);

@@ -172,7 +172,7 @@ const wh_reader_field_t wh_layout_study_fields[] = {
     {"shape", WORD, "how all errors are spread", false, APART_WORD(WH_SHAPE_NORMAL, wh_layout_shape_words)},
     {"placement", "waferhand.placement", "of every wafer in its slot", false},
     {"teaching", "waferhand.teaching", "of every station, beside where it was taught", false},
-    {"timing", "waferhand.timing", "of valves, vacuum and processes", false},
+    {"timing", "waferhand.timing", "of valves, vacuum, its sensors and processes", false},
     {"rim", "waferhand.rim_width", "of every wafer's rim, which edge sensors see", false},
     {"beam", "waferhand.beam_width", "of every beam, beside where it is taken to stand", false},
     {"wafers", "table<string, waferhand.placement>", "of one wafer alone, by name", false},
@@ -187,6 +187,7 @@ const wh_reader_field_t wh_layout_teaching_fields[] = {TEACHING_FIELDS, END};
 const wh_reader_field_t wh_layout_timing_fields[] = {
     {"valve", NUMBER, "s by which a valve acts late", false, WIDTH(WH_ERRORS_MOST_S)},
     {"vacuum", NUMBER, "s by which the vacuum builds up more slowly", false, WIDTH(WH_ERRORS_MOST_S)},
+    {"debounce", NUMBER, "s by which vacuum sensors tell a turn later", false, WIDTH(WH_ERRORS_MOST_S)},
     {"process", NUMBER, "s by which a station's process is longer or shorter", false,
      WIDTH(WH_ERRORS_MOST_PROCESS_S)},
     {"shape", WORD, "how they are spread", false, SHAPE},

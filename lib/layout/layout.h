@@ -236,6 +236,7 @@ typedef struct {
     /* direction of the notch, rad about e3 from e1, and its depth, mm; depth 0: no notch */
     double notch, notch_depth;
     wh_grasp_config_t grasp;
+    double debounce_given; /* ms, as the layout's file says; 0: it says nothing */
     int64_t slice_us;
     wh_corrections_t corrections; /* the largest ones that a command may ask for */
     wh_mapping_t mapping;

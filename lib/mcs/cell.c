@@ -156,6 +156,7 @@ static void set_up_listeners(wh_mcs_t *mcs) {
     mcs->recorder.cell = &mcs->real->cell;
     wh_mcs_listen(mcs, hear_record, &mcs->recorder);
     wh_mcs_listen(mcs, hear_origins, &mcs->heard.origins);
+    wh_mcs_listen(mcs, wh_mcs_hear_valves, mcs->heard.valves);
     if (mcs->layout->scanner_count + mcs->layout->beam_count > 0) {
         wh_mcs_listen(mcs, wh_mcs_hear_slice, mcs);
     }

@@ -1,11 +1,8 @@
-/* Commands and their records: beginning and end, phases, errors, expectations, cycles, complaints,
- * and the reasons for missed picks. */
+/* Commands and their records: beginning and end, phases, errors, expectations, cycles and complaints. */
 #include <stdio.h>
 #include <string.h>
 
-#include "../math/trig.h"
 #include "../script/wh_module_values.h"
-#include "../sim/event_text.h"
 #include "../text/nearest.h"
 #include "../text/utf8.h"
 #include "native.h"
@@ -235,83 +232,7 @@ static int fail_command(lua_State *L) {
     wh_mcs_raise(L, wh_mcs_of(L), (wh_status_t)luaL_checkinteger(L, 1), wh_lua_whole_text(L, 2));
 }
 
-/* ------------------------------------------------------------------------------- missed picks, complaints */
-
-/* Pushes the reasons for the missed pick: all conditions that failed. */
-static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *miss) {
-    const wh_event_names_t names = {.first = 1, .tolerance = &mcs->layout->grasp.tolerance};
-    char reason[WH_EVENT_TEXT_SIZE];
-    luaL_Buffer text;
-    luaL_buffinit(L, &text);
-    for (size_t i = 0; wh_event_reason(miss, &names, i, reason, sizeof reason) > 0; ++i) {
-        luaL_addstring(&text, i > 0 ? " and " : "");
-        luaL_addstring(&text, reason);
-    }
-    if ((miss->measured.failed & WH_FAILED_PLANAR) != 0) { /* the last of the reasons: it tells the tilt */
-        const double limit = wh_deg_from_rad(wh_acos(names.tolerance->planar));
-        luaL_addlstring(&text, reason, (size_t)snprintf(reason, sizeof reason, " (limit %.3f deg)", limit));
-    }
-    luaL_pushresult(&text);
-}
-
-/* The running command's last event of this kind and gripper; null: none. WH_NONE is any gripper. */
-static const wh_event_t *last_event(const wh_mcs_t *mcs, wh_event_kind_t kind, int32_t gripper) {
-    const wh_record_t *record = mcs->recorder.record;
-    for (size_t i = record->event_count; i > 0; --i) {
-        const wh_event_record_t *kept = &record->events[i - 1];
-        if (kept->command != mcs->recorder.running) {
-            break;
-        }
-        if (kept->event.kind == kind && (gripper == WH_NONE || kept->event.gripper == gripper)) {
-            return &kept->event;
-        }
-    }
-    return NULL;
-}
-
-/* native.closest(gripper): for a running command in which this gripper took nothing, the name of the wafer
- * that came closest, and why it was not taken. Nothing if no wafer came near and left again. */
-static int find_closest(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    wh_decisions_measured(mcs->wanted.decisions, "why a wafer was missed");
-    const wh_event_t *miss = last_event(mcs, WH_EVENT_NEAR_MISS, gripper);
-    if (!miss) {
-        return 0;
-    }
-    lua_pushstring(L, mcs->layout->wafers[miss->wafer].name);
-    push_reasons(L, mcs, miss);
-    return 2;
-}
-
-/* native.let_go(chuck): the last wafer that the running command let go, if no gripper holds it: its name, dx,
- * dy and dz against the chuck, and why the chuck did not take it (no reason if all conditions hold); or
- * nothing. */
-static int find_let_go(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t chuck = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    const int32_t station = mcs->layout->grippers[chuck].station;
-    const wh_event_t *released = last_event(mcs, WH_EVENT_RELEASED, WH_NONE);
-    wh_decisions_measured(mcs->wanted.decisions, "why a wafer was lost");
-    if (station == WH_NONE || !released || mcs->state.wafers[released->wafer].holder != WH_NONE) {
-        return 0;
-    }
-    const wh_pose_t *pose = &mcs->state.wafers[released->wafer].base_from_wafer;
-    const wh_place_t place = wh_cell_measure(&mcs->real->cell, &mcs->real->places[station], 1, pose);
-    wh_event_t miss = *released;
-    miss.kind = WH_EVENT_NEAR_MISS;
-    miss.gripper = chuck;
-    (void)wh_layout_measure(mcs->layout, pose, &mcs->state.grippers[chuck].base_from_gripper, &miss.measured);
-    lua_pushstring(L, mcs->layout->wafers[released->wafer].name);
-    lua_pushnumber(L, place.dx);
-    lua_pushnumber(L, place.dy);
-    lua_pushnumber(L, place.dz);
-    if (miss.measured.failed == 0) {
-        return 4;
-    }
-    push_reasons(L, mcs, &miss);
-    return 5;
-}
+/* --------------------------------------------------------------------------------------------- complaints */
 
 /* native.mark(): how many events the record has, and how many expectations. */
 static int count_events(lua_State *L) {
@@ -365,10 +286,11 @@ static int list_complaints(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_command_functions[] = {
-    {"begin", begin_command},     {"line_of", find_last_line},     {"line_in", find_line_in},
-    {"finish", finish_command},   {"begin_word", begin_word},      {"hold", hold_command},
-    {"release", release_command}, {"is_held", find_phase},         {"expect", expect_condition},
-    {"imply", add_implied},       {"cycle", begin_cycle},          {"nearest", find_nearest},
-    {"fail", fail_command},       {"closest", find_closest},       {"let_go", find_let_go},
-    {"mark", count_events},       {"complaints", list_complaints}, {NULL, NULL}};
+const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},        {"line_of", find_last_line},
+                                             {"line_in", find_line_in},       {"finish", finish_command},
+                                             {"begin_word", begin_word},      {"hold", hold_command},
+                                             {"release", release_command},    {"is_held", find_phase},
+                                             {"expect", expect_condition},    {"imply", add_implied},
+                                             {"cycle", begin_cycle},          {"nearest", find_nearest},
+                                             {"fail", fail_command},          {"mark", count_events},
+                                             {"complaints", list_complaints}, {NULL, NULL}};

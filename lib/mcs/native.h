@@ -32,6 +32,9 @@ void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
 /* Like wh_mcs_listen, but called before all others. */
 void wh_mcs_listen_first(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
 
+/* For each slice: which grippers' valves do not open with their command. `user` has one for each of them. */
+void wh_mcs_hear_valves(void *user, const wh_command_t *command, const wh_state_t *state);
+
 /* From now on motion control knows, for STATUS, which slice's state came last over a link that is not the
  * local cell's. Call it before the first slice. */
 void wh_mcs_watch_slices(wh_mcs_t *mcs);
@@ -105,6 +108,7 @@ extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_centring_functions[];
 extern const luaL_Reg wh_mcs_clock_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
+extern const luaL_Reg wh_mcs_miss_functions[];
 extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_edge_functions[];

@@ -15,8 +15,8 @@
 #include "rehearsal.h"
 
 /* The listeners for slices: decisions, recorder, origins, the collected scan, the data of STATUS, a collision
- * check beside a remote simulator, the stations' clockwork, and the run's listener. */
-#define WH_MCS_LISTENERS 8
+ * check beside a remote simulator, the stations' clockwork, late valves, and the run's listener. */
+#define WH_MCS_LISTENERS 9
 
 /* The most lines of a script that are listed as calling lines, for a command within functions. */
 #define WH_MCS_CALLERS 4
@@ -223,11 +223,20 @@ typedef struct {
     wh_mcs_teaching_t teaching;
 } wh_mcs_measuring_t;
 
+/* A valve that did not open with its command. */
+typedef struct {
+    int64_t shut;   /* the slices in which it stood closed, since it was told to open */
+    wh_vec3_t from; /* where the gripper was in the first of them */
+    wh_pose_t to;   /* where it was when it was asked for its wafer */
+    bool late;      /* some had been, by then */
+} wh_mcs_valve_t;
+
 /* Over a caller's link: the slices that went out and came back. */
 typedef struct {
     wh_mcs_seen_t seen;              /* the last slice that a state has come for */
     wh_mcs_sent_t sent[WH_MCS_SENT]; /* the last ones that were sent, by seq % WH_MCS_SENT */
     wh_origins_t origins;            /* where the grippers' wafers lay */
+    wh_mcs_valve_t valves[WH_GRIPPERS];
 } wh_mcs_heard_t;
 
 /* The played segments and faults, if wanted. */

@@ -244,6 +244,17 @@ static void print_room(const listing_t *listing) {
 
 /* ------------------------------------------------------------------------------------------------ physics */
 
+/* Whole slices; the layout may say a part of one more. */
+static void print_debounce(wh_grid_t *grid, const wh_layout_t *layout) {
+    const double told = wh_layout_debounce_ms(layout), given = layout->debounce_given;
+    if (given > 0 && told - given > 1e-6) {
+        wh_grid_text(grid, 1, WH_INK_PLAIN,
+                     "tells a level that has stood for %g ms: %g ms, rounded up to slices", told, given);
+    } else {
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "tells a level that has stood for %g ms", told);
+    }
+}
+
 static void print_holding(const listing_t *listing) {
     const wh_vacuum_config_t *vacuum = &listing->layout->physics.vacuum;
     const wh_pads_t *pads = &listing->layout->physics.pads;
@@ -260,8 +271,7 @@ static void print_holding(const listing_t *listing) {
     }
     if (vacuum->debounce > 0) {
         wh_grid_named_row(grid, "sensor");
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "tells a level that has stood for %g ms",
-                     wh_layout_debounce_ms(listing->layout));
+        print_debounce(grid, listing->layout);
     }
     if (pads->mass > 0) {
         wh_grid_named_row(grid, "pads");

@@ -135,6 +135,9 @@ static void put_found(const wh_record_t *record, json_t *object, const wh_event_
         (void)wh_json_add(object, "parts at", part_names(record, event->parts), wh_json_vector(event->at),
                           NULL);
     }
+    if (event->kind == WH_EVENT_PUSHED_THROUGH && event->other != WH_NONE) {
+        (void)wh_json_set(object, "other %s", wh_record_wafer_name(record, event->other));
+    }
     if (kind & with_values) {
         /* A tilt in degrees, as everywhere in the result. */
         const bool turned = event->kind == WH_EVENT_PLACED_ASKEW;

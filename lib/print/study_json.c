@@ -179,6 +179,9 @@ static json_t *worst_trial(const void *subject, size_t i) {
                                 wh_json_list(drawn_beam, &draw, layout->beam_count),
                                 wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
                                 wh_json_real(wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
+    if (layout->errors->debounce.width > 0) {
+        wh_json_put(drawn, "debounce_s", wh_json_real(wh_errors_draw_debounce(layout->errors, &draw.trial)));
+    }
     return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g why %s", (json_int_t)worst->trial,
                                    worst->met, worst->off, why[0] ? why : NULL),
                        "drawn", drawn, NULL);

@@ -24,6 +24,13 @@
 /* All sizes of a body in metres are below this, mm. */
 #define SMALL_BODY 2
 
+/* No length is so many times shorter than its default, but in metres. */
+#define SHORT_LENGTH 500
+
+/* Robots and rails in metres stand nearer to base's origin than this, mm; gaps in metres are below it. */
+#define NEAR_PLACE 5
+#define SMALL_GAP 0.02
+
 /* No wafer robot is so many times slower than usual. Radians are a 57th of the degrees, metres a
  * thousandth of the mm. */
 #define SLOW_TURNING 50
@@ -36,19 +43,13 @@ typedef struct {
 } usual_t;
 
 static const usual_t usual_axes[] = {
-    {"theta", {300, 1000, 10000}},
-    {"r", {1000, 5000, 50000}},
-    {"z", {400, 2000, 20000}},
-    {"yaw", {360, 1500, 15000}},
-    {"forearm", {360, 1500, 15000}},
-    {"rail", {1000, 3000, 30000}},
-    {"tilt", {10, 50, 500}},
-    {"flip", {180, 720, 7200}},
-    {"chuck", {360, 1500, 15000}},
-    {"flipper", {180, 720, 7200}},
-    {"stage", {50, 500, 5000}},
-    {"pins", {50, 500, 5000}},
-    {NULL, {0, 0, 0}},
+    {"theta", {300, 1000, 10000}},   {"r", {1000, 5000, 50000}},
+    {"z", {400, 2000, 20000}},       {"yaw", {360, 1500, 15000}},
+    {"forearm", {360, 1500, 15000}}, {"rail", {1000, 3000, 30000}},
+    {"tilt", {10, 50, 500}},         {"flip", {180, 720, 7200}},
+    {"chuck", {360, 1500, 15000}},   {"flipper", {180, 720, 7200}},
+    {"stage", {50, 500, 5000}},      {"pins", {50, 500, 5000}},
+    {"loaded", {1000, 2000, 20000}}, {NULL, {0, 0, 0}},
 };
 
 /* A walk over the tables that were given. The texts are in the Lua table at `list`. */
@@ -153,6 +154,39 @@ static void look_at_axis(const walk_t *walk, const char *name, const wh_reader_f
     }
 }
 
+/* ------------------------------------------------------------------------------------------------ lengths */
+
+/* A length, or a speed, far below its row's default, or below what its kind may be. */
+static void look_at_length(const walk_t *walk, const char *name, const wh_reader_field_t *row, double value) {
+    char unit[WH_FIELD_UNIT_BYTES];
+    wh_field_unit(row, unit);
+    const bool is_scalar = row->kind == WH_SCALAR_NUMBER && isfinite(row->usual) && row->usual > 0;
+    const bool is_gap = strcmp(name, "clearance") == 0;
+    const bool is_rail = says(row, "rail stands for it");
+    const double least = is_scalar ? row->usual / SHORT_LENGTH
+                         : is_gap  ? SMALL_GAP
+                         : is_rail ? NEAR_PLACE
+                                   : 0;
+    if (strncmp(unit, "mm", 2) == 0 && value != 0 && fabs(value) < least) {
+        add(walk, row->name, "%.10g looks like %s (expected %s)", value,
+            unit[2] == '\0' ? "metres" : unit + 1, unit);
+    }
+}
+
+/* The place of a robot, on top of the stack. */
+static void look_at_place(const walk_t *walk, const char *field) {
+    lua_State *L = walk->reader->L;
+    double most = 0;
+    for (lua_Integer i = 1; i <= 3; ++i) {
+        lua_rawgeti(L, -1, i);
+        most = fmax(most, fabs(lua_tonumber(L, -1)));
+        lua_pop(L, 1);
+    }
+    if (most > 0 && most < NEAR_PLACE) {
+        add(walk, field, "%.10g at most looks like metres (expected mm)", most);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------- bodies */
 
 static void look_at_sizes(const walk_t *walk, const char *field) {
@@ -219,6 +253,9 @@ static void look_at_triple(const walk_t *walk, const wh_reader_field_t *row) {
     if (strcmp(row->name, "box") == 0) {
         look_at_sizes(walk, row->name);
     }
+    if (says(row, "where the robot stands")) {
+        look_at_place(walk, row->name);
+    }
     for (lua_Integer i = 1; i <= 3 && is_of_angle(row); ++i) {
         char field[40];
         (void)snprintf(field, sizeof field, "%s[%d]", row->name, (int)i);
@@ -228,12 +265,14 @@ static void look_at_triple(const walk_t *walk, const wh_reader_field_t *row) {
     }
 }
 
-/* Looks at the field whose value is on top of the stack. */
-static void look_at_field(const walk_t *walk, const wh_reader_field_t *row) {
+/* Looks at the field of the table `name` whose value is on top of the stack. */
+static void look_at_field(const walk_t *walk, const char *name, const wh_reader_field_t *row) {
     lua_State *L = walk->reader->L;
     const wh_reader_field_t *rows = fields_of(row->type);
     if (lua_type(L, -1) == LUA_TNUMBER && is_of_angle(row)) {
         look_at_angle(walk, row->name, lua_tonumber(L, -1));
+    } else if (lua_type(L, -1) == LUA_TNUMBER) {
+        look_at_length(walk, name, row, lua_tonumber(L, -1));
     } else if (lua_type(L, -1) != LUA_TTABLE) {
         return;
     } else if (rows && (strncmp(row->type, "table<", 6) == 0 || strstr(row->type, "[]"))) {
@@ -249,7 +288,7 @@ static void look_at_table(const walk_t *walk, const char *name, const wh_reader_
     lua_State *L = walk->reader->L;
     for (const wh_reader_field_t *row = rows; row->name; ++row) {
         (void)wh_reader_push(walk->reader, row->name);
-        look_at_field(walk, row);
+        look_at_field(walk, name, row);
         lua_pop(L, 1);
     }
     look_at_axis(walk, name, rows);

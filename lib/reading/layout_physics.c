@@ -24,30 +24,30 @@ static void read_levels(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 }
 
 /* Whole slices, the last one begun: the switch must stand for at least the given time. */
-static int32_t read_debounce(wh_reader_t *reader, int64_t slice_us) {
+static int32_t read_debounce(wh_reader_t *reader, int64_t slice_us, double *given_ms) {
     const double slice_ms = (double)slice_us / 1000;
     const double most = fmin(MOST_DEBOUNCE_MS, WH_VACUUM_DEBOUNCE * slice_ms);
-    const double slices = wh_reader_number(reader, "debounce", 0, 0, most) / slice_ms;
-    return (int32_t)ceil(slices - 1e-9);
+    *given_ms = wh_reader_number(reader, "debounce", 0, 0, most);
+    return (int32_t)ceil(*given_ms / slice_ms - 1e-9);
 }
 
-static void read_vacuum_table(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_t *vacuum) {
+static void read_vacuum_table(wh_reader_t *reader, wh_layout_t *layout, wh_vacuum_config_t *vacuum) {
     (void)wh_reader_open(reader, "vacuum", wh_layout_vacuum_fields);
     *vacuum = model_of((int)wh_reader_apart(reader, "model"));
     wh_reader_scalars(reader, vacuum);
     read_levels(reader, vacuum);
-    vacuum->debounce = read_debounce(reader, slice_us);
+    vacuum->debounce = read_debounce(reader, layout->slice_us, &layout->debounce_given);
     wh_reader_leave(reader);
 }
 
-static void read_vacuum(wh_reader_t *reader, int64_t slice_us, wh_vacuum_config_t *vacuum) {
+static void read_vacuum(wh_reader_t *reader, wh_layout_t *layout, wh_vacuum_config_t *vacuum) {
     const int type = wh_reader_push(reader, "vacuum");
     if (type != LUA_TTABLE && type != LUA_TNIL && type != LUA_TSTRING) {
         wh_reader_fail(reader, "vacuum", "\"ideal\", \"delayed\" or { model = , build = , vent = , ... }");
     }
     lua_pop(reader->L, 1);
     if (type == LUA_TTABLE) {
-        read_vacuum_table(reader, slice_us, vacuum);
+        read_vacuum_table(reader, layout, vacuum);
     } else {
         *vacuum = model_of(wh_reader_choice(reader, "vacuum", 0, wh_layout_vacuum_words));
     }
@@ -66,7 +66,7 @@ static void read_pads(wh_reader_t *reader, const wh_layout_t *layout, wh_pads_t 
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
     layout->physics = wh_physics_default();
     layout->physics.slice_s = (wh_real_t)layout->slice_us / 1e6;
-    read_vacuum(reader, layout->slice_us, &layout->physics.vacuum);
+    read_vacuum(reader, layout, &layout->physics.vacuum);
     read_pads(reader, layout, &layout->physics.pads);
 }
 

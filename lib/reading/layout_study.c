@@ -42,6 +42,8 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
     errors->vacuum.width = wh_reader_apart(reader, "vacuum");
     errors->process.shape = errors->vacuum.shape;
     errors->process.width = wh_reader_apart(reader, "process");
+    errors->debounce.shape = errors->vacuum.shape;
+    errors->debounce.width = wh_reader_apart(reader, "debounce");
     errors->valves[0].shape = errors->vacuum.shape;
     read_valve(reader, layout, &errors->valves[0]);
     for (size_t g = 1; g < layout->machine.gripper_count; ++g) {

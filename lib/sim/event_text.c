@@ -257,6 +257,21 @@ static void say_of_contact(said_t *said) {
     }
 }
 
+static void say_pushed(said_t *said) {
+    const wh_event_t *event = said->event;
+    if (event->other != WH_NONE) {
+        put_text(said, event->wafer == WH_NONE ? "its blade goes through " : "it goes through ");
+        put_name(said, WH_NAME_WAFER, event->other);
+    } else if (event->value > event->limit) {
+        put_text(said, "down through its slot, ");
+        put_against(said, event->value, " below the plane", event->limit, " mm");
+    } else {
+        put_text(said, "up through a slot, its face now at ");
+        put_fixed(said, -event->value, 3);
+        put_text(said, " mm over the plane");
+    }
+}
+
 /* Writes how a wafer was set down. */
 static void say_of_cell(said_t *said) {
     const wh_event_t *event = said->event;
@@ -293,14 +308,7 @@ static void say_of_cell(said_t *said) {
         put_text(said, " mm lower");
         break;
     case WH_EVENT_PUSHED_THROUGH:
-        if (event->value > event->limit) {
-            put_text(said, "down through its slot, ");
-            put_against(said, event->value, " below the plane", event->limit, " mm");
-        } else {
-            put_text(said, "up through a slot, its face now at ");
-            put_fixed(said, -event->value, 3);
-            put_text(said, " mm over the plane");
-        }
+        say_pushed(said);
         break;
     default:
         say_of_contact(said);

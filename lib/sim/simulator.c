@@ -285,11 +285,22 @@ static void show(wh_simulator_t *simulator, const wh_command_t *command, const w
     }
 }
 
+/* The blades that are to take nothing: vacuum whose valve is told to be closed. One that looks for a wafer
+ * tells its misses. */
+static uint32_t shut_blades(const wh_simulator_t *simulator, const wh_command_t *command) {
+    uint32_t shut = 0;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        shut |= command->grippers[g].valve == WH_VALVE_CLOSED && has_vacuum(simulator, g) ? 1U << g : 0;
+    }
+    return shut;
+}
+
 static wh_status_t step_cell(wh_simulator_t *simulator, const wh_command_t *command,
                              const wh_gripper_input_t inputs[], uint32_t changed) {
     wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS + 1, 0};
     wh_passing_t passing[WH_GRIPPERS];
-    const bool passes = wh_cell_begin_passing(&simulator->cell, &simulator->table, inputs, passing);
+    const bool passes = wh_cell_begin_passing(&simulator->cell, &simulator->table, inputs,
+                                              shut_blades(simulator, command), passing);
     const wh_status_t status = simulator->given.gripping
                                    ? simulator->given.gripping->step(simulator, inputs, &list)
                                    : wh_grasp_step(&simulator->table, inputs, &list);

@@ -34,14 +34,27 @@ static void explain_complaint(const wh_record_t *record, const wh_event_record_t
     (void)snprintf(why->text, sizeof why->text, "%.399s", text);
 }
 
-/* The condition that the command's last near miss did not keep, if there is one. */
-static void find_miss(const wh_record_t *record, int32_t command, char text[WH_EVENT_TEXT_SIZE]) {
+/* Appends all conditions that the near miss did not keep. */
+static void say_miss(const wh_event_t *miss, const wh_event_names_t *names, char text[], size_t size) {
+    char reason[WH_EVENT_TEXT_SIZE];
+    text[0] = '\0';
+    for (size_t i = 0; wh_event_reason(miss, names, i, reason, sizeof reason) > 0; ++i) {
+        const size_t length = strlen(text);
+        (void)snprintf(text + length, size - length, "%s%.130s", i > 0 ? " and " : "", reason);
+    }
+}
+
+/* The conditions that the command's last near miss did not keep, if it failed for want of a wafer: another
+ * error has another reason. */
+static void find_miss(const wh_record_t *record, int32_t command, char text[], size_t size) {
     const wh_event_names_t names = {find_name, record, 1, &record->layout->grasp.tolerance, NULL};
+    const wh_status_t error = record->commands[command].error;
     text[0] = '\0';
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_record_t *event = &record->events[i];
-        if (event->event.kind == WH_EVENT_NEAR_MISS && event->command == command) {
-            (void)wh_event_reason(&event->event, &names, 0, text, WH_EVENT_TEXT_SIZE);
+        if (event->event.kind == WH_EVENT_NEAR_MISS && event->command == command &&
+            (error == WH_STATUS_WAFER_MISSING || error == WH_STATUS_WAFER_LOST)) {
+            say_miss(&event->event, &names, text, size);
         }
     }
 }
@@ -56,8 +69,8 @@ static bool explain_error(const wh_record_t *record, wh_budget_why_t *why) {
         return false;
     }
     const wh_command_record_t *command = &record->commands[last - 1];
-    char miss[WH_EVENT_TEXT_SIZE];
-    find_miss(record, (int32_t)last - 1, miss);
+    char miss[sizeof why->text];
+    find_miss(record, (int32_t)last - 1, miss, sizeof miss);
     why->error = command->error;
     why->line = command->line;
     (void)snprintf(why->name, sizeof why->name, "%s", wh_status_name(command->error));

@@ -91,6 +91,7 @@ static void add_all(list_t *list, const wh_layout_t *layout, const wh_errors_t *
         add_beam(list, layout, b);
     }
     add_processes(list, layout, errors);
+    add(list, WH_CAUSE_DEBOUNCE, 0, 0, errors->debounce.width);
 }
 
 wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count) {
@@ -134,11 +135,12 @@ static bool is_displacement(wh_cause_kind_t kind) {
 
 static double draw_other(const wh_layout_t *layout, const wh_trial_t *trial, const wh_cause_t *cause) {
     const wh_errors_t *errors = layout->errors;
-    return cause->kind == WH_CAUSE_VALVE     ? wh_errors_draw_valve(errors, trial, cause->index)
-           : cause->kind == WH_CAUSE_VACUUM  ? wh_errors_draw_vacuum(errors, trial)
-           : cause->kind == WH_CAUSE_PROCESS ? wh_errors_draw_process(errors, trial, cause->index)
-           : cause->kind == WH_CAUSE_RIM     ? draw_rim(layout, trial, cause)
-                                             : draw_beam(errors, trial, cause);
+    return cause->kind == WH_CAUSE_VALVE      ? wh_errors_draw_valve(errors, trial, cause->index)
+           : cause->kind == WH_CAUSE_VACUUM   ? wh_errors_draw_vacuum(errors, trial)
+           : cause->kind == WH_CAUSE_DEBOUNCE ? wh_errors_draw_debounce(errors, trial)
+           : cause->kind == WH_CAUSE_PROCESS  ? wh_errors_draw_process(errors, trial, cause->index)
+           : cause->kind == WH_CAUSE_RIM      ? draw_rim(layout, trial, cause)
+                                              : draw_beam(errors, trial, cause);
 }
 
 /* A displacement is drawn once, for all of its components that follow each other. */
@@ -171,11 +173,13 @@ const char *wh_cause_what(const wh_cause_t *cause) {
            : cause->kind == WH_CAUSE_BEAM    ? wh_beam_draw_name((wh_beam_draw_t)cause->component)
            : cause->kind == WH_CAUSE_VALVE   ? "valve"
            : cause->kind == WH_CAUSE_PROCESS ? "process"
-                                             : "vacuum";
+           : cause->kind == WH_CAUSE_VACUUM  ? "vacuum"
+                                             : "debounce";
 }
 
 static bool is_delay(const wh_cause_t *cause) {
-    return cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM;
+    return cause->kind == WH_CAUSE_VALVE || cause->kind == WH_CAUSE_VACUUM ||
+           cause->kind == WH_CAUSE_DEBOUNCE;
 }
 
 bool wh_cause_has_sign(const wh_cause_t *cause) {

@@ -11,7 +11,8 @@ typedef enum {
     WH_CAUSE_VACUUM,
     WH_CAUSE_RIM,
     WH_CAUSE_BEAM,
-    WH_CAUSE_PROCESS
+    WH_CAUSE_PROCESS,
+    WH_CAUSE_DEBOUNCE
 } wh_cause_kind_t;
 
 typedef struct {
@@ -32,8 +33,8 @@ wh_cause_t *wh_causes_of(const wh_layout_t *layout, size_t *count);
 void wh_causes_draw(const wh_cause_t causes[], size_t count, const wh_layout_t *layout,
                     const wh_trial_t *trial, double drawn[]);
 
-/* The name of the drawn error, such as "dx", "tilt_x", "yaw", "valve", "vacuum", "notch_depth" or "late", and
- * its unit: "mm", "deg", "s" or "". Both are constant texts. */
+/* The name of the drawn error, such as "dx", "tilt_x", "yaw", "valve", "vacuum", "debounce", "notch_depth" or
+ * "late", and its unit: "mm", "deg", "s" or "". Both are constant texts. */
 const char *wh_cause_what(const wh_cause_t *cause);
 const char *wh_cause_unit(const wh_cause_t *cause);
 

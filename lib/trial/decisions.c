@@ -313,12 +313,36 @@ static bool may_be_pushed(const player_t *player, size_t g, int64_t slice) {
                                  &poses_in(player, player->at)[g].r);
 }
 
-/* The last slice up to `quiet` before the first one in which gripper g pushes its wafer through a slot. */
+/* How far each gripper's places in the trial are at most from those in the run, in the slice's stretch. */
+static void find_slack(const player_t *player, double slack[WH_GRIPPERS]) {
+    wh_pose_t moved[WH_GRIPPERS];
+    const wh_pose_t *here = find_poses(player, player->at, moved), *run = poses_in(player, player->at);
+    for (size_t g = 0; g < player->decisions->gripper_count; ++g) {
+        const wh_vec3_t way = wh_vec3_subtract(&here[g].r, &run[g].r);
+        /* Only what goes with a station is elsewhere, and it goes no farther than a stage does. */
+        slack[g] = wh_vec3_dot(&way, &way) > 0 ? 3 * sqrt(wh_vec3_dot(&way, &way)) + 10 : 0;
+    }
+}
+
+/* True if gripper g might go through another wafer in the slice's stretch: the simulator must step that. */
+static bool may_meet(const player_t *player, size_t g, int64_t slice) {
+    double slack[WH_GRIPPERS];
+    find_slack(player, slack);
+    return wh_decisions_may_meet(player->decisions, &player->simulator->cell, &player->state, g, slice,
+                                 slack);
+}
+
+/* The last slice up to `quiet` before the first one in which gripper g pushes its wafer through a slot, or
+ * may go through another wafer. */
 static int64_t until_pushed(const player_t *player, size_t g, int64_t quiet) {
+    const bool holds = player->state.grippers[g].wafer != WH_NONE;
     int64_t slice = player->at + 1;
     while (slice <= quiet) {
         const int64_t next = slice + WH_DECISIONS_STRETCH - (slice - 1) % WH_DECISIONS_STRETCH;
-        if (!may_be_pushed(player, g, slice)) {
+        if (may_meet(player, g, slice)) {
+            return slice - 1;
+        }
+        if (!holds || !may_be_pushed(player, g, slice)) {
             slice = next;
         }
         for (; slice < next && slice <= quiet; ++slice) {
@@ -330,10 +354,10 @@ static int64_t until_pushed(const player_t *player, size_t g, int64_t quiet) {
     return quiet;
 }
 
-/* The last slice up to `quiet` before the first one in which any gripper pushes its wafer through a slot. */
+/* The last slice up to `quiet` before the first one in which any gripper does so. */
 static int64_t whole_until(const player_t *player, int64_t quiet) {
     for (size_t g = 0; g < player->decisions->gripper_count; ++g) {
-        quiet = player->state.grippers[g].wafer != WH_NONE ? until_pushed(player, g, quiet) : quiet;
+        quiet = until_pushed(player, g, quiet);
     }
     return quiet;
 }

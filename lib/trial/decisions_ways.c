@@ -103,3 +103,61 @@ bool wh_decisions_may_pass(const wh_decisions_t *decisions, const wh_cell_t *cel
     }
     return may;
 }
+
+/* ------------------------------------------------------------------------------------------------ wafers */
+
+/* Where a wafer or a blade may be in a stretch: a box around its middle, and how far beyond it. */
+typedef struct {
+    wh_vec3_t middle, half;
+    double beyond;
+    bool turns;
+} room_t;
+
+static room_t room_of_gripper(const wh_decisions_t *decisions, const wh_state_t *state, size_t g,
+                              int64_t slice, const double slack[WH_GRIPPERS]) {
+    const wh_decisions_way_t *way = way_of(decisions, g, slice);
+    const wh_vec3_t sum = wh_vec3_add(&way->low, &way->high), all = wh_vec3_subtract(&way->high, &way->low);
+    room_t room = {wh_vec3_scale(0.5, &sum), wh_vec3_scale(0.5, &all), slack[g], way->turns};
+    if (state->grippers[g].wafer != WH_NONE) {
+        const wh_vec3_t *offset = &state->grippers[g].gripper_from_wafer.r;
+        const wh_vec3_t aside = wh_mat3_transform(&way->R, offset);
+        room.middle = wh_vec3_add(&room.middle, &aside);
+        room.beyond += way->turns ? 2 * length_of(*offset) : 0;
+    }
+    return room;
+}
+
+static room_t room_of_wafer(const wh_decisions_t *decisions, const wh_state_t *state, size_t w, int64_t slice,
+                            const double slack[WH_GRIPPERS]) {
+    const wh_wafer_t *wafer = &state->wafers[w];
+    const room_t still = {wafer->base_from_wafer.r, wh_vec3(0, 0, 0), 0, false};
+    return wafer->holder == WH_NONE ? still
+                                    : room_of_gripper(decisions, state, (size_t)wafer->holder, slice, slack);
+}
+
+/* True if some place of the one may be as high over the other as where it would go through. */
+static bool may_cross(const wh_cell_t *cell, const room_t *one, const room_t *other, const wh_vec3_t *up) {
+    const wh_vec3_t way = wh_vec3_subtract(&one->middle, &other->middle);
+    const wh_vec3_t half = wh_vec3_add(&one->half, &other->half);
+    const double beyond = one->beyond + other->beyond + 2 * cell->thickness + cell->tolerance.projz + SURE;
+    const double over = fmax(cell->tolerance.projxy, 25);
+    const double high = fabs(up->x) * half.x + fabs(up->y) * half.y + fabs(up->z) * half.z + beyond;
+    return length_of(way) <= length_of(half) + beyond + over &&
+           (one->turns || other->turns || fabs(wh_vec3_dot(up, &way)) <= high + 1e-3);
+}
+
+bool wh_decisions_may_meet(const wh_decisions_t *decisions, const wh_cell_t *cell, const wh_state_t *state,
+                           size_t gripper, int64_t slice, const double slack[WH_GRIPPERS]) {
+    const wh_decisions_way_t *way = way_of(decisions, gripper, slice);
+    const room_t room = room_of_gripper(decisions, state, gripper, slice, slack);
+    const int32_t held = state->grippers[gripper].wafer;
+    const bool moves = way->turns || length_of(room.half) + room.beyond > 0;
+    bool may = false;
+    for (size_t w = 0; w < state->wafer_count && moves && !may; ++w) {
+        const wh_vec3_t up =
+            wh_mat3_column(held == WH_NONE ? &way->R : &state->wafers[w].base_from_wafer.R, 2);
+        const room_t other = room_of_wafer(decisions, state, w, slice, slack);
+        may = (int32_t)w != held && may_cross(cell, &room, &other, &up);
+    }
+    return may;
+}

@@ -204,12 +204,23 @@ static void check_rim(lua_State *L, const wh_layout_t *layout, given_t *given, c
     }
 }
 
+/* The times of all vacuum sensors. False if it is none of them. */
+static bool give_time(lua_State *L, given_t *given, wh_given_t *to) {
+    const bool is_vacuum = strcmp(given->field, "vacuum") == 0;
+    if (given->name[0] != '\0' || (!is_vacuum && strcmp(given->field, "debounce") != 0)) {
+        return false;
+    }
+    check_range(L, given, 0, WH_ERRORS_MOST_S, "s");
+    *(is_vacuum ? &to->vacuum : &to->debounce) = (wh_real_t)given->value;
+    return true;
+}
+
 static void give(lua_State *L, const wh_layout_t *layout, given_t *given, wh_given_t *to) {
     take_apart(L, given);
     const int rim = find_rim_draw(given->field);
     const size_t station = find_part(wh_errors_teaching_name, given->field);
     const size_t wafer = find_part(wafer_name, given->field);
-    if (give_beam(L, layout, given, to)) {
+    if (give_beam(L, layout, given, to) || give_time(L, given, to)) {
         return;
     }
     const int32_t taught = station < WH_SPREADS ? find_taught(layout, given->name) : WH_NONE;
@@ -223,15 +234,12 @@ static void give(lua_State *L, const wh_layout_t *layout, given_t *given, wh_giv
         give_rim(L, layout, given, to, (wh_rim_draw_t)rim);
     } else if (strcmp(given->field, "valve") == 0) {
         give_valve(L, layout, given, to);
-    } else if (strcmp(given->field, "vacuum") == 0 && given->name[0] == '\0') {
-        check_range(L, given, 0, WH_ERRORS_MOST_S, "s");
-        to->vacuum = (wh_real_t)given->value;
     } else {
         refuse(
             L, given,
             "no such error (expected of a station x, y, z, roll, pitch, yaw, of a wafer dx, dy, dz, tilt_x, "
             "tilt_y, turn, of its rim what a study draws, of a beam such as A.beam1 dx, dy, late, of a "
-            "gripper valve, or vacuum)");
+            "gripper valve, or vacuum or debounce)");
     }
 }
 

@@ -125,6 +125,13 @@ static int64_t lag_of(const wh_trial_cell_t *trial_cell, wh_real_t seconds) {
     return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
 }
 
+/* Whole slices, the last one begun, as the layout's own. */
+static int32_t debounce_of(const wh_layout_t *layout, wh_real_t later_s) {
+    const double slices = ceil((double)later_s * 1e6 / (double)layout->slice_us - 1e-9);
+    const double debounce = layout->physics.vacuum.debounce + slices;
+    return debounce < WH_VACUUM_DEBOUNCE ? (int32_t)debounce : WH_VACUUM_DEBOUNCE;
+}
+
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         const wh_trial_room_t *room) {
     trial_cell->trial = *trial;
@@ -142,6 +149,8 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
     wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);
     *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;
+    trial_cell->layout.physics.vacuum.debounce =
+        debounce_of(layout, wh_errors_draw_debounce(layout->errors, trial));
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         trial_cell->lag[g] = lag_of(trial_cell, wh_errors_draw_valve(layout->errors, trial, g));
     }

@@ -432,6 +432,10 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
     if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
         return wh_is_index(event->other, (size_t)message->wafer_count);
     }
+    if (event->kind == WH_EVENT_PUSHED_THROUGH) {
+        return wh_is_index(event->other, (size_t)message->wafer_count) ||
+               (event->other == WH_NONE && event->wafer != WH_NONE);
+    }
     return event->other == WH_NONE;
 }
 
@@ -441,7 +445,8 @@ static bool names_fit(const waferhand_event *event, const waferhand_state *messa
     static const uint32_t any = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
                                 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
     const bool may_lack = (any >> (uint32_t)event->kind & 1U) != 0;
-    const bool no_wafer = event->wafer == WH_NONE && (may_lack || event->kind == WH_EVENT_BAD_INPUT);
+    const bool no_wafer = event->wafer == WH_NONE && (may_lack || event->kind == WH_EVENT_BAD_INPUT ||
+                                                      event->kind == WH_EVENT_PUSHED_THROUGH);
     const bool wafer_fits =
         event->kind != WH_EVENT_BAD_INPUT && wh_is_index(event->wafer, (size_t)message->wafer_count);
     const bool no_gripper = event->gripper == WH_NONE && may_lack;

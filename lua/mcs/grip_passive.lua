@@ -54,8 +54,9 @@ return function(steps)
   function passive.give(target)
     stroke(target, -target.stroke, target.gripper)
     if target.asks and steps.is_on(target.gripper, false) then
+      local found = is_loaded(target.gripper, true) and "stuck" or "feigned"
       stroke(target, target.stroke)
-      return "stuck"
+      return found
     end
     reckon(target.gripper, false)
     return target.chuck and give_to_chuck(target) or "kept"

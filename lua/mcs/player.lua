@@ -126,6 +126,16 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
     return goes
   end
 
+  -- The target keeps of a gripper without a wafer what hindered it when it was asked, not what did so later on.
+  local function is_loaded(gripper, target)
+    if native.held(gripper) then
+      return true
+    end
+    local late, is_shut, wafer, holder = native.hindered(gripper)
+    target.hindered = { gripper = gripper, late = late, is_shut = is_shut, wafer = wafer, holder = holder }
+    return false
+  end
+
   -- Plays a segment or asks a question. `target.watched`: a wafer lost on the way is an error after the
   -- segment, WAFER_LOST_ON_WAY or `target.lost_as`. The cell knows whether a wafer is on a gripper's pads,
   -- whatever its sensor says; in a real tool someone would look.
@@ -135,7 +145,7 @@ return function(native, lookup, arm, ways, centring, tasks, alarms)
     elseif request.is_on then
       return native.sensor(request.is_on)
     elseif request.is_loaded then
-      return native.held(request.is_loaded) ~= nil
+      return is_loaded(request.is_loaded, target)
     elseif request.grip then
       return ask_plunger(request)
     end

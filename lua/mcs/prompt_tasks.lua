@@ -51,7 +51,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     end)
     local number = math.tointeger(tostring(entry.handle):match("%d+"))
     begun[number], count = entry, count + 1
-    states.forget()
+    states.forget(("since task %d was begun: UNDO takes back nothing from before a task's end"):format(number))
     return tokens.pairs { { "task", number } }
   end
 

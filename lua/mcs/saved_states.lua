@@ -10,6 +10,9 @@ return function(native)
   -- latest at the end.
   local saved, before = {}, {}
 
+  -- Since when, or why, nothing more can be taken back.
+  local since = "since the layout was read"
+
   -- states.keep(), set by its owner: returns a function that puts back Lua's data, and one that tells whether
   -- it is unchanged.
   states.keep = nil
@@ -55,28 +58,29 @@ return function(native)
   function states.undo()
     local last = before[#before]
     if not last then
-      native.fail("NOTHING_TO_UNDO", "since the layout was read")
+      native.fail("NOTHING_TO_UNDO", native.has_jobs() and "of several ports at once nothing is taken back" or since)
     end
     put_back(last.state)
     before[#before] = nil
     return last.line, #before
   end
 
-  -- The next change cannot be taken back, and so neither can earlier ones.
-  function states.forget()
-    before = {}
+  -- The next change cannot be taken back, and so neither can earlier ones; `why` says so to UNDO.
+  function states.forget(why)
+    before, since = {}, why
   end
 
   -- Executes the command of this line so that it can be taken back, also if it ends outside of Lua.
   function states.follow(line, action, ...)
     local can_take, state = pcall(take)
     if not can_take then
-      states.forget()
+      states.forget(("since %s: no state could be kept before it"):format(line))
       return action(...)
     end
     local entry = { line = line, state = state }
     if #before == native.most_undone() then
       table.remove(before, 1)
+      since = ("of the last %d commands that changed something, which are taken back"):format(native.most_undone())
     end
     before[#before + 1] = entry
     local results = table.pack(pcall(action, ...))

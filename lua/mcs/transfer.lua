@@ -2,7 +2,7 @@
 -- only goes there; MAP, which only looks.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, math, pairs, pcall, select, type = ipairs, math, pairs, pcall, select, type
+local ipairs, math, pairs, pcall, select, table, type = ipairs, math, pairs, pcall, select, table, type
 
 return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times)
   local transfer = {}
@@ -54,16 +54,38 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     end
   end
 
-  -- The reason why the running command took nothing.
-  local function explain(gripper)
+  local HELD = "%s still holds %s: its valve or vacuum did not let go of it when %s was to take it"
+
+  -- Adds what kept the gripper from taking anything when it was asked: another one, or its own valve.
+  local function add_hindrance(list, gripper, hindered)
     local name = name_of(gripper)
+    if not hindered or hindered.gripper ~= gripper then
+      return
+    end
+    if hindered.holder then
+      list[#list + 1] = HELD:format(hindered.holder, hindered.wafer, name)
+    end
+    if hindered.is_shut then
+      list[#list + 1] = ("the valve of %s did not open: it was told to %.10g s before"):format(name, hindered.late)
+    elseif hindered.late > 0 then
+      list[#list + 1] = ("the valve of %s opened %.10g s late"):format(name, hindered.late)
+    end
+  end
+
+  -- The reasons why the running command took nothing: all that are known.
+  local function explain(gripper, hindered)
+    local name, list = name_of(gripper), {}
+    add_hindrance(list, gripper, hindered)
     local wafer, reasons = native.closest(gripper)
     if wafer then
-      return ("%s came closest to %s: %s"):format(name, wafer, reasons)
+      list[#list + 1] = ("%s came closest to %s: %s"):format(name, wafer, reasons)
     end
     local force, weight = native.weight(gripper)
-    return force and ("%s is turned over, where its pads hold no wafer: %.4g N (expected at least mass * gravity * n, "
-      .. "%.4g N)"):format(name, force, weight) or ("no wafer came near %s while its valve was open"):format(name)
+    if force and not wafer then
+      list[#list + 1] = ("%s is turned over, where its pads hold no wafer: %.4g N (expected at least mass * gravity * n, "
+        .. "%.4g N)"):format(name, force, weight)
+    end
+    return list[1] and table.concat(list, "; ") or ("no wafer came near %s while its valve was open"):format(name)
   end
 
   -- A length as text, without a minus before zeros.
@@ -74,18 +96,20 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
 
   -- The reason why the chuck did not take the wafer: it was not let go, or it still lies where the running
   -- command let it go.
-  local function explain_lost(gripper, chuck)
+  local function explain_lost(gripper, chuck, hindered)
     local kept = native.held(gripper)
     if kept then
-      local text = "%s still holds %s: its valve or vacuum did not let go of it when %s was to take it"
-      return text:format(name_of(gripper), kept, name_of(chuck))
+      return HELD:format(name_of(gripper), kept, name_of(chuck))
     end
     local wafer, dx, dy, dz, reasons = native.let_go(chuck)
     if not wafer then
-      return explain(chuck)
+      return explain(chuck, hindered)
     end
+    local list = {}
+    add_hindrance(list, chuck, hindered)
     local text = "%s did not take %s, which lies at dX %s, dY %s, dz %s mm: %s"
-    reasons = reasons or "that is within the tolerance, so valve or vacuum did not act"
+    list[#list + 1] = reasons
+    reasons = list[1] and table.concat(list, " and ") or "that is within the tolerance, so valve or vacuum did not act"
     dx, dy, dz = to_micrometre(dx), to_micrometre(dy), to_micrometre(dz)
     return text:format(name_of(chuck), wafer, dx, dy, dz, reasons)
   end
@@ -165,7 +189,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       local text = "%s came up through %s slot %d without a wafer on its pads"
       native.fail("WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
     elseif found == "missing" then
-      native.fail("WAFER_MISSING", explain(target.gripper))
+      native.fail("WAFER_MISSING", explain(target.gripper, target.hindered))
     elseif found == "late" then
       fail_late(target, target.gripper)
     elseif found == "early" then
@@ -179,9 +203,13 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     if became == "uncentred" then
       centring.fail(target)
     elseif became == "lost" then
-      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck))
+      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck, target.hindered))
     elseif became == "loose" then
       fail_late(target, target.chuck)
+    elseif became == "feigned" then
+      local text = "the sensor of %s stayed on, though %s slot %d had taken the wafer over: %s came up again and took it"
+      local name = name_of(target.gripper)
+      native.fail("WAFER_LOST", text:format(name, target.station, target.slot, name))
     elseif became == "stuck" then
       local kept, name = native.held(target.gripper), name_of(target.gripper)
       if kept and target.is_passive then

@@ -46,6 +46,7 @@ class Model:
         self.routes, self.wafers = [], []
         self.common = {(a, b): [robot for robot in self.robots if {a, b} <= robot.serves] for a in self.stations for b in self.stations}
         self.relaxed = False
+        self.seen = set()       # states since anything was under way or to come
         self.by_hand = flow_orders.pumped_by_hand(self.rule)
         for down in flow.get("down") or []:
             end = None if down["seconds"] is None else down["at"] + down["seconds"]
@@ -194,9 +195,9 @@ class Model:
             return False
 
         def arrive():
-            robot.at = station.name
+            robot.at, robot.going = station.name, None
         robot.intervals.append(("moving loaded" if robot.held() else "moving empty", self.now, self.now + seconds))
-        robot.doing = (self.now + seconds, arrive)
+        robot.doing, robot.going = (self.now + seconds, arrive), station.name
         return True
 
     def access(self, robot, station, kind, seconds):
@@ -233,7 +234,7 @@ class Model:
         begin, end, shut = self.access(robot, place.station, "picking", robot.seconds("pick", place.station.name))
         self.start_row(robot, wafer, arm, place, begin, end)
         place.leaves, place.closing = end, shut - end
-        wafer.begun = self.now
+        wafer.begun, self.relaxed = self.now, False
         if destination:
             wafer.toward, wafer.destination, destination.coming = number, destination, wafer
 
@@ -286,6 +287,7 @@ class Model:
         """Places the wafer and takes what lies there, which goes on to `heading`."""
         other, arm = place.wafer, robot.free_arm(place.wafer.steps[place.wafer.step][2])
         begin, end, shut = self.access(robot, place.station, "swapping", robot.seconds("swap", place.station.name))
+        self.relaxed = False
         self.start_row(robot, other, arm, place, begin, end)
         other.begun, other.toward, other.destination, heading.coming = self.now, self.following(other, other.step), heading, other
         wafer.destination, place.coming, place.filling = place, wafer, True
@@ -356,10 +358,45 @@ class Model:
 
     def ask_relaxed(self):
         """Nobody can go on: shipped rules do without the conditions that only make a robot wait for more wafers to come."""
-        self.relaxed = self.rule in SHIPPED
+        before, self.relaxed = self.relaxed, self.rule in SHIPPED
         begun = self.relaxed and any(flow_orders.ask(self, robot) for robot in self.robots)
-        self.relaxed = False
+        self.relaxed = self.relaxed and before  # a transfer that has begun ends it
         return begun
+
+    def nothing_follows(self):
+        """No robot has begun more than an empty way, and nothing ends or comes by itself."""
+        for robot in self.robots:
+            if robot.doing and (robot.going is None or any(wafer.destination for wafer in robot.held())):
+                return False
+        ends = [time for time in self.instants if time > self.now]
+        ends += [wafer.done for wafer in self.wafers if wafer.place and not wafer.ended and wafer.done is not None]
+        for station in self.stations.values():
+            ends += [place.clean_end for place in station.places if place.clean_end is not None]
+            ends += [due for due in map(self.idle_due, station.places) if due is not None]
+        if self.last_start is not None:
+            ends.append(self.last_start + self.takt)
+        return all(time <= self.now for time in ends)
+
+    def goes_round(self):
+        """True if nothing follows and the state is an earlier one's: it will come again for ever. Rules of one's own may change their mind."""
+        if callable(self.rule) or not self.nothing_follows():
+            self.seen.clear()
+            self.relaxed = False
+            return False
+        robots = tuple((robot.going or robot.at, robot.doing and robot.doing[0] - self.now, repr(robot.behind), robot.next) for robot in self.robots)
+        stations = tuple((station.state, station.turning and (station.turning[0], station.turning[1] - self.now),
+                          max(0, station.busy_until - self.now)) for station in self.stations.values())
+        state = (self.relaxed, robots, stations)
+        again = state in self.seen
+        self.seen.add(state)
+        return again
+
+    def relax(self):
+        """From now on shipped rules wait for no fuller step, until a transfer begins. False if they do so already."""
+        if self.relaxed or self.rule not in SHIPPED:
+            return False
+        self.relaxed = True
+        return True
 
     def next_instant(self):
         times = {time for time in self.instants if time > self.now}
@@ -387,6 +424,8 @@ class Model:
                     break
             if all(wafer.ended for wafer in self.wafers):
                 return "done"
+            if self.goes_round() and not self.relax():
+                return "STUCK"
             after = self.next_instant()
             if after is None and self.ask_relaxed():
                 continue    # others may follow at once (rule 2)

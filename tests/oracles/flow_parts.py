@@ -58,7 +58,8 @@ class Robot:
         self.given, self.name, self.serves = given, given["name"], set(serves)
         self.at = given["at"]
         self.arms = [None] * given.get("arms", 1)
-        self.doing = None       # (kind, end, what it does at the end)
+        self.doing = None       # (end, what it does at the end)
+        self.going = None       # the station to which it moves
         self.told = None        # why it waits, a class of IDLE_CLASSES
         self.intervals = []     # (class, begin, end)
         self.behind = None      # backward: the step that was served last

@@ -13,7 +13,7 @@ MS = 1000
 LEVELS = ("one robot, one lot, single places", "parallel places, slots, times by station and pair, two arms", "cleans, windows, partial, takt",
           "several robots and shared buffers", "re-entrant and mixed routes, lots that arrive, priorities, back", "doors and locks with pumps",
           "stations that are down", "lists drawn at random, safe = false", "all together",
-          "all together in whole seconds: much happens at one instant")
+          "all together in whole seconds: much happens at one instant", "the same tools with a second lock beside each, and not safe")
 RULES = ("backward", "first_come", "longest_wait", "swap")
 
 
@@ -21,7 +21,7 @@ class Maker:
     """Draws a tool. `has(n)`: the level has what level n brings."""
 
     def __init__(self, seed, level):
-        self.draw, self.level = random.Random(f"{level} {seed}"), level
+        self.draw, self.level = random.Random(f"{min(level, 10)} {seed}"), level
         self.tool, self.lots, self.routes = {"robots": [], "serves": {}, "stations": []}, [], {}
 
     def has(self, level, chance=1.0):
@@ -55,7 +55,23 @@ class Maker:
             self.heat()
         if self.level >= 8 and self.draw.random() < (1.0 if self.level == 8 else 0.4):
             self.lists(flow)
+        if self.level > 10 and isinstance(flow["rule"], str):
+            self.pair_locks()
+            flow["safe"], flow["until"] = False, 3000 * 1000 * MS
         return self.tool, flow
+
+    def pair_locks(self):
+        """A second lock beside each one, for the same steps."""
+        for lock in [station for station in self.tool["stations"] if station.get("pump")]:
+            second = {**lock, "name": lock["name"] + "x", "state": self.draw.choice(("vacuum", "atmosphere"))}
+            self.tool["stations"].append(second)
+            for names in [*self.tool["serves"].values(), *(step["stations"] for route in self.routes.values() for step in route["steps"])]:
+                if lock["name"] in names:
+                    names.append(second["name"])
+        for robot in self.tool["robots"]:   # times that name stations know no second lock
+            for field in ("pick", "place", "move", "swap"):
+                if isinstance(robot.get(field), dict):
+                    robot[field] = next(iter(robot[field].values()))
 
     def station(self, name, **fields):
         self.tool["stations"].append({"name": name, "slots": 1, "process": None, **fields})

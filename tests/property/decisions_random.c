@@ -123,6 +123,13 @@ static void wafers_through_shelves(void **state) {
     assert_true(compare(SHELVES, delayed, 4, 0.5, 1) > 5);
 }
 
+/* The lower wafer of a double goes up through the upper one, if that does not lie too far aside to be met. */
+static void doubles(void **state) {
+    (void)state;
+    static const char *const parameters[] = {"double=true", "z=0.01"};
+    assert_true(compare(SHELVES, parameters, 2, 0.5, 1) > 5);
+}
+
 static void delayed_vacuum(void **state) {
     (void)state;
     static const char *const parameters[] = {"vacuum=delayed", "settle=true"};
@@ -842,6 +849,7 @@ int main(void) {
         cmocka_unit_test(between_slices),
         cmocka_unit_test(wafers_through_shelves),
         cmocka_unit_test(delayed_vacuum),
+        cmocka_unit_test(doubles),
         cmocka_unit_test(late_valves_and_vacuum),
         cmocka_unit_test(an_example),
         cmocka_unit_test(a_script_that_measures_is_never_replayed),

@@ -53,6 +53,9 @@
         if (drawn.vacuum_s) {
             list.push(['vacuum s', W.figure(drawn.vacuum_s)]);
         }
+        if (drawn.debounce_s) {
+            list.push(['debounce s', W.figure(drawn.debounce_s)]);
+        }
         return list;
     }
 

@@ -19,6 +19,7 @@ return {
   wafers = {
     { name = "Wafer 1", station = "A", slot = 1 },
     { name = "Wafer 2", station = "A", slot = 2, dx = 0.25 },
+    params.double and { name = "Upper", station = "A", slot = 3, dx = 24.5, dz = -19.2 } or nil,
   },
   study = params.none == nil and {
     placement = { dx = 0.5, dy = 0.5, dz = 0.05, tilt = 0.1, turn = 3 },

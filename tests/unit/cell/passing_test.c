@@ -15,6 +15,9 @@ static struct {
     wh_passing_t passing[GRIPPERS];
 } scene;
 
+/* The grippers whose empty blades are looked at. */
+static uint32_t shut;
+
 /* Gripper 0 holds wafer 0, whose centre is there. */
 static void hold(const wh_pose_t *at) {
     memset(&scene, 0, sizeof scene);
@@ -37,7 +40,7 @@ static void hold(const wh_pose_t *at) {
 static size_t go(const wh_pose_t *to, int32_t valve) {
     scene.inputs[0].base_from_gripper = *to;
     scene.inputs[0].valve = valve;
-    const bool passes = wh_cell_begin_passing(&cell, &scene.table, scene.inputs, scene.passing);
+    const bool passes = wh_cell_begin_passing(&cell, &scene.table, scene.inputs, shut, scene.passing);
     assert_int_equal(wh_grasp_step(&scene.table, scene.inputs, &scene.list), WH_OK);
     const size_t before = scene.list.count;
     if (passes) {
@@ -148,7 +151,7 @@ static void a_slanting_way_is_judged_at_the_plane(void **state) {
 static void numbers_that_are_none_pass_nothing(void **state) {
     (void)state;
     const wh_pose_t above = over_slot(1, 0, 0.1);
-    wh_passing_t passing = {7, 8, 9, false};
+    wh_passing_t passing = {7, 8, 9, false, 6};
     for (int axis = 0; axis < 3; ++axis) {
         wh_pose_t bad = over_slot(1, 0, -3);
         (&bad.r.x)[axis] = (wh_real_t)NAN;
@@ -161,7 +164,7 @@ static void numbers_that_are_none_pass_nothing(void **state) {
 /* A wafer face down lies on its front: at height 0 its frame is a thickness above. */
 static void a_wafer_face_down(void **state) {
     (void)state;
-    wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false};
+    wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false, WH_NONE};
     cell.thickness = WH_REAL(0.775);
     wh_pose_t above = over_slot(1, 0, 0.775), next = over_slot(1, 0, 0.775 - 0.51);
     above.R = next.R = wh_mat3_from_rpy_deg(180, 0, 0);
@@ -197,7 +200,7 @@ static void random_ways_pass_what_a_list_of_planes_says(void **state) {
     for (int round = 0; round < 2000; ++round) {
         double height = 30.0078125 + height_below(50);
         wh_pose_t at = over_slot(1, 0, height);
-        wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false};
+        wh_passing_t passing = {WH_NONE, WH_NONE, WH_NONE, false, WH_NONE};
         for (int slice = 0; slice < 20; ++slice) {
             height += height_below(4) - 0.25;
             const wh_pose_t next = over_slot(1, 0, height);
@@ -210,8 +213,109 @@ static void random_ways_pass_what_a_list_of_planes_says(void **state) {
     }
 }
 
+/* -------------------------------------------------------------------------------------------------- wafers */
+
+/* Gripper 0 goes from here to there in steps of 0.1 mm; how often it is told to go through wafer 1. */
+static int go_straight(double from, double to) {
+    const int steps = (int)(fabs(to - from) * 10 + 0.5);
+    int told = 0;
+    for (int i = 1; i <= steps; ++i) {
+        const wh_pose_t next = over_slot(1, 0, from + (to - from) * i / steps);
+        const size_t pushed = go(&next, scene.inputs[0].valve);
+        for (size_t e = scene.list.count - pushed; e < scene.list.count; ++e) {
+            assert_int_equal(scene.events[e].kind, WH_EVENT_PUSHED_THROUGH);
+            assert_int_equal(scene.events[e].wafer, scene.grippers[0].wafer);
+            assert_int_equal(scene.events[e].gripper, 0);
+            told += scene.events[e].other == 1;
+        }
+    }
+    return told;
+}
+
+/* Gripper 0 holds wafer 0 at this height over slot 1, where wafer 1 lies so far aside at another height. */
+static void hold_beside(double height, double dx, double dz) {
+    const wh_pose_t at = over_slot(1, 0, height);
+    hold(&at);
+    scene.wafers[1].base_from_wafer = over_slot(1, dx, dz);
+    wh_grasp_place(&scene.table, 1, &scene.wafers[1].base_from_wafer);
+}
+
+static void the_lower_wafer_of_a_double_goes_through_the_upper_one(void **state) {
+    (void)state;
+    hold_beside(0, 3, 0.8);
+    assert_int_equal(go_straight(0, 3), 1);
+    hold_beside(3, 3, 0); /* and down again, onto one and through it */
+    assert_int_equal(go_straight(3, 0), 0);
+    assert_int_equal(go_straight(0, -0.4), 0);
+    assert_int_equal(go_straight(-0.4, -3), 1);
+}
+
+static void a_wafer_beside_or_above_is_not_met(void **state) {
+    (void)state;
+    hold_beside(0, 51, 0.8);
+    assert_int_equal(go_straight(0, 3), 0);
+    hold_beside(0, 0, 4);
+    assert_int_equal(go_straight(0, 3), 0);
+    hold_beside(0, 0, 0.8); /* sideways */
+    wh_pose_t aside = over_slot(1, 60, 0);
+    assert_int_equal(go(&aside, WH_VALVE_OPEN), 0);
+}
+
+/* With a tolerance of 2 mm, too, a wafer whose centre is within 25 mm is met. */
+static void a_narrow_tolerance_changes_nothing(void **state) {
+    (void)state;
+    cell.tolerance.projxy = 2;
+    hold_beside(0, 24, 0.8);
+    assert_int_equal(go_straight(0, 3), 1);
+    hold_beside(0, 26, 0.8);
+    assert_int_equal(go_straight(0, 3), 0);
+}
+
+/* Only a blade that is to take nothing is looked at: one with an open valve takes the wafer, or misses it. */
+static void an_empty_blade_goes_through_a_wafer(void **state) {
+    (void)state;
+    for (uint32_t told = 0; told < 2; ++told) {
+        const wh_pose_t start = over_slot(1, 0, -40), below = over_slot(1, 0, -3);
+        hold(&start);
+        (void)go(&start, WH_VALVE_CLOSED);
+        wh_pose_t away = wh_test_at(0, 5000, 50);
+        wh_grasp_place(&scene.table, 0, &away);
+        (void)go(&below, WH_VALVE_CLOSED);
+        wh_pose_t there = over_slot(1, 0, 0);
+        wh_grasp_place(&scene.table, 1, &there);
+        shut = told;
+        assert_int_equal(go_straight(-3, 3), told);
+        assert_int_equal(go_straight(3, -3), 0); /* nothing lies on a blade that comes down */
+        shut = 0;
+    }
+}
+
+/* A wafer that another gripper carries along is not met, and one that it holds still is. */
+static void a_wafer_that_is_held_is_met(void **state) {
+    (void)state;
+    for (int still = 0; still < 2; ++still) {
+        hold_beside(0, 3, 0.8);
+        scene.inputs[2] =
+            (wh_gripper_input_t){.base_from_gripper = over_slot(1, 3, 0.8), .valve = WH_VALVE_OPEN};
+        (void)go(&scene.inputs[0].base_from_gripper, WH_VALVE_OPEN);
+        assert_int_equal(scene.grippers[2].wafer, 1);
+        int told = 0;
+        for (int i = 1; i <= 30; ++i) {
+            const wh_pose_t next = over_slot(1, 0, 0.1 * i);
+            scene.inputs[2].base_from_gripper = over_slot(1, 3, 0.8 + (still ? 0 : 0.1 * i));
+            told += (int)go(&next, WH_VALVE_OPEN);
+        }
+        assert_int_equal(told, still);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(the_lower_wafer_of_a_double_goes_through_the_upper_one, set_up),
+        cmocka_unit_test_setup(a_wafer_beside_or_above_is_not_met, set_up),
+        cmocka_unit_test_setup(a_narrow_tolerance_changes_nothing, set_up),
+        cmocka_unit_test_setup(an_empty_blade_goes_through_a_wafer, set_up),
+        cmocka_unit_test_setup(a_wafer_that_is_held_is_met, set_up),
         cmocka_unit_test_setup(a_wafer_is_pushed_through_once, set_up),
         cmocka_unit_test_setup(a_release_and_a_jump_count, set_up),
         cmocka_unit_test_setup(what_passes_nothing, set_up),

@@ -813,7 +813,7 @@ static void what_cannot_be_taught_is_said(void **state) {
         "fails('BAD_ARGUMENT', 'C') fails('BAD_ARGUMENT', 'A', { by = 'touch' })\n"
         "fails('NO_SUCH_STATION', 'Z') fails('BAD_ARGUMENT', 'A', { with = 'beam' })\n"
         "fails('WAFER_MISSING', 'B') get('A', 1) fails('WAFER_ON_GRIPPER', 'A')\n"
-        "put('A', 1) fault { kind = 'wafer_shifted', wafer = 'W', dz = -2 } fails('WAFER_MISSING', "
+        "put('A', 1) fault { kind = 'wafer_shifted', wafer = 'W', dz = 4 } fails('WAFER_MISSING', "
         "'A')\n"
         "expect(good, 'all of it')\n");
 }

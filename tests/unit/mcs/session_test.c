@@ -835,8 +835,32 @@ static void so_many_are_taken_back_and_no_more(void **state) {
         (void)snprintf(expected, sizeof expected, "OK undone=\"WAIT 0.001\" left=%d time=", i);
         assert_answer("UNDO", expected);
     }
-    assert_answer("UNDO", "ERROR 68 ");
+    assert_answer("UNDO",
+                  "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; of the last 50 commands "
+                  "that changed something, which are taken back");
     assert_int_equal(wh_session_slice(&session), 3);
+}
+
+/* UNDO says since when nothing more is taken back: since the layout was read, or since a task. */
+static void a_task_is_named_as_the_end_of_what_is_taken_back(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since the layout was read"},
+        {"WAIT 0.5", "OK"},
+        {"TASK GET A 1", "OK task=1"},
+        {"UNDO", "ERROR 54 BUSY"},
+        {"JOIN 1", "OK"},
+        {"HOLDER \"Wafer 1\"", "OK holder=EE"},
+        {"UNDO",
+         "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since task 1 was begun: UNDO takes "
+         "back nothing from before a task's end"},
+        {"HOLDER \"Wafer 1\"", "OK holder=EE"},
+        {"PUT B 2", "OK"},
+        {"UNDO", "OK undone=\"PUT B 2\" left=0"},
+        {"UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since task 1 was begun"},
+        {"RESET", "OK"},
+        {"UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken back; since the layout was read"}};
+    ASSERT_DIALOGUE(dialogue);
 }
 
 /* A link that does not give the state of its simulator. */
@@ -846,7 +870,8 @@ static void what_a_link_does_not_tell_is_refused_by_name(void **state) {
                                            "ERROR 69 NOT_RESTORED: the simulator does not take a saved "
                                            "state; this simulator does not tell all that it is"},
                                           {"GET A 1", "OK wafer=\"Wafer 1\""},
-                                          {"UNDO", "ERROR 68 "}};
+                                          {"UNDO", "ERROR 68 NOTHING_TO_UNDO: no command is left to be taken "
+                                                   "back; since GET A 1: no state could be kept before it"}};
     ASSERT_DIALOGUE(dialogue);
 }
 
@@ -878,6 +903,7 @@ int main(void) {
         IN_PAPER(what_was_saved_goes_on_with_the_same_bits),
         IN_PAPER(what_was_done_is_taken_back),
         IN_PAPER(so_many_are_taken_back_and_no_more),
+        IN_PAPER(a_task_is_named_as_the_end_of_what_is_taken_back),
         IN_BETWEEN(what_a_link_does_not_tell_is_refused_by_name),
         IN_PAPER(status_tells_where_all_is),
         IN_PAPER(reset_is_a_new_beginning),

@@ -259,6 +259,7 @@ static void each_kind_has_its_words(void **state) {
         event.value = WH_REAL(0.75);
         event.limit = event.kind == WH_EVENT_RELEASED_UNSUPPORTED ? 0 : WH_REAL(0.5);
         event.at = wh_vec3(1, -2, WH_REAL(0.125));
+        event.other = event.kind == WH_EVENT_PUSHED_THROUGH ? WH_NONE : event.other;
         assert_string_equal(text_of(&event, NULL), wanted[i].text);
     }
     assert_int_equal(sizeof wanted / sizeof wanted[0], WH_EVENT_KINDS - 1); /* all but the near miss */
@@ -278,6 +279,11 @@ static void things_have_their_names(void **state) {
     wh_event_t event = event_of(WH_EVENT_CONTESTED);
     assert_string_equal(text_of(&event, &names), "contested: A3, right: ready, but chuck holds it");
     event.kind = WH_EVENT_PUSHED_THROUGH;
+    assert_string_equal(text_of(&event, &names), "pushed through: A3, right: it goes through A4");
+    event.wafer = WH_NONE;
+    assert_string_equal(text_of(&event, &names), "pushed through: right: its blade goes through A4");
+    event.wafer = 2;
+    event.other = WH_NONE;
     event.value = WH_REAL(-0.25);
     event.limit = 1;
     assert_string_equal(
