@@ -37,7 +37,7 @@ local BY_ARGUMENT = { CSTP = true, MTRS = true }
 -- The most arguments of a command. Commands that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   INIT = 0, ["MTRS,G"] = 7, ["MTRS,P"] = 7, ["MTRS,E"] = 7, MTRN = 0, MRDY = 7, MPAT = 3, MRTR = 0, MMAP = 1, MALN = 2, MROT = 2,
-  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, CRST = 0,
+  MSCN = 1, MCAL = 1, MTCH = 2, MLFT = 2, MFLP = 1, MDOP = 1, MDCL = 1, MABS = 11, MLIN = 4, CVAC = 2, MWAT = 1, MAWT = 2, MPMP = 2, CRST = 0,
   CSAV = 1, CRES = 1, CUND = 0, CALM = 1, ["CSTP,H"] = 0, ["CSTP,E"] = 0, CRSM = 0, ACKN = 0, RMAP = 1, RFND = 1, RPOS = 0,
   RSTS = 0, RWFR = 1, RSTN = 2, CSTN = 13, RAXS = 0, RLOC = 1, RVER = 0,
 }
@@ -258,6 +258,15 @@ return {
     CVAC = { does = "VALVE", run = function(request)
       local level = choose(request.arguments[2], { ["1"] = 0, ["0"] = 1 })
       return ("VALVE %s %d"):format(host.arm(request.arguments[1] or ""), level)
+    end },
+    MAWT = { does = "WAIT_FOR", run = function(request)
+      local seconds = request.arguments[2] or ""
+      return ("WAIT_FOR %s %s"):format(host.station(request.arguments[1] or ""),
+        seconds:match("^%d*%.?%d*$") or host.refuse("BAD_ARGUMENT", seconds))
+    end },
+    MPMP = { does = "PUMP", run = function(request)
+      local side = choose(request.arguments[2], { V = "vacuum", A = "atmosphere" })
+      return ("PUMP %s %s"):format(host.station(request.arguments[1] or ""), side)
     end },
     MWAT = { does = "WAIT", run = function(request)
       local ms = (request.arguments[1] or ""):match("^%d+$") or host.refuse("BAD_ARGUMENT", "MWAT")

@@ -26,7 +26,7 @@ end
 -- The most arguments of a verb. Verbs that are not listed hand all arguments to motion control, which checks each.
 local MOST = {
   ORGN = 0, GETW = 7, PUTW = 7, EXCH = 7, CONT = 0, GOTO = 7, PLAY = 3, RETR = 0, WMAP = 1, ALGN = 2, TURN = 2, SCAN = 1, CALB = 1,
-  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
+  TECH = 2, LIFT = 2, FLIP = 1, OPEN = 1, CLOS = 1, PUMP = 2, AWAT = 2, MOVE = 11, LINE = 4, VALV = 2, RSET = 0, SAVE = 1, REST = 1, UNDO = 0,
   ALRM = 1, STOP = 0, PAUS = 0, RESM = 0, GMAP = 1, GFND = 1, GPOS = 0, STAT = 0, GWAF = 1, GSTN = 2, SSTN = 13, GAXS = 0, GLOC = 1,
   GVER = 0,
 }
@@ -206,6 +206,15 @@ return {
     FLIP = { does = "FLIP", run = function(request) return "FLIP " .. host.arm(request.arguments[1] or "") end },
     OPEN = { does = "OPEN", run = at_door("OPEN") },
     CLOS = { does = "CLOSE", run = at_door("CLOSE") },
+    PUMP = { does = "PUMP", run = function(request)
+      local sides, side = { vacuum = "vacuum", atmosphere = "atmosphere" }, request.arguments[2] or ""
+      return ("PUMP %s %s"):format(host.station(request.arguments[1] or ""), sides[side] or host.refuse("BAD_ARGUMENT", side))
+    end },
+    AWAT = { does = "WAIT_FOR", run = function(request)
+      local seconds = request.arguments[2] or ""
+      return ("WAIT_FOR %s %s"):format(host.station(request.arguments[1] or ""),
+        seconds:match("^%d*%.?%d*$") or host.refuse("BAD_ARGUMENT", seconds))
+    end },
     MOVE = { does = "MOVE", run = values("MOVE", AXES, TURNS, true) },
     LINE = { does = "LINE", run = values("LINE", { "dx", "dy", "dz", "speed" }, {}) },
     VALV = { does = "VALVE", run = function(request)

@@ -191,7 +191,7 @@ end
 -- The most words behind a command's own words; for other commands their options tell.
 local MOST = {
   HOME = 0, GO = 0, MAP = 1, TEACH = 2, RETRACT = 0, ALIGN = 2, ROTATE = 2, SCAN = 1, CALIB = 1, LIFT = 2, FLIP = 1,
-  OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
+  OPEN = 1, CLOSE = 1, VAC = 2, WAIT = 1, AWAIT = 2, PUMP = 2, RESET = 0, UNDO = 0, HALT = 0, HOLD = 0, RESUME = 0, ALARM = 1,
   ["SET BKG"] = 1, ["RQ POS"] = 0, ["RQ LOAD"] = 2, ["RQ STATUS"] = 0, ["RQ VERSION"] = 0, ["RQ STN"] = 3,
   ["RQ AXES"] = 0, ["RQ FOUND"] = 1,
 }
@@ -254,6 +254,15 @@ return {
     LINE = { does = "LINE", run = function(request) return "LINE " .. options(request.words, 2, WAYS) end },
     WAIT = { does = "WAIT", run = function(request)
       return "WAIT " .. ((request.words[2] or ""):match("^%d+%.?%d*$") or host.refuse("BAD_ARGUMENT", "WAIT"))
+    end },
+    AWAIT = { does = "WAIT_FOR", run = function(request)
+      local seconds = request.words[3] or ""
+      return ("WAIT_FOR %s %s"):format(host.station(request.words[2] or ""),
+        seconds:match("^%d*%.?%d*$") or host.refuse("BAD_ARGUMENT", seconds))
+    end },
+    PUMP = { does = "PUMP", run = function(request)
+      local sides, side = { VACUUM = "vacuum", ATMOSPHERE = "atmosphere" }, request.words[3] or ""
+      return ("PUMP %s %s"):format(host.station(request.words[2] or ""), sides[side] or host.refuse("BAD_ARGUMENT", side))
     end },
     RESET = { does = "RESET", answer = function()
       found = {}
