@@ -156,9 +156,12 @@ static void print_gains(const wh_printer_t *printer, const wh_flow_figures_t *fi
             continue;
         }
         const double values[] = {seconds(gain->makespan_us), seconds(result->makespan_us - gain->makespan_us),
-                                 gain->cycle_us > 0 ? gain->cycle_us / 1e6 : (double)NAN};
+                                 gain->cycle_us / 1e6};
         wh_grid_named_row(grid, name_of(tool, gain->robot, gain->station));
-        wh_grid_numbers(grid, 1, values, sizeof values / sizeof values[0]);
+        wh_grid_numbers(grid, 1, values, gain->cycle_us > 0 ? 3 : 2);
+        if (gain->cycle_us <= 0) {
+            wh_grid_text(grid, 3, WH_INK_DIM, "none");
+        }
     }
     wh_print_titled(printer, "Gains", grid);
 }

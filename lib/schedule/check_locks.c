@@ -211,10 +211,24 @@ void wh_check_access(wh_schedule_state_t *check, int32_t row) {
     }
 }
 
+/* A lock goes one way at a time, whichever row comes first in the file. */
+static void check_one_pump(wh_schedule_state_t *check, int32_t row) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const wh_check_station_t *station = &check->stations[of->station];
+    if (station->pump_row != WH_CHECK_NO_ROW && wh_check_is_behind(station->pump_us, of->begin_us)) {
+        wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
+                       "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
+                       wh_check_seconds(station->pump_us),
+                       wh_check_describe(check, station->pump_row, &text));
+    }
+}
+
 void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
+    check_one_pump(check, row);
     if (check->tool && check->tool->stations[station->tool].is_lock) {
         if (wh_check_is_behind(station->access_us, of->begin_us)) {
             wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->access_row,
@@ -232,8 +246,10 @@ void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row) {
                            wh_check_seconds(of->begin_us), wh_check_describe(check, door->row, &text));
         }
     }
-    station->pump_us = of->end_us;
-    station->pump_row = row;
+    if (station->pump_row == WH_CHECK_NO_ROW || of->end_us >= station->pump_us) {
+        station->pump_us = of->end_us;
+        station->pump_row = row;
+    }
 }
 
 void wh_check_end_pump(wh_schedule_state_t *check, int32_t row) {

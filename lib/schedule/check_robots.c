@@ -110,6 +110,9 @@ void wh_check_takes_aboard(wh_schedule_state_t *check, int32_t row, int32_t wafe
             check, WH_SCHEDULE_RULE_ARMS, row, WH_CHECK_NO_ROW,
             "robot: %s (expected one with a free arm: it has %d, and this would be wafer %d aboard)", name,
             (int)robot->arms, (int)robot->aboard);
+    } else if (robot->arms > 0 && arm > robot->arms) {
+        wh_check_found(check, WH_SCHEDULE_RULE_ARMS, row, WH_CHECK_NO_ROW,
+                       "arm: %d (expected at most %d: that many has %s)", (int)arm, (int)robot->arms, name);
     } else if (arm > 0 && robot->on[arm - 1] != WH_FLOW_NONE && robot->on[arm - 1] != wafer) {
         wh_check_found(check, WH_SCHEDULE_RULE_ARMS, row, check->wafers[robot->on[arm - 1]].row,
                        "arm: %d (expected a free one: on it is %s)", (int)arm,

@@ -289,6 +289,11 @@ static void expand_row(lua_State *L, map_t *map) {
         luaL_error(L, "%s: expand: a %s (expected a list of rows)", map->map, luaL_typename(L, list));
     }
     const lua_Integer count = (lua_Integer)lua_rawlen(L, list);
+    lua_pushnil(L);
+    if (count == 0 && lua_next(L, list) != 0) { /* one row, say, in place of a list of them */
+        luaL_error(L, "%s: expand: a table with names (expected a list of rows, { row })", map->map);
+    }
+    lua_settop(L, list);
     for (lua_Integer i = 1; i <= count && !map->is_refused; ++i) {
         lua_rawgeti(L, list, i);
         add_expanded(L, map);
