@@ -1,7 +1,9 @@
 #include "station_told.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const sides[] = {"atmosphere", "vacuum", "both"};
@@ -34,23 +36,76 @@ static size_t find_side(const char *name) {
     return side;
 }
 
+/* Skips `name=` and the value behind it, and a blank; returns the value, or null: it is not there. */
+static const char *take_value(const char **at, const char *name) {
+    const size_t length = strlen(name);
+    if (strncmp(*at, name, length) != 0 || (*at)[length] != '=') {
+        return NULL;
+    }
+    const char *value = *at + length + 1;
+    *at = value + strcspn(value, " ");
+    *at += **at == ' ' ? 1 : 0;
+    return value;
+}
+
+static bool take_word(const char **at, const char *name, char *word, size_t size) {
+    const char *value = take_value(at, name);
+    const size_t length = value ? strcspn(value, " ") : size;
+    if (length >= size) {
+        return false;
+    }
+    memcpy(word, value, length);
+    word[length] = '\0';
+    return true;
+}
+
+static bool take_number(const char **at, const char *name, int64_t most, int64_t *number) {
+    char *end = NULL;
+    const char *value = take_value(at, name);
+    if (!value) {
+        return false;
+    }
+    errno = 0;
+    *number = strtoll(value, &end, 10);
+    return errno == 0 && end > value && (*end == ' ' || *end == '\0') && *number >= -most && *number <= most;
+}
+
+static bool is_within(const wh_station_event_record_t *event, size_t station_count, size_t wafer_count) {
+    const wh_clock_event_t *of = &event->event;
+    return wh_is_index(event->station, station_count) && of->slot < WH_LAYOUT_SLOTS &&
+           (of->wafer == WH_FLOW_NONE || wh_is_index(of->wafer, wafer_count)) && of->at_us >= 0;
+}
+
+enum { STATION, SLOT, WAFER, AT, TOOK, NUMBERS };
+
+/* The numbers from `first` on, `count` of them, as they stand in the text. */
+static bool take_numbers(const char **at, size_t first, size_t count, int64_t numbers[NUMBERS]) {
+    static const char *const names[NUMBERS] = {"station", "slot", "wafer", "at", "us"};
+    bool is_good = true;
+    for (size_t i = first; i < first + count && is_good; ++i) {
+        is_good = take_number(at, names[i], i < AT ? INT32_MAX : INT64_MAX, &numbers[i]);
+    }
+    return is_good;
+}
+
 bool wh_station_told_read(const char *text, size_t station_count, size_t wafer_count,
                           wh_station_event_record_t *event) {
     char kind[20];
     char side[12];
-    int32_t slot = 0;
-    wh_clock_event_t *of = &event->event;
+    int64_t numbers[NUMBERS];
     memset(event, 0, sizeof *event);
-    const int read = sscanf(text,
-                            "kind=%19[a-z_] station=%" SCNd32 " slot=%" SCNd32 " wafer=%" SCNd32
-                            " side=%11[a-z] at=%" SCNd64 " us=%" SCNd64,
-                            kind, &event->station, &slot, &of->wafer, side, &of->at_us, &of->us);
-    if (read != 7 || find_kind(kind) == WH_CLOCK_KINDS || find_side(side) == SIDES) {
+    if (!take_word(&text, "kind", kind, sizeof kind) || !take_numbers(&text, STATION, 3, numbers) ||
+        !take_word(&text, "side", side, sizeof side) || !take_numbers(&text, AT, 2, numbers) ||
+        find_kind(kind) == WH_CLOCK_KINDS || find_side(side) == SIDES) {
         return false;
     }
-    of->kind = (wh_clock_kind_t)find_kind(kind);
-    of->side = (wh_flow_side_t)find_side(side);
-    of->slot = slot < 0 ? WH_FLOW_NONE : slot - 1;
-    return wh_is_index(event->station, station_count) && slot != 0 && of->slot < WH_LAYOUT_SLOTS &&
-           (of->wafer == WH_FLOW_NONE || wh_is_index(of->wafer, wafer_count)) && of->at_us >= 0;
+    *event = (wh_station_event_record_t){
+        .station = (int32_t)numbers[STATION],
+        .event = {.kind = (wh_clock_kind_t)find_kind(kind),
+                  .side = (wh_flow_side_t)find_side(side),
+                  .slot = numbers[SLOT] < 0 ? WH_FLOW_NONE : (int32_t)numbers[SLOT] - 1,
+                  .wafer = (int32_t)numbers[WAFER],
+                  .at_us = numbers[AT],
+                  .us = numbers[TOOK]}};
+    return is_within(event, station_count, wafer_count) && numbers[SLOT] != 0;
 }

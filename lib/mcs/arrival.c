@@ -58,7 +58,7 @@ void wh_mcs_await_arrival(lua_State *L, wh_mcs_t *mcs, wh_segment_t *segment, wh
     const wh_machine_t *machine = &mcs->layout->machine;
     const struct {
         const char *field;
-        int kind;
+        wh_awaited_kind_t kind;
         size_t count;
     } kinds[] = {{"door", WH_AWAITED_DOOR, machine->door_count},
                  {"gripper", WH_AWAITED_GRIPPER, machine->gripper_count},

@@ -43,8 +43,16 @@ typedef bool wh_look_ahead_t(void *user, const wh_track_t *track, const wh_ahead
 
 /* The sensor that a segment of kind SENSOR awaits: its gripper's vacuum sensor, the end switch of a door or
  * of a gripper's carrier, a station until nothing runs in it, or a load lock until it has pumped. */
+typedef enum {
+    WH_AWAITED_VACUUM,
+    WH_AWAITED_DOOR,
+    WH_AWAITED_GRIPPER,
+    WH_AWAITED_STATION,
+    WH_AWAITED_LOCK
+} wh_awaited_kind_t;
+
 typedef struct {
-    enum { WH_AWAITED_VACUUM, WH_AWAITED_DOOR, WH_AWAITED_GRIPPER, WH_AWAITED_STATION, WH_AWAITED_LOCK } kind;
+    wh_awaited_kind_t kind;
     int32_t index;
 } wh_awaited_t;
 
