@@ -64,13 +64,13 @@ static void print_commands(const wh_dialect_t *dialect, bool of_simulation) {
 }
 
 /* True for a status with which a command can answer: those of motion, of motion control and of its link,
- * without those that only a script or firmware meets. */
+ * without those that only a script or firmware meets. All from FLIP_TIMEOUT on are a mechanism's. */
 static bool is_answered(wh_status_t status) {
     static const wh_status_t ranges[][2] = {{WH_STATUS_BAD_VALVE, WH_STATUS_BAD_VALVE},
                                             {WH_STATUS_RUN_OVER, WH_STATUS_RUN_OVER},
                                             {WH_STATUS_BAD_LIMITS, WH_STATUS_BAD_SCAN},
                                             {WH_STATUS_NO_ANSWER, WH_STATUS_NOT_TOUCHED},
-                                            {WH_STATUS_FLIP_TIMEOUT, WH_STATUS_DOOR_OPEN}};
+                                            {WH_STATUS_FLIP_TIMEOUT, WH_HOST_NUMBERS - 1}};
     bool is_answered = false;
     for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; ++i) {
         is_answered = is_answered || (status >= ranges[i][0] && status <= ranges[i][1]);

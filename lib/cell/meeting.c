@@ -39,18 +39,6 @@ static wh_vec3_t middle_of(const wh_cell_t *cell, const wh_pose_t *base_from_waf
     return wh_vec3_add(&base_from_wafer->r, &half);
 }
 
-/* The centre of the face that looks at the gripper. */
-static wh_vec3_t face_of(const wh_cell_t *cell, const wh_pose_t *base_from_wafer,
-                         const wh_pose_t *base_from_gripper) {
-    wh_vec3_t centre = base_from_wafer->r;
-    if (wh_face_seen(base_from_wafer, cell->thickness, base_from_gripper) == WH_FACE_FRONT) {
-        const wh_vec3_t n = wh_mat3_column(&base_from_wafer->R, 2);
-        const wh_vec3_t through = wh_vec3_scale(cell->thickness, &n);
-        centre = wh_vec3_add(&centre, &through);
-    }
-    return centre;
-}
-
 bool wh_cell_wafer_crosses(const wh_cell_t *cell, const wh_pose_t wafer[2], const wh_pose_t other[2],
                            bool *goes_up) {
     const wh_vec3_t ends[4] = {middle_of(cell, &wafer[0]), middle_of(cell, &wafer[1]),
@@ -66,7 +54,8 @@ bool wh_cell_wafer_crosses(const wh_cell_t *cell, const wh_pose_t wafer[2], cons
 
 bool wh_cell_blade_crosses(const wh_cell_t *cell, const wh_pose_t blade[2], const wh_pose_t other[2],
                            bool *goes_up) {
-    const wh_vec3_t ends[2] = {face_of(cell, &other[0], &blade[0]), face_of(cell, &other[1], &blade[1])};
+    const wh_vec3_t ends[2] = {wh_face_centre(&other[0], cell->thickness, &blade[0]),
+                               wh_face_centre(&other[1], cell->thickness, &blade[1])};
     const way_t way = {wh_vec3_subtract(&blade[0].r, &ends[0]),
                        wh_vec3_subtract(&blade[1].r, &ends[1]),
                        wh_mat3_column(&blade[1].R, 2),

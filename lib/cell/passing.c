@@ -11,12 +11,7 @@ static wh_real_t height_of(const wh_station_t *station, const wh_vec3_t *place) 
 /* How far up the centre of the face is that looks at the slots. */
 static wh_real_t height_over(const wh_cell_t *cell, const wh_station_t *station,
                              const wh_pose_t *base_from_wafer) {
-    wh_vec3_t centre = base_from_wafer->r;
-    if (wh_face_seen(base_from_wafer, cell->thickness, &station->base_from_station) == WH_FACE_FRONT) {
-        const wh_vec3_t n = wh_mat3_column(&base_from_wafer->R, 2);
-        const wh_vec3_t through = wh_vec3_scale(cell->thickness, &n);
-        centre = wh_vec3_add(&centre, &through);
-    }
+    const wh_vec3_t centre = wh_face_centre(base_from_wafer, cell->thickness, &station->base_from_station);
     return height_of(station, &centre);
 }
 

@@ -144,7 +144,7 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
     const wh_flow_step_t *last = wh_flow_step_of(plan, w, k);
     for (size_t i = 0; i < last->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[last->stations[i]];
-        const int64_t process_us = last->process_us == WH_FLOW_NONE ? station->process_us : last->process_us;
+        const int64_t process_us = wh_flow_step_us(last, station);
         if (process_us > 0) {
             return problem_of(
                 "route %s: its last step, %d, is %s, which processes for %.6g s (expected one more "

@@ -43,10 +43,6 @@ static void plan_cleans(wh_flow_state_t *state, int32_t number) {
     }
 }
 
-static bool is_cleaned(const wh_flow_station_t *station) {
-    return station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
-}
-
 void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
     const int32_t number = state->tool->place_stations[at->place];
@@ -65,7 +61,7 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
                                  ? station->down_us
                                  : station->shut_us;
     at->done_us = lasts_us == 0 ? station->shut_us : begin_us + lasts_us;
-    if (is_cleaned(&state->tool->stations[number])) {
+    if (wh_flow_is_cleaned(&state->tool->stations[number])) {
         plan_cleans(state, number);
     }
     if (lasts_us > 0 && at->done_us < station->done_us) {
@@ -80,7 +76,7 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
     --state->stations[station].wafers;
     const bool is_due = wh_flow_is_clean_next(state, number);
     ++place->since_clean;
-    if (is_cleaned(of)) {
+    if (wh_flow_is_cleaned(of)) {
         place->is_clean_due = is_due && !of->cleans_full;
         place->since_clean = is_due && of->cleans_full ? 0 : place->since_clean;
         place->idle_us = of->idle_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + of->idle_us;

@@ -115,6 +115,16 @@ static inline bool wh_flow_is_clean_due(const wh_flow_station_t *station, int32_
     return station->clean_after > 0 && since_clean + 1 >= station->clean_after;
 }
 
+/* True if the station is ever cleaned. */
+static inline bool wh_flow_is_cleaned(const wh_flow_station_t *station) {
+    return station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
+}
+
+/* How long a wafer is processed in this station in this step of its route. */
+static inline int64_t wh_flow_step_us(const wh_flow_step_t *step, const wh_flow_station_t *station) {
+    return step->process_us == WH_FLOW_NONE ? station->process_us : step->process_us;
+}
+
 /* How long a lock takes to this side. */
 static inline int64_t wh_flow_pump_us(const wh_flow_station_t *station, wh_flow_side_t to, bool is_empty) {
     return is_empty ? station->empty_pump_us[to] : station->pump_us[to];

@@ -6,6 +6,17 @@ wh_face_t wh_face_towards(const wh_pose_t *base_from_wafer, const wh_pose_t *bas
     return wh_vec3_dot(&e3, &n2) < 0 ? WH_FACE_FRONT : WH_FACE_BACK;
 }
 
+wh_vec3_t wh_face_centre(const wh_pose_t *base_from_wafer, wh_real_t thickness,
+                         const wh_pose_t *base_from_gripper) {
+    wh_vec3_t centre = base_from_wafer->r;
+    if (wh_face_seen(base_from_wafer, thickness, base_from_gripper) == WH_FACE_FRONT) {
+        const wh_vec3_t e3 = wh_mat3_column(&base_from_wafer->R, 2);
+        const wh_vec3_t through = wh_vec3_scale(thickness, &e3);
+        centre = wh_vec3_add(&centre, &through);
+    }
+    return centre;
+}
+
 void wh_face_frame(const wh_pose_t *base_from_wafer, wh_real_t thickness, wh_face_t face,
                    wh_pose_t *base_from_face) {
     *base_from_face = *base_from_wafer;

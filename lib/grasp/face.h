@@ -42,6 +42,10 @@ static inline wh_face_t wh_face_seen(const wh_pose_t *base_from_wafer, wh_real_t
     return thickness > 0 ? wh_face_towards(base_from_wafer, base_from_gripper) : WH_FACE_BACK;
 }
 
+/* The centre of that face, in base. Nothing is checked. Cost: 6 products. */
+wh_vec3_t wh_face_centre(const wh_pose_t *base_from_wafer, wh_real_t thickness,
+                         const wh_pose_t *base_from_gripper) WH_SYMBOL(wh_face_centre);
+
 /* The frame in which a face is seen, written to other memory; for the back it is the wafer's own. Applied
  * again to a front's frame with `face` WH_FACE_FRONT, it gives the wafer's frame back, to rounding. Nothing
  * is checked. Cost: 3 products. */

@@ -95,14 +95,18 @@ bool wh_station_told_read(const char *text, size_t station_count, size_t wafer_c
     int64_t numbers[NUMBERS];
     memset(event, 0, sizeof *event);
     if (!take_word(&text, "kind", kind, sizeof kind) || !take_numbers(&text, STATION, 3, numbers) ||
-        !take_word(&text, "side", side, sizeof side) || !take_numbers(&text, AT, 2, numbers) ||
-        find_kind(kind) == WH_CLOCK_KINDS || find_side(side) == SIDES) {
+        !take_word(&text, "side", side, sizeof side) || !take_numbers(&text, AT, 2, numbers)) {
+        return false;
+    }
+    const size_t number = find_kind(kind);
+    const size_t at = find_side(side);
+    if (number == WH_CLOCK_KINDS || at == SIDES) {
         return false;
     }
     *event = (wh_station_event_record_t){
         .station = (int32_t)numbers[STATION],
-        .event = {.kind = (wh_clock_kind_t)find_kind(kind),
-                  .side = (wh_flow_side_t)find_side(side),
+        .event = {.kind = (wh_clock_kind_t)number,
+                  .side = (wh_flow_side_t)at,
                   .slot = numbers[SLOT] < 0 ? WH_FLOW_NONE : (int32_t)numbers[SLOT] - 1,
                   .wafer = (int32_t)numbers[WAFER],
                   .at_us = numbers[AT],

@@ -93,6 +93,7 @@
 #define wh_event_name WH_SYMBOL_RENAMED(wh_event_name)
 #define wh_event_reason WH_SYMBOL_RENAMED(wh_event_reason)
 #define wh_event_text WH_SYMBOL_RENAMED(wh_event_text)
+#define wh_face_centre WH_SYMBOL_RENAMED(wh_face_centre)
 #define wh_face_frame WH_SYMBOL_RENAMED(wh_face_frame)
 #define wh_face_measure WH_SYMBOL_RENAMED(wh_face_measure)
 #define wh_face_swept_radius WH_SYMBOL_RENAMED(wh_face_swept_radius)

@@ -79,16 +79,16 @@ static void imply(const wh_mcs_t *mcs, const char *text, bool ok) {
     }
 }
 
-static void judge_stay(const struct wh_clocks *clocks, const wh_clocked_t *of, int32_t wafer, double stay_us,
-                       const char *verb) {
+static void judge_stay(const struct wh_clocks *clocks, const wh_clocked_t *of, int32_t wafer,
+                       double stay_us) {
     char text[400];
     if (of->of.window_us == WH_FLOW_NEVER || clocks->state->tells_late) {
         return;
     }
     const double over_us = stay_us - (double)of->of.window_us;
     const int length =
-        snprintf(text, sizeof text, "%s %s %s at most %.10g s after its process", wafer_name(clocks, wafer),
-                 verb, station_name(clocks, of), (double)of->of.window_us / 1e6);
+        snprintf(text, sizeof text, "%s leaves %s at most %.10g s after its process",
+                 wafer_name(clocks, wafer), station_name(clocks, of), (double)of->of.window_us / 1e6);
     if (over_us > 0) {
         snprintf(text + length, sizeof text - (size_t)length, "; it stayed %.10g s, %.10g s too long",
                  stay_us / 1e6, over_us / 1e6);
@@ -117,7 +117,7 @@ static void tell(void *user, const wh_clock_event_t *event) {
                                 &(wh_station_event_record_t){telling->of->station, *event});
     wh_mcs_tell(mcs, WH_MCS_STATION_TOLD, NULL);
     if (event->kind == WH_CLOCK_TAKEN) {
-        judge_stay(telling->clocks, telling->of, event->wafer, (double)event->us, "leaves");
+        judge_stay(telling->clocks, telling->of, event->wafer, (double)event->us);
     } else if (event->kind == WH_CLOCK_PROCESS_CUT) {
         judge_cut(telling->clocks, telling->of, event);
     }
@@ -131,7 +131,7 @@ void wh_mcs_judge_stays(const wh_mcs_t *mcs) {
             const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
             const double stay_us = (double)(clocks->state->utime - place->done_us);
             if (place->phase == WH_CLOCK_DONE && stay_us > (double)of->of.window_us) {
-                judge_stay(clocks, of, place->wafer, stay_us, "leaves");
+                judge_stay(clocks, of, place->wafer, stay_us);
             }
         }
     }

@@ -14,9 +14,6 @@
 #define END                                                                                                  \
     { NULL, NULL, NULL, false }
 
-/* The longest time of a flow, s: ten years. */
-#define LONGEST 3.2e8
-
 /* The most wafers of a flow. */
 #define MOST_WAFERS 1000000
 
@@ -55,10 +52,6 @@ const wh_reader_field_t wh_flow_down_fields[] = {
 
 const wh_reader_field_t wh_flow_list_fields[] = {
     {"order", "table<string, string[][]>", "each robot's transfers in order", true}, END};
-
-static int64_t read_us(wh_reader_t *reader, const char *field, double fallback) {
-    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, LONGEST));
-}
 
 /* --------------------------------------------------------------------------------------------------- lots */
 
@@ -135,7 +128,7 @@ static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_t
     }
     read_wafers(reader, tool, lot);
     read_route_name(reader, routes, route_count, lot->route);
-    lot->lot.arrives_us = read_us(reader, "arrives", 0);
+    lot->lot.arrives_us = wh_flow_read_us(reader, "arrives", 0);
     lot->lot.priority = wh_reader_whole(reader, "priority", 0, -1000, 1000);
     lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
     lot->back = WH_FLOW_NONE;
@@ -306,8 +299,8 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
         }
         wh_flow_down_t *down = &plan->downs[plan->down_count];
         down->station = wh_timed_find_station(reader, tool, "[1]", wh_timed_read_entry(reader, 1, name));
-        down->at_us = read_us(reader, "at", NAN);
-        down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, LONGEST));
+        down->at_us = wh_flow_read_us(reader, "at", NAN);
+        down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, WH_FLOW_LONGEST_S));
         ++plan->down_count;
         wh_reader_leave(reader);
     }
@@ -327,8 +320,8 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
         wh_reader_fail(reader, "on_error", "a function of the tool and a problem");
     }
     lua_pop(reader->L, 1);
-    plan->until_us = wh_reader_has(reader, "until_s") ? read_us(reader, "until_s", 0) : WH_FLOW_NEVER;
-    plan->takt_us = read_us(reader, "takt", 0);
+    plan->until_us = wh_reader_has(reader, "until_s") ? wh_flow_read_us(reader, "until_s", 0) : WH_FLOW_NEVER;
+    plan->takt_us = wh_flow_read_us(reader, "takt", 0);
     plan->is_safe = wh_reader_boolean(reader, "safe", true);
     flow->has_gains = wh_reader_boolean(reader, "gains", false);
     if (flow->has_gains && plan->rule == WH_FLOW_OWN) {

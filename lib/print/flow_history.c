@@ -37,8 +37,7 @@ static int32_t last_process(const wh_flow_figures_t *figures, int32_t wafer) {
     for (int32_t k = wh_flow_last_step(plan, wafer) - 1; k > 0; --k) {
         const wh_flow_step_t *step = wh_flow_step_of(plan, wafer, k);
         for (size_t i = 0; i < step->station_count; ++i) {
-            const int64_t own_us = figures->tool->stations[step->stations[i]].process_us;
-            if ((step->process_us == WH_FLOW_NONE ? own_us : step->process_us) > 0) {
+            if (wh_flow_step_us(step, &figures->tool->stations[step->stations[i]]) > 0) {
                 return k;
             }
         }

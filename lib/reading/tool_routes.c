@@ -10,9 +10,6 @@
 #define END                                                                                                  \
     { NULL, NULL, NULL, false }
 
-/* The longest process of a step, s: ten years. */
-#define LONGEST 3.2e8
-
 /* The most routes of a layout. */
 #define MOST_ROUTES 64
 
@@ -65,8 +62,8 @@ const char *wh_timed_read_entry(wh_reader_t *reader, size_t index, char text[WH_
 
 /* ------------------------------------------------------------------------------------------------- routes */
 
-static int64_t read_process_us(wh_reader_t *reader) {
-    return wh_layout_us(wh_reader_number(reader, "process", 0, 0, LONGEST));
+int64_t wh_flow_read_us(wh_reader_t *reader, const char *field, double fallback) {
+    return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_FLOW_LONGEST_S));
 }
 
 static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step,
@@ -103,7 +100,8 @@ static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t in
     if (count == 0) {
         wh_reader_fail(reader, NULL, "at least one station");
     }
-    step->process_us = wh_reader_has(reader, "process") ? read_process_us(reader) : WH_FLOW_NONE;
+    step->process_us =
+        wh_reader_has(reader, "process") ? wh_flow_read_us(reader, "process", 0) : WH_FLOW_NONE;
     step->second_arm = wh_reader_boolean(reader, "hot", false);
     wh_reader_leave(reader);
 }

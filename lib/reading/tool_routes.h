@@ -4,6 +4,12 @@
 
 #include "layout_tool.h"
 
+/* The longest time of a flow and of a route's step, s: ten years. */
+#define WH_FLOW_LONGEST_S 3.2e8
+
+/* A time of at most WH_FLOW_LONGEST_S; `fallback` in s, NAN: it must be there. */
+int64_t wh_flow_read_us(wh_reader_t *reader, const char *field, double fallback);
+
 /* How many entries the table at which the reader is has, beside the known fields. Others are refused. */
 size_t wh_timed_count_entries(wh_reader_t *reader, const wh_reader_field_t *known);
 

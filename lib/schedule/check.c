@@ -52,6 +52,18 @@ void wh_check_found(wh_schedule_state_t *check, int rule, int32_t row, int32_t o
     ++report->rules[rule].found;
 }
 
+bool wh_check_is_early(wh_schedule_state_t *check, int rule, int32_t row, int64_t us, int32_t other) {
+    wh_check_text_t text;
+    const int64_t begin_us = wh_check_row(check, row)->begin_us;
+    const bool is_early = wh_check_is_behind(us, begin_us);
+    if (is_early) {
+        wh_check_found(check, rule, row, other, "begin_s: %.10g (expected %.10g or later, behind %s)",
+                       wh_check_seconds(begin_us), wh_check_seconds(us),
+                       wh_check_describe(check, other, &text));
+    }
+    return is_early;
+}
+
 const char *wh_check_place_name(const wh_schedule_state_t *check, int32_t place, wh_check_text_t *text) {
     const wh_schedule_place_t *of = &check->schedule->places[place];
     (void)snprintf(text->text, sizeof text->text, "%s %d",

@@ -106,6 +106,10 @@ static inline bool wh_check_is_behind(int64_t us, int64_t other_us) {
     return us > other_us + WH_SCHEDULE_INSTANT_US;
 }
 
+/* The row's action begins when the other one's is over, at `us`; true if it does not: that is found, by this
+ * rule. */
+bool wh_check_is_early(wh_schedule_state_t *check, int rule, int32_t row, int64_t us, int32_t other);
+
 /* The layout's station of a row's; null: there is no layout. */
 const wh_flow_station_t *wh_check_station(const wh_schedule_state_t *check, int32_t station);
 

@@ -18,7 +18,7 @@ static facts_t find_facts(const wh_schedule_state_t *check) {
     for (size_t s = 0; check->tool && s < check->tool->station_count; ++s) {
         const wh_flow_station_t *station = &check->tool->stations[s];
         facts.has_windows = facts.has_windows || station->window_us != WH_FLOW_NEVER;
-        facts.has_cleans = facts.has_cleans || station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER;
+        facts.has_cleans = facts.has_cleans || wh_flow_is_cleaned(station);
         facts.has_locks = facts.has_locks || station->is_lock;
     }
     return facts;

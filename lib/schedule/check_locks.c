@@ -111,17 +111,14 @@ static void check_door_side(wh_schedule_state_t *check, int32_t row, const wh_ch
 }
 
 void wh_check_begin_door(wh_schedule_state_t *check, int32_t row) {
-    wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const bool opens = of->action == WH_SCHEDULE_OPEN;
     wh_check_door_t *door = wh_check_door_of(check, of);
     if (opens) {
         check_other_door(check, row, door);
         check_door_side(check, row, door);
-    } else if (wh_check_is_behind(door->access_us, of->begin_us)) {
-        wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, door->access_row,
-                       "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
-                       wh_check_seconds(door->access_us), wh_check_describe(check, door->access_row, &text));
+    } else {
+        (void)wh_check_is_early(check, WH_SCHEDULE_RULE_DOOR, row, door->access_us, door->access_row);
     }
     if (check->tool && of->robot != WH_FLOW_NONE) {
         const wh_flow_door_t *times = &check->tool->doors[wh_check_pair(check, of)];
@@ -141,8 +138,7 @@ void wh_check_end_door(wh_schedule_state_t *check, int32_t row) {
 /* -------------------------------------------------------------------------------------------------- locks */
 
 static int64_t pump_us(const wh_schedule_state_t *check, int32_t station, wh_flow_side_t to) {
-    const wh_flow_station_t *of = wh_check_station(check, station);
-    return check->stations[station].wafers == 0 ? of->empty_pump_us[to] : of->pump_us[to];
+    return wh_flow_pump_us(wh_check_station(check, station), to, check->stations[station].wafers == 0);
 }
 
 /* A lock without pumps in the schedule turns as soon as nobody is in it. */
@@ -155,19 +151,15 @@ static bool is_turned(const wh_schedule_state_t *check, const wh_schedule_row_t 
 
 /* Rule 11. */
 static void check_pressure(wh_schedule_state_t *check, int32_t row) {
-    wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
     const wh_flow_side_t side = side_of(check, of);
     if (!check->tool->stations[station->tool].is_lock || side == WH_FLOW_BOTH) {
         return;
     }
-    if (wh_check_is_behind(station->pump_us, of->begin_us)) {
-        wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
-                       "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
-                       wh_check_seconds(station->pump_us),
-                       wh_check_describe(check, station->pump_row, &text));
-    } else if (station->side != side && !is_turned(check, of, side)) {
+    const bool is_pumping =
+        wh_check_is_early(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_us, station->pump_row);
+    if (!is_pumping && station->side != side && !is_turned(check, of, side)) {
         wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
                        "begin_s: %.10g (expected a time when %s is at %s, the side of %s)",
                        wh_check_seconds(of->begin_us),
@@ -212,30 +204,14 @@ void wh_check_access(wh_schedule_state_t *check, int32_t row) {
 }
 
 /* A lock goes one way at a time, whichever row comes first in the file. */
-static void check_one_pump(wh_schedule_state_t *check, int32_t row) {
-    wh_check_text_t text;
-    const wh_schedule_row_t *of = wh_check_row(check, row);
-    const wh_check_station_t *station = &check->stations[of->station];
-    if (station->pump_row != WH_CHECK_NO_ROW && wh_check_is_behind(station->pump_us, of->begin_us)) {
-        wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_row,
-                       "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
-                       wh_check_seconds(station->pump_us),
-                       wh_check_describe(check, station->pump_row, &text));
-    }
-}
-
 void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_station_t *station = &check->stations[of->station];
-    check_one_pump(check, row);
+    (void)wh_check_is_early(check, WH_SCHEDULE_RULE_PRESSURE, row, station->pump_us, station->pump_row);
     if (check->tool && check->tool->stations[station->tool].is_lock) {
-        if (wh_check_is_behind(station->access_us, of->begin_us)) {
-            wh_check_found(check, WH_SCHEDULE_RULE_PRESSURE, row, station->access_row,
-                           "begin_s: %.10g (expected %.10g or later, behind %s)",
-                           wh_check_seconds(of->begin_us), wh_check_seconds(station->access_us),
-                           wh_check_describe(check, station->access_row, &text));
-        }
+        (void)wh_check_is_early(check, WH_SCHEDULE_RULE_PRESSURE, row, station->access_us,
+                                station->access_row);
         wh_check_length(check, row, station->side == of->side ? 0 : pump_us(check, of->station, of->side));
     }
     for (int32_t side = 0; side < 2; ++side) {

@@ -5,17 +5,9 @@
 
 /* Rule 1. An action that begins while another one runs. */
 static bool is_busy(wh_schedule_state_t *check, int32_t row, wh_check_robot_t *robot) {
-    wh_check_text_t text;
-    const wh_schedule_row_t *of = wh_check_row(check, row);
-    if (robot->row == WH_CHECK_NO_ROW ||
-        !wh_check_is_behind(wh_check_row(check, robot->row)->end_us, of->begin_us)) {
-        return false;
-    }
-    wh_check_found(check, WH_SCHEDULE_RULE_BUSY, row, robot->row,
-                   "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
-                   wh_check_seconds(wh_check_row(check, robot->row)->end_us),
-                   wh_check_describe(check, robot->row, &text));
-    return true;
+    return robot->row != WH_CHECK_NO_ROW &&
+           wh_check_is_early(check, WH_SCHEDULE_RULE_BUSY, row, wh_check_row(check, robot->row)->end_us,
+                             robot->row);
 }
 
 /* Rule 6. From where it stands to where the row begins, and of a move to where it ends. */

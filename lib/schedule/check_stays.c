@@ -6,9 +6,8 @@ static const char *name_of(const wh_schedule_state_t *check, int32_t wafer) {
 }
 
 /* The process of a route's step; in the route's last station, and behind it, there is none of its own. */
-static int64_t step_us(const wh_flow_route_t *route, int32_t visits, int64_t own_us) {
-    const int64_t us = (size_t)visits < route->step_count ? route->steps[visits].process_us : 0;
-    return us == WH_FLOW_NONE ? own_us : us;
+static int64_t step_us(const wh_flow_route_t *route, int32_t visits, const wh_flow_station_t *station) {
+    return (size_t)visits < route->step_count ? wh_flow_step_us(&route->steps[visits], station) : 0;
 }
 
 /* The time for which the layout processes a wafer where it lies: of the shortest route that it may go. */
@@ -17,16 +16,15 @@ int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
     if (!check->tool || wafer->place == WH_FLOW_NONE || wafer->visits == 0) {
         return 0;
     }
-    const int32_t station = check->stations[check->schedule->places[wafer->place].station].tool;
-    const int64_t own_us = check->tool->stations[station].process_us;
+    const wh_flow_station_t *station = wh_check_station(check, check->schedule->places[wafer->place].station);
     int64_t least_us = WH_FLOW_NEVER;
     for (size_t r = 0; r < check->tool->route_count && !wafer->is_lost; ++r) {
         if ((wafer->routes >> r & 1U) != 0) {
-            const int64_t us = step_us(&check->tool->routes[r], wafer->visits, own_us);
+            const int64_t us = step_us(&check->tool->routes[r], wafer->visits, station);
             least_us = us < least_us ? us : least_us;
         }
     }
-    return least_us == WH_FLOW_NEVER ? own_us : least_us;
+    return least_us == WH_FLOW_NEVER ? station->process_us : least_us;
 }
 
 /* ---------------------------------------------------------------------------------------------- processes */
@@ -119,8 +117,8 @@ static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];
-    if (!station || !station->cleans_full || station->clean_after == 0 || wafer->visits == 0 ||
-        place->since + 1 < station->clean_after) {
+    if (!station || !station->cleans_full || wafer->visits == 0 ||
+        !wh_flow_is_clean_due(station, place->since)) {
         return;
     }
     place->since = -1; /* this wafer leaves behind it */
@@ -151,22 +149,17 @@ void wh_check_leave(wh_schedule_state_t *check, int32_t row, int32_t number) {
 }
 
 void wh_check_begin_clean(wh_schedule_state_t *check, int32_t row) {
-    wh_check_text_t text;
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];
     const bool is_full = place->count > 0;
-    if (wh_check_is_behind(place->placing_us, of->begin_us)) {
-        wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, place->placing_row,
-                       "begin_s: %.10g (expected %.10g or later, behind %s)", wh_check_seconds(of->begin_us),
-                       wh_check_seconds(place->placing_us),
-                       wh_check_describe(check, place->placing_row, &text));
-    } else if (station && is_full && !station->cleans_full) {
+    if (!wh_check_is_early(check, WH_SCHEDULE_RULE_CLEAN, row, place->placing_us, place->placing_row) &&
+        station && is_full && !station->cleans_full) {
         wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, check->wafers[place->head].row,
                        "begin_s: %.10g (expected a time when nothing lies there: %s does)",
                        wh_check_seconds(of->begin_us), name_of(check, place->head));
     }
-    if (station && (station->clean_after > 0 || station->idle_us != WH_FLOW_NEVER)) {
+    if (station && wh_flow_is_cleaned(station)) {
         wh_check_length(check, row, station->clean_us);
     }
     place->cleaned_us = of->begin_us;
@@ -180,7 +173,7 @@ static int64_t clean_due_us(const wh_schedule_state_t *check, int32_t row, int32
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     const wh_check_place_t *place = &check->places[of->place];
-    if (station->clean_after > 0 && !station->cleans_full && place->since + leaving >= station->clean_after) {
+    if (!station->cleans_full && wh_flow_is_clean_due(station, place->since + leaving - 1)) {
         return place->empty_us;
     }
     if (station->idle_us == WH_FLOW_NEVER || leaving > 0 || place->count > 0 ||

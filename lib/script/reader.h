@@ -89,9 +89,7 @@ void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback
 int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const char *const choices[]);
 
 /* A scalar by its row among the known fields of the table being read, into the struct that the row is
- * about: within the row's range, and without the field the row's default. The other two take another
- * default, and another range. */
-void wh_reader_scalar(wh_reader_t *reader, const char *field, void *into);
+ * about: within the row's range, and without the field the given default. The second takes another range. */
 void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, double fallback);
 void wh_reader_scalar_within(wh_reader_t *reader, const char *field, void *into, double fallback,
                              double least, double most);

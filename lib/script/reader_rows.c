@@ -38,11 +38,6 @@ const wh_reader_field_t *wh_reader_row(const wh_reader_t *reader, const char *fi
     return row;
 }
 
-void wh_reader_scalar(wh_reader_t *reader, const char *field, void *into) {
-    const wh_reader_field_t *row = wh_reader_row(reader, field);
-    read_row(reader, row, into, row->usual, row->least, row->most);
-}
-
 void wh_reader_scalar_from(wh_reader_t *reader, const char *field, void *into, double fallback) {
     const wh_reader_field_t *row = wh_reader_row(reader, field);
     read_row(reader, row, into, fallback, row->least, row->most);

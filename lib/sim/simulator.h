@@ -7,8 +7,8 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               404    320     268    240
  *     stack of wh_simulator_set_physics        280    272     232    224
- *     stack of wh_simulator_step              1584   1544    1088   1112
- *     stack of wh_simulator_step:sampled      1584   1544    1088   1112
+ *     stack of wh_simulator_step              1608   1544    1104   1112
+ *     stack of wh_simulator_step:sampled      1608   1544    1104   1112
  *     stack of wh_simulator_view                32     36      24     40
  *     stack of wh_simulator_hash               136    176     144    176
  *     size of wh_simulator_t                 22352          14408

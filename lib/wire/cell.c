@@ -15,7 +15,6 @@ static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
     message->wafer_names = room->wafer_names;
     message->wafers = room->wafers;
     message->faults = room->faults;
-    message->grips = room->grips;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         room->grips[g] = (int8_t)layout->grips[g].kind;
         message->gripper_names[g] = wh_link_borrowed(layout->grippers[g].name);

@@ -194,14 +194,5 @@ return function(native, patterns, lookup, arm, player, grips)
     end
   end
 
-  -- A gripper that is pins: the name of its station, or nil.
-  function mechanisms.station_of_pins(gripper)
-    for name, station in pairs(native.layout.stations) do
-      if station.pins == gripper then
-        return name
-      end
-    end
-  end
-
   return mechanisms
 end

@@ -60,6 +60,8 @@ static wh_pose_t carried(const model_t *m, const wh_gripper_input_t *input, int 
 static wh_pose_t seen_by(const wh_pose_t *wafer, const wh_pose_t *gripper) {
     wh_pose_t face;
     wh_face_frame(wafer, THICKNESS, wh_face_towards(wafer, gripper), &face);
+    const wh_vec3_t centre = wh_face_centre(wafer, THICKNESS, gripper);
+    assert_memory_equal(&centre, &face.r, sizeof centre);
     return face;
 }
 
