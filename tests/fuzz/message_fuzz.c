@@ -362,7 +362,8 @@ static void check_event(const wh_event_t *event, int64_t seq) {
                                      1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_FAULT_ARMED |
                                      1U << WH_EVENT_FAULT_CLEARED;
     const bool of_parts = (nameless >> (unsigned)event->kind & 1U) != 0;
-    const bool no_wafer = event->kind == WH_EVENT_BAD_INPUT || of_parts;
+    const bool is_pushed = event->kind == WH_EVENT_PUSHED_THROUGH;
+    const bool no_wafer = event->kind == WH_EVENT_BAD_INPUT || is_pushed || of_parts;
     REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
     REQUIRE((no_wafer && event->wafer == WH_NONE) || is_index(event->wafer, wafers));
     REQUIRE((of_parts && event->gripper == WH_NONE) || is_index(event->gripper, grippers));
@@ -371,6 +372,8 @@ static void check_event(const wh_event_t *event, int64_t seq) {
         REQUIRE(is_index(event->other, wafers));
     } else if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
         REQUIRE(is_index(event->other, grippers));
+    } else if (is_pushed) {
+        REQUIRE(is_index(event->other, wafers) || (event->other == WH_NONE && event->wafer != WH_NONE));
     }
 }
 

@@ -245,7 +245,8 @@ static void check_events(const run_t *run) {
     REQUIRE(run->state.event_count <= WH_SLICE_EVENTS);
     for (size_t i = 0; i < run->state.event_count; ++i) {
         const wh_event_t *event = &run->state.events[i];
-        const bool of_wafers = event->kind == WH_EVENT_SLOT_OCCUPIED;
+        const bool of_wafers =
+            event->kind == WH_EVENT_SLOT_OCCUPIED || event->kind == WH_EVENT_PUSHED_THROUGH;
         REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
         REQUIRE(event->wafer == WH_NONE || wh_is_index(event->wafer, run->storage.wafer_count));
         REQUIRE(event->gripper == WH_NONE || wh_is_index(event->gripper, run->storage.gripper_count));

@@ -100,6 +100,7 @@ static void call_grips(void) {
     wh_proximity_t measured;
     (void)wh_face_measure(any_bool() ? &wafer : NULL, real, &gripper, &tolerance, any_bool() ? &face : NULL,
                           &measured);
+    (void)wh_face_centre(&wafer, real, &gripper);
     wh_face_turn_over(&axis, &wafer);
     (void)wh_face_swept_radius(real, real, real);
     const wh_passive_t passive = {tolerance, (wh_check_t)integer, real};
