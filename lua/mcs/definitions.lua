@@ -162,6 +162,27 @@ return function(native, lookup, targets, words, wh)
     add("function %s(%s) end", name, table.concat(names, ", "))
   end
 
+  -- The type of a word that is bound to a robot.
+  local function method_of(word)
+    local takes, gives = { "self: table" }, {}
+    for place, parameter in ipairs(word.takes) do
+      takes[place + 1] = parameter[1] .. ": " .. parameter[2]
+    end
+    for place, result in ipairs(word.gives or {}) do
+      gives[place] = result[1]
+    end
+    return ("fun(%s)%s"):format(table.concat(takes, ", "), gives[1] and ": " .. table.concat(gives, ", ") or "")
+  end
+
+  local function add_bound_words()
+    open("bound_words", "The words that move one of several robots: called with a colon.")
+    for _, word in ipairs(words.scripts) do
+      if word.bound then
+        add_field(word[1], method_of(word), "as " .. word[1])
+      end
+    end
+  end
+
   local function add_module()
     local names = {}
     for name in pairs(wh.errors) do
@@ -189,11 +210,12 @@ return function(native, lookup, targets, words, wh)
     add_layouts()
     add_all_options()
     add_results()
+    add_bound_words()
     add("")
     add("---@alias waferhand.pattern fun(target: waferhand.pattern_target, steps: waferhand.pattern_steps, "
       .. "shipped: table<string, fun(target: waferhand.pattern_target): string|nil>): string|nil, string|nil")
-    for name, word in pairs(words.scripts) do
-      add_function(name, word)
+    for _, word in ipairs(words.scripts) do
+      add_function(word[1], word)
     end
     for name, word in pairs(words.checks) do
       add_function(name, word)

@@ -105,16 +105,13 @@ return function(native)
     end
   end
 
-  -- The words that robot() binds.
-  local bound_words = { "get", "put", "swap", "ready", "map", "home", "recover", "move", "line", "continue", "stop", "station",
-    "set_station", "teach", "pattern" }
-
   -- robot "VAC": the words bound to it, as in VAC:get("LL", 1).
   local function robot(name)
     local index, words_of_it = lookup.robot(name), {}
-    for _, bound in ipairs(bound_words) do
-      local action = _G[bound]
-      words_of_it[bound] = function(self, ...)
+    for _, known in ipairs(words.scripts) do
+      local bound = known[1]
+      local action = known.bound and _G[bound]
+      words_of_it[bound] = action and function(self, ...)
         if self ~= words_of_it then
           native.fail("BAD_ARGUMENT", ("%s: called with a dot (expected a colon, as in ROBOT:%s(...))"):format(bound, bound))
         end

@@ -20,11 +20,6 @@ end
 local alarms = dofile "lua/mcs/alarms.lua" ({}, { errors = errors })
 local NONE = ""
 
--- The order of the words in the manual.
-local ORDER = "cell patterns flow study get put swap continue stop ready pattern map home recover stop_in rotate centring teach station " ..
-  "set_station edge_scan align calibrate open close lift valve move flip robot line wait wait_for pump late now task join signal await fault " ..
-  "clear_fault offset face holder proximity measure distance angle hits clearance expect expect_offset expect_within cycle"
-
 -- Errors on purpose: what breaks, or for whom else a check is.
 local NOTES = {
   WAFER_MISSING = "with vacuum: the valve of the gripper is stuck",
@@ -190,23 +185,17 @@ end
 ----------------------------------------------------------------------------------------------------------------- words
 
 local function add_words()
-  local left = {}
-  for name in pairs(words.scripts) do
-    left[name] = true
-  end
   head("word", "gives", "what it does")
-  for name in ORDER:gmatch "%S+" do
-    local word, takes, gives = words.scripts[name], {}, {}
+  for _, word in ipairs(words.scripts) do
+    local takes, gives = {}, {}
     for i, parameter in ipairs(word.takes) do
       takes[i] = parameter[1] .. (parameter[2]:find "%?$" and "?" or "")
     end
     for i, result in ipairs(word.gives or {}) do
       gives[i] = result[2] .. (result[1]:find "%?$" and "?" or "")
     end
-    row(("`%s(%s)`"):format(name, table.concat(takes, ", ")), #gives > 0 and "`" .. table.concat(gives, ", ") .. "`" or NONE, word.does)
-    left[name] = nil
+    row(("`%s(%s)`"):format(word[1], table.concat(takes, ", ")), #gives > 0 and "`" .. table.concat(gives, ", ") .. "`" or NONE, word.does)
   end
-  assert(not next(left), ("%s is not in ORDER"):format(next(left)))
   add ""
 end
 
