@@ -14,7 +14,7 @@
 #include "motion/track.h"
 #include "support/support.h"
 
-#define WAYS (200 / WH_TEST_SHARE)
+#define WAYS (200 / WH_TEST_SHARE > 10 ? 200 / WH_TEST_SHARE : 10)
 #define LONGEST 30000
 #define RAIL 4
 #define FLIP 5
