@@ -207,7 +207,7 @@ static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t
 }
 
 /* How high the wafer, or the blade, now is over the wafer that it went through, along that one's normal; as
- * far as supports have let it go there. */
+ * far as supports have let it go there. Near the end of the range of numbers there is no such height. */
 static void judge_in_wafer(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
                            const wh_passing_t *passing, wh_event_list_t *list) {
     const wh_grasp_storage_t *storage = &table->storage;
@@ -217,7 +217,8 @@ static void judge_in_wafer(const wh_cell_t *cell, const wh_grasp_t *table, size_
     const wh_vec3_t up = wh_mat3_column(&other->R, 2);
     const wh_vec3_t from = wh_vec3_subtract(own, &other->r);
     const wh_real_t height = wh_vec3_dot(&up, &from);
-    if (passing->wafer == WH_NONE || passing->goes_up || height < -cell->tolerance.projz / 2) {
+    if (wh_real_is_finite(height) &&
+        (passing->wafer == WH_NONE || passing->goes_up || height < -cell->tolerance.projz / 2)) {
         wh_event_t *said = say_pushed(table, g, passing, list);
         said->value = height;
         said->at = *own;

@@ -354,6 +354,21 @@ static bool is_index(int32_t index, size_t count) {
     return index >= 0 && (size_t)index < count;
 }
 
+/* True if `other` names what this kind of event has there. */
+static bool other_is_known(const wh_event_t *event, size_t wafers, size_t grippers) {
+    switch (event->kind) {
+    case WH_EVENT_SLOT_OCCUPIED:
+        return is_index(event->other, wafers);
+    case WH_EVENT_HANDED_OVER:
+    case WH_EVENT_CONTESTED:
+        return is_index(event->other, grippers);
+    case WH_EVENT_PUSHED_THROUGH:
+        return is_index(event->other, wafers) || (event->other == WH_NONE && event->wafer != WH_NONE);
+    default:
+        return true;
+    }
+}
+
 /* The rule of grasp/event.h: the code that explains an event looks its wafer and grippers up. */
 static void check_event(const wh_event_t *event, int64_t seq) {
     const size_t wafers = layout->wafer_count;
@@ -361,20 +376,14 @@ static void check_event(const wh_event_t *event, int64_t seq) {
     static const uint32_t nameless = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
                                      1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_FAULT_ARMED |
                                      1U << WH_EVENT_FAULT_CLEARED;
+    static const uint32_t waferless = 1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_PUSHED_THROUGH;
     const bool of_parts = (nameless >> (unsigned)event->kind & 1U) != 0;
-    const bool is_pushed = event->kind == WH_EVENT_PUSHED_THROUGH;
-    const bool no_wafer = event->kind == WH_EVENT_BAD_INPUT || is_pushed || of_parts;
+    const bool no_wafer = ((nameless | waferless) >> (unsigned)event->kind & 1U) != 0;
     REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
     REQUIRE((no_wafer && event->wafer == WH_NONE) || is_index(event->wafer, wafers));
     REQUIRE((of_parts && event->gripper == WH_NONE) || is_index(event->gripper, grippers));
     REQUIRE(event->measured_slice <= (uint64_t)seq);
-    if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
-        REQUIRE(is_index(event->other, wafers));
-    } else if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
-        REQUIRE(is_index(event->other, grippers));
-    } else if (is_pushed) {
-        REQUIRE(is_index(event->other, wafers) || (event->other == WH_NONE && event->wafer != WH_NONE));
-    }
+    REQUIRE(other_is_known(event, wafers, grippers));
 }
 
 /* The events of the accepted states, in the form of a run's report. */

@@ -309,6 +309,20 @@ static void a_wafer_that_is_held_is_met(void **state) {
     }
 }
 
+/* From beside a wafer straight up to the end of the range of numbers: the height has no number. */
+static void a_height_without_a_number_is_not_told(void **state) {
+    (void)state;
+    wh_pose_t to = wh_test_at(WH_REAL_LARGEST, WH_REAL_LARGEST, WH_REAL_LARGEST);
+    to.R = wh_test_rotation(1, -1, 0, 0.9);
+    hold_beside(0, 3, 0.8);
+    scene.wafers[1].base_from_wafer.R = to.R;
+    wh_grasp_place(&scene.table, 1, &scene.wafers[1].base_from_wafer);
+    (void)go(&to, WH_VALVE_OPEN);
+    for (size_t i = 0; i < scene.list.count; ++i) {
+        assert_true(wh_real_is_finite(scene.events[i].value));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_lower_wafer_of_a_double_goes_through_the_upper_one, set_up),
@@ -316,6 +330,7 @@ int main(void) {
         cmocka_unit_test_setup(a_narrow_tolerance_changes_nothing, set_up),
         cmocka_unit_test_setup(an_empty_blade_goes_through_a_wafer, set_up),
         cmocka_unit_test_setup(a_wafer_that_is_held_is_met, set_up),
+        cmocka_unit_test_setup(a_height_without_a_number_is_not_told, set_up),
         cmocka_unit_test_setup(a_wafer_is_pushed_through_once, set_up),
         cmocka_unit_test_setup(a_release_and_a_jump_count, set_up),
         cmocka_unit_test_setup(what_passes_nothing, set_up),
