@@ -42,6 +42,7 @@ PROGRAM_SOURCES := $(filter-out $(RANKS_SOURCE),$(wildcard $(HOST_ROOMS:%=lib/%/
 PROGRAM_CXX_SOURCES := $(wildcard $(HOST_ROOMS:%=lib/%/*.cpp))
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
+EMBEDDED_LUA := $(patsubst lua/%,$(B)/precompiled/%,$(filter lua/mcs/%,$(LUA_SOURCES)))
 PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
 HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*/*.h lib/*/*.def)
 
@@ -185,8 +186,15 @@ $(B)/obj/%.o: %.cpp $(B)/flags
 $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o: FLAGS = $(PROGRAM_FLAGS) -I.
 $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o: $(B)/obj/%.o: $(B)/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
-$(B)/embedded_lua.c: lib/build/embed $(LUA_SOURCES) $(B)/sources
-	@lib/build/embed wh_embedded lua/ $(LUA_SOURCES) >$@
+# Motion control's files are compiled once, here. The name is WH_INNER_CHUNK's of script/sandbox.h.
+$(B)/precompile: lib/build/precompile.c $(B)/flags
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(PROGRAM_FLAGS) $(CFLAGS) $(EXTRA) -o $@ $< $(LUA_ARCHIVE) $(LDFLAGS) -ldl -lm
+$(B)/precompiled/%.lua: lua/%.lua $(B)/precompile
+	@mkdir -p $(@D)
+	$(Q)$(B)/precompile /dev/null/$*.lua <$< >$@
+$(B)/embedded_lua.c: lib/build/embed $(EMBEDDED_LUA) $(B)/sources
+	@lib/build/embed wh_embedded $(B)/precompiled/ $(EMBEDDED_LUA) >$@
 $(B)/embedded_page.c: lib/build/embed $(PAGE_SOURCES) $(B)/sources
 	@lib/build/embed wh_embedded_page lib/report/page/ $(PAGE_SOURCES) >$@
 

@@ -166,7 +166,7 @@ static int load_module(lua_State *L) {
         const wh_embedded_t *file = &wh_embedded[i];
         if (strcmp(file->name, name) == 0) {
             const char *chunk = lua_pushfstring(L, "%s%s", WH_INNER_CHUNK, name);
-            if (!wh_sandbox_evaluate_text(L, chunk, (const char *)file->text, file->size, &result)) {
+            if (!wh_sandbox_evaluate_code(L, chunk, file->text, file->size, &result)) {
                 return luaL_error(L, "%s", result.message);
             }
             return 1;

@@ -1,11 +1,12 @@
-/* Files built into the program by lib/build/embed: the Lua files below lua/, and the page of a report. */
+/* Files built into the program by lib/build/embed: motion control's Lua files, compiled, and the page of a
+ * report. */
 #ifndef WH_SCRIPT_EMBEDDED_H
 #define WH_SCRIPT_EMBEDDED_H
 
 #include <stddef.h>
 
 typedef struct {
-    const char *name;          /* path below its folder, such as "mcs/patterns.lua" for a file of lua/ */
+    const char *name;          /* path below its folder, such as "mcs/patterns.lua" */
     const unsigned char *text; /* `size` bytes, and a zero after them */
     size_t size;
 } wh_embedded_t;

@@ -313,7 +313,7 @@ static int load_and_run(lua_State *L) {
     const char *const name = lua_pushfstring(L, "@%s", job->path);
     const char *const text = is_file ? wh_sandbox_read_text(L, job->path, &job->size) : job->text;
     ++sandbox->loading;
-    const int status = luaL_loadbufferx(L, text, job->size, name, "t");
+    const int status = luaL_loadbufferx(L, text, job->size, name, job->is_code ? "b" : "t");
     --sandbox->loading;
     if (status != LUA_OK) {
         return raise_syntax(L, job, status);
@@ -376,6 +376,12 @@ static bool load_job(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *r
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result) {
     wh_sandbox_job_t job = {.path = name, .text = text, .size = size, .results = 1};
+    return load_job(L, &job, result);
+}
+
+bool wh_sandbox_evaluate_code(lua_State *L, const char *name, const void *code, size_t size,
+                              wh_sandbox_result_t *result) {
+    wh_sandbox_job_t job = {.path = name, .text = code, .size = size, .is_code = true, .results = 1};
     return load_job(L, &job, result);
 }
 

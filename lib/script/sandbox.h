@@ -93,6 +93,11 @@ bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *re
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result);
 
+/* wh_sandbox_evaluate for what Lua's compiler has made of one of the library's own sources: it has its name
+ * in it. Lua trusts such code, so it must not come from outside. */
+bool wh_sandbox_evaluate_code(lua_State *L, const char *name, const void *code, size_t size,
+                              wh_sandbox_result_t *result);
+
 /* lua_pcall with the sandbox's rules. Function and arguments are on L's stack; it leaves the results, or
  * nothing on failure. Messages begin without a path. */
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result);

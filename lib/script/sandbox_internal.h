@@ -18,6 +18,7 @@
 typedef struct wh_sandbox_job {
     const char *path; /* null for a call */
     const char *text; /* null for a file */
+    bool is_code;     /* the text is what Lua compiled */
     size_t size;
     int results;
     bool loaded;                     /* past the syntax check */
