@@ -189,7 +189,8 @@ static wh_event_t *say_pushed(const wh_grasp_t *table, size_t g, const wh_passin
     return said;
 }
 
-/* Passive pads leave a wafer at the plane, whatever they go on to do. */
+/* Passive pads leave a wafer at the plane, whatever they go on to do. Near the end of the range of numbers there
+ * is no height, here and below. */
 static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
                           const wh_passing_t *passing, wh_event_list_t *list) {
     const wh_pose_t *pose = &table->storage.wafers[passing->wafer].base_from_wafer;
@@ -197,7 +198,7 @@ static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t
     const wh_place_t place = wh_cell_measure(cell, station, passing->slot, pose);
     const wh_real_t depth = depth_of(cell, station, passing->goes_up);
     const bool is_above = count_below(station, height_over(cell, station, pose), depth) >= passing->slot;
-    if (is_above == passing->goes_up) {
+    if (is_above == passing->goes_up && wh_real_is_finite(place.dz)) {
         wh_event_t *said = say_pushed(table, g, passing, list);
         said->face = place.face;
         said->value = -place.dz;
@@ -207,7 +208,7 @@ static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t
 }
 
 /* How high the wafer, or the blade, now is over the wafer that it went through, along that one's normal; as
- * far as supports have let it go there. Near the end of the range of numbers there is no such height. */
+ * far as supports have let it go there. */
 static void judge_in_wafer(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
                            const wh_passing_t *passing, wh_event_list_t *list) {
     const wh_grasp_storage_t *storage = &table->storage;

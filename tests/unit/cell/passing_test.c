@@ -318,6 +318,11 @@ static void a_height_without_a_number_is_not_told(void **state) {
     scene.wafers[1].base_from_wafer.R = to.R;
     wh_grasp_place(&scene.table, 1, &scene.wafers[1].base_from_wafer);
     (void)go(&to, WH_VALVE_OPEN);
+    stations[0].base_from_station.R = to.R;
+    const wh_pose_t below = over_slot(1, 0, -3);
+    to.r = wh_vec3_scale(-WH_REAL_LARGEST, &(wh_vec3_t){0, 0, 1});
+    hold(&below);
+    (void)go(&to, WH_VALVE_OPEN);
     for (size_t i = 0; i < scene.list.count; ++i) {
         assert_true(wh_real_is_finite(scene.events[i].value));
     }
