@@ -10,18 +10,27 @@
 #include "app.h"
 #include "new_cell.h"
 
+/* A number that was not given. */
+#define NONE UINT64_MAX
+
 typedef struct {
     const char *folder;
-    wh_new_cell_t cell; /* a number that is 0 was not given */
+    wh_new_cell_t cell;
 } arguments_t;
 
 static const wh_option_t options[] = {
     {"wafer", 0, "MM", "The wafers' diameter: 100, 125, 150, 200 or 300 (default)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.wafer), 100, 300, "100, 125, 150, 200 or 300"},
-    {"foups", 0, "N", "Number of FOUPs, or of cassettes below 200 mm (default 2)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS},
-    {"blades", 0, "N", "Number of blades on the robot (default 1)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES},
+    {"foups", 0, "N", "Number of FOUPs, of cassettes below 200 mm, or of a tool's load ports (default 2)",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS},
+    {"blades", 0, "N", "Number of blades on the robot; of a tool, of the one at the modules (default 1)",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES},
+    {"tool", 0, NULL, "A tool whose robots are times alone: a layout for flows", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, cell.tool)},
+    {"modules", 0, "N", "With --tool: number of process modules (default 4)", WH_OPTION_WHOLE,
+     .variable = offsetof(arguments_t, cell.modules), 1, WH_NEW_MODULES},
+    {"locks", 0, "N", "With --tool: number of load locks (default 2); 0: one robot serves all",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, cell.locks), 0, WH_NEW_LOCKS},
     {"aligner", 0, NULL, "A prealigner, too", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, cell.aligner)},
     {"collision", 0, NULL, "Look for collisions while stepping", WH_OPTION_FLAG,
@@ -39,9 +48,17 @@ static bool is_size(uint64_t wafer) {
 }
 
 static void check(const void *given, struct argp_state *state) {
-    const arguments_t *arguments = given;
-    if (arguments->cell.wafer != 0 && !is_size(arguments->cell.wafer)) {
-        argp_error(state, "--wafer: %" PRIu64 " (expected 100, 125, 150, 200 or 300)", arguments->cell.wafer);
+    const wh_new_cell_t *cell = &((const arguments_t *)given)->cell;
+    if (cell->wafer != NONE && !is_size(cell->wafer)) {
+        argp_error(state, "--wafer: %" PRIu64 " (expected 100, 125, 150, 200 or 300)", cell->wafer);
+    }
+    if (cell->tool && (cell->wafer != NONE || cell->collision)) {
+        argp_error(state, "%s: a tool of times alone has none (expected without --tool)",
+                   cell->collision ? "--collision" : "--wafer");
+    }
+    if (!cell->tool && (cell->modules != NONE || cell->locks != NONE)) {
+        argp_error(state, "%s: the cell has none (expected with --tool)",
+                   cell->modules != NONE ? "--modules" : "--locks");
     }
 }
 
@@ -49,8 +66,9 @@ static const wh_command_line_t command_line = {
     .name = "new",
     .synopsis = "NAME",
     .about =
-        "Makes the folder NAME with a cell to start from: a layout, a script that runs in it, and what "
-        "editors that use the Lua language server need. At a terminal, without options, it asks what the "
+        "Makes the folder NAME with a cell or a tool to start from: a layout, a script that runs in it, and "
+        "what editors that use the Lua language server need. At a terminal, without options, it asks what "
+        "the "
         "cell shall have. Existing files are never overwritten.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "name",
@@ -113,21 +131,29 @@ static bool ask_all(wh_new_cell_t *cell) {
 }
 
 static bool is_given(const wh_new_cell_t *cell) {
-    return cell->wafer != 0 || cell->foups != 0 || cell->blades != 0 || cell->aligner || cell->collision;
+    return cell->wafer != NONE || cell->foups != NONE || cell->blades != NONE || cell->aligner ||
+           cell->collision || cell->tool;
+}
+
+static void set_usual(uint64_t *number, uint64_t usual) {
+    *number = *number == NONE ? usual : *number;
 }
 
 static bool complete(wh_new_cell_t *cell) {
     if (!is_given(cell) && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO)) {
         return ask_all(cell);
     }
-    cell->wafer = cell->wafer != 0 ? cell->wafer : 300;
-    cell->foups = cell->foups != 0 ? cell->foups : 2;
-    cell->blades = cell->blades != 0 ? cell->blades : 1;
+    set_usual(&cell->wafer, 300);
+    set_usual(&cell->foups, 2);
+    set_usual(&cell->blades, 1);
+    set_usual(&cell->modules, 4);
+    set_usual(&cell->locks, 2);
     return true;
 }
 
 int wh_app_new(int argc, char **argv) {
-    arguments_t arguments = {0};
+    arguments_t arguments = {
+        .cell = {.wafer = NONE, .foups = NONE, .blades = NONE, .modules = NONE, .locks = NONE}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     if (!wh_new_cell_is_free(arguments.folder) || !complete(&arguments.cell) ||
         !wh_new_cell_make(&arguments.cell, arguments.folder)) {

@@ -58,6 +58,9 @@ static void write_stations(const wh_new_cell_t *cell, FILE *out) {
 }
 
 static bool write_layout(const wh_new_cell_t *cell, FILE *out) {
+    if (cell->tool) {
+        return wh_new_tool_write_layout(cell, out);
+    }
     fprintf(out,
             "-- A cell to start from: mm, degrees, seconds. Other fields and their defaults: lua/README.md.\n"
             "-- Check it with `waferhand layout layout.lua`, draw it with `--svg cell.svg`.\n"
@@ -113,6 +116,9 @@ static void write_moves(const wh_new_cell_t *cell, FILE *out) {
 }
 
 static bool write_script(const wh_new_cell_t *cell, FILE *out) {
+    if (cell->tool) {
+        return wh_new_tool_write_script(cell, out);
+    }
     fprintf(out,
             "-- Run it with `waferhand run script.lua`, again at each save with `--watch`, as a page with\n"
             "-- `waferhand report script.lua -o page.html`. Words of scripts: lua/README.md.\n"
