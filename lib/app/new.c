@@ -47,18 +47,22 @@ static bool is_size(uint64_t wafer) {
     return *size != 0;
 }
 
+/* The first option that is given and does not go with the others, or null. */
+static const char *find_needless(const wh_new_cell_t *cell) {
+    if (cell->tool) {
+        return cell->wafer != NONE ? "--wafer" : cell->collision ? "--collision" : NULL;
+    }
+    return cell->modules != NONE ? "--modules" : cell->locks != NONE ? "--locks" : NULL;
+}
+
 static void check(const void *given, struct argp_state *state) {
     const wh_new_cell_t *cell = &((const arguments_t *)given)->cell;
+    const char *needless = find_needless(cell);
+    if (needless) {
+        argp_error(state, "%s (expected %s --tool)", needless, cell->tool ? "without" : "with");
+    }
     if (cell->wafer != NONE && !is_size(cell->wafer)) {
         argp_error(state, "--wafer: %" PRIu64 " (expected 100, 125, 150, 200 or 300)", cell->wafer);
-    }
-    if (cell->tool && (cell->wafer != NONE || cell->collision)) {
-        argp_error(state, "%s: a tool of times alone has none (expected without --tool)",
-                   cell->collision ? "--collision" : "--wafer");
-    }
-    if (!cell->tool && (cell->modules != NONE || cell->locks != NONE)) {
-        argp_error(state, "%s: the cell has none (expected with --tool)",
-                   cell->modules != NONE ? "--modules" : "--locks");
     }
 }
 

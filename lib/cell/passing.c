@@ -189,8 +189,8 @@ static wh_event_t *say_pushed(const wh_grasp_t *table, size_t g, const wh_passin
     return said;
 }
 
-/* Passive pads leave a wafer at the plane, whatever they go on to do. Near the end of the range of numbers there
- * is no height, here and below. */
+/* Passive pads leave a wafer at the plane, whatever they go on to do. Near the end of the range of numbers
+ * there is no height, here and below. */
 static void judge_in_slot(const wh_cell_t *cell, const wh_grasp_t *table, size_t g,
                           const wh_passing_t *passing, wh_event_list_t *list) {
     const wh_pose_t *pose = &table->storage.wafers[passing->wafer].base_from_wafer;

@@ -206,9 +206,9 @@ bool __wrap_wh_new_cell_make(const wh_new_cell_t *cell, const char *folder) {
     reached = true;
     REQUIRE(refused || folder != NULL);
     REQUIRE(refused || (cell->wafer >= 100 && cell->wafer <= 300));
-    REQUIRE(refused || (cell->foups >= 1 && cell->foups <= WH_NEW_FOUPS));
-    REQUIRE(refused || (cell->blades >= 1 && cell->blades <= WH_NEW_BLADES));
-    REQUIRE(refused || (cell->modules >= 1 && cell->modules <= WH_NEW_MODULES));
+    REQUIRE(refused || cell->foups - 1 < WH_NEW_FOUPS);
+    REQUIRE(refused || cell->blades - 1 < WH_NEW_BLADES);
+    REQUIRE(refused || cell->modules - 1 < WH_NEW_MODULES);
     REQUIRE(refused || cell->locks <= WH_NEW_LOCKS);
     return false;
 }
