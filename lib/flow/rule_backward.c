@@ -6,7 +6,7 @@ static bool is_worth_waiting(const wh_flow_state_t *state, const wh_flow_task_t 
     if (task->step == 0 || state->is_relaxed || wh_flow_still_to_come(state, task->route, task->step) == 0) {
         return true;
     }
-    const wh_flow_room_t room = wh_flow_room(state, task->route, task->step, -1);
+    const wh_flow_room_t room = wh_flow_room(state, task->route, task->step, -1, WH_FLOW_NONE);
     return room.holds >= room.may;
 }
 

@@ -1,5 +1,5 @@
 /* first_come and longest_wait: among the transfers that can begin as soon as the robot is there. If none
- * can, the robot goes ahead to the one that can begin soonest. */
+ * can, the robot goes ahead to the one that can begin soonest; of several, to the one that it would take. */
 #include "rules.h"
 #include "transfer.h"
 
@@ -19,8 +19,8 @@ static bool is_better(const wh_flow_state_t *state, const candidate_t *a, const 
     if (b->wafer == WH_FLOW_NONE || a->is_ready != b->is_ready) {
         return b->wafer == WH_FLOW_NONE || a->is_ready;
     }
-    if (!a->is_ready) {
-        return a->begin_us != b->begin_us ? a->begin_us < b->begin_us : wins_tie(state, a->wafer, b->wafer);
+    if (!a->is_ready && a->begin_us != b->begin_us) {
+        return a->begin_us < b->begin_us;
     }
     if (state->plan->rule == WH_FLOW_FIRST_COME) {
         return a->wafer < b->wafer;

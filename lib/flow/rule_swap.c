@@ -65,24 +65,50 @@ static bool is_among(const wh_flow_into_t moves[], size_t count, int32_t wafer) 
     return false;
 }
 
+/* True if the robot carries the wafer on and may take it with this arm; WH_FLOW_NONE: nobody knows which. */
+static bool is_taken_by(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t arm) {
+    const bool second_alone = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step)->second_arm;
+    return wh_flow_is_carrier(state, robot, wafer) && !(second_alone && arm == 0);
+}
+
+/* The places for a wafer that goes behind `count` others, the best first. */
+static size_t find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us,
+                           size_t count, wh_flow_target_t targets[]) {
+    return count > 0 ? wh_flow_swapped_targets(state, robot, wafer, targets, WH_FLOW_TARGETS)
+                     : wh_flow_targets(state, robot, wafer, wh_flow_station_of(state, wafer),
+                                       wh_flow_loaded_us(state, robot, wafer, begin_us), WH_FLOW_NONE,
+                                       targets, WH_FLOW_TARGETS);
+}
+
+/* Ends the exchanges in the best place after which the tool is safe. False if there is none. */
+static bool end_way(const wh_flow_state_t *state, const wh_flow_target_t targets[], size_t target_count,
+                    wh_flow_into_t moves[], size_t count) {
+    for (size_t i = 0; i < target_count; ++i) {
+        moves[count].place = targets[i].place;
+        if (!state->checks_safety || wh_flow_is_safe(state, moves, count + 1)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us) {
     wh_flow_into_t moves[LONGEST];
-    for (size_t count = 0; count < LONGEST; ++count) {
-        const wh_flow_target_t target =
-            wh_flow_target(state, robot, wafer, wh_flow_station_of(state, wafer),
-                           wh_flow_loaded_us(state, robot, wafer, begin_us), WH_FLOW_NONE);
-        const int32_t place = target.place != WH_FLOW_NONE ? target.place : best_full(state, robot, wafer);
-        if (place == WH_FLOW_NONE || is_among(moves, count, wafer)) {
+    wh_flow_target_t targets[WH_FLOW_TARGETS];
+    int32_t arm = wh_flow_free_arm(state, robot, wafer);
+    for (size_t count = 0; count < LONGEST && !is_among(moves, count, wafer); ++count) {
+        const size_t found = find_targets(state, robot, wafer, begin_us, count, targets);
+        moves[count] = (wh_flow_into_t){wafer, WH_FLOW_NONE};
+        if (found > 0) {
+            return end_way(state, targets, found, moves, count) ? moves[0].place : WH_FLOW_NONE;
+        }
+        moves[count].place = best_full(state, robot, wafer);
+        if (moves[count].place == WH_FLOW_NONE) {
             return WH_FLOW_NONE;
         }
-        moves[count] = (wh_flow_into_t){wafer, place};
-        if (target.place != WH_FLOW_NONE) {
-            const bool is_good = !state->checks_safety || wh_flow_is_safe(state, moves, count + 1);
-            return is_good ? moves[0].place : WH_FLOW_NONE;
-        }
-        wafer = state->places[place].wafer;
-        begin_us = WH_FLOW_NEVER;
-        if (!wh_flow_is_carrier(state, robot, wafer)) {
+        wafer = state->places[moves[count].place].wafer;
+        arm = arm == WH_FLOW_NONE ? WH_FLOW_NONE : 1 - arm;
+        if (!is_taken_by(state, robot, wafer, arm)) {
             return WH_FLOW_NONE;
         }
     }

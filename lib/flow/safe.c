@@ -9,11 +9,14 @@ typedef struct {
     int32_t wafer, step, place;
 } inside_t;
 
+/* More than one place of a station. */
+#define SEVERAL (-2)
+
 typedef struct {
     const wh_flow_state_t *state;
-    int32_t *counts; /* wafers by place */
-    bool *reached;   /* by station: the wafer that walks may stand there */
-    bool *next;
+    int32_t *counts;  /* wafers by place */
+    int32_t *reached; /* by station: where the wafer that walks may stand, as SEVERAL or one place */
+    int32_t *next;
     inside_t *wafers;
     size_t count;
 } world_t;
@@ -22,7 +25,7 @@ static bool is_free(const world_t *world, const inside_t *at, int32_t place) {
     return world->counts[place] == (place == at->place ? 1 : 0) || world->counts[place] == 0;
 }
 
-/* True if some robot carries from where the wafer may stand into this place. */
+/* True if some robot carries from where the wafer may stand into this place: another one than that. */
 static bool is_carried(const world_t *world, int32_t place) {
     const wh_flow_tool_t *tool = world->state->tool;
     const int32_t to = tool->place_stations[place];
@@ -32,7 +35,8 @@ static bool is_carried(const world_t *world, int32_t place) {
             continue;
         }
         for (int32_t from = 0; from < (int32_t)tool->station_count; ++from) {
-            if (world->reached[from] && tool->serves[wh_flow_of(tool, r, from)]) {
+            if (world->reached[from] != WH_FLOW_NONE && world->reached[from] != place &&
+                tool->serves[wh_flow_of(tool, r, from)]) {
                 return true;
             }
         }
@@ -46,23 +50,23 @@ static int32_t walk_on(world_t *world, const inside_t *at, int32_t number) {
     const wh_flow_step_t *step = wh_flow_step_of(state->plan, at->wafer, number);
     const int32_t end = wh_flow_end_of(state->plan, at->wafer, number);
     int32_t first = WH_FLOW_NONE, free_places = 0;
-    memset(world->next, 0, state->tool->station_count * sizeof *world->next);
+    memset(world->next, 0xff, state->tool->station_count * sizeof *world->next);
     for (size_t i = 0; i < step->station_count; ++i) {
         const wh_flow_station_t *station = &state->tool->stations[step->stations[i]];
-        bool has_room = false;
+        int32_t room = WH_FLOW_NONE;
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             if ((end != WH_FLOW_NONE && p != end) || !is_free(world, at, p)) {
                 continue;
             }
             ++free_places;
-            if (!has_room && is_carried(world, p)) {
-                has_room = true;
+            if (room != SEVERAL && is_carried(world, p)) {
+                room = room == WH_FLOW_NONE ? p : SEVERAL;
                 first = first == WH_FLOW_NONE ? p : first;
             }
         }
-        world->next[step->stations[i]] = has_room;
+        world->next[step->stations[i]] = room;
     }
-    bool *reached = world->reached;
+    int32_t *reached = world->reached;
     world->reached = world->next;
     world->next = reached;
     return free_places > step->kept_empty ? first : WH_FLOW_NONE;
@@ -73,8 +77,8 @@ static bool walk_out(world_t *world, const inside_t *at) {
     const wh_flow_state_t *state = world->state;
     const int32_t last = wh_flow_last_step(state->plan, at->wafer);
     int32_t end = at->place;
-    memset(world->reached, 0, state->tool->station_count * sizeof *world->reached);
-    world->reached[state->tool->place_stations[at->place]] = true;
+    memset(world->reached, 0xff, state->tool->station_count * sizeof *world->reached);
+    world->reached[state->tool->place_stations[at->place]] = at->place;
     for (int32_t k = at->step + 1; k <= last; ++k) {
         end = walk_on(world, at, k);
         if (end == WH_FLOW_NONE) {

@@ -143,7 +143,8 @@ static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route
            !state->wafers[wafer].is_over && state->wafers[wafer].step + ahead == step;
 }
 
-wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us) {
+wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us,
+                            int32_t leaver) {
     const wh_flow_step_t *step = &state->plan->routes[route].steps[number];
     wh_flow_room_t room = {0, 0};
     int32_t down = 0;
@@ -152,7 +153,8 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
         const bool is_down = state->stations[step->stations[i]].down_us != WH_FLOW_NEVER;
         for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
             const wh_flow_place_t *place = &state->places[p];
-            const bool lies = place->wafer != WH_FLOW_NONE && place->leaving_us > at_us;
+            const bool lies =
+                place->wafer != WH_FLOW_NONE && place->wafer != leaver && place->leaving_us > at_us;
             const bool is_empty = !lies && place->coming == WH_FLOW_NONE;
             const int32_t own =
                 (lies && counts_in(state, place->wafer, route, number, 0)) +
@@ -166,10 +168,10 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
     return room;
 }
 
-size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
-                       int64_t loaded_us, int32_t station, wh_flow_target_t targets[], size_t most) {
+/* Fills `found`. `leaver`: see wh_flow_room. */
+static void find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
+                         int64_t loaded_us, int32_t station, int32_t leaver, found_t *found) {
     const wh_flow_tool_t *tool = state->tool;
-    found_t found = {targets, 0, most};
     const int32_t next = state->wafers[wafer].step + 1;
     const wh_flow_step_t *step = wh_flow_step_of(state->plan, wafer, next);
     const int32_t route = state->plan->lots[state->plan->wafers[wafer].lot].route;
@@ -182,7 +184,7 @@ size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafe
         const int64_t there_us = state->now_us + loaded_us + wh_flow_move_us(tool, robot, from, to) +
                                  tool->doors[wh_flow_of(tool, robot, to)].open_us;
         if (step->kept_empty > 0) {
-            const wh_flow_room_t room = wh_flow_room(state, route, next, there_us);
+            const wh_flow_room_t room = wh_flow_room(state, route, next, there_us, leaver);
             if (room.holds >= room.may) {
                 continue;
             }
@@ -190,10 +192,16 @@ size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafe
         const int32_t first = tool->stations[to].first_place;
         for (int32_t place = first; place < first + tool->stations[to].slots; ++place) {
             if (end == WH_FLOW_NONE || end == place) {
-                look_at(state, robot, place, there_us, &found);
+                look_at(state, robot, place, there_us, found);
             }
         }
     }
+}
+
+size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
+                       int64_t loaded_us, int32_t station, wh_flow_target_t targets[], size_t most) {
+    found_t found = {targets, 0, most};
+    find_targets(state, robot, wafer, from, loaded_us, station, wafer, &found);
     return found.count;
 }
 
@@ -204,13 +212,21 @@ wh_flow_target_t wh_flow_target(const wh_flow_state_t *state, int32_t robot, int
     return best;
 }
 
+size_t wh_flow_swapped_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
+                               wh_flow_target_t targets[], size_t most) {
+    found_t found = {targets, 0, most};
+    find_targets(state, robot, wafer, wh_flow_station_of(state, wafer),
+                 wh_flow_loaded_us(state, robot, wafer, WH_FLOW_NEVER), WH_FLOW_NONE, WH_FLOW_NONE, &found);
+    return found.count;
+}
+
 int32_t wh_flow_safe_place(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us,
                            int32_t station) {
     const int32_t from = wh_flow_station_of(state, wafer);
-    wh_flow_target_t targets[64];
+    wh_flow_target_t targets[WH_FLOW_TARGETS];
     const size_t count =
         wh_flow_targets(state, robot, wafer, from, wh_flow_loaded_us(state, robot, wafer, begin_us), station,
-                        targets, sizeof targets / sizeof targets[0]);
+                        targets, WH_FLOW_TARGETS);
     for (size_t i = 0; i < count; ++i) {
         const wh_flow_into_t into = {wafer, targets[i].place};
         if (!state->checks_safety || wh_flow_is_safe(state, &into, 1)) {

@@ -20,6 +20,13 @@ wh_flow_target_t wh_flow_target(const wh_flow_state_t *state, int32_t robot, int
 size_t wh_flow_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
                        int64_t loaded_us, int32_t station, wh_flow_target_t targets[], size_t most);
 
+/* Likewise for a wafer that an exchange will take out: its own place is filled again. */
+size_t wh_flow_swapped_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer,
+                               wh_flow_target_t targets[], size_t most);
+
+/* How many of the best places are looked at for one after which the tool is safe. */
+#define WH_FLOW_TARGETS 64
+
 /* How long after now the robot has the wafer if its pick, the door's opening included, begins at `begin_us`;
  * WH_FLOW_NEVER: nobody knows when, and the answer is a time after all that has begun. */
 int64_t wh_flow_loaded_us(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us);
@@ -40,11 +47,13 @@ int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wa
 
 /* How many wafers a step of a route holds, and how many it may: its places without those that hold or
  * await wafers of other steps and routes, and without those kept empty or, if more, those that have failed
- * and are empty. Picks that have begun and end by `at_us` have ended. */
+ * and are empty. Picks that have begun and end by `at_us` have ended. So has the one of `leaver`, which is
+ * about to be taken, or WH_FLOW_NONE. */
 typedef struct {
     int32_t holds, may;
 } wh_flow_room_t;
-wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t step, int64_t at_us);
+wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t step, int64_t at_us,
+                            int32_t leaver);
 
 /* True if the robot serves the place in which the wafer lies and one of its next step, and nobody has
  * begun to take it. */

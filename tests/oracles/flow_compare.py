@@ -110,6 +110,8 @@ def compare(program, folder, level, seed):
     ends = {"done": "done", "STUCK": "stuck", "refused": "broken", "until": "cut"}
     if ends[result["state"]] != told["end"]:
         return f"the model ends {result['state']}, the program {told['end']}: {told['why']}"
+    if told["end"] == "stuck" and isinstance(flow["rule"], str) and flow.get("safe", True):
+        return f"safe, and STUCK: {told['why']}"
     summed = sum(whole(part["seconds"]) for part in told["path"])
     if summed != whole(told["makespan_s"]):
         return f"the critical path is {summed} us long, the flow {whole(told['makespan_s'])}"

@@ -88,7 +88,7 @@ class Model:
             out = out or failed
         return None
 
-    def count(self, wafer, number, by=None, without=None):
+    def count(self, wafer, number, by=None, without=None, refilled=False):
         """How many wafers of its route count in a step, and how many may: rule 12. Others' wafers and what is down take places away.
         With `by`, picks that have begun and end by then have ended."""
 
@@ -98,7 +98,7 @@ class Model:
             each.toward == number or each.place and each.step == number and not gone(each.place))]
         taken = down = 0
         for place in wafer.steps[number][0]:
-            inside = [each for each in (place.wafer, place.coming) if each and not (each is place.wafer and gone(place))]
+            inside = [each for each in (place.wafer, place.coming) if each and not (each is place.wafer and (gone(place) or each is without and not refilled))]
             taken += bool(inside) and not any(each in mine for each in inside)
             down += not inside and place.station.down_at(self.now)
         kept = max(down, self.partial(wafer, number))   # what is down is kept empty
@@ -156,7 +156,7 @@ class Model:
         right = not way or way == ("in" if place.station.sides.get(robot.name) == "atmosphere" else "out")
         return place.station.name in robot.serves and right
 
-    def destinations(self, robot, wafer, number, start, begin):
+    def destinations(self, robot, wafer, number, start, begin, refilled=False):
         """Places of step `number` that are or will be empty (rule 4) if the robot begins to take the wafer from `start` at `begin`,
         best first (rule 7). `start` None: it is aboard. `begin` None: nobody knows when."""
         found = []
@@ -170,15 +170,18 @@ class Model:
             ready = None if arrival is None else arrival + place.station.door(robot)[0]
             if place.wafer is None or place.leaves is not None and (ready is None or place.leaves <= ready):
                 placing = self.placing_from(robot, place, self.now if arrival is None else arrival)
+                if begin is None and start:     # nobody knows when: the nearest, all that runs over
+                    placing = placing and robot.move(start.station.name, place.station.name) + place.station.door(robot)[0]
                 since = place.empty_since if place.leaves is None else place.leaves
                 found.append(((placing is None, placing or 0, since, index), place, ready))
         found.sort(key=lambda each: each[0])
-        return [place for _, place, ready in found if self.has_room(wafer, number, ready)]
+        return [place for _, place, ready in found if self.has_room(wafer, number, ready, refilled)]
 
-    def has_room(self, wafer, number, ready):
+    def has_room(self, wafer, number, ready, refilled):
+        """`refilled`: an exchange takes it out, so that its place is filled again."""
         if not self.partial(wafer, number):
             return True
-        count, may = self.count(wafer, number, by=ready if ready is not None else 1 << 62, without=wafer)
+        count, may = self.count(wafer, number, by=ready if ready is not None else 1 << 62, without=wafer, refilled=refilled)
         return count < may
 
     def carries(self, robot, wafer):

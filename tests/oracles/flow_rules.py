@@ -179,16 +179,19 @@ def target_of(model, robot, wafer):
     or will be empty, or if the tool is not safe then."""
     number, begin = model.following(wafer, wafer.step), model.picking_from(robot, wafer, model.arrival(robot, wafer.place.station))
     start, first, moves = wafer.place, None, {}
+    arm = robot.free_arm(wafer.steps[wafer.step][2])
     while wafer not in moves:
-        places = model.destinations(robot, wafer, number, start, begin)
-        target = places[0] if places else best_full(model, robot, wafer, number)
-        if target is None:
+        places = model.destinations(robot, wafer, number, start, begin, refilled=first is not None)
+        for place in places:    # the best one after which the tool is safe
+            if not model.safe or safe_after(model, moves | {wafer: (place, number)}):
+                return first or place
+        target = best_full(model, robot, wafer, number)
+        if places or target is None:
             return None
         first, moves[wafer] = first or target, (target, number)
-        if places:
-            return first if not model.safe or safe_after(model, moves) else None
         wafer, start, begin = target.wafer, target, None
-        if not swappable(model, robot, wafer):
+        arm = None if arm is None else 1 - arm
+        if not swappable(model, robot, wafer) or wafer.steps[wafer.step][2] and arm == 0:
             return None
         number = model.following(wafer, wafer.step)
     return None

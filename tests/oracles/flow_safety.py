@@ -41,14 +41,16 @@ def way_out(model, where, wafer, place, step):
     reached = [place]
     number = model.following(wafer, step, reached)
     while number is not None:
-        room = {}
-        for to in wafer.steps[number][0]:   # one place of a station stands for all
-            if to.station not in room and not to.station.failed_at(model.now) and is_free(where, to, wafer):
-                if any(model.enters(robot, to) for start in reached for robot in model.common[start.station.name, to.station.name]):
-                    room[to.station] = to
+        room = []
+        for to in wafer.steps[number][0]:   # two places of a station stand for all: from one to itself nobody carries
+            others = sum(place.station is to.station for place in room)
+            if others < 2 and not to.station.failed_at(model.now) and is_free(where, to, wafer):
+                starts = [start for start in reached if start is not to]
+                if any(model.enters(robot, to) for start in starts for robot in model.common[start.station.name, to.station.name]):
+                    room.append(to)
         if not room or not has_room(model, where, wafer, number):
             return None
-        reached = list(room.values())
+        reached = room
         number = model.following(wafer, number, reached)
     return reached[0]
 

@@ -13,7 +13,8 @@ MS = 1000
 LEVELS = ("one robot, one lot, single places", "parallel places, slots, times by station and pair, two arms", "cleans, windows, partial, takt",
           "several robots and shared buffers", "re-entrant and mixed routes, lots that arrive, priorities, back", "doors and locks with pumps",
           "stations that are down", "lists drawn at random, safe = false", "all together",
-          "all together in whole seconds: much happens at one instant", "the same tools with a second lock beside each, and not safe")
+          "all together in whole seconds: much happens at one instant", "the same tools with a second lock beside each, and not safe",
+          "the tools of level 10 with parallel steps that share stations")
 RULES = ("backward", "first_come", "longest_wait", "swap")
 
 
@@ -51,11 +52,11 @@ class Maker:
         self.make_lots()
         flow = {"lots": self.lots, "routes": self.routes, "rule": self.rule(), "until": self.time(50, 400) if self.has(9, 0.1) else None,
                 "down": self.downs(), "takt": self.time(5, 40) if self.has(3, 0.2) else 0, "safe": True}
-        if self.has(9, 0.3) and flow["rule"] != "swap":
+        if self.has(9, 0.3) and (flow["rule"] != "swap" or self.level > 11):
             self.heat()
-        if self.level >= 8 and self.draw.random() < (1.0 if self.level == 8 else 0.4):
+        if 8 <= self.level < 12 and self.draw.random() < (1.0 if self.level == 8 else 0.4):
             self.lists(flow)
-        if self.level > 10 and isinstance(flow["rule"], str):
+        if self.level == 11 and isinstance(flow["rule"], str):
             self.pair_locks()
             flow["safe"], flow["until"] = False, 3000 * 1000 * MS
         return self.tool, flow
@@ -138,6 +139,9 @@ class Maker:
                 steps += [[self.links[group][-1]]] + (self.visit(group, False) if self.draw.random() < 0.4 else [])
             steps.append(["LP1" if self.lone and len(self.chambers) > 1 else "LP2"])
             steps = [step for index, step in enumerate(steps) if index == 0 or not set(step) & set(steps[index - 1])]
+            if self.level > 11:
+                steps = [step[:] for step in steps]
+                self.overlap(steps)
             route = {"steps": [{"stations": step} for step in steps]}
             self.decorate(route)
             self.routes[name] = route
@@ -154,6 +158,14 @@ class Maker:
         if self.has(5, 0.3) and len(steps) > 1:
             steps.append(self.draw.choice(steps[:-1]))
         return steps
+
+    def overlap(self, steps):
+        """Steps in one robot's chambers share stations with the one before."""
+        for before, step, after in zip(steps, steps[1:], steps[2:]):
+            shared = [name for name in before if name not in step + after and name.startswith("P") and name[1] == step[0][1:2]]
+            if shared and step[0].startswith("P") and self.draw.random() < 0.7:
+                step.append(self.draw.choice(shared))
+                self.draw.shuffle(step)
 
     def decorate(self, route):
         slots = {station["name"]: station["slots"] for station in self.tool["stations"]}
