@@ -438,6 +438,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
         arguments->run.listener = wh_run_listener(&signals);
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
+    arguments->run.keep_ways = arguments->schedule_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
     const int status = hand_on(arguments, &run, &signals, outcome);

@@ -91,7 +91,7 @@ static int conclude(const arguments_t *arguments, const wh_schedule_report_t *re
     if (wh_schedule_first(report) || (play->is_played && play->figures.result.end != WH_FLOW_DONE)) {
         return WH_EXIT_FAILED;
     }
-    return wh_schedule_is_looked(report) ? WH_EXIT_MET : WH_EXIT_NO_ANSWER;
+    return wh_schedule_is_good(report) ? WH_EXIT_MET : WH_EXIT_NO_ANSWER;
 }
 
 static int look_at(const arguments_t *arguments, const wh_schedule_t *schedule, const wh_flow_tool_t *tool,

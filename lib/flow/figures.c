@@ -34,6 +34,7 @@ typedef struct {
     int32_t *visits;       /* by wafer: the index of its last one, or WH_FLOW_NONE */
     wh_flow_visit_t *open; /* by wafer: the transfer that runs */
     wh_flow_log_t log;
+    bool keeps_ways;
 } measure_t;
 
 /* ----------------------------------------------------------------------------------------------- stations */
@@ -43,7 +44,7 @@ static void add(measure_t *measure, int32_t station, wh_flow_station_class_t whi
 }
 
 /* Goes on to `to_us` in one class. Cleans, pumps and failures within count as themselves if `which` is one
- * that gives way to them. */
+ * that gives way to them: those beside a process or a blade are not among the asides. */
 static void go_to(measure_t *measure, const wh_flow_state_t *state, int32_t number, int64_t to_us,
                   wh_flow_station_class_t which) {
     place_t *place = &measure->places[number];
@@ -61,10 +62,10 @@ static void go_to(measure_t *measure, const wh_flow_state_t *state, int32_t numb
             add(measure, station, (wh_flow_station_class_t)(WH_FLOW_STATION_CLEAN + i), part_us);
             us -= part_us;
         }
+        place->aside = *now;
     }
     add(measure, station, which, us);
     place->since_us = to_us;
-    place->aside = measure->asides[number];
 }
 
 /* The time of a wafer in a place up to now: shutting, process, and waiting. */
@@ -197,8 +198,9 @@ static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event)
                                                                 event->side, event->begin_us, event->end_us};
 }
 
-static void note_way(wh_flow_figures_t *figures, const wh_flow_event_t *event) {
-    if (event->end_us > event->begin_us) {
+static void note_way(measure_t *measure, const wh_flow_event_t *event) {
+    wh_flow_figures_t *figures = measure->figures;
+    if (measure->keeps_ways && event->end_us > event->begin_us) {
         figures->ways =
             wh_array_grow(figures->ways, figures->way_count, &figures->way_capacity, sizeof *figures->ways);
         figures->ways[figures->way_count++] =
@@ -257,7 +259,7 @@ static void note_event(measure_t *measure, const wh_flow_event_t *event) {
     } else if (event->kind == WH_FLOW_EVENT_PROCESS) {
         note_process(measure, event);
     } else if (event->kind == WH_FLOW_EVENT_MOVE) {
-        note_way(measure->figures, event);
+        note_way(measure, event);
     } else if (is_doing) {
         note_doing(measure->figures, event);
     }
@@ -289,6 +291,20 @@ static void add_aside(aside_t *aside, const wh_flow_station_state_t *station, bo
     }
 }
 
+/* Until when a process or a blade has the place in the time from now on; before now: neither has. */
+static int64_t taken_until_us(const wh_flow_state_t *state, int32_t number, int64_t to_us) {
+    const int32_t station = state->tool->place_stations[number], wafer = state->places[number].wafer;
+    const int32_t user = state->stations[station].user;
+    const bool is_in = user != WH_FLOW_NONE && state->robots[user].action != WH_FLOW_OPENING &&
+                       (state->robots[user].from == number || state->robots[user].to == number);
+    if (is_in) {
+        return to_us;
+    }
+    return wafer != WH_FLOW_NONE && !state->wafers[wafer].is_over && state->wafers[wafer].step > 0
+               ? state->wafers[wafer].done_us
+               : -1;
+}
+
 static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) {
     measure_t *measure = context;
     const int64_t us = to_us - state->now_us;
@@ -303,7 +319,9 @@ static void advance(void *context, const wh_flow_state_t *state, int64_t to_us) 
         }
         const wh_flow_station_t *of = &state->tool->stations[s];
         for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
-            add_aside(&measure->asides[p], station, state->places[p].clean_us != WH_FLOW_NEVER, us);
+            const int64_t taken_us = taken_until_us(state, p, to_us) - state->now_us;
+            const int64_t left_us = taken_us <= 0 ? us : taken_us < us ? us - taken_us : 0;
+            add_aside(&measure->asides[p], station, state->places[p].clean_us != WH_FLOW_NEVER, left_us);
         }
     }
 }
@@ -365,13 +383,14 @@ static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool,
     };
 }
 
-void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,
+void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
                      wh_flow_figures_t *figures) {
     measure_t measure = {.figures = figures,
+                         .keeps_ways = keeps == WH_FLOW_WAYS,
                          .places = wh_array_new(tool->place_count, sizeof *measure.places),
                          .asides = wh_array_new(tool->place_count, sizeof *measure.asides)};
     open_figures(figures, tool, plan);
-    if (keeps_visits) {
+    if (keeps != WH_FLOW_SUMS) {
         measure.visits = wh_array_new(plan->wafer_count, sizeof *measure.visits);
         figures->came_us = wh_array_new(plan->wafer_count, sizeof *figures->came_us);
         for (size_t w = 0; w < plan->wafer_count; ++w) {

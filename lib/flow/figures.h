@@ -66,7 +66,7 @@ typedef struct {
     int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
     wh_flow_doing_t *doings; /* by their ends; none if visits are not kept */
     size_t doing_count, doing_capacity;
-    wh_flow_way_t *ways; /* likewise */
+    wh_flow_way_t *ways; /* none if not asked for */
     size_t way_count, way_capacity;
     wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
     size_t part_count;
@@ -94,8 +94,12 @@ bool wh_flow_has_moved(const wh_flow_t *flow);
 /* True if it was cut: wafers are not at their ends then. */
 bool wh_flow_is_cut(const wh_flow_t *flow);
 
-/* wh_flow_play, with figures. `keeps_visits`: about 170 bytes for each placing. Close them in any case. */
-void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, bool keeps_visits,
+/* What is kept beside the sums: visits, of about 100 bytes for each placing; or ways as well, of about 70 more,
+ * which schedules alone need. */
+typedef enum { WH_FLOW_SUMS, WH_FLOW_VISITS, WH_FLOW_WAYS } wh_flow_keep_t;
+
+/* wh_flow_play, with figures. Close them in any case. */
+void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
                      wh_flow_figures_t *figures);
 void wh_flow_figures_close(wh_flow_figures_t *figures);
 

@@ -200,6 +200,15 @@ static wh_flow_end_t play_on(wh_flow_state_t *state, const wh_flow_rules_t *rule
     }
 }
 
+/* True if there are several robots, and one of them may exchange. */
+static bool has_several_with_two(const wh_flow_tool_t *tool) {
+    bool has_two = false;
+    for (size_t i = 0; i < tool->robot_count; ++i) {
+        has_two = has_two || tool->robots[i].arms > 1;
+    }
+    return has_two && tool->robot_count > 1;
+}
+
 void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_listener_t *listener,
                   wh_flow_result_t *result) {
     play_t play = {0};
@@ -213,6 +222,7 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     wh_flow_state_open(&state, tool, plan);
     state.listener = (wh_flow_listener_t){&play, hear, pass_on, NULL};
     wh_flow_rules_open(&rules, &state);
+    result->may_block = state.checks_safety && plan->rule == WH_FLOW_SWAPPING && has_several_with_two(tool);
     result->end = play_on(&state, &rules, &repeat, &result->asked);
     wh_flow_repeat_close(&repeat);
     result->makespan_us = state.last_us;
@@ -222,6 +232,7 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     result->over = play.count;
     result->left = plan->wafer_count - state.over;
     result->period = wh_flow_steady(play.ends_us, play.count, &result->cycle_us);
+    result->no_cycle = result->period > 0 ? NULL : wh_flow_no_cycle_text(play.ends_us, play.count);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(&state);
     } else if (state.cause) {
@@ -234,5 +245,6 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
 
 void wh_flow_result_close(wh_flow_result_t *result) {
     free(result->why);
+    free(result->no_cycle);
     memset(result, 0, sizeof *result);
 }

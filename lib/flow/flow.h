@@ -17,10 +17,14 @@ typedef struct {
     int64_t makespan_us; /* from 0 to the end of the last placing */
     int64_t cycle_us;    /* over `period` wafers; WH_FLOW_NEVER if there is no steady cycle */
     int32_t period;
+    char *no_cycle; /* why there is none; null: there is one */
     size_t over;    /* wafers at their ends, without dummies */
     size_t left;    /* wafers that are not at their ends, with dummies */
     char *why;      /* null if done; see wh_flow_result_close */
     uint64_t asked; /* how often a rule was asked */
+    /* Rule swap, several robots, and stations that lead back to themselves: wafers may block each other all the
+     * same, for what one robot carries may be in the way of the others. */
+    bool may_block;
 } wh_flow_result_t;
 
 /* Plays the plan from time 0 to its end. The plan must be finished (wh_flow_plan_finish). The listener,
@@ -34,6 +38,10 @@ void wh_flow_result_close(wh_flow_result_t *result);
  * is the same to 1 us over the middle third. Returns k, and in `cycle_us` that difference; 0 if there is
  * none. */
 int32_t wh_flow_steady(const int64_t *ends_us, size_t count, int64_t *cycle_us);
+
+/* Why there is none: too few wafers, with how many would do, or ends that do not repeat. The caller frees
+ * it. */
+char *wh_flow_no_cycle_text(const int64_t *ends_us, size_t count);
 
 /* Why nobody can go on: each wafer that could be taken, what it waits for, and who stands there. The
  * caller frees it. */

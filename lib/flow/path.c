@@ -70,12 +70,47 @@ static int rank(const wh_flow_event_t *before, const wh_flow_event_t *event) {
     return before->station == event->station ? 2 : 3;
 }
 
+static bool is_access(const wh_flow_event_t *event) {
+    return event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_PLACE ||
+           event->kind == WH_FLOW_EVENT_SWAP;
+}
+
+/* True if the event could wait for what a station did by itself: its robot goes into that place or station, or
+ * brings its wafer there next. */
+static bool could_wait_for(const path_t *path, const wh_flow_event_t *event, const wh_flow_event_t *doing) {
+    if (event->robot == WH_FLOW_NONE) {
+        return doing->station == event->station && doing->kind != WH_FLOW_EVENT_CLEAN;
+    }
+    const wh_flow_event_t *const end = path->log->events + path->log->count;
+    for (const wh_flow_event_t *next = event; next < end; ++next) {
+        if (next->robot != event->robot || !is_access(next)) {
+            continue;
+        }
+        if (doing->kind == WH_FLOW_EVENT_CLEAN ? next->place == doing->place
+                                               : next->station == doing->station) {
+            return true;
+        }
+        if (next->kind != WH_FLOW_EVENT_PICK) {
+            return false;
+        }
+    }
+    return false;
+}
+
+static bool is_station_alone(const wh_flow_event_t *event) {
+    return event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
+           event->kind == WH_FLOW_EVENT_DOWN;
+}
+
 /* The event whose end lets this one begin, or null. */
 static const wh_flow_event_t *find_before(const path_t *path, const wh_flow_event_t *event) {
     const wh_flow_event_t *best = NULL;
     for (size_t i = first_ending(path->log, event->begin_us);
          i < path->log->count && path->log->events[i].end_us == event->begin_us; ++i) {
         const wh_flow_event_t *before = &path->log->events[i];
+        if (is_station_alone(before) && !could_wait_for(path, event, before)) {
+            continue;
+        }
         if (!best || rank(before, event) < rank(best, event)) {
             best = before;
         }
@@ -93,9 +128,7 @@ static int64_t longest_shutting_us(const wh_flow_tool_t *tool) {
 
 /* True if it is an access whose door is shut at this time. */
 static bool is_shut_at(const wh_flow_tool_t *tool, const wh_flow_event_t *event, int64_t us) {
-    const bool is_access = event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_PLACE ||
-                           event->kind == WH_FLOW_EVENT_SWAP;
-    return is_access &&
+    return is_access(event) &&
            event->end_us + tool->doors[wh_flow_of(tool, event->robot, event->station)].close_us == us;
 }
 

@@ -28,6 +28,10 @@ void wh_flow_plan_close(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     free(plan->lots);
     free(plan->wafers);
     free(plan->downs);
+    for (size_t i = 0; plan->turns && i < tool->station_count; ++i) {
+        free(plan->turns[i].turns);
+    }
+    free(plan->turns);
     free(plan->lists);
     memset(plan, 0, sizeof *plan);
 }
@@ -94,9 +98,9 @@ static char *check_step(const wh_flow_step_t *step, const wh_flow_route_t *route
                             route->name, k, (int)step->kept_empty, (int)places);
 }
 
-static char *check_way(const wh_flow_tool_t *tool, const wh_flow_route_t *route, const wh_flow_step_t *next,
-                       size_t k, int32_t from) {
-    if (next->station_count == 1 && next->stations[0] == from) {
+static char *check_way(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, const wh_flow_route_t *route,
+                       const wh_flow_step_t *next, size_t k, int32_t from) {
+    if (next->station_count == 1 && next->stations[0] == from && !plan->is_given) {
         return problem_of("route %s: step %zu is %s again (expected another station)", route->name, k,
                           tool->stations[from].name);
     }
@@ -107,13 +111,14 @@ static char *check_way(const wh_flow_tool_t *tool, const wh_flow_route_t *route,
     return NULL;
 }
 
-static char *check_route(const wh_flow_route_t *route, const wh_flow_tool_t *tool) {
+static char *check_route(const wh_flow_plan_t *plan, const wh_flow_route_t *route,
+                         const wh_flow_tool_t *tool) {
     char *problem = NULL;
     for (size_t k = 1; k < route->step_count && !problem; ++k) {
         problem = check_step(&route->steps[k], route, k, tool);
         const wh_flow_step_t *before = &route->steps[k - 1];
         for (size_t i = 0; k > 1 && i < before->station_count && !problem; ++i) {
-            problem = check_way(tool, route, &route->steps[k], k, before->stations[i]);
+            problem = check_way(plan, tool, route, &route->steps[k], k, before->stations[i]);
         }
     }
     return problem;
@@ -159,10 +164,11 @@ static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, i
 static char *check_wafer(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     const wh_flow_route_t *route = route_of(plan, w);
     const wh_flow_step_t *last = &route->steps[route->step_count - 1];
-    char *problem = check_way(tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home]);
+    char *problem =
+        check_way(plan, tool, route, &route->steps[1], 1, tool->place_stations[plan->wafers[w].home]);
     find_back(plan, tool, w);
     for (size_t i = 0; plan->wafers[w].goes_back && i < last->station_count && !problem; ++i) {
-        problem = check_way(tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
+        problem = check_way(plan, tool, route, &plan->backs[plan->wafers[w].back_station], route->step_count,
                             last->stations[i]);
     }
     return problem ? problem : check_end(plan, tool, w);
@@ -174,7 +180,7 @@ char *wh_flow_plan_finish(wh_flow_plan_t *plan, const wh_flow_tool_t *tool) {
     for (size_t i = 0; i < plan->route_count; ++i) {
         plan->routes[i].first_step = plan->step_count;
         plan->step_count += plan->routes[i].step_count + 1;
-        char *problem = check_route(&plan->routes[i], tool);
+        char *problem = check_route(plan, &plan->routes[i], tool);
         if (problem) {
             return problem;
         }

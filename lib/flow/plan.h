@@ -22,7 +22,7 @@ typedef struct {
 
 typedef struct {
     int32_t station;
-    int64_t at_us, for_us;
+    int64_t at_us, for_us; /* for_us: WH_FLOW_FOR_EVER if it never works again */
 } wh_flow_down_t;
 
 typedef enum { WH_FLOW_TRANSFER, WH_FLOW_KEEP, WH_FLOW_BRING, WH_FLOW_SWAP, WH_FLOW_PUMP } wh_flow_do_t;
@@ -33,12 +33,32 @@ typedef struct {
     int32_t from, to; /* stations; the lock is `to` */
     int32_t wafer;    /* WH_FLOW_NONE: the first that entered, or was kept */
     wh_flow_side_t side;
+    int32_t out;    /* of a swap: the wafer that comes out */
+    int32_t slot;   /* to which a wafer is brought; 0: any */
+    int32_t behind; /* so many picks, places and swaps of the station come first */
 } wh_flow_line_t;
+
+/* A transfer from nowhere to nowhere. */
+#define WH_FLOW_NO_LINE                                                                                      \
+    (wh_flow_line_t) {                                                                                       \
+        WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH, WH_FLOW_NONE, 0, 0         \
+    }
 
 typedef struct {
     wh_flow_line_t *lines;
     size_t count, capacity;
 } wh_flow_list_t;
+
+/* A lock's turn behind so many picks, places and swaps in it. */
+typedef struct {
+    wh_flow_side_t side;
+    int32_t behind;
+} wh_flow_turn_t;
+
+typedef struct {
+    wh_flow_turn_t *turns;
+    size_t count, capacity;
+} wh_flow_turns_t;
 
 typedef enum {
     WH_FLOW_BACKWARD,
@@ -84,7 +104,9 @@ typedef struct {
     wh_flow_down_t *downs;
     size_t down_count;
     wh_flow_rule_t rule;
-    wh_flow_list_t *lists; /* by robot, for WH_FLOW_LISTS */
+    wh_flow_list_t *lists;  /* by robot, for WH_FLOW_LISTS */
+    wh_flow_turns_t *turns; /* by station, of locks that turn by a list of their own; null: none does */
+    bool is_given;          /* each step was carried out by somebody, from a station into itself as well */
     wh_flow_own_rule_t own;
     wh_flow_on_problem_t on_problem; /* may be null */
     void *own_context;               /* of both */

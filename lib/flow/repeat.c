@@ -16,7 +16,7 @@
 #define MOST 10000
 
 static bool is_ahead(const wh_flow_state_t *state, int64_t us) {
-    return us != WH_FLOW_NEVER && us > state->now_us;
+    return us < WH_FLOW_FOR_EVER && us > state->now_us;
 }
 
 /* True if a robot carries a wafer on, or is about to. */

@@ -159,7 +159,8 @@ static bool begin_bring(wh_flow_state_t *state, int32_t robot, const wh_flow_ord
 static bool begin_swap(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
     wh_flow_robot_state_t *at = &state->robots[robot];
     const int32_t out = state->places[order->place].wafer;
-    if (out == WH_FLOW_NONE || order->onward == WH_FLOW_NONE || state->wafers[out].is_moving ||
+    const bool has_way = order->onward != WH_FLOW_NONE || state->plan->rule == WH_FLOW_LISTS;
+    if (out == WH_FLOW_NONE || !has_way || state->wafers[out].is_moving ||
         wh_flow_takeable_us(state, robot, out) > state->now_us ||
         !wh_flow_may_enter(state, robot, at->station)) {
         return false;
@@ -272,6 +273,7 @@ static void put_in(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t
 static void come_out(wh_flow_state_t *state, int32_t robot) {
     const int32_t station = state->robots[robot].station;
     state->stations[station].user = WH_FLOW_NONE;
+    ++state->stations[station].accesses;
     state->stations[station].shut_us =
         state->now_us + state->tool->doors[wh_flow_of(state->tool, robot, station)].close_us;
 }

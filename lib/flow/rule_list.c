@@ -83,6 +83,17 @@ static bool has_no_arm(const wh_flow_state_t *state, int32_t robot) {
            (state->tool->robots[robot].arms < 2 || at->arms[1] != WH_FLOW_NONE);
 }
 
+/* The order of an exchange: it waits until the wafer that comes out is there. */
+static void order_swap(const wh_flow_state_t *state, const wh_flow_line_t *line, wh_flow_order_t *order) {
+    const int32_t place = state->wafers[line->out].place;
+    order->onward = WH_FLOW_NONE;
+    order->place = place;
+    if (place == WH_FLOW_NONE || state->tool->place_stations[place] != line->to) {
+        order->what = WH_FLOW_KEEP;
+        order->wafer = order->place = WH_FLOW_NONE;
+    }
+}
+
 const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line,
                                wh_flow_order_t *order) {
     *order = (wh_flow_order_t){.what = line->what,
@@ -91,10 +102,18 @@ const char *wh_flow_order_line(const wh_flow_state_t *state, int32_t robot, cons
                                .station = line->to,
                                .place = WH_FLOW_NONE,
                                .side = line->side};
-    if (line->what == WH_FLOW_BRING) {
+    if (line->what == WH_FLOW_BRING || line->what == WH_FLOW_SWAP) {
         order->at = line->to;
         order->wafer = kept_for(state, robot, line);
-        return order->wafer == WH_FLOW_NONE ? "no wafer on an arm goes there next" : NULL;
+        if (order->wafer == WH_FLOW_NONE) {
+            return "no wafer on an arm goes there next";
+        }
+        if (line->what == WH_FLOW_SWAP) {
+            order_swap(state, line, order);
+        } else if (line->slot > 0) {
+            order->place = state->tool->stations[line->to].first_place + line->slot - 1;
+        }
+        return NULL;
     }
     if (line->what != WH_FLOW_PUMP) {
         order->wafer = wafer_in(state, robot, line);
@@ -114,8 +133,13 @@ bool wh_flow_ask_list(wh_flow_state_t *state, int32_t robot, wh_flow_order_t *or
     if ((size_t)number >= list->count) {
         return false;
     }
-    const char *why = wh_flow_order_line(state, robot, &list->lines[number], order);
+    const wh_flow_line_t *line = &list->lines[number];
+    const char *why = wh_flow_order_line(state, robot, line, order);
     order->mark = number + 1;
+    if (!why && order->what != WH_FLOW_PUMP && line->behind > state->stations[order->at].accesses) {
+        order->what = WH_FLOW_KEEP; /* it goes there, and waits for those before it */
+        order->wafer = order->place = WH_FLOW_NONE;
+    }
     if (why) {
         char text[200];
         (void)snprintf(text, sizeof text, "list of %s, line %d: %s", state->tool->robots[robot].name,

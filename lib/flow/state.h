@@ -30,7 +30,9 @@ typedef struct {
     wh_flow_side_t side, pump_to;
     bool is_listed; /* a lock that lists turn */
     int32_t wafers;
-    bool has_due; /* one of its places must be cleaned, and is not yet */
+    int32_t accesses; /* picks, places and swaps that have ended */
+    int32_t turned;   /* turns of its own list that have begun */
+    bool has_due;     /* one of its places must be cleaned, and is not yet */
 } wh_flow_station_state_t;
 
 typedef struct {

@@ -291,10 +291,24 @@ static wh_flow_side_t turn_to(const wh_flow_state_t *state, int32_t lock) {
     return side;
 }
 
+/* By the lock's own list: the next turn as soon as all that comes before it has been. */
+static void turn_by_list(wh_flow_state_t *state, int32_t number) {
+    const wh_flow_turns_t *list = &state->plan->turns[number];
+    wh_flow_station_state_t *station = &state->stations[number];
+    while ((size_t)station->turned < list->count &&
+           list->turns[station->turned].behind <= station->accesses && station->pump_us == WH_FLOW_NEVER) {
+        (void)wh_flow_station_pump(state, number, list->turns[station->turned++].side);
+    }
+}
+
 static void turn(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_state_t *station = &state->stations[number];
     if (station->is_listed || station->pump_us != WH_FLOW_NEVER || station->user != WH_FLOW_NONE ||
         station->shut_us > state->now_us || station->down_us != WH_FLOW_NEVER) {
+        return;
+    }
+    if (state->plan->turns) {
+        turn_by_list(state, number);
         return;
     }
     const wh_flow_side_t side = turn_to(state, number);
@@ -385,7 +399,8 @@ static void put_off(wh_flow_state_t *state, int32_t number) {
 
 static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     wh_flow_station_state_t *station = &state->stations[down->station];
-    const int64_t until_us = state->now_us + down->for_us;
+    const int64_t until_us =
+        down->for_us == WH_FLOW_FOR_EVER ? WH_FLOW_FOR_EVER : state->now_us + down->for_us;
     station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
@@ -416,7 +431,7 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
 /* --------------------------------------------------------------------------------------------------- next */
 
 static int64_t sooner(const wh_flow_state_t *state, int64_t best_us, int64_t us) {
-    return us > state->now_us && us < best_us ? us : best_us;
+    return us > state->now_us && us < WH_FLOW_FOR_EVER && us < best_us ? us : best_us;
 }
 
 int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {

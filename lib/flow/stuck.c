@@ -68,6 +68,12 @@ static void say_laden(const wh_flow_state_t *state, int32_t robot, text_t *text)
         has == WH_FLOW_NONE ? "no arm for it" : state->plan->wafers[has].name);
 }
 
+static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text) {
+    if (state->stations[station].down_us != WH_FLOW_NEVER) {
+        say(text, " (down for ever)");
+    }
+}
+
 /* "W2 in X waits for B, where W1 is" */
 static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
@@ -77,11 +83,13 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
         say(text, "on %s", state->tool->robots[at->robot].name);
     } else {
         say(text, "in %s", station_name(state, state->tool->place_stations[at->place]));
+        say_down(state, state->tool->place_stations[at->place], text);
     }
     for (size_t i = 0; i < next->station_count; ++i) {
         const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
         const int32_t other = find_other(state, wafer, station);
         say(text, "%s%s", i == 0 ? " waits for " : " or ", station->name);
+        say_down(state, next->stations[i], text);
         if (other != WH_FLOW_NONE) {
             say(text, ", where %s is", state->plan->wafers[other].name);
         }

@@ -16,6 +16,9 @@
 /* A time that does not come. */
 #define WH_FLOW_NEVER INT64_MAX
 
+/* A failure's end that does not come, and whatever would come behind it. */
+#define WH_FLOW_FOR_EVER (INT64_MAX / 2)
+
 /* Two pressures, and what a robot or a slot without a side has. */
 typedef enum { WH_FLOW_ATMOSPHERE, WH_FLOW_VACUUM, WH_FLOW_BOTH } wh_flow_side_t;
 
@@ -37,8 +40,9 @@ typedef struct {
 
 typedef struct {
     char *name;
-    int32_t arms; /* 1 or 2 */
-    int32_t at;   /* the station in front of which it stands at the beginning */
+    int32_t arms;       /* 1 or 2 */
+    int32_t at;         /* the station in front of which it stands at the beginning */
+    bool is_at_assumed; /* nobody says where: at the first one that it serves */
 } wh_flow_robot_t;
 
 typedef struct {

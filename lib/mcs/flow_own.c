@@ -2,6 +2,7 @@
  * caught, and raised again when the flow is over. */
 #include "flow_own.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -88,8 +89,7 @@ static int read_answers(own_t *own, wh_flow_line_t lines[], char **why) {
     while (count < WH_FLOW_ANSWERS && !*why) {
         const int top = lua_gettop(L), type = lua_rawgeti(L, -1, count + 1);
         const wh_flow_choice_t *choice = NULL;
-        lines[count] =
-            (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
+        lines[count] = WH_FLOW_NO_LINE;
         if (type == LUA_TNIL) {
             lua_settop(L, top);
             break;
@@ -143,7 +143,7 @@ static char *tell_problem(void *context, const wh_flow_state_t *state, const wh_
     lua_setfield(L, -2, "kind");
     lua_pushstring(L, own->seen.tool->stations[problem->station].name);
     lua_setfield(L, -2, "station");
-    lua_pushnumber(L, (double)problem->us / 1e6);
+    lua_pushnumber(L, problem->us == WH_FLOW_FOR_EVER ? (lua_Number)INFINITY : (double)problem->us / 1e6);
     lua_setfield(L, -2, "seconds");
     lua_pushstring(L, problem->wafer == WH_FLOW_NONE ? NULL : own->seen.plan->wafers[problem->wafer].name);
     lua_setfield(L, -2, "wafer");

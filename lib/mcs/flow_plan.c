@@ -48,7 +48,7 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     END};
 
 const wh_reader_field_t wh_flow_down_fields[] = {
-    {"at", "number", "s", true}, {"seconds", "number", "s", true}, END};
+    {"at", "number", "s", true}, {"seconds", "number", "s; math.huge: for ever", true}, END};
 
 const wh_reader_field_t wh_flow_list_fields[] = {
     {"order", "table<string, string[][]>", "each robot's transfers in order", true}, END};
@@ -285,6 +285,15 @@ static int by_begin(const void *a, const void *b) {
     return one->at_us < other->at_us ? -1 : one->at_us > other->at_us ? 1 : one->station - other->station;
 }
 
+/* math.huge is for ever. */
+static int64_t read_length(wh_reader_t *reader) {
+    const int type = wh_reader_push(reader, "seconds");
+    const bool is_endless = type == LUA_TNUMBER && lua_tonumber(reader->L, -1) == (lua_Number)INFINITY;
+    lua_pop(reader->L, 1);
+    return is_endless ? WH_FLOW_FOR_EVER
+                      : wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, WH_FLOW_LONGEST_S));
+}
+
 static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
     if (!wh_reader_enter(reader, "down")) {
         return;
@@ -300,7 +309,7 @@ static void read_downs(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_
         wh_flow_down_t *down = &plan->downs[plan->down_count];
         down->station = wh_timed_find_station(reader, tool, "[1]", wh_timed_read_entry(reader, 1, name));
         down->at_us = wh_flow_read_us(reader, "at", NAN);
-        down->for_us = wh_layout_us(wh_reader_number(reader, "seconds", NAN, 1e-6, WH_FLOW_LONGEST_S));
+        down->for_us = read_length(reader);
         ++plan->down_count;
         wh_reader_leave(reader);
     }

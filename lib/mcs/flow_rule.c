@@ -50,7 +50,7 @@ static void read_line(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_
     (void)wh_timed_read_entry(reader, 1, first);
     (void)wh_timed_read_entry(reader, 2, second);
     (void)wh_timed_read_entry(reader, 3, third);
-    *line = (wh_flow_line_t){WH_FLOW_TRANSFER, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_NONE, WH_FLOW_BOTH};
+    *line = WH_FLOW_NO_LINE;
     if (strcmp(first, "pump") == 0) {
         read_pump(reader, tool, second, third, line);
         return;

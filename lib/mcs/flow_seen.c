@@ -41,7 +41,7 @@ static void push_part(lua_State *L, wh_flow_seen_t *seen, kind_t kind, int32_t n
 }
 
 static void push_us(lua_State *L, int64_t us) {
-    if (us == WH_FLOW_NEVER) {
+    if (us >= WH_FLOW_FOR_EVER) {
         lua_pushnil(L);
     } else {
         lua_pushnumber(L, (double)us / 1e6);

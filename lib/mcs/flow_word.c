@@ -82,7 +82,7 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
 static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_result_t *result = &figures->result;
-    lua_createtable(L, 0, 11);
+    lua_createtable(L, 0, 12);
     wh_lua_set_text(L, "end", ends[result->end]);
     set_seconds(L, "makespan_s", result->makespan_us);
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
@@ -93,6 +93,9 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
         wh_lua_set_integer(L, "period", result->period);
         lua_pushnumber(L, 3600 * result->period / seconds(result->cycle_us));
         lua_setfield(L, -2, "per_hour");
+    }
+    if (result->no_cycle) {
+        wh_lua_set_text(L, "no_cycle", result->no_cycle);
     }
     if (result->why) {
         wh_lua_set_text(L, "why", result->why);
@@ -105,6 +108,19 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     push_all_shares(L, figures);
 }
 
+/* Wafers are not at their ends: why, however long that is. */
+static void judge_end(wh_record_t *record, const wh_flow_t *flow, const char *error) {
+    const wh_flow_result_t *result = &flow->figures.result;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    fprintf(out, "every wafer at its end; %s%s%s%s", result->end == WH_FLOW_STUCK ? "STUCK: " : "",
+            result->why ? result->why : "", error ? ": " : "", error ? error : "");
+    (void)fclose(out);
+    wh_record_add_expectation(record, flow->line, text, false);
+    free(text);
+}
+
 /* A flow that did not end well, and stays that were too long, fail the run as expectations do. A cut was
  * asked for: it is told, and is no expectation. `error`: of a function of the script, which may catch it; or
  * null. */
@@ -112,12 +128,8 @@ static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     const wh_flow_figures_t *figures = &flow->figures;
     wh_record_t *record = mcs->recorder.record;
     char text[600];
-    const bool is_stuck = figures->result.end == WH_FLOW_STUCK;
-    if (is_stuck || figures->result.end == WH_FLOW_BROKEN) {
-        (void)snprintf(text, sizeof text, "every wafer at its end; %s%.300s%s%.200s",
-                       is_stuck ? "STUCK: " : "", figures->result.why ? figures->result.why : "",
-                       error ? ": " : "", error ? error : "");
-        wh_record_add_expectation(record, flow->line, text, false);
+    if (figures->result.end == WH_FLOW_STUCK || figures->result.end == WH_FLOW_BROKEN) {
+        judge_end(record, flow, error);
     }
     for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
         const wh_flow_breach_t *breach = &figures->breaches[i];
@@ -157,7 +169,8 @@ static int play_flow(lua_State *L) {
     wh_flow_read(&reader, tool, record->flow);
     wh_flow_own_open(L, tool, &record->flow->plan);
     const int own = lua_gettop(L);
-    wh_flow_measure(tool, &record->flow->plan, true, &record->flow->figures);
+    wh_flow_measure(tool, &record->flow->plan, mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
+                    &record->flow->figures);
     const bool has_failed = wh_flow_own_close(L, own, &record->flow->plan);
     judge(mcs, record->flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
     if (has_failed) {

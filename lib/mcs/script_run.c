@@ -119,6 +119,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     }
     run->mcs.wanted.is_file = true;
     run->mcs.wanted.keeps_segments = options->keep_segments;
+    run->mcs.wanted.keeps_ways = options->keep_ways;
     run->mcs.wanted.limits_missed = options->limits_missed;
     run->mcs.wanted.most_missed = options->most_missed;
     run->mcs.wanted.partners = options->partners;

@@ -166,6 +166,7 @@ typedef struct {
     bool refuses_unread;     /* the cell is not connected while a parameter is unread */
     bool is_file;            /* `script` is a file that is run, not a layout */
     bool keeps_segments;     /* collect the played segments, for --segments */
+    bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
     bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;

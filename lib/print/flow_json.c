@@ -1,5 +1,5 @@
 /* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, wafers, cycle_s, period,
- * per_hour, longest_stay_s, path (parts of the critical path, which add up to the makespan, the longest
+ * per_hour, no_cycle (why there is none), may_block (safe is not held), longest_stay_s, path (parts of the critical path, which add up to the makespan, the longest
  * first), gains (what the flow takes if one robot or station takes 10 % less time), robots and stations
  * (shares of the time by class, which add up to 1; blocked_by by name, s), stays (beyond their windows),
  * visits (each wafer's, by the end of placing; at last those under way, with null for what has not come),
@@ -26,8 +26,11 @@ static json_t *shares(const int64_t times_us[], const char *const names[], size_
 
 static json_t *robot(const void *subject, size_t r) {
     const wh_flow_figures_t *figures = subject;
+    const wh_flow_robot_t *of = &figures->tool->robots[r];
     return wh_json_add(
-        json_object(), "name shares", wh_json_text(figures->tool->robots[r].name),
+        wh_json_set(json_object(), "name %s begins_at %s begin_assumed %i", of->name,
+                    figures->tool->stations[of->at].name, of->is_at_assumed),
+        "shares",
         shares(figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, (double)figures->end_us),
         NULL);
 }
@@ -133,6 +136,7 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
         flow->line, ends[result->end], result->why, (long long)result->over, (long long)result->left,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
+    (void)wh_json_set(object, "no_cycle %s may_block %i", result->no_cycle, result->may_block);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
     return wh_json_add(object, "longest_stay_s path gains robots stations stays visits doings",
                        seconds(figures->longest_stay_us), wh_json_list(part, figures, figures->part_count),

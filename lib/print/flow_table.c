@@ -22,12 +22,14 @@ static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *fig
             fprintf(printer->out, ", the same every %d wafers", (int)result->period);
         }
     } else {
-        fprintf(printer->out, "no steady cycle: the wafers' ends do not repeat within their middle third");
+        fprintf(printer->out, "no steady cycle: %s", result->no_cycle);
     }
     const bool is_cut = result->end == WH_FLOW_CUT;
     const int64_t all_us = is_cut ? figures->end_us : result->makespan_us;
-    fprintf(printer->out, "\n%s wafers at their ends in %.6f s, with start and %s",
-            wh_print_count(count, (int64_t)result->over), seconds(all_us), is_cut ? "cut" : "run-out");
+    fprintf(printer->out, "\n%s %s in %.6f s, with start and %s",
+            wh_print_count(count, (int64_t)result->over),
+            result->over == 1 ? "wafer at its end" : "wafers at their ends", seconds(all_us),
+            is_cut ? "cut" : "run-out");
     if (result->over > 0 && all_us > 0) {
         fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(all_us));
     }
@@ -184,6 +186,27 @@ static void print_breaches(const wh_printer_t *printer, const wh_flow_figures_t 
     }
 }
 
+/* Where nobody has said where robots begin, and where safe cannot be held. */
+static void print_notes(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_tool_t *tool = figures->tool;
+    size_t said = 0;
+    for (size_t r = 0; r < tool->robot_count; ++r) {
+        if (tool->robots[r].is_at_assumed) {
+            wh_print_say(printer, "%s%s in front of %s",
+                         said++ == 0 ? "! without `at`, robots begin at their first station: " : ", ",
+                         tool->robots[r].name, tool->stations[tool->robots[r].at].name);
+        }
+    }
+    if (said > 0) {
+        fputc('\n', printer->out);
+    }
+    if (figures->result.may_block) {
+        fprintf(printer->out,
+                "! safe is not held for every flow of several robots by rule swap: what one of them "
+                "carries may be in the way of the others\n");
+    }
+}
+
 void wh_print_flow(const wh_printer_t *printer) {
     const wh_flow_t *flow = printer->record->flow;
     if (!flow || !flow->figures.tool) {
@@ -191,6 +214,7 @@ void wh_print_flow(const wh_printer_t *printer) {
     }
     wh_print_title(printer, "Flow");
     print_rate(printer, &flow->figures);
+    print_notes(printer, &flow->figures);
     print_robots(printer, &flow->figures);
     print_stations(printer, &flow->figures);
     print_path(printer, &flow->figures);

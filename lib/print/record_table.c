@@ -411,8 +411,10 @@ static void print_summary(const wh_printer_t *printer) {
     if (record->flow && wh_flow_is_cut(record->flow)) {
         const wh_flow_figures_t *figures = &record->flow->figures;
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
-        fprintf(printer->out, "cut at %.10g s: %zu of %zu wafers not at their ends\n",
-                (double)figures->end_us / 1e6, figures->result.left, figures->plan->wafer_count);
+        const size_t wafers = figures->plan->wafer_count;
+        fprintf(printer->out, "cut at %.10g s: %zu of %zu %s not at %s\n", (double)figures->end_us / 1e6,
+                figures->result.left, wafers, wafers == 1 ? "wafer" : "wafers",
+                figures->result.left == 1 ? "its end" : "their ends");
     }
     if (record->never_came) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");

@@ -46,6 +46,11 @@ static json_t *apart_of(const wh_schedule_t *schedule, size_t row, int64_t playe
                            : wh_json_set(row_of(schedule, row), "played_s %g", seconds(played_us));
 }
 
+/* True if it was not to be played, or came to its end. */
+static bool is_played_out(const wh_schedule_play_t *play) {
+    return !play || !play->is_played || play->figures.result.end == WH_FLOW_DONE;
+}
+
 static json_t *play_of(const wh_schedule_t *schedule, const wh_schedule_play_t *play) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     if (!play || !play->is_played) {
@@ -53,10 +58,11 @@ static json_t *play_of(const wh_schedule_t *schedule, const wh_schedule_play_t *
     }
     const wh_flow_result_t *result = &play->figures.result;
     json_t *object = wh_json_set(
-        json_object(), "end %s why %s makespan_s %g schedule_makespan_s %g actions %lld differing %lld",
+        json_object(),
+        "end %s why %s makespan_s %g schedule_makespan_s %g actions %lld played %lld differing %lld",
         ends[result->end], result->why, seconds(result->makespan_us), seconds(play->makespan_us),
-        (long long)play->actions, (long long)play->differing);
-    (void)wh_json_set(object, "swaps %lld left_out %lld", (long long)play->swaps, (long long)play->resting);
+        (long long)play->actions, (long long)play->played, (long long)play->differing);
+    (void)wh_json_set(object, "left_out %lld", (long long)play->resting);
     return wh_json_add(object, "first widest", apart_of(schedule, play->first_row, play->first_us),
                        apart_of(schedule, play->widest_row, play->widest_us), NULL);
 }
@@ -66,10 +72,10 @@ int wh_schedule_print_json(const wh_schedule_report_t *report, const wh_schedule
     const wh_schedule_finding_t *first = wh_schedule_first(report);
     json_t *root =
         wh_json_set(json_object(), "format %d file %s ok %i rows %lld wafers %lld end_s %g", FORMAT,
-                    schedule->path, !first && wh_schedule_is_looked(report), (long long)schedule->count,
-                    (long long)schedule->wafers.count, seconds(report->end_us));
-    (void)wh_json_set(root, "assumed_starts %lld last_line_ends %i", (long long)report->assumed,
-                      schedule->ends_whole);
+                    schedule->path, wh_schedule_is_good(report) && is_played_out(play),
+                    (long long)schedule->count, (long long)schedule->wafers.count, seconds(report->end_us));
+    (void)wh_json_set(root, "assumed_starts %lld last_line_ends %i times_look_like %s",
+                      (long long)report->assumed, schedule->ends_whole, wh_schedule_unit(report->scale));
     (void)wh_json_add(root, "first rules findings play",
                       first ? finding_of(report, (size_t)(first - report->findings)) : json_null(),
                       wh_json_list(rule_of, report, WH_SCHEDULE_RULES - 1),

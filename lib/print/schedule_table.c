@@ -97,6 +97,21 @@ static void put_findings(FILE *out, const wh_schedule_report_t *report) {
 
 /* -------------------------------------------------------------------------------------------------- notes */
 
+/* Times in another unit make all else senseless: it comes first. */
+static void put_unit(FILE *out, const wh_style_t *style, const wh_schedule_report_t *report) {
+    if (report->scale > 1) {
+        wh_style_print(
+            style, out, WH_INK_WARN,
+            "! picks and places are some 1000 times too short: are begin_s and end_s given in seconds? "
+            "(a map's scale is the factor to seconds)\n\n");
+    } else if (report->scale < 1) {
+        wh_style_print(style, out, WH_INK_WARN,
+                       "! picks and places are far too long: are begin_s and end_s in %s? (expected seconds; "
+                       "--columns with scale = %g)\n\n",
+                       wh_schedule_unit(report->scale), report->scale);
+    }
+}
+
 static void put_notes(FILE *out, const wh_style_t *style, const wh_schedule_report_t *report) {
     if (!report->schedule->ends_whole) {
         wh_style_print(style, out, WH_INK_WARN, "! the last line has no line end: the file may be cut\n");
@@ -117,6 +132,14 @@ static void put_verdict(FILE *out, const wh_style_t *style, const wh_schedule_re
         wh_style_print(style, out, WH_INK_WARN,
                        "not known: nothing was found, but one of the rules 1 to %d was not looked at",
                        WH_SCHEDULE_NEEDED);
+    } else if (report->scale != 1) {
+        wh_style_print(style, out, WH_INK_WARN,
+                       "not known: nothing was found, but times do not look like seconds");
+    } else if (report->warnings > 0) {
+        wh_style_print(style, out, WH_INK_WARN,
+                       "not finished: nothing was found, but %zu %s left aboard or short of %s",
+                       report->warnings, many(report->warnings, "wafer is", "wafers are"),
+                       many(report->warnings, "its end", "their ends"));
     } else {
         wh_style_print(style, out, WH_INK_GOOD, "good, as far as it was looked at");
     }
@@ -148,25 +171,25 @@ static void put_play(FILE *out, const wh_style_t *style, const wh_schedule_repor
     }
     fprintf(out, "  makespan %.10g s; by the schedule %.10g s\n", seconds(result->makespan_us),
             seconds(play->makespan_us));
-    fprintf(out, "  %zu of %zu picks and places begin at another time\n", play->differing, play->actions);
+    fprintf(out, "  %zu of %zu picks and places begin at another time\n", play->differing, play->played);
+    if (play->played < play->actions) {
+        wh_style_print(style, out, WH_INK_BAD, "  %zu of %zu did not come about\n",
+                       play->actions - play->played, play->actions);
+    }
     if (play->differing > 0) {
         put_apart(out, report->schedule, "the first", play->first_row, play->first_us);
         put_apart(out, report->schedule, "the most apart", play->widest_row, play->widest_us);
-    }
-    if (play->swaps > 0) {
-        fprintf(out, "  ! %zu %s played as a pick and a place\n", play->swaps,
-                many(play->swaps, "swap is", "swaps are"));
     }
     if (play->resting > 0) {
         fprintf(out, "  ! %zu %s never carried: left out\n", play->resting,
                 many(play->resting, "wafer is", "wafers are"));
     }
-    fputs("  ! slots between a wafer's first and its last, cleans, pumps and doors are the flow's own\n",
-          out);
+    fputs("  ! cleans and doors are the flow's own; rows that move a robot are left out\n", out);
 }
 
 int wh_schedule_print_table(const wh_schedule_report_t *report, const wh_schedule_play_t *play, FILE *out,
                             const wh_style_t *style) {
+    put_unit(out, style, report);
     put_first(out, report);
     for (int rule = 1; rule < WH_SCHEDULE_RULES; ++rule) {
         put_rule(out, style, report, rule);

@@ -108,6 +108,7 @@ static void read_stand(wh_reader_t *reader, wh_flow_tool_t *tool, int32_t robot)
     if ((size_t)first == tool->station_count) {
         wh_reader_fail(reader, NULL, "a robot that serves a station");
     }
+    tool->robots[robot].is_at_assumed = !wh_reader_has(reader, "at");
     wh_reader_text(reader, "at", tool->stations[first].name, name, sizeof name);
     tool->robots[robot].at = wh_timed_find_station(reader, tool, "at", name);
 }

@@ -19,12 +19,12 @@ const char *const wh_schedule_rules[WH_SCHEDULE_RULES] = {NULL,
                                                           "a place into a full one",
                                                           "less time than a move between two stations",
                                                           "an action shorter than the layout says",
-                                                          "a process cut short",
+                                                          "a process cut short, or done twice",
                                                           "a stay beyond the window",
                                                           "a place during a clean, or a clean left out",
                                                           "wrong pressure in a load lock",
                                                           "both doors of a load lock open",
-                                                          "a shut door",
+                                                          "a shut door, or an open one during a process",
                                                           "a robot that does not serve the station",
                                                           "a step out of the route's order",
                                                           "a wafer in two places",
@@ -406,6 +406,13 @@ static void note_row(wh_schedule_state_t *check, int32_t row) {
     }
 }
 
+/* How many slots of each station rows tell of. */
+static void count_slots(wh_schedule_state_t *check) {
+    for (size_t i = 0; i < check->schedule->place_count; ++i) {
+        ++check->stations[check->schedule->places[i].station].slots;
+    }
+}
+
 static void open_check(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
     check->wafers = wh_array_new(schedule->wafers.count + 1, sizeof *check->wafers);
@@ -416,6 +423,7 @@ static void open_check(wh_schedule_state_t *check) {
         wh_check_wafer_t *wafer = &check->wafers[i];
         wafer->place = wafer->robot = wafer->next = wafer->home = WH_FLOW_NONE;
         wafer->row = wafer->process_row = WH_CHECK_NO_ROW;
+        wafer->whole_us = WH_FLOW_NEVER;
     }
     for (size_t i = 0; i < schedule->place_count; ++i) {
         wh_check_place_t *place = &check->places[i];
@@ -428,6 +436,7 @@ static void open_check(wh_schedule_state_t *check) {
         check->stations[i].tool = WH_FLOW_NONE;
         check->stations[i].pump_row = check->stations[i].access_row = WH_CHECK_NO_ROW;
     }
+    count_slots(check);
     for (size_t i = 0; i < schedule->robots.count; ++i) {
         wh_check_robot_t *robot = &check->robots[i];
         robot->tool = robot->on[0] = robot->on[1] = WH_FLOW_NONE;
@@ -458,6 +467,7 @@ static void check_all(wh_schedule_state_t *check) {
         assume_wafer(check, w);
     }
     go(check, moments, count);
+    wh_check_guess_unit(check);
     wh_check_finish_stays(check);
     wh_check_finish_routes(check);
     wh_check_judge(check);
@@ -498,6 +508,10 @@ const wh_schedule_finding_t *wh_schedule_first(const wh_schedule_report_t *repor
         }
     }
     return NULL;
+}
+
+bool wh_schedule_is_good(const wh_schedule_report_t *report) {
+    return report->count == 0 && wh_schedule_is_looked(report) && report->scale == 1;
 }
 
 bool wh_schedule_is_looked(const wh_schedule_report_t *report) {

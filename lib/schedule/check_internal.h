@@ -24,6 +24,7 @@ typedef struct {
     int64_t placed_us;         /* when it lay there */
     int64_t done_us;           /* its process is over, as far as is known */
     int64_t processed_us;      /* of rows, in this stay */
+    int64_t whole_us;          /* when they had lasted as long as the layout says; WH_FLOW_NEVER: not yet */
     uint64_t routes;           /* by which it may go, by their bits */
     bool is_lost;              /* it left all routes; told once */
     bool has_start;
@@ -47,6 +48,7 @@ typedef struct {
     int64_t pump_us, access_us; /* the ends of what runs */
     int32_t pump_row, access_row;
     bool has_pumps, has_cleans; /* rows of its own */
+    int32_t slots;              /* of which rows tell */
 } wh_check_station_t;
 
 typedef struct {
@@ -145,6 +147,8 @@ void wh_check_begin_pump(wh_schedule_state_t *check, int32_t row);
 void wh_check_end_pump(wh_schedule_state_t *check, int32_t row);
 void wh_check_begin_door(wh_schedule_state_t *check, int32_t row);
 void wh_check_end_door(wh_schedule_state_t *check, int32_t row);
+void wh_check_process_door(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer);
+bool wh_check_has_one_slot(const wh_schedule_state_t *check, int32_t station);
 wh_check_door_t *wh_check_door_of(const wh_schedule_state_t *check, const wh_schedule_row_t *row);
 
 /* ----------------------------------------------------------------------------------- routes: rules 15, 17 */
@@ -153,6 +157,7 @@ void wh_check_visit(wh_schedule_state_t *check, int32_t row, int32_t wafer);
 void wh_check_finish_routes(wh_schedule_state_t *check);
 
 /* ------------------------------------------------------------------------------------- what was looked at */
+void wh_check_guess_unit(wh_schedule_state_t *check);
 void wh_check_judge(wh_schedule_state_t *check);
 
 #endif

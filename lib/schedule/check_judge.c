@@ -7,11 +7,11 @@
 
 typedef struct {
     size_t rows[WH_SCHEDULE_ACTIONS]; /* by action */
-    bool has_windows, has_cleans, has_locks;
+    bool has_windows, has_cleans, has_locks, has_doors;
 } facts_t;
 
 static facts_t find_facts(const wh_schedule_state_t *check) {
-    facts_t facts = {{0}, false, false, false};
+    facts_t facts = {{0}, false, false, false, false};
     for (size_t i = 0; i < check->schedule->count; ++i) {
         ++facts.rows[check->schedule->rows[i].action];
     }
@@ -20,6 +20,9 @@ static facts_t find_facts(const wh_schedule_state_t *check) {
         facts.has_windows = facts.has_windows || station->window_us != WH_FLOW_NEVER;
         facts.has_cleans = facts.has_cleans || wh_flow_is_cleaned(station);
         facts.has_locks = facts.has_locks || station->is_lock;
+    }
+    for (size_t i = 0; check->tool && i < check->tool->robot_count * check->tool->station_count; ++i) {
+        facts.has_doors = facts.has_doors || check->tool->doors[i].close_us > 0;
     }
     return facts;
 }
@@ -95,6 +98,11 @@ static void judge_times(wh_schedule_state_t *check, const facts_t *facts) {
     judge_layout(check, WH_SCHEDULE_RULE_WINDOW, facts->has_windows, "no window in the layout");
     if (check->tool) {
         judge(check, WH_SCHEDULE_RULE_PROCESS, true, NULL);
+    } else if (facts->rows[WH_SCHEDULE_PROCESS] > 0 && check->report->repeated > 0) {
+        judge(
+            check, WH_SCHEDULE_RULE_PROCESS, true,
+            "by the schedule's own processes: no layout, which would say whether %zu of them may come again",
+            check->report->repeated);
     } else if (facts->rows[WH_SCHEDULE_PROCESS] > 0) {
         judge(check, WH_SCHEDULE_RULE_PROCESS, true, "by the schedule's own processes: no layout");
     } else {
@@ -143,7 +151,9 @@ static void judge_locks(wh_schedule_state_t *check, const facts_t *facts) {
     } else {
         judge(check, WH_SCHEDULE_RULE_BOTH_OPEN, false, "no load lock with two doors in the schedule");
     }
-    if (check->door_count == 0) {
+    if (check->door_count == 0 && facts->has_doors) {
+        judge(check, WH_SCHEDULE_RULE_DOOR, true, "processes alone: no door opens or closes in the schedule");
+    } else if (check->door_count == 0) {
         judge(check, WH_SCHEDULE_RULE_DOOR, false, "no door opens or closes in the schedule");
     } else if (has_other_stations(check)) {
         judge(check, WH_SCHEDULE_RULE_DOOR, true, "at the stations of whose doors the schedule tells");
@@ -165,7 +175,8 @@ void wh_check_judge(wh_schedule_state_t *check) {
     if (has_routes) {
         judge(check, WH_SCHEDULE_RULE_LEFT, true, NULL);
     } else {
-        judge(check, WH_SCHEDULE_RULE_LEFT, true, "wafers aboard alone: %s",
+        judge(check, WH_SCHEDULE_RULE_LEFT, true, "wafers aboard%s alone: %s",
+              check->tool ? ", in locks, and where there is a process" : "",
               check->tool ? "no routes in the layout" : "no layout");
     }
 }

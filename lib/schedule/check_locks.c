@@ -110,11 +110,68 @@ static void check_door_side(wh_schedule_state_t *check, int32_t row, const wh_ch
     }
 }
 
+/* The station's first door that is not shut; null: none. */
+static const wh_check_door_t *find_open_door(const wh_schedule_state_t *check, int32_t station) {
+    size_t low = 0, high = check->door_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (check->doors[middle].station < station) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    while (low < check->door_count && check->doors[low].station == station &&
+           check->doors[low].state == WH_CHECK_SHUT) {
+        ++low;
+    }
+    return low < check->door_count && check->doors[low].station == station ? &check->doors[low] : NULL;
+}
+
+bool wh_check_has_one_slot(const wh_schedule_state_t *check, int32_t station) {
+    return (check->tool ? wh_check_station(check, station)->slots : check->stations[station].slots) == 1;
+}
+
+/* Rule 13 of a process: it begins behind a shut door. A station of several slots may open for another one. */
+void wh_check_process_door(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const wh_check_door_t *door = find_open_door(check, of->station);
+    if (door && wh_check_has_one_slot(check, of->station)) {
+        wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, door->row,
+                       "begin_s: %.10g (expected a time when the door is shut: before it, %s)",
+                       wh_check_seconds(of->begin_us), wh_check_describe(check, door->row, &text));
+    } else if (!door && wh_check_is_behind(wafer->placed_us, of->begin_us)) {
+        wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, wafer->row,
+                       "begin_s: %.10g (expected %.10g or later, when the door is shut)",
+                       wh_check_seconds(of->begin_us), wh_check_seconds(wafer->placed_us));
+    }
+}
+
+/* Rule 13 of a door: it does not open while its wafer is processed. */
+static void check_inside(wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const int32_t number = check->places[of->place].head;
+    if (number == WH_FLOW_NONE || !wh_check_has_one_slot(check, of->station)) {
+        return;
+    }
+    const wh_check_wafer_t *wafer = &check->wafers[number];
+    const bool is_told = wafer->process_row != WH_CHECK_NO_ROW;
+    if (wafer->where == WH_CHECK_LIES && (is_told || wafer->visits > 0) &&
+        wh_check_is_behind(wafer->done_us, of->begin_us)) {
+        wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, is_told ? wafer->process_row : wafer->row,
+                       "begin_s: %.10g (expected %.10g or later, when the process of %s is over)",
+                       wh_check_seconds(of->begin_us), wh_check_seconds(wafer->done_us),
+                       wh_schedule_text(&check->schedule->wafers, number));
+    }
+}
+
 void wh_check_begin_door(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const bool opens = of->action == WH_SCHEDULE_OPEN;
     wh_check_door_t *door = wh_check_door_of(check, of);
     if (opens) {
+        check_inside(check, row);
         check_other_door(check, row, door);
         check_door_side(check, row, door);
     } else {

@@ -16,12 +16,15 @@ static void check_way(wh_schedule_state_t *check, int32_t row, const wh_check_ro
     const int32_t to = check->stations[of->station].tool;
     const int64_t way_us = wh_flow_move_us(check->tool, robot->tool, robot->station, to);
     if (wh_check_is_behind(robot->free_us + way_us, of->begin_us)) {
-        wh_check_found(
-            check, WH_SCHEDULE_RULE_MOVE, row, robot->row,
-            "begin_s: %.10g (expected %.10g or later: %s is free at %s from %.10g on, and moves for %.10g s)",
-            wh_check_seconds(of->begin_us), wh_check_seconds(robot->free_us + way_us),
-            check->tool->robots[robot->tool].name, check->tool->stations[robot->station].name,
-            wh_check_seconds(robot->free_us), wh_check_seconds(way_us));
+        wh_check_found(check, WH_SCHEDULE_RULE_MOVE, row, robot->row,
+                       "begin_s: %.10g (expected %.10g or later: %s is free at %s%s from %.10g on, and moves "
+                       "for %.10g s)",
+                       wh_check_seconds(of->begin_us), wh_check_seconds(robot->free_us + way_us),
+                       check->tool->robots[robot->tool].name, check->tool->stations[robot->station].name,
+                       robot->row == WH_CHECK_NO_ROW && check->tool->robots[robot->tool].is_at_assumed
+                           ? ", its first station, as nobody says otherwise,"
+                           : "",
+                       wh_check_seconds(robot->free_us), wh_check_seconds(way_us));
     }
     if (of->action != WH_SCHEDULE_MOVE) {
         return;
@@ -39,9 +42,10 @@ void wh_check_length(wh_schedule_state_t *check, int32_t row, int64_t least_us) 
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (wh_check_is_behind(of->begin_us + least_us, of->end_us)) {
         wh_check_found(check, WH_SCHEDULE_RULE_SHORT, row, WH_CHECK_NO_ROW,
-                       "end_s: %.10g (expected %.10g or later: a %s takes %.10g s here)",
+                       "end_s: %.10g (expected %.10g or later: %s %s takes %.10g s here)",
                        wh_check_seconds(of->end_us), wh_check_seconds(of->begin_us + least_us),
-                       wh_schedule_words[of->action], wh_check_seconds(least_us));
+                       wh_schedule_article(of->action), wh_schedule_words[of->action],
+                       wh_check_seconds(least_us));
     }
 }
 
@@ -69,6 +73,19 @@ static void check_serves(wh_schedule_state_t *check, int32_t row, int32_t statio
     }
 }
 
+/* Rule 14 of a slot: robots of the other side do not fill it. */
+static void check_slot(wh_schedule_state_t *check, int32_t row) {
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const wh_flow_station_t *station = wh_check_station(check, of->station);
+    const bool fills = of->action == WH_SCHEDULE_PLACE || of->action == WH_SCHEDULE_SWAP;
+    if (fills && !wh_flow_sides_agree(check->tool->slot_sides[station->first_place + of->slot - 1],
+                                      check->tool->sides[wh_check_pair(check, of)])) {
+        wh_check_found(check, WH_SCHEDULE_RULE_SERVES, row, WH_CHECK_NO_ROW,
+                       "slot: %d (expected one of %s that %s may fill)", (int)of->slot, station->name,
+                       wh_schedule_text(&check->schedule->robots, of->robot));
+    }
+}
+
 void wh_check_robot_begins(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     wh_check_robot_t *robot = &check->robots[of->robot];
@@ -79,6 +96,7 @@ void wh_check_robot_begins(wh_schedule_state_t *check, int32_t row) {
         }
         check_access_length(check, row);
         check_serves(check, row, of->station);
+        check_slot(check, row);
         if (of->action == WH_SCHEDULE_MOVE) {
             check_serves(check, row, of->to);
         }

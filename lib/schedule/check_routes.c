@@ -87,6 +87,15 @@ static bool is_at_end(const wh_schedule_state_t *check, const wh_check_wafer_t *
     return false;
 }
 
+/* True if the wafer was brought to where no route can end: that station processes, or is a load lock. */
+static bool is_on_its_way(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer) {
+    if (wafer->where != WH_CHECK_LIES || wafer->visits == 0) {
+        return false;
+    }
+    const wh_flow_station_t *station = wh_check_station(check, check->schedule->places[wafer->place].station);
+    return station->process_us > 0 || station->is_lock;
+}
+
 /* Rule 17. */
 void wh_check_finish_routes(wh_schedule_state_t *check) {
     wh_check_text_t text;
@@ -101,6 +110,11 @@ void wh_check_finish_routes(wh_schedule_state_t *check) {
             wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
                            "wafer: %s (expected a place at last: it %s)", name,
                            wh_check_where(check, w, &text));
+        } else if (check->tool && !has_routes && is_on_its_way(check, wafer)) {
+            wh_check_found(
+                check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
+                "wafer: %s (expected at last in a station that neither processes nor pumps: it %s)", name,
+                wh_check_where(check, w, &text));
         } else if (has_routes && wafer->where == WH_CHECK_LIES && !wafer->is_lost && wafer->routes != 0 &&
                    !is_at_end(check, wafer)) {
             wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,

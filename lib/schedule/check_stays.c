@@ -29,6 +29,32 @@ int64_t wh_check_process_us(const wh_schedule_state_t *check, int32_t number) {
 
 /* ---------------------------------------------------------------------------------------------- processes */
 
+/* Rule 8. A wafer has one process at a time, and no more of it than the layout says. */
+static void check_again(wh_schedule_state_t *check, int32_t row, const wh_check_wafer_t *wafer,
+                        int32_t number) {
+    const int64_t needed_us = wh_check_process_us(check, number);
+    if (wafer->process_row == WH_CHECK_NO_ROW ||
+        wh_check_is_early(check, WH_SCHEDULE_RULE_PROCESS, row, wafer->done_us, wafer->process_row)) {
+        return;
+    }
+    if (check->tool && needed_us > 0 && !wh_check_is_behind(needed_us, wafer->processed_us)) {
+        wh_check_found(check, WH_SCHEDULE_RULE_PROCESS, row, wafer->process_row,
+                       "wafer: %s (expected one that is not processed yet: its %.10g s here are over)",
+                       name_of(check, number), wh_check_seconds(needed_us));
+    }
+    check->report->repeated += check->tool ? 0 : 1;
+}
+
+/* The layout's process is over when rows have lasted as long; they may last longer. */
+static void note_whole(const wh_schedule_state_t *check, const wh_schedule_row_t *of, wh_check_wafer_t *wafer,
+                       int32_t number) {
+    const int64_t left_us = wh_check_process_us(check, number) - wafer->processed_us;
+    const int64_t whole_us = of->begin_us + (left_us > 0 ? left_us : 0);
+    if (check->tool && wafer->whole_us == WH_FLOW_NEVER && whole_us <= of->end_us) {
+        wafer->whole_us = whole_us;
+    }
+}
+
 void wh_check_begin_process(wh_schedule_state_t *check, int32_t row) {
     wh_check_text_t text, place;
     const wh_schedule_row_t *of = wh_check_row(check, row);
@@ -44,6 +70,9 @@ void wh_check_begin_process(wh_schedule_state_t *check, int32_t row) {
         return;
     }
     const bool is_first = wafer->process_row == WH_CHECK_NO_ROW;
+    wh_check_process_door(check, row, wafer);
+    check_again(check, row, wafer, number);
+    note_whole(check, of, wafer, number);
     wafer->done_us = is_first || of->end_us > wafer->done_us ? of->end_us : wafer->done_us;
     wafer->processed_us += of->end_us - of->begin_us;
     wafer->process_row = row;
@@ -79,8 +108,9 @@ static void check_window(wh_schedule_state_t *check, int32_t row, int32_t number
     if (!station || station->window_us == WH_FLOW_NEVER || wafer->visits == 0) {
         return;
     }
-    const bool is_around = place->cleaned_us >= wafer->placed_us && place->clean_us > wafer->done_us;
-    const int64_t done_us = is_around ? place->clean_us : wafer->done_us;
+    const int64_t processed_us = wafer->whole_us < wafer->done_us ? wafer->whole_us : wafer->done_us;
+    const bool is_around = place->cleaned_us >= wafer->placed_us && place->clean_us > processed_us;
+    const int64_t done_us = is_around ? place->clean_us : processed_us;
     if (!wh_check_is_behind(until_us, done_us + station->window_us)) {
         return;
     }
@@ -125,8 +155,9 @@ static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check
     if (check->stations[of->station].has_cleans) {
         if (place->cleaned_us < wafer->placed_us) {
             wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, WH_CHECK_NO_ROW,
-                           "begin_s: %.10g (expected a clean before: one is due behind %d wafers)",
-                           wh_check_seconds(of->begin_us), (int)station->clean_after);
+                           "begin_s: %.10g (expected a clean before: one is due behind %d %s)",
+                           wh_check_seconds(of->begin_us), (int)station->clean_after,
+                           station->clean_after == 1 ? "wafer" : "wafers");
         }
     } else {
         wafer->done_us += station->clean_us;

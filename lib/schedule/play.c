@@ -30,8 +30,10 @@ typedef struct {
     size_t *first;  /* by wafer, its first leg; one more at the end */
     size_t *done;   /* by wafer: legs so far */
     int64_t *comes_us;
-    int32_t *homes;   /* by wafer: a place of the tool, or WH_FLOW_NONE */
-    int32_t *numbers; /* by the schedule's wafer: the plan's, or WH_FLOW_NONE */
+    int32_t *homes;    /* by wafer: a place of the tool, or WH_FLOW_NONE */
+    int32_t *numbers;  /* by the schedule's wafer: the plan's, or WH_FLOW_NONE */
+    int32_t *accesses; /* by station: rows so far that reach into it */
+    bool *has_pumps;   /* by station: rows tell of them */
     wh_schedule_names_t routes;
 } maker_t;
 
@@ -73,7 +75,6 @@ static int32_t put_by(const wh_schedule_row_t *row) {
     return row->action == WH_SCHEDULE_PLACE || row->action == WH_SCHEDULE_SWAP ? row->wafer : WH_FLOW_NONE;
 }
 
-/* The rows of a wafer are in its order only by their begins. */
 static void open_legs(maker_t *maker) {
     const wh_schedule_t *schedule = maker->schedule;
     const size_t wafers = schedule->wafers.count;
@@ -83,6 +84,8 @@ static void open_legs(maker_t *maker) {
     maker->comes_us = wh_array_new(wafers + 1, sizeof *maker->comes_us);
     maker->homes = wh_array_new(wafers + 1, sizeof *maker->homes);
     maker->numbers = wh_array_new(wafers + 1, sizeof *maker->numbers);
+    maker->accesses = wh_array_new(maker->tool->station_count, sizeof *maker->accesses);
+    maker->has_pumps = wh_array_new(maker->tool->station_count, sizeof *maker->has_pumps);
     for (size_t i = 0; i < schedule->count; ++i) {
         const int32_t taken = taken_by(&schedule->rows[i]);
         maker->order[i] = (timed_t){schedule->rows[i].begin_us, schedule->rows[i].end_us, i};
@@ -140,10 +143,43 @@ static void take_row(maker_t *maker, size_t number) {
     if (row->action == WH_SCHEDULE_PROCESS && row->wafer != WH_FLOW_NONE) {
         add_process(last_leg(maker, row->wafer), row->end_us - row->begin_us);
     }
-    maker->play->swaps += row->action == WH_SCHEDULE_SWAP;
+    if (row->action == WH_SCHEDULE_PUMP) {
+        maker->has_pumps[station_of(maker, row->station)] = true;
+    }
+    maker->play->actions += wh_schedule_is_access(row->action);
 }
 
 /* ------------------------------------------------------------------------------------------------- routes */
+
+/* True if the layout's route leads the wafer through its first places up to leg `k`. */
+static bool leads_along(const maker_t *maker, const wh_flow_route_t *route, int32_t wafer, size_t k) {
+    for (size_t i = 0; i <= k; ++i) {
+        const leg_t *leg = &maker->legs[maker->first[wafer] + i];
+        const int32_t station = station_of(maker, maker->schedule->rows[leg->put_row].station);
+        if (i + 1 >= route->step_count || !wh_flow_step_has(&route->steps[i + 1], station)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Where no rows tell of a process it is the layout's: of the shortest route that the wafer may go, else of the
+ * station. */
+static void find_processes(maker_t *maker, int32_t wafer) {
+    for (size_t k = 0; k < maker->done[wafer]; ++k) {
+        leg_t *leg = &maker->legs[maker->first[wafer] + k];
+        const int32_t station = station_of(maker, maker->schedule->rows[leg->put_row].station);
+        int64_t least_us = WH_FLOW_NONE;
+        for (size_t r = 0; r < maker->tool->route_count && leg->process_us == WH_FLOW_NONE; ++r) {
+            const wh_flow_route_t *route = &maker->tool->routes[r];
+            if (leads_along(maker, route, wafer, k)) {
+                const int64_t us = wh_flow_step_us(&route->steps[k + 1], &maker->tool->stations[station]);
+                least_us = least_us == WH_FLOW_NONE || us < least_us ? us : least_us;
+            }
+        }
+        leg->process_us = leg->process_us == WH_FLOW_NONE ? least_us : leg->process_us;
+    }
+}
 
 /* The route's steps as a text, by which equal ones are found. The caller frees it. */
 static char *route_text(const maker_t *maker, int32_t wafer) {
@@ -196,6 +232,7 @@ static bool add_wafers(maker_t *maker) {
         if (last && last->put_row == NO_ROW) {
             good = refuse(maker, last->take_row, "the wafer is left aboard (expected a place for each one)");
         } else if (last) {
+            find_processes(maker, w);
             wafers[maker->play->wafers++] = (timed_t){maker->comes_us[w], 0, (size_t)w};
         }
     }
@@ -224,31 +261,61 @@ static bool add_wafers(maker_t *maker) {
 
 /* -------------------------------------------------------------------------------------------------- lists */
 
-static void add_to_list(maker_t *maker, const wh_schedule_row_t *row, wh_flow_do_t what, int32_t wafer) {
+static void add_line(maker_t *maker, const wh_schedule_row_t *row) {
     const int32_t robot =
         wh_flow_robot_named(maker->tool, wh_schedule_text(&maker->schedule->robots, row->robot));
     wh_flow_list_t *list = &maker->play->plan.lists[robot];
     const int32_t station = station_of(maker, row->station);
+    const bool is_pick = row->action == WH_SCHEDULE_PICK;
     list->lines = wh_array_grow(list->lines, list->count, &list->capacity, sizeof *list->lines);
-    list->lines[list->count++] = (wh_flow_line_t){.what = what,
-                                                  .from = what == WH_FLOW_KEEP ? station : WH_FLOW_NONE,
-                                                  .to = what == WH_FLOW_KEEP ? WH_FLOW_NONE : station,
-                                                  .wafer = maker->numbers[wafer],
-                                                  .side = WH_FLOW_BOTH};
+    list->lines[list->count++] =
+        (wh_flow_line_t){.what = is_pick                            ? WH_FLOW_KEEP
+                                 : row->action == WH_SCHEDULE_PLACE ? WH_FLOW_BRING
+                                                                    : WH_FLOW_SWAP,
+                         .from = is_pick ? station : WH_FLOW_NONE,
+                         .to = is_pick ? WH_FLOW_NONE : station,
+                         .wafer = maker->numbers[row->wafer],
+                         .out = row->wafer2 == WH_FLOW_NONE ? WH_FLOW_NONE : maker->numbers[row->wafer2],
+                         .slot = row->slot,
+                         .behind = maker->accesses[station]++,
+                         .side = WH_FLOW_BOTH};
 }
 
+static void add_turn(maker_t *maker, int32_t lock, wh_flow_side_t side) {
+    wh_flow_turns_t *list = &maker->play->plan.turns[lock];
+    list->turns = wh_array_grow(list->turns, list->count, &list->capacity, sizeof *list->turns);
+    list->turns[list->count++] = (wh_flow_turn_t){side, maker->accesses[lock]};
+}
+
+/* A lock without pumps among its rows turns when a robot of the other side comes. */
+static void add_turn_before(maker_t *maker, const wh_schedule_row_t *row) {
+    const int32_t lock = station_of(maker, row->station);
+    const wh_flow_turns_t *list = &maker->play->plan.turns[lock];
+    const int32_t robot =
+        wh_flow_robot_named(maker->tool, wh_schedule_text(&maker->schedule->robots, row->robot));
+    const wh_flow_side_t side = maker->tool->sides[wh_flow_of(maker->tool, robot, lock)];
+    const wh_flow_side_t has =
+        list->count > 0 ? list->turns[list->count - 1].side : maker->tool->stations[lock].side;
+    if (maker->tool->stations[lock].is_lock && !maker->has_pumps[lock] && !wh_flow_sides_agree(side, has)) {
+        add_turn(maker, lock, side);
+    }
+}
+
+/* The rows of a station come one after another, whichever robots they are: so nobody waits in a circle. */
 static void add_lists(maker_t *maker) {
     wh_flow_plan_t *plan = &maker->play->plan;
     plan->rule = WH_FLOW_LISTS;
+    plan->is_given = true;
     plan->lists = wh_array_new(maker->tool->robot_count, sizeof *plan->lists);
+    plan->turns = wh_array_new(maker->tool->station_count, sizeof *plan->turns);
     plan->until_us = WH_FLOW_NEVER;
     for (size_t i = 0; i < maker->schedule->count; ++i) {
         const wh_schedule_row_t *row = &maker->schedule->rows[maker->order[i].number];
-        if (taken_by(row) != WH_FLOW_NONE) {
-            add_to_list(maker, row, WH_FLOW_KEEP, taken_by(row));
-        }
-        if (put_by(row) != WH_FLOW_NONE) {
-            add_to_list(maker, row, WH_FLOW_BRING, put_by(row));
+        if (wh_schedule_is_access(row->action)) {
+            add_turn_before(maker, row);
+            add_line(maker, row);
+        } else if (row->action == WH_SCHEDULE_PUMP) {
+            add_turn(maker, station_of(maker, row->station), row->side);
         }
     }
 }
@@ -258,7 +325,7 @@ static void add_lists(maker_t *maker) {
 static void compare(wh_schedule_play_t *play, const wh_schedule_t *schedule, size_t row, int64_t played_us) {
     const int64_t begin_us = schedule->rows[row].begin_us;
     const int64_t apart_us = played_us > begin_us ? played_us - begin_us : begin_us - played_us;
-    ++play->actions;
+    ++play->played;
     if (apart_us <= WH_SCHEDULE_INSTANT_US) {
         return;
     }
@@ -275,6 +342,7 @@ static void compare(wh_schedule_play_t *play, const wh_schedule_t *schedule, siz
     }
 }
 
+/* A swap is one row: it is compared where its wafer goes in. */
 static void compare_all(const maker_t *maker) {
     wh_schedule_play_t *play = maker->play;
     int32_t *wafers = wh_array_new(play->wafers + 1, sizeof *wafers);
@@ -286,7 +354,9 @@ static void compare_all(const maker_t *maker) {
     for (size_t i = 0; i < play->figures.visit_count; ++i) {
         const wh_flow_visit_t *visit = &play->figures.visits[i];
         const leg_t *leg = &maker->legs[maker->first[wafers[visit->wafer]] + (size_t)visit->step - 1];
-        compare(play, maker->schedule, leg->take_row, visit->pick_us);
+        if (maker->schedule->rows[leg->take_row].action == WH_SCHEDULE_PICK) {
+            compare(play, maker->schedule, leg->take_row, visit->pick_us);
+        }
         if (visit->placed_us != WH_FLOW_NEVER) {
             compare(play, maker->schedule, leg->put_row, visit->place_us);
         }
@@ -333,6 +403,8 @@ static void close_maker(maker_t *maker) {
     free(maker->comes_us);
     free(maker->homes);
     free(maker->numbers);
+    free(maker->accesses);
+    free(maker->has_pumps);
 }
 
 bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, const wh_flow_tool_t *tool) {
@@ -340,7 +412,7 @@ bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, c
     play->first_row = play->widest_row = NO_ROW;
     const bool good = make_plan(&maker);
     if (good) {
-        wh_flow_measure(tool, &play->plan, true, &play->figures);
+        wh_flow_measure(tool, &play->plan, WH_FLOW_VISITS, &play->figures);
         compare_all(&maker);
         play->is_played = true;
     }

@@ -1,5 +1,5 @@
-/* Plays an accepted schedule by a tool's timed robots: each robot carries out its picks and places in the
- * schedule's order, each as soon as it can be. */
+/* Plays an accepted schedule by a tool's timed robots: each robot carries out its picks, places and swaps, and
+ * each lock turns, in the schedule's order, each as soon as it can be. */
 #ifndef WH_SCHEDULE_PLAY_H
 #define WH_SCHEDULE_PLAY_H
 
@@ -13,15 +13,14 @@ typedef struct {
     bool is_played;
     int64_t makespan_us;          /* of the schedule: the end of its last placing */
     size_t wafers, resting;       /* carried, and never carried: those are left out */
-    size_t actions, differing;    /* picks and placings; those that begin at another time */
+    size_t actions;               /* rows that pick, place or swap */
+    size_t played, differing;     /* those that came about; those of them that begin at another time */
     size_t first_row, widest_row; /* of them, SIZE_MAX: none */
     int64_t first_us, widest_us;  /* when they begin as played */
-    size_t swaps;                 /* are played as a pick and a placing */
     char message[600];            /* why it was not played; empty: it was */
 } wh_schedule_play_t;
 
-/* False, with a message, if no flow can be made of it: a wafer that is left aboard, or that is placed where
- * it was picked. The tool is a layout's, and the schedule was found good with it. Close the play in any
+/* False, with a message, if no flow can be made of it: a wafer that is left aboard. The tool is a layout's, and the schedule was found good with it. Close the play in any
  * case. */
 bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, const wh_flow_tool_t *tool);
 void wh_schedule_play_close(wh_schedule_play_t *play, const wh_flow_tool_t *tool);

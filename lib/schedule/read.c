@@ -165,8 +165,8 @@ static bool has_needed(wh_schedule_reader_t *reader, const wh_schedule_cell_t ce
     for (int i = 0; i < WH_SCHEDULE_COLUMNS; ++i) {
         const bool is_needed = (needs[action] & NEEDS(i)) != 0 || i == WH_SCHEDULE_STATION;
         if (is_needed && is_empty(&cells[i])) {
-            (void)snprintf(expected, sizeof expected, "one: it is needed for a %s",
-                           wh_schedule_words[action]);
+            (void)snprintf(expected, sizeof expected, "one: it is needed for %s %s",
+                           wh_schedule_article(action), wh_schedule_words[action]);
             return refuse_cell(reader, (wh_schedule_column_t)i, &cells[i], expected);
         }
     }

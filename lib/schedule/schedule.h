@@ -94,6 +94,11 @@ static inline bool wh_schedule_is_access(wh_schedule_action_t action) {
     return action == WH_SCHEDULE_PICK || action == WH_SCHEDULE_PLACE || action == WH_SCHEDULE_SWAP;
 }
 
+/* "a" or "an", before the action's word. */
+static inline const char *wh_schedule_article(wh_schedule_action_t action) {
+    return action == WH_SCHEDULE_OPEN ? "an" : "a";
+}
+
 /* A robot's name, and so on; "" for WH_FLOW_NONE. */
 const char *wh_schedule_text(const wh_schedule_names_t *names, int32_t number);
 

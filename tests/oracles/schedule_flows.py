@@ -57,11 +57,16 @@ def look(program, folder, level, seed):
 
 
 def look_at_play(program, folder, told):
-    """An accepted schedule that is played in its own order never takes longer, where no failure, takt or lock is in the way."""
+    """An accepted schedule that is played in its own order comes to its end, each row comes about, and it never takes longer."""
     played = call(program, "schedule", folder / "schedule.csv", "--layout", folder / "tool.lua", "--json", "--play")
     if played.returncode not in (0, 1) or not played.stdout.startswith("{"):
         return f"schedule --play ended with {played.returncode}: {played.stderr}"
-    play = json.loads(played.stdout)["play"]
+    verdict = json.loads(played.stdout)
+    play = verdict["play"]
+    if play["end"] != "done" or play["played"] != play["actions"] or not verdict["ok"] or played.returncode != 0:
+        return f"played to {play['played']} of {play['actions']} rows, {play['end']}, exit {played.returncode}: {play['why']}"
+    if play["makespan_s"] > play["schedule_makespan_s"] + 1e-6:
+        return f"played in {play['makespan_s']} s, the schedule takes {play['schedule_makespan_s']}"
     if abs(play["schedule_makespan_s"] - told["makespan_s"]) > 1e-6:
         return f"the schedule is {play['schedule_makespan_s']} s long, the flow {told['makespan_s']}"
     return None

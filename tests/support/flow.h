@@ -141,12 +141,11 @@ static inline void flow_line(flow_case_t *flow, const char *robot, const char *f
     wh_flow_list_t *list = &plan->lists[wh_flow_robot_named(&flow->tool, robot)];
     list->lines = wh_array_grow(list->lines, list->count, &list->capacity, sizeof *list->lines);
     const bool keeps = strcmp(to, "keep") == 0, brings = strcmp(from, "keep") == 0;
-    list->lines[list->count++] = (wh_flow_line_t){
-        keeps    ? WH_FLOW_KEEP
-        : brings ? WH_FLOW_BRING
-                 : WH_FLOW_TRANSFER,
-        brings ? WH_FLOW_NONE : wh_flow_station_named(&flow->tool, from),
-        keeps ? WH_FLOW_NONE : wh_flow_station_named(&flow->tool, to), WH_FLOW_NONE, WH_FLOW_BOTH};
+    wh_flow_line_t *line = &list->lines[list->count++];
+    *line = WH_FLOW_NO_LINE;
+    line->what = keeps ? WH_FLOW_KEEP : brings ? WH_FLOW_BRING : WH_FLOW_TRANSFER;
+    line->from = brings ? WH_FLOW_NONE : wh_flow_station_named(&flow->tool, from);
+    line->to = keeps ? WH_FLOW_NONE : wh_flow_station_named(&flow->tool, to);
 }
 
 static inline void flow_finish(flow_case_t *flow) {
