@@ -94,8 +94,8 @@ bool wh_flow_has_moved(const wh_flow_t *flow);
 /* True if it was cut: wafers are not at their ends then. */
 bool wh_flow_is_cut(const wh_flow_t *flow);
 
-/* What is kept beside the sums: visits, of about 100 bytes for each placing; or ways as well, of about 70 more,
- * which schedules alone need. */
+/* More than the sums may be kept: visits, of about 100 bytes for each placing; or ways as well, of about 70
+ * more, which schedules alone need. */
 typedef enum { WH_FLOW_SUMS, WH_FLOW_VISITS, WH_FLOW_WAYS } wh_flow_keep_t;
 
 /* wh_flow_play, with figures. Close them in any case. */

@@ -22,8 +22,8 @@ typedef struct {
     size_t left;    /* wafers that are not at their ends, with dummies */
     char *why;      /* null if done; see wh_flow_result_close */
     uint64_t asked; /* how often a rule was asked */
-    /* Rule swap, several robots, and stations that lead back to themselves: wafers may block each other all the
-     * same, for what one robot carries may be in the way of the others. */
+    /* Rule swap, several robots, and stations that lead back to themselves: wafers may block each other for
+     * all that, since what one robot carries may be in the way of the others. */
     bool may_block;
 } wh_flow_result_t;
 

@@ -75,8 +75,8 @@ static bool is_access(const wh_flow_event_t *event) {
            event->kind == WH_FLOW_EVENT_SWAP;
 }
 
-/* True if the event could wait for what a station did by itself: its robot goes into that place or station, or
- * brings its wafer there next. */
+/* True if the event could wait for what a station did by itself: its robot goes into that place or station,
+ * or brings its wafer there next. */
 static bool could_wait_for(const path_t *path, const wh_flow_event_t *event, const wh_flow_event_t *doing) {
     if (event->robot == WH_FLOW_NONE) {
         return doing->station == event->station && doing->kind != WH_FLOW_EVENT_CLEAN;

@@ -44,6 +44,24 @@ static bool is_carried(const world_t *world, int32_t place) {
     return false;
 }
 
+/* The places of a station with room, as SEVERAL or one, or WH_FLOW_NONE; adds to those that are free. `end`:
+ * that place alone, or WH_FLOW_NONE. */
+static int32_t find_room(const world_t *world, const inside_t *at, const wh_flow_station_t *station,
+                         int32_t end, int32_t *first, int32_t *free_places) {
+    int32_t room = WH_FLOW_NONE;
+    for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+        if ((end != WH_FLOW_NONE && p != end) || !is_free(world, at, p)) {
+            continue;
+        }
+        ++*free_places;
+        if (room != SEVERAL && is_carried(world, p)) {
+            *first = *first == WH_FLOW_NONE ? p : *first;
+            room = room == WH_FLOW_NONE ? p : SEVERAL;
+        }
+    }
+    return room;
+}
+
 /* Goes on to a step: marks the stations with room, and returns the first place with room, or WH_FLOW_NONE. */
 static int32_t walk_on(world_t *world, const inside_t *at, int32_t number) {
     const wh_flow_state_t *state = world->state;
@@ -52,19 +70,8 @@ static int32_t walk_on(world_t *world, const inside_t *at, int32_t number) {
     int32_t first = WH_FLOW_NONE, free_places = 0;
     memset(world->next, 0xff, state->tool->station_count * sizeof *world->next);
     for (size_t i = 0; i < step->station_count; ++i) {
-        const wh_flow_station_t *station = &state->tool->stations[step->stations[i]];
-        int32_t room = WH_FLOW_NONE;
-        for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
-            if ((end != WH_FLOW_NONE && p != end) || !is_free(world, at, p)) {
-                continue;
-            }
-            ++free_places;
-            if (room != SEVERAL && is_carried(world, p)) {
-                room = room == WH_FLOW_NONE ? p : SEVERAL;
-                first = first == WH_FLOW_NONE ? p : first;
-            }
-        }
-        world->next[step->stations[i]] = room;
+        world->next[step->stations[i]] =
+            find_room(world, at, &state->tool->stations[step->stations[i]], end, &first, &free_places);
     }
     int32_t *reached = world->reached;
     world->reached = world->next;

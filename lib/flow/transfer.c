@@ -143,6 +143,13 @@ static bool counts_in(const wh_flow_state_t *state, int32_t wafer, int32_t route
            !state->wafers[wafer].is_over && state->wafers[wafer].step + ahead == step;
 }
 
+/* The place's wafers of that step: the one that lies there, if it does, and the one that comes. */
+static int32_t count_own(const wh_flow_state_t *state, const wh_flow_place_t *place, bool lies, int32_t route,
+                         int32_t step) {
+    return (lies && counts_in(state, place->wafer, route, step, 0)) +
+           (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, step, 1));
+}
+
 wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t number, int64_t at_us,
                             int32_t leaver) {
     const wh_flow_step_t *step = &state->plan->routes[route].steps[number];
@@ -156,9 +163,7 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
             const bool lies =
                 place->wafer != WH_FLOW_NONE && place->wafer != leaver && place->leaving_us > at_us;
             const bool is_empty = !lies && place->coming == WH_FLOW_NONE;
-            const int32_t own =
-                (lies && counts_in(state, place->wafer, route, number, 0)) +
-                (place->coming != WH_FLOW_NONE && counts_in(state, place->coming, route, number, 1));
+            const int32_t own = count_own(state, place, lies, route, number);
             down += is_down && is_empty;
             room.holds += own;
             room.may += is_empty || own > 0;

@@ -395,6 +395,18 @@ static void put_reasons(const wh_printer_t *printer) {
     }
 }
 
+static void print_cut(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    if (record->flow && wh_flow_is_cut(record->flow)) {
+        const wh_flow_figures_t *figures = &record->flow->figures;
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        const size_t wafers = figures->plan->wafer_count;
+        fprintf(printer->out, "cut at %.10g s: %zu of %zu %s not at %s\n", (double)figures->end_us / 1e6,
+                figures->result.left, wafers, wafers == 1 ? "wafer" : "wafers",
+                figures->result.left == 1 ? "its end" : "their ends");
+    }
+}
+
 static void print_summary(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     const char *verdict = record->ok ? "ok" : "failed";
@@ -408,14 +420,7 @@ static void print_summary(const wh_printer_t *printer) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);
     }
-    if (record->flow && wh_flow_is_cut(record->flow)) {
-        const wh_flow_figures_t *figures = &record->flow->figures;
-        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
-        const size_t wafers = figures->plan->wafer_count;
-        fprintf(printer->out, "cut at %.10g s: %zu of %zu %s not at %s\n", (double)figures->end_us / 1e6,
-                figures->result.left, wafers, wafers == 1 ? "wafer" : "wafers",
-                figures->result.left == 1 ? "its end" : "their ends");
-    }
+    print_cut(printer);
     if (record->never_came) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "never came, and so were not tried: %s\n", record->never_came);

@@ -59,11 +59,10 @@ typedef struct {
     wh_schedule_verdict_t rules[WH_SCHEDULE_RULES]; /* by number */
     int64_t end_us;                                 /* of the last row */
     size_t placed;                                  /* wafers once placed by a robot */
-    size_t assumed; /* wafers without a start, which are where their first row finds them */
-    size_t stacked; /* places that hold several of those, without a layout */
-    size_t
-        repeated; /* processes of a wafer behind the first one of a stay, where nobody says how long it is */
-    double scale; /* what all times should be multiplied by, as they look; 1: they look like seconds */
+    size_t assumed;    /* wafers without a start, which are where their first row finds them */
+    size_t stacked;    /* places that hold several of those, without a layout */
+    size_t repeated;   /* processes of a wafer behind the first one of a stay, without a layout */
+    double scale;      /* what all times should be multiplied by, as they look; 1: they look like seconds */
     char message[600]; /* why it could not be looked at: a name that the layout does not have */
 } wh_schedule_report_t;
 
@@ -88,8 +87,8 @@ const wh_schedule_finding_t *wh_schedule_first(const wh_schedule_report_t *repor
 /* True if all rules up to WH_SCHEDULE_NEEDED were looked at. */
 bool wh_schedule_is_looked(const wh_schedule_report_t *report);
 
-/* True if it is good: nothing was found, no wafer is left short of its end, all rules up to WH_SCHEDULE_NEEDED
- * were looked at, and the times look like seconds. */
+/* True if it is good: nothing was found, no wafer is left short of its end, all rules up to
+ * WH_SCHEDULE_NEEDED were looked at, and the times look like seconds. */
 bool wh_schedule_is_good(const wh_schedule_report_t *report);
 
 #endif

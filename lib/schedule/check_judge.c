@@ -144,6 +144,16 @@ static bool has_other_stations(const wh_schedule_state_t *check) {
     return false;
 }
 
+/* True if the schedule tells of a door of a station with several slots. */
+static bool has_door_of_many(const wh_schedule_state_t *check) {
+    for (size_t i = 0; i < check->door_count; ++i) {
+        if (!wh_check_has_one_slot(check, check->doors[i].station)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void judge_locks(wh_schedule_state_t *check, const facts_t *facts) {
     judge_layout(check, WH_SCHEDULE_RULE_PRESSURE, facts->has_locks, "no load lock in the layout");
     if (has_two_doors(check)) {
@@ -155,6 +165,9 @@ static void judge_locks(wh_schedule_state_t *check, const facts_t *facts) {
         judge(check, WH_SCHEDULE_RULE_DOOR, true, "processes alone: no door opens or closes in the schedule");
     } else if (check->door_count == 0) {
         judge(check, WH_SCHEDULE_RULE_DOOR, false, "no door opens or closes in the schedule");
+    } else if (has_door_of_many(check)) {
+        judge(check, WH_SCHEDULE_RULE_DOOR, true,
+              "where the schedule tells of doors; open ones during a process: at stations of one slot");
     } else if (has_other_stations(check)) {
         judge(check, WH_SCHEDULE_RULE_DOOR, true, "at the stations of whose doors the schedule tells");
     } else {

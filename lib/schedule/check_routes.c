@@ -96,29 +96,31 @@ static bool is_on_its_way(const wh_schedule_state_t *check, const wh_check_wafer
     return station->process_us > 0 || station->is_lock;
 }
 
+/* "a place", as is expected of a wafer at last; null: it is there, or nobody knows. */
+static const char *find_last(const wh_schedule_state_t *check, const wh_check_wafer_t *wafer) {
+    const bool has_routes = check->tool && check->tool->route_count > 0;
+    if (wafer->where == WH_CHECK_ABOARD) {
+        return "a place";
+    }
+    if (!check->tool || wafer->where != WH_CHECK_LIES) {
+        return NULL;
+    }
+    if (!has_routes) {
+        return is_on_its_way(check, wafer) ? "in a station that neither processes nor pumps" : NULL;
+    }
+    return !wafer->is_lost && wafer->routes != 0 && !is_at_end(check, wafer) ? "at its route's end" : NULL;
+}
+
 /* Rule 17. */
 void wh_check_finish_routes(wh_schedule_state_t *check) {
     wh_check_text_t text;
-    const bool has_routes = check->tool && check->tool->route_count > 0;
     for (int32_t w = 0; w < (int32_t)check->schedule->wafers.count; ++w) {
         const wh_check_wafer_t *wafer = &check->wafers[w];
-        const char *name = wh_schedule_text(&check->schedule->wafers, w);
-        if (wafer->row == WH_CHECK_NO_ROW) {
-            continue;
-        }
-        if (wafer->where == WH_CHECK_ABOARD) {
+        const char *last = wafer->row == WH_CHECK_NO_ROW ? NULL : find_last(check, wafer);
+        if (last) {
             wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
-                           "wafer: %s (expected a place at last: it %s)", name,
-                           wh_check_where(check, w, &text));
-        } else if (check->tool && !has_routes && is_on_its_way(check, wafer)) {
-            wh_check_found(
-                check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
-                "wafer: %s (expected at last in a station that neither processes nor pumps: it %s)", name,
-                wh_check_where(check, w, &text));
-        } else if (has_routes && wafer->where == WH_CHECK_LIES && !wafer->is_lost && wafer->routes != 0 &&
-                   !is_at_end(check, wafer)) {
-            wh_check_found(check, WH_SCHEDULE_RULE_LEFT, wafer->row, WH_CHECK_NO_ROW,
-                           "wafer: %s (expected at its route's end at last: it %s)", name,
+                           "wafer: %s (expected %s at last: it %s)",
+                           wh_schedule_text(&check->schedule->wafers, w), last,
                            wh_check_where(check, w, &text));
         }
     }

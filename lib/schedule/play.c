@@ -163,8 +163,8 @@ static bool leads_along(const maker_t *maker, const wh_flow_route_t *route, int3
     return true;
 }
 
-/* Where no rows tell of a process it is the layout's: of the shortest route that the wafer may go, else of the
- * station. */
+/* Where no rows tell of a process it is the layout's: of the shortest route that the wafer may go, else of
+ * the station. */
 static void find_processes(maker_t *maker, int32_t wafer) {
     for (size_t k = 0; k < maker->done[wafer]; ++k) {
         leg_t *leg = &maker->legs[maker->first[wafer] + k];

@@ -1,5 +1,5 @@
-/* Plays an accepted schedule by a tool's timed robots: each robot carries out its picks, places and swaps, and
- * each lock turns, in the schedule's order, each as soon as it can be. */
+/* Plays an accepted schedule by a tool's timed robots: each robot carries out its picks, places and swaps,
+ * and each lock turns, in the schedule's order, each as soon as it can be. */
 #ifndef WH_SCHEDULE_PLAY_H
 #define WH_SCHEDULE_PLAY_H
 
@@ -20,8 +20,8 @@ typedef struct {
     char message[600];            /* why it was not played; empty: it was */
 } wh_schedule_play_t;
 
-/* False, with a message, if no flow can be made of it: a wafer that is left aboard. The tool is a layout's, and the schedule was found good with it. Close the play in any
- * case. */
+/* False, with a message, if no flow can be made of it: a wafer that is left aboard. The tool is a layout's,
+ * and the schedule was found good with it. Close the play in any case. */
 bool wh_schedule_play(wh_schedule_play_t *play, const wh_schedule_t *schedule, const wh_flow_tool_t *tool);
 void wh_schedule_play_close(wh_schedule_play_t *play, const wh_flow_tool_t *tool);
 
