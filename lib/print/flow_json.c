@@ -3,8 +3,8 @@
  * critical path, which add up to the makespan, the longest first), gains (what the flow takes if one robot or
  * station takes 10 % less time), robots and stations (shares of the time by class, which add up to 1;
  * blocked_by by name, s), stays (beyond their windows), visits (each wafer's, by the end of placing; at last
- * those under way, with null for what has not come), doings (pumps, vents, cleans and failures of stations, by
- * their ends). */
+ * those under way, with null for what has not come), doings (pumps, vents, cleans and failures of stations,
+ * by their ends). */
 #include "record_print.h"
 
 #include <math.h>
