@@ -83,7 +83,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     if problem then
       error(problem, 0)
     end
-    return table.concat(texts, " ")
+    return table.concat(texts, "; ")
   end
 
   function background.list()
