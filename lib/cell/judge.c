@@ -108,35 +108,29 @@ static void judge_release(const wh_cell_t *cell, const wh_grasp_t *table, wh_eve
                           size_t release) {
     const int32_t wafer = list->events[release].wafer;
     wh_place_t place;
-    if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place)) {
-        judge_unsupported(cell, table, list, release);
-        return;
-    }
-    if (!(place.dz > -cell->tolerance.projz)) {
+    const bool lies = wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place);
+    if (!lies || !(place.dz > -cell->tolerance.projz)) {
         judge_unsupported(cell, table, list, release);
     } else if (!judge_drop(cell, list, release, &place)) {
         judge_occupied(cell, table, list, release, &place);
     }
-    judge_placing(cell, list, release, &place);
-}
-
-static bool is_chuck(const wh_cell_t *cell, int32_t gripper) {
-    size_t s = 0;
-    while (s < cell->count && cell->stations[s].chuck != gripper) {
-        ++s;
+    if (lies) {
+        judge_placing(cell, list, release, &place);
     }
-    return s < cell->count;
 }
 
 /* A chuck that takes a wafer over is judged like a slot, as it stands now: a stage may have moved it. */
 static void judge_handover(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t handover) {
     const wh_event_t *said = &list->events[handover];
-    if ((cell->off_centre > 0 || cell->askew > 0) && is_chuck(cell, said->gripper)) {
-        const wh_station_t chuck = {table->storage.grippers[said->gripper].base_from_gripper, 1, 1, WH_NONE};
-        const wh_pose_t *base_from_wafer = &table->storage.wafers[said->wafer].base_from_wafer;
-        const wh_place_t place = wh_cell_measure(cell, &chuck, 1, base_from_wafer);
-        judge_placing(cell, list, handover, &place);
+    wh_station_t chuck = {.base_from_station = table->storage.grippers[said->gripper].base_from_gripper};
+    for (size_t s = 0; s < cell->count; ++s) {
+        if (cell->stations[s].chuck == said->gripper) {
+            const wh_place_t place =
+                wh_cell_measure(cell, &chuck, 1, &table->storage.wafers[said->wafer].base_from_wafer);
+            judge_placing(cell, list, handover, &place);
+            return;
+        }
     }
 }
 

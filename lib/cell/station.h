@@ -14,7 +14,7 @@
  *     stack of wh_station_slot                  56     56       8     20
  *     stack of wh_station_measure              336    336     168    200
  *     stack of wh_cell_locate                  536    544     296    336
- *     stack of wh_cell_judge                   720    720     432    464
+ *     stack of wh_cell_judge                   800    792     472    504
  *     stack of wh_cell_settle                  864    872     480    520
  *     size of wh_station_t                     120             60
  *     size of wh_cell_t                         72             40
