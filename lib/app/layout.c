@@ -34,10 +34,17 @@ const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     arguments->sandbox = sandbox;
     if (!layout) {
         fprintf(stderr, "%s\n", result.message);
-    } else if (wh_sandbox_find_unread(sandbox, result.message)) {
-        fprintf(stderr, "%s: note: %s\n", arguments->path, result.message);
+    } else if (!layout->patterns) {
+        wh_layout_arguments_note(arguments);
     }
     return layout;
+}
+
+void wh_layout_arguments_note(const wh_layout_arguments_t *arguments) {
+    char unread[WH_SANDBOX_MESSAGE_BYTES];
+    if (wh_sandbox_find_unread(arguments->sandbox, unread)) {
+        fprintf(stderr, "%s: note: %s\n", arguments->path, unread);
+    }
 }
 
 void wh_layout_arguments_free(wh_layout_arguments_t *arguments) {
@@ -120,8 +127,11 @@ static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     wh_feasibility_t check;
     int status = WH_EXIT_USAGE;
     wh_feasibility(&check, layout);
-    if (is_apart(arguments) && survey(arguments, layout, &check) &&
-        wh_file_write("--svg", arguments->svg, write_svg, &check, NULL)) {
+    const bool good = is_apart(arguments) && survey(arguments, layout, &check);
+    if (good && layout->patterns) {
+        wh_layout_arguments_note(&arguments->layout);
+    }
+    if (good && wh_file_write("--svg", arguments->svg, write_svg, &check, NULL)) {
         status = print(arguments, &check);
     }
     wh_feasibility_free(&check);

@@ -17,8 +17,13 @@ typedef struct {
 /* --set and --memory, into a wh_layout_arguments_t; the path is the subcommand's operand. */
 extern const wh_option_t wh_layout_options[];
 
-/* Reads the layout. Null if it or a parameter is refused: standard error then says why. */
+/* Reads the layout. Null if it or a parameter is refused: standard error then says why. It notes a
+ * parameter that nobody read, unless the layout names a file of patterns: those read theirs as they are
+ * played. */
 const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments);
+
+/* Notes a parameter that nobody has read until now. */
+void wh_layout_arguments_note(const wh_layout_arguments_t *arguments);
 
 void wh_layout_arguments_free(wh_layout_arguments_t *arguments);
 

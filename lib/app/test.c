@@ -185,8 +185,9 @@ static bool are_apart(const arguments_t *arguments, const wh_test_found_t *found
     return apart;
 }
 
-/* Keeps only this machine's share of the scripts: every Nth of all that were found, in their order. */
-static void take_share(const arguments_t *arguments, wh_test_found_t *found) {
+/* Keeps only this machine's share of the scripts: every Nth of all that were found, in their order. False
+ * if that is none. */
+static bool take_share(const arguments_t *arguments, wh_test_found_t *found) {
     size_t part;
     size_t parts;
     size_t kept = 0;
@@ -194,7 +195,12 @@ static void take_share(const arguments_t *arguments, wh_test_found_t *found) {
     for (size_t i = part - 1; i < found->count; i += parts) {
         found->jobs[kept++] = found->jobs[i];
     }
+    if (kept == 0) {
+        fprintf(stderr, "--shard: %s: no script is left for it (expected one of at most %zu shards)\n",
+                arguments->shard, found->count);
+    }
     found->count = kept;
+    return kept > 0;
 }
 
 int wh_app_test(int argc, char **argv) {
@@ -203,8 +209,8 @@ int wh_app_test(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     int status = WH_EXIT_USAGE;
-    if (wh_test_find(&arguments.paths, &found) && are_apart(&arguments, &found)) {
-        take_share(&arguments, &found);
+    if (wh_test_find(&arguments.paths, &found) && are_apart(&arguments, &found) &&
+        take_share(&arguments, &found)) {
         status = play(&arguments, &found);
     }
     wh_test_found_free(&found);

@@ -21,14 +21,25 @@ static char *join(const char *folder, const char *name) {
     return path;
 }
 
-/* A script's own path, its folder's links followed. A link to a script is another script: what its paths are
- * relative to is another folder. Null if there is no such folder. */
+/* True if both paths, without links, are in the same folder. */
+static bool are_beside(const char *one, const char *other) {
+    const char *slash = strrchr(one, '/');
+    const size_t length = slash ? (size_t)(slash - one) + 1 : 0;
+    return strncmp(one, other, length) == 0 && !strchr(other + length, '/');
+}
+
+/* A script's own path, its folder's links followed. A link to a script of another folder is another script:
+ * its paths are relative to another folder. Null if there is no such folder. */
 static char *own_path(const char *path) {
     const char *slash = strrchr(path, '/');
     char *folder = wh_text_copy(slash ? path : "./");
     char real[PATH_MAX];
     folder[slash ? slash - path + 1 : 2] = '\0';
     char *own = realpath(folder, real) ? join(real, slash ? slash + 1 : path) : NULL;
+    if (own && realpath(path, real) && are_beside(own, real)) {
+        free(own);
+        own = wh_text_copy(real);
+    }
     free(folder);
     return own;
 }

@@ -1,4 +1,4 @@
-/* The cell's judgement of a release, and how the wafer then comes to lie. */
+/* The cell's judgement of a release or of a chuck's hand-over, and how a wafer then comes to lie. */
 #include "station.h"
 
 /* A wafer that is nearer to its slot's plane than this, mm, lies on it. */
@@ -97,22 +97,41 @@ static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t k
     }
 }
 
+static void judge_placing(const wh_cell_t *cell, wh_event_list_t *list, size_t placing,
+                          const wh_place_t *place) {
+    const wh_real_t aside = wh_real_sqrt(place->dx * place->dx + place->dy * place->dy);
+    judge_limit(list, placing, WH_EVENT_PLACED_OFF_CENTRE, aside, cell->off_centre);
+    judge_limit(list, placing, WH_EVENT_PLACED_ASKEW, place->tilt, cell->askew);
+}
+
 static void judge_release(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                           size_t release) {
     const int32_t wafer = list->events[release].wafer;
     wh_place_t place;
-    if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place) ||
-        !(place.dz > -cell->tolerance.projz)) {
+    const bool lies = wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place);
+    if (!lies || !(place.dz > -cell->tolerance.projz)) {
         judge_unsupported(cell, table, list, release);
-        return;
+    } else if (!judge_drop(cell, list, release, &place)) {
+        judge_occupied(cell, table, list, release, &place);
     }
-    if (judge_drop(cell, list, release, &place)) {
-        return;
+    if (lies) {
+        judge_placing(cell, list, release, &place);
     }
-    judge_occupied(cell, table, list, release, &place);
-    const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
-    judge_limit(list, release, WH_EVENT_PLACED_OFF_CENTRE, aside, cell->off_centre);
-    judge_limit(list, release, WH_EVENT_PLACED_ASKEW, place.tilt, cell->askew);
+}
+
+/* A chuck that takes a wafer over is judged like a slot, as it stands now: a stage may have moved it. */
+static void judge_handover(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
+                           size_t handover) {
+    const wh_event_t *said = &list->events[handover];
+    wh_station_t chuck = {.base_from_station = table->storage.grippers[said->gripper].base_from_gripper};
+    for (size_t s = 0; s < cell->count; ++s) {
+        if (cell->stations[s].chuck == said->gripper) {
+            const wh_place_t place =
+                wh_cell_measure(cell, &chuck, 1, &table->storage.wafers[said->wafer].base_from_wafer);
+            judge_placing(cell, list, handover, &place);
+            return;
+        }
+    }
 }
 
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list) {
@@ -120,6 +139,8 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
     for (size_t i = 0; i < count; ++i) {
         if (list->events[i].kind == WH_EVENT_RELEASED) {
             judge_release(cell, table, list, i);
+        } else if (list->events[i].kind == WH_EVENT_HANDED_OVER) {
+            judge_handover(cell, table, list, i);
         }
     }
     return list->count - count;
@@ -158,10 +179,11 @@ static bool is_supported(const wh_cell_t *cell, const wh_place_t *place) {
     return place->dz < 0 && place->dz > -cell->tolerance.projz;
 }
 
-/* A wafer above its plane comes to lie only if wafers settle; a wafer below has been stopped by a
- * support. */
+/* A wafer above its plane comes to lie only if wafers settle, and so does one that leans with its centre in
+ * the plane; a wafer below has been stopped by a support. */
 static bool comes_to_lie(const wh_cell_t *cell, const wh_place_t *place) {
-    return place->dz > 0 ? cell->settle : is_supported(cell, place);
+    const bool sinks = place->dz > 0 || (place->dz >= 0 && place->tilt > 0);
+    return sinks ? cell->settle : is_supported(cell, place);
 }
 
 static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release) {

@@ -14,7 +14,7 @@
  *     stack of wh_station_slot                  56     56       8     20
  *     stack of wh_station_measure              336    336     168    200
  *     stack of wh_cell_locate                  536    544     296    336
- *     stack of wh_cell_judge                   720    720     432    464
+ *     stack of wh_cell_judge                   800    792     472    504
  *     stack of wh_cell_settle                  864    872     480    520
  *     size of wh_station_t                     120             60
  *     size of wh_cell_t                         72             40
@@ -105,10 +105,11 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
  *     that, else 0;
  *   - WH_EVENT_SLOT_OCCUPIED: another wafer, free or held by the station's chuck, lies in the same slot.
  *     `other` is its index, the lowest;
- *   - WH_EVENT_PLACED_OFF_CENTRE, WH_EVENT_PLACED_ASKEW: the wafer lies in a slot beyond the cell's limits.
- * The other fields are the release's. Each release adds at most three. Returns the number of appended
- * events. Arguments are not checked. Cost: linear in the list without a release; each release adds wafers
- * times stations, or all slots.
+ *   - WH_EVENT_PLACED_OFF_CENTRE, WH_EVENT_PLACED_ASKEW: the wafer lies in a slot beyond the cell's limits,
+ *     or in the hand-over of a step a station's chuck has taken it beyond them, as the chuck then stands.
+ * The other fields are the release's, or the hand-over's. Each adds at most three. Returns the number of
+ * appended events. Arguments are not checked. Cost: linear in the list without a release; each release adds
+ * wafers times stations, or all slots; each hand-over the stations.
  */
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_judge);
@@ -122,11 +123,11 @@ bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, cons
 
 /* Call it after wh_cell_judge. A released wafer less than tolerance.projz below the plane of its slot was
  * stopped by the support: its face's centre moves up along the slot's z to the plane. With cell->settle a
- * released wafer above the plane sinks onto it: that centre moves down. In both cases, with cell->settle,
- * the wafer turns about that centre by the smallest rotation that takes the face's normal to z. A wafer in
- * no slot, or farther below the plane, stays at its place. Appends WH_EVENT_SETTLED for a wafer that moved
- * down, with the release's values and `value` the distance, while the list has room. Cost: linear in the
- * list; each released wafer adds the stations, and wh_grasp_place if it moves. */
+ * released wafer above the plane sinks onto it: that centre moves down. In both cases, and in the plane,
+ * with cell->settle the wafer turns about that centre by the smallest rotation that takes the face's normal
+ * to z. A wafer in no slot, or farther below the plane, stays at its place. Appends WH_EVENT_SETTLED for a
+ * wafer that moved down, with the release's values and `value` the distance, while the list has room. Cost:
+ * linear in the list; each released wafer adds the stations, and wh_grasp_place if it moves. */
 void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_settle);
 

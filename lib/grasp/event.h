@@ -43,8 +43,8 @@ typedef enum WH_FOUR_BYTES {
      * in one slot, the nearest of all stations. Where stations overlap, two wafers that collide may lie in
      * two slots; this event does not come then. */
     WH_EVENT_SLOT_OCCUPIED,
-    /* From the cell, with the release and its values: the wafer lies in a slot or on a chuck, but `value`
-     * mm from its centre, which is above `limit`. */
+    /* From the cell, with the release and its values, or with those of a chuck's hand-over: the wafer lies
+     * in a slot or on a chuck, but `value` mm from its centre, which is above `limit`. */
     WH_EVENT_PLACED_OFF_CENTRE,
     /* The wafer lies there, but tilted against it by `value` rad, which is above `limit`. */
     WH_EVENT_PLACED_ASKEW,

@@ -107,6 +107,7 @@ static int arm_alarm(lua_State *L) {
     }
     mcs->armed.alarms[place] = error;
     mcs->armed.alarm_jobs[place] = current_job(mcs);
+    mcs->armed.alarm_tried[place] = false;
     lua_pushinteger(L, (lua_Integer)(WH_FAULTS + place + 1));
     return 1;
 }
@@ -137,6 +138,16 @@ static int disarm_alarm(lua_State *L) {
     const lua_Integer number = luaL_checkinteger(L, 1);
     if (is_alarm(mcs, number)) {
         mcs->armed.alarms[number - WH_FAULTS - 1] = WH_OK;
+    }
+    return 0;
+}
+
+/* native.note_tried(number): something broke for this error, and its command ended otherwise. */
+static int note_tried(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    const lua_Integer number = luaL_checkinteger(L, 1);
+    if (is_alarm(mcs, number)) {
+        mcs->armed.alarm_tried[number - WH_FAULTS - 1] = true;
     }
     return 0;
 }
@@ -176,8 +187,11 @@ char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
     for (size_t i = 0; i < WH_MCS_ALARMS; ++i) {
         if (mcs->armed.alarms[i] != WH_OK) {
             put_comma(out);
-            fprintf(out, "error %d %s (fault %zu: no command that can answer with it)",
-                    (int)mcs->armed.alarms[i], wh_status_name(mcs->armed.alarms[i]), WH_FAULTS + i + 1);
+            fprintf(out, "error %d %s (fault %zu: %s)", (int)mcs->armed.alarms[i],
+                    wh_status_name(mcs->armed.alarms[i]), WH_FAULTS + i + 1,
+                    mcs->armed.alarm_tried[i]
+                        ? "its cause led to no such error in a command that can answer with it"
+                        : "no command that can answer with it");
         }
     }
     const bool is_any = ftell(out) > 0;
@@ -220,10 +234,7 @@ static int list_kinds(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_fault_functions[] = {{"fault", add_fault},
-                                           {"clear_fault", clear_fault},
-                                           {"fault_kinds", list_kinds},
-                                           {"arm_alarm", arm_alarm},
-                                           {"alarms", list_alarms},
-                                           {"disarm", disarm_alarm},
-                                           {NULL, NULL}};
+const luaL_Reg wh_mcs_fault_functions[] = {{"fault", add_fault},        {"clear_fault", clear_fault},
+                                           {"fault_kinds", list_kinds}, {"arm_alarm", arm_alarm},
+                                           {"alarms", list_alarms},     {"disarm", disarm_alarm},
+                                           {"note_tried", note_tried},  {NULL, NULL}};

@@ -185,7 +185,9 @@ static void hear_collisions(void *user, const wh_command_t *command, const wh_st
 static int connect_cell(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     char unread[WH_SANDBOX_MESSAGE_BYTES];
-    if (mcs->wanted.refuses_unread && wh_sandbox_find_unread(mcs->sandbox, unread)) {
+    /* Patterns read theirs as they are played. */
+    if (mcs->wanted.refuses_unread && !mcs->layout->patterns &&
+        wh_sandbox_find_unread(mcs->sandbox, unread)) {
         return luaL_error(L, "%s: %s", mcs->layout->path, unread);
     }
     mcs->link = &mcs->local.simulator.link;

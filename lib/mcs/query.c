@@ -241,6 +241,24 @@ static int judge_get(lua_State *L) {
     return 2 + push_place(L, mcs, place);
 }
 
+/* native.lies_in(station, slot): the name of a wafer that lies in that slot, or nil. */
+static int find_in_slot(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
+    const int32_t slot = wh_mcs_index(L, 2, (size_t)mcs->layout->places[station].slots) + 1;
+    wh_sandbox_charge(L, mcs->state.wafer_count);
+    wh_decisions_measured(mcs->wanted.decisions, "what lies in a slot");
+    for (size_t w = 0; w < mcs->state.wafer_count; ++w) {
+        wh_place_t place;
+        if (wh_cell_locate(&mcs->real->cell, &mcs->state.wafers[w].base_from_wafer, &place) &&
+            place.station == station && place.slot == slot) {
+            lua_pushstring(L, mcs->layout->wafers[w].name);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* native.wafer_pose(wafer, gripper): { r, R }, as the module wh takes it; with a gripper the frame of the
  * face that looks at it. */
 static int read_wafer_pose(lua_State *L) {
@@ -406,6 +424,7 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"lies", judge_place},
                                            {"is_elsewhere", judge_put},
                                            {"was_elsewhere", judge_get},
+                                           {"lies_in", find_in_slot},
                                            {"face", read_face},
                                            {"held_face", read_held_face},
                                            {"grip", read_grip},

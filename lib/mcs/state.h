@@ -213,6 +213,7 @@ typedef struct {
     size_t fault_count;
     wh_status_t alarms[WH_MCS_ALARMS]; /* the errors that wait for a command; WH_OK: a free place */
     int32_t alarm_jobs[WH_MCS_ALARMS]; /* for the job of this number; 0: for any */
+    bool alarm_tried[WH_MCS_ALARMS];   /* something broke for it, and its command ended otherwise */
 } wh_mcs_armed_t;
 
 /* Measurements of wafers' edges and of stations, from states. */

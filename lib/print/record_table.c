@@ -245,6 +245,21 @@ static void say_tilts(const wh_printer_t *printer, const history_t *history) {
     }
 }
 
+/* Says that a wafer which another one went through, as the lower one of a double does, is left in the air. */
+static void say_hanging(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    for (size_t i = 0; i < record->event_count; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        const wh_wafer_record_t *left = &record->wafers[event->other == WH_NONE ? 0 : event->other];
+        if (event->kind == WH_EVENT_PUSHED_THROUGH && event->other != WH_NONE && left->holder == WH_NONE &&
+            left->place.station != WH_NONE && left->place.dz > record->layout->cell.drop) {
+            wh_print_say(printer, "%s hangs %.3f mm over %s %d, on nothing.\n",
+                         wh_print_wafer(printer, event->other), left->place.dz,
+                         record->layout->stations[left->place.station].name, (int)left->place.slot);
+        }
+    }
+}
+
 static void print_ends(const wh_printer_t *printer, const history_t *history) {
     static const char *const heads[] = {
         "wafer;held by;lies in;dX mm{4,9};dY mm{4,9};dz mm{4,9};tilt deg{3,6}",
@@ -258,6 +273,7 @@ static void print_ends(const wh_printer_t *printer, const history_t *history) {
         fputs(" where nothing happened to them\n", printer->out);
     }
     say_tilts(printer, history);
+    say_hanging(printer);
 }
 
 static void print_wafers(const wh_printer_t *printer) {

@@ -70,8 +70,13 @@ static void put_never_came(const wh_test_result_t *result, FILE *out, const char
 }
 
 static void put_good(const wh_test_result_t *result, FILE *out) {
-    fprintf(out, "%llu %s, %.3f s simulated", (unsigned long long)result->expectations,
-            result->expectations == 1 ? "expectation" : "expectations", result->simulated_s);
+    fprintf(out, "%llu %s, ", (unsigned long long)result->expectations,
+            result->expectations == 1 ? "expectation" : "expectations");
+    if (result->simulated_s > 0) {
+        fprintf(out, "%.3f s simulated", result->simulated_s);
+    } else {
+        fputs("nothing moved", out);
+    }
     put_caught(result, out, ", ", "");
 }
 

@@ -1,5 +1,6 @@
-/* Given numbers that are valid and look as if they were in another unit: in radians, in metres, or per
- * metre. The rows of layout_fields.c say where they may stand and in which unit. */
+/* Given numbers that are valid and look as if they were in another unit: in radians, in metres or per
+ * metre, in milliseconds, or in micrometres a second. The rows of layout_fields.c say where they may stand
+ * and in which unit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,6 +36,16 @@
  * thousandth of the mm. */
 #define SLOW_TURNING 50
 #define SLOW_STRAIGHT 100
+
+/* Nor is one so many times faster. Micrometres and millidegrees are a thousand times as many. */
+#define FAST 200
+
+/* From so many seconds on a time was probably meant in milliseconds: by the field. */
+static const struct {
+    const char *name;
+    double seconds;
+} long_times[] = {{"slice", 0.1}, {"vacuum_delay", 20}, {"timeout", 60}, {"wait", 100},
+                  {"build", 10},  {"vent", 10},         {"seconds", 100}};
 
 /* The usual limits of an axis. */
 typedef struct {
@@ -126,6 +137,9 @@ static void look_at_limits(const walk_t *walk, const usual_t *usual, bool turns)
         if (value < usual->limits[i] / (turns ? SLOW_TURNING : SLOW_STRAIGHT)) {
             add(walk, names[i], "%.10g looks like %s/%s (expected %s/%s; usual are %.10g)", value,
                 turns ? "rad" : "m", per[i], turns ? "degrees" : "mm", per[i], usual->limits[i]);
+        } else if (usual->limits[i] > 0 && value > usual->limits[i] * FAST) {
+            add(walk, names[i], "%.10g looks like %s/%s (expected %s/%s; usual are %.10g)", value,
+                turns ? "millidegrees" : "um", per[i], turns ? "degrees" : "mm", per[i], usual->limits[i]);
         }
     }
 }
@@ -170,6 +184,18 @@ static void look_at_length(const walk_t *walk, const char *name, const wh_reader
     if (strncmp(unit, "mm", 2) == 0 && value != 0 && fabs(value) < least) {
         add(walk, row->name, "%.10g looks like %s (expected %s)", value,
             unit[2] == '\0' ? "metres" : unit + 1, unit);
+    }
+}
+
+/* The cleans of a station and the stays in it may be long. */
+static void look_at_time(const walk_t *walk, const char *name, const wh_reader_field_t *row, double value) {
+    char unit[WH_FIELD_UNIT_BYTES];
+    wh_field_unit(row, unit);
+    for (size_t i = 0; i < sizeof long_times / sizeof long_times[0]; ++i) {
+        if (strcmp(unit, "s") == 0 && strcmp(row->name, long_times[i].name) == 0 &&
+            strcmp(name, "clean") != 0 && value >= long_times[i].seconds) {
+            add(walk, row->name, "%.10g looks like milliseconds (expected s)", value);
+        }
     }
 }
 
@@ -273,6 +299,7 @@ static void look_at_field(const walk_t *walk, const char *name, const wh_reader_
         look_at_angle(walk, row->name, lua_tonumber(L, -1));
     } else if (lua_type(L, -1) == LUA_TNUMBER) {
         look_at_length(walk, name, row, lua_tonumber(L, -1));
+        look_at_time(walk, name, row, lua_tonumber(L, -1));
     } else if (lua_type(L, -1) != LUA_TTABLE) {
         return;
     } else if (rows && (strncmp(row->type, "table<", 6) == 0 || strstr(row->type, "[]"))) {

@@ -172,11 +172,22 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
     snprintf(layout->tolerance_name, sizeof layout->tolerance_name, "%s", name);
 }
 
+/* A wafer nearer than the tolerance is taken: with such a limit no miss would be told. */
+static void check_near(wh_reader_t *reader, const char *field, wh_real_t near, wh_real_t tolerance) {
+    if (wh_reader_has(reader, field) && near < tolerance) {
+        lua_pushnumber(reader->L, near);
+        wh_reader_fail(reader, field, "%.10g mm or more, tolerance.%s: a wafer that is nearer is no miss",
+                       (double)tolerance, field);
+    }
+}
+
 static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
     layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
     wh_reader_open_section(reader, "near", wh_layout_near_fields);
     wh_reader_scalars(reader, &layout->grasp);
+    check_near(reader, "projz", layout->grasp.near_projz, layout->grasp.tolerance.projz);
+    check_near(reader, "projxy", layout->grasp.near_projxy, layout->grasp.tolerance.projxy);
     wh_reader_leave(reader);
 }
 

@@ -288,6 +288,16 @@ static int look_at_station(lua_State *L) {
     return 0;
 }
 
+/* Adds what nobody looks at, so that silence is no verdict. */
+static void warn_of_untaught(job_t *job) {
+    const wh_layout_station_t *station = &job->layout->stations[job->station];
+    if (!station->taught) {
+        wh_feasibility_add(job->check, WH_FINDING_REACH, (int32_t)job->station,
+                           "%s: taught = false: GET and PUT there are not looked at", station->name);
+        wh_feasibility_warn(job->check);
+    }
+}
+
 static void tell_survey(const job_t *job) {
     const wh_survey_t *survey = job->survey;
     if (survey->tell) {
@@ -450,6 +460,7 @@ bool wh_survey_open(wh_survey_t *survey, wh_sandbox_t *sandbox, const wh_layout_
         wh_sandbox_renew(sandbox);
         good = wh_sandbox_protect(L, look_at_station, &job, result);
         add_finding(&job);
+        warn_of_untaught(&job);
     }
     job.station = job.from = 0;
     return good && play_home(&job, sandbox, result) && play_all(&job, sandbox, result);

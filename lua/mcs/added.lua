@@ -1,5 +1,8 @@
 -- The word for patterns that a file of patterns adds: see lua/mcs/own_patterns.lua.
 
+-- A local copy: a script may set a global of this name.
+local table = table
+
 return function(native, lookup, arm, player, targets, align, centring, slot_map, own)
   local words = {}
 
@@ -29,7 +32,9 @@ return function(native, lookup, arm, player, targets, align, centring, slot_map,
 
   -- pattern("look", "A", 1).
   function words.pattern(name, station, slot, options)
-    local text = lookup.command("PATTERN", name, station, slot, lookup.fields_text(options, lookup.correction_fields))
+    local fields = table.move(lookup.correction_fields, 1, #lookup.correction_fields, 1, {})
+    fields[#fields + 1] = "stop"
+    local text = lookup.command("PATTERN", name, station, slot, lookup.fields_text(options, fields))
     arm.move(arm.needs(true, station, options), text, play, name, station, slot, options)
   end
 

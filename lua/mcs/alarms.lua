@@ -12,9 +12,9 @@ local ipairs, pairs, pcall, table = ipairs, pairs, pcall, table
 return function(native, lookup)
   local alarms = {}
 
-  local AT_SLOT, STATION = "GET PUT SWAP READY", "GET PUT SWAP READY MAP TEACH"
+  local AT_SLOT, STATION = "GET PUT SWAP READY PATTERN", "GET PUT SWAP READY MAP TEACH PATTERN"
   local PLANNED = STATION .. " LINE"
-  local MOVING = STATION .. " PATTERN CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
+  local MOVING = STATION .. " CONTINUE HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE OPEN CLOSE"
     .. " PUMP WAIT_FOR"
   local SETTING = " SET_STATION STATION"
   local QUERIES = "OFFSET HOLDER PROXIMITY MEASURE DISTANCE ANGLE WHERE"
@@ -61,12 +61,12 @@ return function(native, lookup)
     SENSORS_DISAGREE = { "cause", "GET SWAP" },
     COLLISION_AHEAD = { "check", PLANNED .. " MOVE FLIP" },
     SLIP_AHEAD = { "check", PLANNED .. " MOVE FLIP HOME" },
-    BAD_SLOT = { "check", "GET PUT SWAP" },
-    NOT_MAPPED = { "check", "GET SWAP" },
-    CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP ALIGN" },
+    BAD_SLOT = { "check", "GET PUT SWAP PATTERN" },
+    NOT_MAPPED = { "check", "GET SWAP PATTERN" },
+    CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP PATTERN ALIGN" },
     IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE" },
-    PINS_UP = { "check", "GET PUT SWAP READY ROTATE EDGE_SCAN ALIGN TEACH" },
-    DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH" },
+    PINS_UP = { "check", "GET PUT SWAP READY PATTERN ROTATE EDGE_SCAN ALIGN TEACH" },
+    DOOR_SHUT = { "check", "GET PUT SWAP MAP TEACH PATTERN" },
     DOOR_BLOCKED = { "check", "CLOSE" },
     DOOR_TIMEOUT = { "cause", "OPEN CLOSE" },
     PROCESS_RUNNING = { "check", "GET SWAP" },
@@ -350,6 +350,8 @@ return function(native, lookup)
         pcall(alarms.play, { valves = { [was.opened] = 1 } })
       end
       pcall(stand_still)
+    else
+      native.note_tried(was.alarm.number)
     end
   end
 

@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local math, pairs = math, pairs
 
-return function(native, patterns, lookup, arm, player, grips)
+return function(native, patterns, lookup, arm, player, grips, truth)
   local mechanisms = {}
 
   local function gripper_of(index)
@@ -146,7 +146,9 @@ return function(native, patterns, lookup, arm, player, grips)
     check_arm(station)
     if up ~= are_up(station) then
       local target = target_of(station)
+      local wafer, taker = native.held(up and target.chuck or target.pins), up and target.pins or target.chuck
       conclude(target, player.play(up and patterns.raise or patterns.lower, target))
+      truth.expect_passed(lookup.command("LIFT", name, where), wafer, taker)
     end
   end
 
@@ -161,7 +163,9 @@ return function(native, patterns, lookup, arm, player, grips)
   function mechanisms.grip_again(station, x, y)
     local target = target_of(station)
     target.aside, target.home = to(station, x, y), to(station, 0, 0)
+    local wafer = native.held(target.chuck)
     conclude(target, player.play(patterns.grip_again, target))
+    truth.expect_passed(("ALIGN %s by pins"):format(station.name), wafer, target.chuck)
   end
 
   ------------------------------------------------------------------------------------------------- what is asked

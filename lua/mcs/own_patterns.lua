@@ -3,13 +3,16 @@
 -- pattern, so that its errors can be told by file and line.
 
 -- Local copies: a script may set globals of these names.
-local coroutine, error, getmetatable, ipairs, pairs = coroutine, error, getmetatable, ipairs, pairs
+local coroutine, error, getmetatable, ipairs, math, next, pairs = coroutine, error, getmetatable, ipairs, math, next, pairs
 local pcall, rawget, setmetatable, table, tostring, type = pcall, rawget, setmetatable, table, tostring, type
 
 -- The most requests of one run of a pattern.
 local MOST = 1000
 
-return function(native, lookup, patterns, own_steps)
+-- A blade that is nearer to its place than this, mm, is there.
+local BESIDE = 1e-3
+
+return function(native, lookup, patterns, steps, own_steps)
   local own = {}
 
   -- The patterns that may be replaced.
@@ -227,6 +230,55 @@ return function(native, lookup, patterns, own_steps)
     end
   end
 
+  -- Follows which heights the blade sweeps in front of a station: a MAP's beams see what they pass, and no more. Returns
+  -- the functions for a request and for the pattern's end.
+  local function watch_beams(entry, target)
+    local at
+    local swept = {}   -- { from, to }, in order
+
+    local function height_of(place)
+      local height, inward = steps.beside(target.place, place)
+      return math.abs(inward + target.retract) < BESIDE and height or nil
+    end
+
+    local function follow_line(line)
+      local from = height_of(at)
+      at = { at[1] + line[1], at[2] + line[2], at[3] + line[3] }
+      local to = height_of(at)
+      if from and to then
+        swept[#swept + 1] = { math.min(from, to), math.max(from, to) }
+      end
+    end
+
+    local function is_swept(from, to)
+      for _, part in ipairs(swept) do
+        if part[1] < from + BESIDE and part[2] > from then
+          from = part[2]
+        end
+      end
+      return from > to - BESIDE
+    end
+
+    return function(request)
+      if request.to then
+        at = { request.to.x, request.to.y, request.to.z }
+      elseif request.line and at then
+        follow_line(request.line)
+      end
+    end, function()
+      table.sort(swept, function(one, other) return one[1] < other[1] end)
+      local pitch, unseen = 2 * target.margin, {}
+      for slot = 1, math.tointeger((target.height / pitch + 0.5) // 1) + 1 do
+        local middle = (slot - 1) * pitch
+        unseen[#unseen + 1] = not is_swept(middle - target.margin, middle + target.margin) and slot or nil
+      end
+      if unseen[1] then
+        fail(end_of(entry), "%s: the beams do not pass all slots, not %s (expected a sweep in front of the station, by half a pitch "
+          .. "below and above each slot)", entry.name, lookup.listed(unseen))
+      end
+    end
+  end
+
   -- Runs the user's code until it asks for something: returns the request; or true and the results, or false and the
   -- error.
   local function resume(run, ...)
@@ -240,6 +292,15 @@ return function(native, lookup, patterns, own_steps)
     return first, second, third
   end
 
+  -- The target keeps whose pattern it was, and a result that no step and no shipped pattern gave: nothing is known of
+  -- its causes.
+  local function note_source(entry, target, became)
+    for _, part in ipairs({ target, target.get, target.put }) do
+      part.source = { pattern = ("%s of %s"):format(entry.name, entry.path),
+        claimed = became and ("%s: %s returned %s"):format(end_of(entry), entry.name, lookup.quote(became)) }
+    end
+  end
+
   -- Our own patterns that one may use: the one that it replaces, and the parts of a SWAP.
   local function ours(entry)
     local list = { [entry.name] = shipped[entry.name] }
@@ -250,11 +311,15 @@ return function(native, lookup, patterns, own_steps)
   end
 
   local function play(entry, target)
-    local run = { thread = coroutine.create(function(...)
+    local run = { given = {}, thread = coroutine.create(function(...)
       return native.call_own(entry.play, ...)
     end) }
     local ask, hear, finish = follow(entry, target)
     local move, check_outside = watch(entry, target)
+    local pass, check_passed = function() end, function() end
+    if entry.name == "map" then
+      pass, check_passed = watch_beams(entry, target)
+    end
     local request, became, why = resume(run, own_steps.make(run, target, ours(entry)))
     while coroutine.status(run.thread) ~= "dead" do
       if not run.is_ours or type(request) ~= "table" then
@@ -262,6 +327,8 @@ return function(native, lookup, patterns, own_steps)
       end
       ask(run.thread, request)
       move(run.thread, request)
+      pass(request)
+      request.where = request.where and ("at %s, %s"):format(native.place_in(run.thread), request.where)
       local answer = coroutine.yield(request)
       hear(answer)
       request, became, why = resume(run, answer)
@@ -271,7 +338,10 @@ return function(native, lookup, patterns, own_steps)
     end
     finish()
     check_outside()
-    return check_result(entry, target, became, why)
+    check_passed()
+    local result = check_result(entry, target, became, why)
+    note_source(entry, target, not run.given[became] and became or nil)
+    return result
   end
 
   --------------------------------------------------------------------------------------------------- the file
@@ -289,6 +359,8 @@ return function(native, lookup, patterns, own_steps)
   local function take_added(path, list)
     if type(list) ~= "table" then
       fail(path, "added: %s (expected a table of functions)", lookup.quote(list))
+    elseif next(list) == nil then
+      fail(path, "added: an empty table (expected functions by name)")
     end
     for name, value in pairs(list) do
       if type(name) ~= "string" or not name:find("^[%a_][%w_]*$") then

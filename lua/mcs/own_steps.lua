@@ -207,7 +207,8 @@ return function(native, lookup, steps)
   ------------------------------------------------------------------------------------------------------- one run
 
   -- The view of a target, the steps for one run of a pattern, which `run.thread` is, and our own patterns that it may
-  -- use, from `shipped`. While one of them works, `run.is_ours` is true: requests come from nowhere else.
+  -- use, from `shipped`. While one of them works, `run.is_ours` is true: requests come from nowhere else. `run.given` has
+  -- the results that they gave.
   function own.make(run, target, shipped)
     local targets, made, ours = {}, {}, {}
 
@@ -235,6 +236,8 @@ return function(native, lookup, steps)
         run.is_ours = false
         if not good then
           error(answer, 0)
+        elseif type(answer) == "string" then
+          run.given[answer] = true
         end
         return answer
       end

@@ -18,7 +18,7 @@ return function(native, wh)
 
   local steps = native.module("mcs/steps.lua")
   local planes, patterns = make("planes", steps), make("patterns", steps)
-  local own = make("own_patterns", native, lookup, patterns, make("own_steps", native, lookup, steps))
+  local own = make("own_patterns", native, lookup, patterns, steps, make("own_steps", native, lookup, steps))
   local grips = { vacuum = make("grip_vacuum", steps), edge = make("grip_edge", steps), passive = make("grip_passive", steps) }
 
   ------------------------------------------------------------------------------------------- who plans and plays it
@@ -54,12 +54,13 @@ return function(native, wh)
 
   --------------------------------------------------------------------------------------------------- who asks for it
 
-  local mechanisms = make("mechanisms", native, patterns, lookup, arm, player, grips)
+  local truth = make("truth", native, lookup)
+  local mechanisms = make("mechanisms", native, patterns, lookup, arm, player, grips, truth)
   local align = make("align", native, patterns, lookup, arm, player, mechanisms)
   local targets = make("targets", native, lookup, align, mechanisms, stations, grips, planes)
   local times = make("times", native, patterns, lookup, arm, player)
   local transfer, carrying = make("transfer", native, patterns, lookup, arm, player, targets, align, centring, alarms,
-    slot_map, times)
+    slot_map, times, truth)
   local tryout = make("tryout", native, patterns, lookup, arm, player, targets, carrying, own.attempt)
   local flippers = make("flippers", native, patterns, lookup, arm, player, mechanisms, alarms)
   local doors = make("doors", native, patterns, lookup, arm, player, tasks, alarms, times)

@@ -163,7 +163,11 @@ return function(native, prompt_commands, tokens, lookup, states, alarms, bind, b
       refuse("%s: no command for a task (expected one that moves something)", name)
     end
     local arguments, options, robot = read(name, command, words)
-    return background.begin(name, function()
+    local raw = {}
+    for place, word in ipairs(words) do
+      raw[place] = word.raw
+    end
+    return background.begin(name, table.concat(raw, " "), function()
       return run(command, arguments, options, robot)
     end)
   end

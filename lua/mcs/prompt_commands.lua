@@ -91,7 +91,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
   local swap_options = carrying_options("get_", "put_")
   local pattern_options = {}
   for name, kind in pairs(get_options) do
-    pattern_options[name] = name ~= "stop" and name ~= "centre" and kind or nil
+    pattern_options[name] = kind
   end
   get_options.correct, swap_options.get_correct = "switch", "switch"
   swap_options.gripper = nil
@@ -389,7 +389,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     local command = prompt_commands.commands[name]
     local text = { name }
     for place, kind in ipairs(command.takes) do
-      local word = kind:upper() .. (command.repeated and place == #command.takes and " ..." or "")
+      local word = (kind == "pattern" and "NAME" or kind:upper()) .. (command.repeated and place == #command.takes and " ..." or "")
       text[#text + 1] = command.optional and place == #command.takes and "[" .. word .. "]" or word
     end
     for option, kind in pairs(all and prompt_commands.options(command) or {}) do
@@ -456,7 +456,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
   end
 
   local function pattern(arguments, options)
-    return tokens.pairs { timed(commands.pattern, arguments[1], arguments[2], arguments[3], options) }
+    return carried(function() return {} end, commands.pattern, arguments[1], arguments[2], arguments[3], options)
   end
 
   -- While a command runs, STOP bypasses the queue. Here no command runs, but one may be held.
@@ -469,8 +469,12 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
   local function reset()
   end
 
+  -- A task that was begun has no command in the record before simulated time passes.
   local function status()
-    return native.status()
+    local text, tasks = native.status(), background.running()
+    return tasks and (text:gsub("^phase=idle", function()
+      return "phase=running " .. tasks
+    end)) or text
   end
 
   local function place()

@@ -11,7 +11,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
   -- The most tasks that may wait to be joined.
   local MOST = 64
 
-  -- By number: { handle, name, is_over, number: of its error }.
+  -- By number: { handle, name, line: as typed, is_over, number: of its error }.
   local begun, count = {}, 0
 
   local function numbers()
@@ -32,13 +32,13 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
   end
 
   -- Begins a task; its command's answer or error is kept for JOIN.
-  function background.begin(name, action)
+  function background.begin(name, line, action)
     if native.has_jobs() then
       native.fail("BUSY", "TASK: of several ports each goes on by itself")
     elseif count == MOST then
       native.fail("BUSY", ("TASK: %d tasks were not joined (expected no more: JOIN comes first)"):format(MOST))
     end
-    local entry = { name = name }
+    local entry = { name = name, line = line }
     entry.handle = commands.task(function()
       local results = table.pack(pcall(action))
       entry.is_over = true
@@ -83,7 +83,7 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
     if problem then
       error(problem, 0)
     end
-    return table.concat(texts, " ")
+    return table.concat(texts, "; ")
   end
 
   function background.list()
@@ -94,6 +94,16 @@ return function(native, commands, lookup, tokens, states, is_any_alive)
       texts[place] = tokens.pairs { { "task" .. number, entry.name }, { "is", how } }
     end
     return table.concat(texts, " ")
+  end
+
+  -- The tasks that go on, as STATUS tells them: task1.command=..., or nil.
+  function background.running()
+    local list = {}
+    for _, number in ipairs(numbers()) do
+      local entry = begun[number]
+      list[#list + 1] = not entry.is_over and { ("task%d.command"):format(number), entry.line } or nil
+    end
+    return list[1] and tokens.pairs(list)
   end
 
   function background.signal(arguments)

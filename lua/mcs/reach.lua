@@ -52,6 +52,24 @@ return function(native, tryout, flip_room)
     native.reach()
   end
 
+  -- The place of a station that is not taught is a guess, and none of the checks here looks at it. Calls missed(slot, word,
+  -- reason, gripper's name) if no robot that serves it reaches its first slot there.
+  function reach.check_untaught(station, missed)
+    local first, problem
+    for _, gripper in ipairs(not station.taught and servers(station) or {}) do
+      station.taught = true
+      local word, refused = rehearse(station.name, 1, gripper)
+      station.taught = false
+      if not refused then
+        return
+      end
+      first, problem = first or native.layout.grippers[gripper].name, problem or { word, reason_of(refused) }
+    end
+    if problem then
+      missed(1, problem[1], problem[2] .. "; it is not taught, so no run is refused for this", first)
+    end
+  end
+
   -- Earlier commands may have wound theta up, so that a slot is a turn or more away from its theta from
   -- home. `found` as above, at most once for a slot.
   local function check_wound(station, slot, found)

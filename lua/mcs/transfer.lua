@@ -4,7 +4,7 @@
 -- Local copies: a script may set globals of these names.
 local ipairs, math, pairs, pcall, select, table, type = ipairs, math, pairs, pcall, select, table, type
 
-return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times)
+return function(native, patterns, lookup, arm, player, targets, align, centring, alarms, slot_map, times, truth)
   local transfer = {}
 
   ------------------------------------------------------------------------------------------------ GET and PUT
@@ -72,8 +72,8 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     end
   end
 
-  -- The reasons why the running command took nothing: all that are known.
-  local function explain(gripper, hindered)
+  -- The reasons why the running command took nothing: all that are known, a list.
+  local function find_reasons(gripper, hindered)
     local name, list = name_of(gripper), {}
     add_hindrance(list, gripper, hindered)
     local wafer, reasons = native.closest(gripper)
@@ -85,7 +85,12 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       list[#list + 1] = ("%s is turned over, where its pads hold no wafer: %.4g N (expected at least mass * gravity * n, "
         .. "%.4g N)"):format(name, force, weight)
     end
-    return list[1] and table.concat(list, "; ") or ("no wafer came near %s while its valve was open"):format(name)
+    return list
+  end
+
+  local function explain(gripper, hindered)
+    local list = find_reasons(gripper, hindered)
+    return list[1] and table.concat(list, "; ") or ("no wafer came near %s while its valve was open"):format(name_of(gripper))
   end
 
   -- A length as text, without a minus before zeros.
@@ -114,11 +119,34 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     return text:format(name_of(chuck), wafer, dx, dy, dz, reasons)
   end
 
+  -- By result: the error that it is.
+  local ERRORS = { missing = "WAFER_MISSING", late = "VACUUM_TIMEOUT", early = "VACUUM_BEFORE_PICK", lost = "WAFER_LOST",
+                   loose = "VACUUM_TIMEOUT", stuck = "WAFER_LOST", jammed = "WAFER_JAMMED", unmoved = "PLUNGER_STUCK",
+                   unclosed = "GRIP_TIMEOUT", unopened = "UNGRIP_TIMEOUT", disagree = "SENSORS_DISAGREE" }
+
+  -- A result of a pattern of one's own that no step gave: what the cell knows is told, and no cause beyond it.
+  local function check_claim(target, found)
+    local claimed = target.source and target.source.claimed
+    if claimed and found == "uncentred" and not target.centred and not target.refused then
+      native.fail("TOO_FEW_SAMPLES", claimed .. "; it did not ask for the beams' result")
+    elseif claimed and ERRORS[found] then
+      local list = found == "missing" and find_reasons(target.gripper, target.hindered) or {}
+      table.insert(list, 1, claimed)
+      list[#list + 1] = holders()
+      native.fail(ERRORS[found], table.concat(list, "; "))
+    end
+  end
+
+  -- Fails with the result of the target's pattern.
+  local function fail(target, error_name, text)
+    native.fail(error_name, target.source and ("%s; by %s"):format(text, target.source.pattern) or text)
+  end
+
   -- Fails for a gripper whose sensor is off although the simulator sees a wafer on it.
   local function fail_late(target, gripper)
     local wafer = native.held(gripper) or "a wafer"
     local text = "the sensor of %s stayed off for %.10g s, its timeout, with %s on its pads"
-    native.fail("VACUUM_TIMEOUT", text:format(name_of(gripper), target.timeout, wafer))
+    fail(target, "VACUUM_TIMEOUT", text:format(name_of(gripper), target.timeout, wafer))
   end
 
   -- A gripper that enters less than projz below the slot takes its wafer from there.
@@ -139,28 +167,28 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
   -- The result of a plunger, as an error if it is one.
   local PLUNGER = {}
 
-  function PLUNGER.unmoved(_, name, was)
-    native.fail("PLUNGER_STUCK", ("that of %s is at %.3f mm"):format(name, was.s))
+  function PLUNGER.unmoved(target, name, was)
+    fail(target, "PLUNGER_STUCK", ("that of %s is at %.3f mm"):format(name, was.s))
   end
 
   function PLUNGER.unclosed(target, name, was)
     local text = "that of %s had %.10g s, and is at %.3f mm"
-    native.fail("GRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
+    fail(target, "GRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
   end
 
   function PLUNGER.unopened(target, name, was)
     local text = "that of %s had %.10g s, and is at %.3f mm"
-    native.fail("UNGRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
+    fail(target, "UNGRIP_TIMEOUT", text:format(name, math.max(target.edge.travel, target.timeout), was.s))
   end
 
-  function PLUNGER.disagree(_, name, was)
+  function PLUNGER.disagree(target, name, was)
     local text = "the sensor of %s is %s, but its plunger %s"
-    native.fail("SENSORS_DISAGREE", text:format(name, was.is_on and "on" or "off", SAYS[was.does]))
+    fail(target, "SENSORS_DISAGREE", text:format(name, was.is_on and "on" or "off", SAYS[was.does]))
   end
 
   function PLUNGER.jammed(target, name, was)
     local clearance = native.layout.grippers[target.gripper].edge.clearance
-    native.fail("WAFER_JAMMED", was.excess > 0
+    fail(target, "WAFER_JAMMED", was.excess > 0
       and ("a wafer lies %s mm off the centre of %s (expected at most its clearance, %.10g mm; by %s mm)"):format(
         short(clearance + was.excess, was.excess), name, clearance, short(was.excess, was.excess))
       or ("the plunger of %s stands at %.3f mm: the wafer is too large"):format(name, was.s))
@@ -172,64 +200,55 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       .. "notch is at a rest"
     local none = "the plunger of %s went on to the end of its stroke: no wafer lies there, or one that is too far out, "
       .. "too high, too low or askew"
-    native.fail("WAFER_MISSING", was.s < edge.stop and small:format(name, was.s, edge.to) or none:format(name))
+    fail(target, "WAFER_MISSING", was.s < edge.stop and small:format(name, was.s, edge.to) or none:format(name))
   end
 
   local function judge_plunger(target, found)
-    local fail = target.edge and PLUNGER[found]
-    if fail then
-      fail(target, name_of(target.gripper), target.plunger)
+    local fail_by = target.edge and PLUNGER[found]
+    if fail_by then
+      fail_by(target, name_of(target.gripper), target.plunger)
     end
   end
 
   -- The result of a GET's pattern, as an error unless it took a wafer.
   local function judge_get(target, found)
+    check_claim(target, found)
     judge_plunger(target, found)
     if found == "missing" and target.is_passive then
       local text = "%s came up through %s slot %d without a wafer on its pads"
-      native.fail("WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
+      fail(target, "WAFER_MISSING", text:format(name_of(target.gripper), target.station, target.slot))
     elseif found == "missing" then
-      native.fail("WAFER_MISSING", explain(target.gripper, target.hindered))
+      fail(target, "WAFER_MISSING", explain(target.gripper, target.hindered))
     elseif found == "late" then
       fail_late(target, target.gripper)
     elseif found == "early" then
       local text = "the sensor of %s came on below the slot, as soon as its valve opened%s"
-      native.fail("VACUUM_BEFORE_PICK", text:format(name_of(target.gripper), taken_below(target)))
+      fail(target, "VACUUM_BEFORE_PICK", text:format(name_of(target.gripper), taken_below(target)))
     end
   end
 
   local function judge_put(target, became)
+    check_claim(target, became)
     judge_plunger(target, became)
     if became == "uncentred" then
       centring.fail(target)
     elseif became == "lost" then
-      native.fail("WAFER_LOST", explain_lost(target.gripper, target.chuck, target.hindered))
+      fail(target, "WAFER_LOST", explain_lost(target.gripper, target.chuck, target.hindered))
     elseif became == "loose" then
       fail_late(target, target.chuck)
     elseif became == "feigned" then
       local text = "the sensor of %s stayed on, though %s slot %d had taken the wafer over: %s came up again and took it"
       local name = name_of(target.gripper)
-      native.fail("WAFER_LOST", text:format(name, target.station, target.slot, name))
+      fail(target, "WAFER_LOST", text:format(name, target.station, target.slot, name))
     elseif became == "stuck" then
       local kept, name = native.held(target.gripper), name_of(target.gripper)
       if kept and target.is_passive then
         local text = "%s still holds %s: nothing in %s slot %d took it over"
-        native.fail("WAFER_LOST", text:format(name, kept, target.station, target.slot))
+        fail(target, "WAFER_LOST", text:format(name, kept, target.station, target.slot))
       end
-      native.fail("WAFER_LOST", kept and ("%s still holds %s: its valve or vacuum did not let go of it"):format(name, kept)
+      fail(target, "WAFER_LOST", kept and ("%s still holds %s: its valve or vacuum did not let go of it"):format(name, kept)
         or ("the sensor of %s is still on, with nothing on its pads"):format(name))
     end
-  end
-
-  -- Checks that a wafer let go by a PUT lies in its slot. A wafer that is off by a whole pitch or more lies well, but
-  -- in another slot: no other check finds that.
-  local function expect_place(target, wafer)
-    if not wafer then
-      return
-    end
-    local is_elsewhere, station, slot = native.is_elsewhere(wafer, lookup.station(target.station).index, target.slot)
-    local text = ("PUT %s %d: %s in that slot"):format(target.station, target.slot, wafer)
-    native.imply(not is_elsewhere, is_elsewhere and ("%s; it lies in %s slot %d"):format(text, station, slot) or text)
   end
 
   -- Fails if a GET has taken the wafer of another slot. Its sensor says nothing of that.
@@ -267,9 +286,10 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       kind.judge(target, became)
       if word == "get" then
         check_origin(target)
+        truth.expect_taken(target)
       end
       kind.note(target)
-      expect_place(target, wafer)
+      truth.expect_given(target, wafer)
       centring.know_notch(target.gripper, notch, deviation)
     end)
     return target.centred
@@ -370,8 +390,9 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
     player.drive(plan, function(became)
       judge_get(take, became)
       judge_put(give, became)
-      expect_place(give, wafer)
+      truth.expect_given(give, wafer)
       check_origin(take)
+      truth.expect_taken(take)
       slot_map.note_put(give)
       centring.know_notch(take.gripper, notch, deviation)
       centring.know_notch(give.gripper)

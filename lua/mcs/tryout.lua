@@ -66,6 +66,10 @@ return function(native, patterns, lookup, arm, player, targets, carrying, attemp
       carrying.judge[word](target, player.drive(player.rehearse(patterns[word], target)))
       if word == "get" and not native.held(target.gripper) then
         carrying.judge.get(target, "missing")
+      elseif word == "put" and native.held(target.gripper) then
+        carrying.judge.put(target, "stuck")
+      elseif word == "put" and target.chuck and not native.held(target.chuck) then
+        carrying.judge.put(target, "lost")
       end
     end)
     return cell.complaint() or not good and problem or nil

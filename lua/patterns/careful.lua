@@ -14,8 +14,9 @@ local function get(target, steps, shipped)
   steps.stroke(target, 1 - target.offset)
   steps.stroke(target, -1, SLOWLY)
   steps.open(target, "gripper")
-  local on = steps.await(target, "gripper", 3)
+  local on, found = steps.await(target, "gripper", 3), "taken"
   if not on then
+    found = steps.is_loaded(target, "gripper") and "late" or "missing" -- asked before the valve lets go
     steps.close(target, "gripper")
   end
   steps.stroke(target, 1, SLOWLY)
@@ -24,7 +25,7 @@ local function get(target, steps, shipped)
     steps.pause(target, "up")
   end
   steps.leave(target)
-  return on and "taken" or steps.is_loaded(target, "gripper") and "late" or "missing"
+  return found
 end
 
 -- A camera on the wrist looks at the slot: the blade stands before it, half as high as the slots are apart.

@@ -1,4 +1,4 @@
-/* The cell's report of a release. */
+/* The cell's report of a release, and of a chuck that takes a wafer over. */
 #include "support/station.h"
 
 enum { WAFERS = 3, GRIPPERS = 2, EVENTS = GRIPPERS * WH_EVENTS_PER_GRIPPER };
@@ -263,6 +263,64 @@ static void limits_of_placing(void **state) {
     cell.off_centre = cell.askew = 0;
 }
 
+/* Gripper `taker` has just taken wafer 0 over from the other one; the chuck is gripper 1. */
+static void hand_over(scene_t *scene, int taker, const wh_pose_t *base_from_taker,
+                      const wh_pose_t *base_from_wafer) {
+    let_go(scene, base_from_wafer);
+    scene->events[0].kind = WH_EVENT_HANDED_OVER;
+    scene->events[0].gripper = taker;
+    scene->events[0].other = 1 - taker;
+    scene->grippers[taker].base_from_gripper = *base_from_taker;
+    scene->wafers[0].holder = taker;
+}
+
+static void a_chuck_that_takes_a_wafer_over_is_judged(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 5;
+    cell.askew = WH_REAL(0.01);
+    const wh_pose_t chuck = wh_station_slot(&stations[2], 1);
+    const wh_pose_t centred = in_station(2, 3, 4, 0.25);
+    hand_over(&scene, 1, &chuck, &centred);
+    assert_int_equal(judge(&scene), 0);
+    wh_pose_t aside = in_station(2, 3, 4.5, 0);
+    hand_over(&scene, 1, &chuck, &aside);
+    assert_int_equal(judge(&scene), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_PLACED_OFF_CENTRE);
+    assert_int_equal(scene.events[1].gripper, 1);
+    assert_near(scene.events[1].value, wh_real_sqrt(WH_REAL(29.25)), 4096 * WH_TEST_ROUNDING);
+    aside.R = wh_mat3_from_rpy_deg(0, 1, 0);
+    hand_over(&scene, 1, &chuck, &aside);
+    assert_int_equal(judge(&scene), 2);
+    assert_int_equal(scene.events[2].kind, WH_EVENT_PLACED_ASKEW);
+    /* A stage has brought the chuck below the wafer; and a blade that takes it from the chuck sets nothing down. */
+    aside = in_station(2, 3, 4.5, 0);
+    hand_over(&scene, 1, &aside, &aside);
+    assert_int_equal(judge(&scene), 0);
+    hand_over(&scene, 0, &chuck, &aside);
+    assert_int_equal(judge(&scene), 0);
+    cell.off_centre = cell.askew = 0;
+    hand_over(&scene, 1, &chuck, &aside);
+    assert_int_equal(judge(&scene), 0);
+}
+
+/* Let go in the air, or too low, and beside its slot: each is told. */
+static void an_unsupported_wafer_may_be_off_centre_too(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 2;
+    cell.drop = 2;
+    const wh_pose_t high = wh_test_at(703, 4, 902.25), low = wh_test_at(703, 4, 899);
+    for (int i = 0; i < 2; ++i) {
+        let_go(&scene, i == 0 ? &high : &low);
+        assert_int_equal(judge(&scene), 2);
+        assert_int_equal(scene.events[1].kind, WH_EVENT_RELEASED_UNSUPPORTED);
+        assert_int_equal(scene.events[2].kind, WH_EVENT_PLACED_OFF_CENTRE);
+        assert_near(scene.events[2].value, 5, 4096 * WH_TEST_ROUNDING);
+    }
+    cell.off_centre = cell.drop = 0;
+}
+
 /* Over its slot, but higher than the allowed fall. */
 static void a_wafer_let_go_in_the_air(void **state) {
     (void)state;
@@ -337,6 +395,20 @@ static void a_wafer_comes_to_lie_on_its_slot(void **state) {
     }
     assert_near((signals - 1) / 2, wh_vec3_dot(&from, &up), 64 * WH_TEST_ROUNDING);
     assert_int_equal(wh_pose_validate(&scene.wafers[0].base_from_wafer), WH_OK);
+}
+
+/* A wafer that leans with its centre in the plane comes to lie flat, and has not sunk. */
+static void a_leaning_wafer_in_its_plane_comes_to_lie(void **state) {
+    (void)state;
+    scene_t scene;
+    wh_pose_t wafer = wh_test_at(700, 0, 900);
+    wafer.R = wh_mat3_from_rpy_deg(1.5, 0, 0);
+    assert_int_equal(settle(&scene, &wafer), 0);
+    assert_near(scene.wafers[0].base_from_wafer.R.m[2][2], 1, 4 * WH_TEST_ROUNDING);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 0);
+    let_go(&scene, &wafer);
+    wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
+    assert_memory_equal(&scene.wafers[0].base_from_wafer, &wafer, sizeof wafer);
 }
 
 static void what_does_not_settle(void **state) {
@@ -481,9 +553,12 @@ int main(void) {
         cmocka_unit_test_setup(a_neighbours_slot_is_not_this_one, set_up),
         cmocka_unit_test_setup(a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
         cmocka_unit_test_setup(limits_of_placing, set_up),
+        cmocka_unit_test_setup(a_chuck_that_takes_a_wafer_over_is_judged, set_up),
+        cmocka_unit_test_setup(an_unsupported_wafer_may_be_off_centre_too, set_up),
         cmocka_unit_test_setup(a_wafer_let_go_in_the_air, set_up),
         cmocka_unit_test_setup(a_full_list_takes_no_more, set_up),
         cmocka_unit_test_setup(a_wafer_comes_to_lie_on_its_slot, set_up),
+        cmocka_unit_test_setup(a_leaning_wafer_in_its_plane_comes_to_lie, set_up),
         cmocka_unit_test_setup(what_does_not_settle, set_up),
         cmocka_unit_test_setup(a_support_stops_what_was_let_go_below_it, set_up),
         cmocka_unit_test_setup(a_wafer_face_down_lies_on_its_front_and_settles_on_it, set_up),

@@ -63,13 +63,13 @@ static void lines_for_people(void **state) {
                            "    first\n"
                            "    \n"
                            "    third\\x1b\n"
-                           "ok           c.lua: 2 expectations, 0.000 s simulated, 1 error caught\n"
+                           "ok           c.lua: 2 expectations, nothing moved, 1 error caught\n"
                            "bad          d.lua: 12\n"
                            "    \\x01|\\xff|\\xef\\xbf\\xbf|\\x09x\n"
                            "no end       e.lua: 12\n"
                            "killed       f.lua: 12\n"
                            "passed over  g.lua: a layout\n"
-                           "ok           h.lua: 0 expectations, 0.000 s simulated, 2 errors caught\n");
+                           "ok           h.lua: 0 expectations, nothing moved, 2 errors caught\n");
 }
 
 static void verdicts_have_their_inks(void **state) {
@@ -82,7 +82,7 @@ static void verdicts_have_their_inks(void **state) {
     wh_test_print_sum(results, 1, out, &coloured);
     wh_test_print_sum(results, 2, out, &coloured);
     expect_written(&paper,
-                   "\033[32mok         \033[0m  c.lua: 2 expectations, 0.000 s simulated, 1 error caught\n"
+                   "\033[32mok         \033[0m  c.lua: 2 expectations, nothing moved, 1 error caught\n"
                    "\033[31mno end     \033[0m  e.lua: 12\n"
                    "\033[33mpassed over\033[0m  g.lua: a layout\n"
                    "1 script: \033[32m1 ok\033[0m\n"
