@@ -231,8 +231,8 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     }
     result->over = play.count;
     result->left = plan->wafer_count - state.over;
-    result->period = wh_flow_steady(play.ends_us, play.count, &result->cycle_us);
-    result->no_cycle = result->period > 0 ? NULL : wh_flow_no_cycle_text(play.ends_us, play.count);
+    result->no_cycle =
+        wh_flow_find_cycle(tool, plan, play.ends_us, play.count, &result->period, &result->cycle_us);
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(&state);
     } else if (state.cause) {

@@ -35,13 +35,11 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
 void wh_flow_result_close(wh_flow_result_t *result);
 
 /* The steady cycle of placings at the wafers' ends: the least k up to 24 for which `ends[i + k] - ends[i]`
- * is the same to 1 us over the middle third. Returns k, and in `cycle_us` that difference; 0 if there is
- * none. */
-int32_t wh_flow_steady(const int64_t *ends_us, size_t count, int64_t *cycle_us);
-
-/* Why there is none: too few wafers, with how many would do, or ends that do not repeat. The caller frees
- * it. */
-char *wh_flow_no_cycle_text(const int64_t *ends_us, size_t count);
+ * is the same to 1 us over the middle third. Returns null, with k in `period` and that difference in
+ * `cycle_us`; or why there is none, by malloc, with 0 and WH_FLOW_NEVER there: too few wafers, and how many
+ * would do; ends that do not repeat; ends that repeat within a burst alone, faster than a station works. */
+char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const int64_t *ends_us,
+                         size_t count, int32_t *period, int64_t *cycle_us);
 
 /* Why nobody can go on: each wafer that could be taken, what it waits for, and who stands there. The
  * caller frees it. */

@@ -1,5 +1,6 @@
 #include "flow.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "../text/array.h"
@@ -19,7 +20,7 @@ static bool is_steady(const int64_t *ends_us, size_t begin, size_t end, size_t k
     return true;
 }
 
-int32_t wh_flow_steady(const int64_t *ends_us, size_t count, int64_t *cycle_us) {
+static int32_t find_period(const int64_t *ends_us, size_t count, int64_t *cycle_us) {
     const size_t begin = count / 3, end = count - count / 3;
     *cycle_us = WH_FLOW_NEVER;
     for (size_t k = 1; k <= LONGEST && begin + 3 * k < end; ++k) {
@@ -29,6 +30,51 @@ int32_t wh_flow_steady(const int64_t *ends_us, size_t count, int64_t *cycle_us) 
         }
     }
     return 0;
+}
+
+/* How long a wafer keeps a place besides its process, at least: it is brought and taken by the quickest. */
+static int64_t handled_us(const wh_flow_tool_t *tool, int32_t station) {
+    int64_t pick_us = WH_FLOW_NEVER / 2, place_us = WH_FLOW_NEVER / 2, swap_us = WH_FLOW_NEVER;
+    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
+        const size_t of = wh_flow_of(tool, r, station);
+        if (tool->serves[of]) {
+            pick_us = tool->pick_us[of] < pick_us ? tool->pick_us[of] : pick_us;
+            place_us = tool->place_us[of] < place_us ? tool->place_us[of] : place_us;
+        }
+        if (tool->serves[of] && tool->robots[r].arms > 1 && tool->swap_us[of] < swap_us) {
+            swap_us = tool->swap_us[of];
+        }
+    }
+    return pick_us + place_us < swap_us ? pick_us + place_us : swap_us;
+}
+
+/* How long a wafer of the route keeps places of this station alone. */
+static int64_t kept_us(const wh_flow_tool_t *tool, const wh_flow_route_t *route, int32_t station) {
+    int64_t sum_us = 0;
+    for (size_t i = 1; i + 1 < route->step_count; ++i) {
+        const wh_flow_step_t *step = &route->steps[i];
+        if (step->station_count == 1 && step->stations[0] == station) {
+            sum_us += wh_flow_step_us(step, &tool->stations[station]) + handled_us(tool, station);
+        }
+    }
+    return sum_us;
+}
+
+/* The station that each wafer keeps for longer than one leaves in this cycle, and for how long: routes that
+ * come back to a station end in bursts. A step that may go elsewhere does not count. */
+static int32_t find_outrun(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, double wafer_us,
+                           double *least_us) {
+    for (int32_t s = 0; s < (int32_t)tool->station_count; ++s) {
+        *least_us = HUGE_VAL;
+        for (size_t l = 0; l < plan->lot_count; ++l) {
+            const wh_flow_route_t *route = &plan->routes[plan->lots[l].route];
+            *least_us = fmin(*least_us, (double)kept_us(tool, route, s) / tool->stations[s].slots);
+        }
+        if (*least_us > wafer_us + 1) {
+            return s;
+        }
+    }
+    return WH_FLOW_NONE;
 }
 
 /* The least number of wafers among which a period of k is looked for. */
@@ -51,7 +97,7 @@ static size_t find_likely(const int64_t *ends_us, size_t count, size_t shortest)
     return 0;
 }
 
-char *wh_flow_no_cycle_text(const int64_t *ends_us, size_t count) {
+static char *tell_no_period(const int64_t *ends_us, size_t count) {
     char text[200];
     size_t shortest = 1;
     while (shortest <= LONGEST && wafers_for(shortest) <= count) {
@@ -69,5 +115,26 @@ char *wh_flow_no_cycle_text(const int64_t *ends_us, size_t count) {
         (void)snprintf(text, sizeof text, "too few wafers: %zu would show any that repeats every 1 to %d",
                        wafers_for(LONGEST), LONGEST);
     }
+    return wh_text_copy(text);
+}
+
+char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const int64_t *ends_us,
+                         size_t count, int32_t *period, int64_t *cycle_us) {
+    char text[400];
+    double least_us;
+    *period = find_period(ends_us, count, cycle_us);
+    if (*period == 0) {
+        return tell_no_period(ends_us, count);
+    }
+    const double wafer_us = (double)*cycle_us / *period;
+    const int32_t station = find_outrun(tool, plan, wafer_us, &least_us);
+    if (station == WH_FLOW_NONE) {
+        return NULL;
+    }
+    (void)snprintf(text, sizeof text,
+                   "wafers end one in %.10g s within a burst alone, where %.200s takes %.10g s a wafer",
+                   wafer_us * 1e-6, tool->stations[station].name, least_us * 1e-6);
+    *period = 0;
+    *cycle_us = WH_FLOW_NEVER;
     return wh_text_copy(text);
 }
