@@ -235,13 +235,17 @@ static int play_segment(lua_State *L) {
 
 /* native.stop_in(seconds, mechanism, asked): a STOP of that mechanism (nil: of all) comes at the first slice
  * at or after this many simulated seconds from now; seconds nil: none comes. `asked` true: an operator has
- * said STOP. Returns false if there is no such mechanism. With a mechanism there must be tasks. */
+ * said STOP. Returns false and the names of all mechanisms if there is no such one. With a mechanism there
+ * must be tasks. */
 static int stop_in(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     uint32_t axes = WH_MCS_ALL;
     if (!lua_isnoneornil(L, 2) && !wh_mcs_find_mechanism(mcs, wh_lua_whole_text(L, 2), &axes)) {
+        char names[WH_MCS_MECHANISMS_BYTES];
+        wh_mcs_name_mechanisms(mcs, WH_MCS_ALL, names);
         lua_pushboolean(L, false);
-        return 1;
+        lua_pushstring(L, names);
+        return 2;
     }
     mcs->stop.slice_axes = axes;
     mcs->stop.is_asked = lua_toboolean(L, 3);

@@ -396,14 +396,15 @@ static int find_clearance(lua_State *L) {
         lua_pushboolean(L, 0);
         return 1;
     }
-    check_looks(L, mcs, "clearance", mcs->local.collision.world != NULL);
-    if (!mcs->local.collision.world) {
+    check_looks(L, mcs, "clearance", mcs->layout->collision);
+    const wh_world_t *world = mcs->local.collision.world; /* from the first slice on */
+    if (!world && (!mcs->layout->collision || mcs->wanted.without_collisions)) {
         return 0;
     }
-    const wh_clearance_t *least = &wh_world_clearances(mcs->local.collision.world)[kind];
+    const wh_clearance_t *least = world ? &wh_world_clearances(world)[kind] : NULL;
     lua_createtable(L, 0, 5);
     wh_lua_set_number(L, "limit", mcs->layout->world.limits[kind]);
-    if (least->parts[0] != WH_NONE) {
+    if (least && least->parts[0] != WH_NONE) {
         wh_lua_set_number(L, "gap", least->gap);
         wh_lua_set_number(L, "time", (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
         set_parts(L, mcs, least->parts);

@@ -62,7 +62,7 @@ return function(native, lookup)
     COLLISION_AHEAD = { "check", PLANNED .. " MOVE FLIP" },
     SLIP_AHEAD = { "check", PLANNED .. " MOVE FLIP HOME" },
     BAD_SLOT = { "check", "GET PUT SWAP PATTERN" },
-    NOT_MAPPED = { "check", "GET SWAP PATTERN" },
+    NOT_MAPPED = { "check", "GET PUT SWAP PATTERN" },
     CORRECTION_TOO_LARGE = { "check", "GET PUT SWAP PATTERN ALIGN" },
     IN_PHASE = { "check", STATION .. " HOME RECOVER ROTATE EDGE_SCAN ALIGN CALIBRATE LIFT VALVE MOVE FLIP LINE" },
     PINS_UP = { "check", "GET PUT SWAP READY PATTERN ROTATE EDGE_SCAN ALIGN TEACH" },

@@ -127,6 +127,19 @@ return function(native, lookup, stations)
     return MISFIT[#candidates]:format(table.concat(texts, " or "), radius)
   end
 
+  -- The beams that nothing crossed, as text; empty if there is none.
+  local function say_silent(result, beams)
+    local silent = {}
+    for beam = 1, beams do
+      local is_crossed = false
+      for _, crossing in ipairs(result.crossings) do
+        is_crossed = is_crossed or crossing.beam == beam
+      end
+      silent[#silent + 1] = not is_crossed and ("none of beam %d"):format(beam) or nil
+    end
+    return silent[1] and ", " .. table.concat(silent, ", ") or ""
+  end
+
   -- Raises the reason why the PUT has brought its wafer out again.
   function centring.fail(target)
     local result, errors, refused = target.centred, lookup.errors, target.refused
@@ -138,9 +151,9 @@ return function(native, lookup, stations)
     elseif result.error == errors.CENTRE_NOT_SURE.number then
       native.fail("CENTRE_NOT_SURE", describe(result.candidates) .. still)
     end
-    local text = "%d crossings of %d beams, %d latches missed"
-    native.fail("TOO_FEW_SAMPLES",
-      text:format(#result.crossings, lookup.station(target.station).beams[target.robot], result.missed) .. still)
+    local beams = lookup.station(target.station).beams[target.robot]
+    local text = "%d crossings of %d beams%s, %d latches missed"
+    native.fail("TOO_FEW_SAMPLES", text:format(#result.crossings, beams, say_silent(result, beams), result.missed) .. still)
   end
 
   -- The beams' result of the last PUT that centred: see waferhand.centring in lua/mcs/words.lua.

@@ -202,9 +202,11 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     if mechanism ~= nil then
       tasks.open()
     end
-    if mechanism ~= nil and type(mechanism) ~= "string" or not native.stop_in(number, mechanism) then
-      local text = "mechanism: %s (expected robot, or a station with a chuck)"
-      native.fail("BAD_ARGUMENT", text:format(lookup.quote(mechanism)))
+    local is_name = mechanism == nil or type(mechanism) == "string"
+    local found, names = native.stop_in(number, not is_name and "" or mechanism)
+    if not found then
+      local text = "mechanism: %s (expected one of: %s; a station's name is that of its chuck)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(mechanism), names))
     end
   end
 
