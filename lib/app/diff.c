@@ -22,13 +22,18 @@
 #define MOST_TOLD 20
 
 typedef struct {
-    wh_option_list_t paths;
+    wh_option_list_t paths, parameters;
     bool json;
 } arguments_t;
 
-static const wh_option_t options[] = {{"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
-                                       .variable = offsetof(arguments_t, json)},
-                                      {0}};
+static const wh_option_t options[] = {
+    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, json)},
+    {"set", 0, "NAME=VALUE",
+     "Hand the layout of a log that was recorded with it a parameter, params.NAME: a number if VALUE is one, "
+     "true, false or text",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, parameters)},
+    {0}};
 
 static void check(const void *given, struct argp_state *state) {
     if (((const arguments_t *)given)->paths.count != 2) {
@@ -113,6 +118,7 @@ static double slice_of(const json_t *root) {
 
 typedef struct {
     const char *path;
+    const wh_option_list_t *parameters;
     bool is_log;
     json_t *root;
     wh_log_run_t *run; /* null: JSON */
@@ -204,11 +210,37 @@ static bool open_side(side_t *side) {
     return read;
 }
 
+static void close_run(side_t *side) {
+    wh_log_digests_free(&side->digests);
+    if (side->run) {
+        wh_log_run_close(side->run);
+        free(side->run);
+    }
+    side->run = NULL;
+}
+
+/* With `count` of the given parameters. */
+static bool read_run(side_t *side, size_t number, size_t count) {
+    wh_log_run_options_t wanted = {
+        .path = side->path, .number = number, .layout = {NULL, side->parameters->items, count}};
+    side->run = wh_array_new(1, sizeof *side->run);
+    return wh_compare_read(side->run, &wanted, &side->digests);
+}
+
+/* Both logs may be of one layout's file with other parameters. */
+static bool read_with_layout(side_t *side, size_t number) {
+    const size_t count = side->parameters->count;
+    bool read = read_run(side, number, count);
+    if (read && count > 0 && !side->run->cell.is_whole) {
+        close_run(side);
+        read = read_run(side, number, 0);
+    }
+    return read;
+}
+
 /* A log that lacks something is never equal to another. */
 static bool read_log(side_t *side, size_t number) {
-    wh_log_run_options_t wanted = {.path = side->path, .number = number};
-    side->run = wh_array_new(1, sizeof *side->run);
-    if (!wh_compare_read(side->run, &wanted, &side->digests)) {
+    if (!read_with_layout(side, number)) {
         fprintf(stderr, "%s\n", side->run->message);
         return false;
     }
@@ -228,13 +260,8 @@ static bool read_log(side_t *side, size_t number) {
 
 static void close_side(side_t *side) {
     json_decref(side->root);
-    wh_log_digests_free(&side->digests);
-    if (side->run) {
-        wh_log_run_close(side->run);
-        free(side->run);
-    }
+    close_run(side);
     side->root = NULL;
-    side->run = NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------ compare */
@@ -283,10 +310,43 @@ static void compare_layouts(const side_t sides[2], result_t *result) {
     }
 }
 
+/* Names and number of a slice's fields go by the layout: without that of one log they are no longer alike. */
+static bool have_like_fields(const side_t sides[2]) {
+    const bool whole[2] = {sides[0].run->cell.is_whole, sides[1].run->cell.is_whole};
+    const bool are_alike =
+        whole[0] == whole[1] || wh_compare_fields_fit(sides[0].run->cell.layout, sides[1].run->cell.layout);
+    if (!are_alike) {
+        const side_t *lacks = &sides[whole[0] ? 1 : 0];
+        fprintf(stderr, "%s: %s; %s has its layout (expected that of both: --set hands them parameters)\n",
+                lacks->path, lacks->run->cell.note, sides[whole[0] ? 0 : 1].path);
+    }
+    return are_alike;
+}
+
+/* True if one of the logs' layouts has read each parameter that is given. */
+static bool are_read(const side_t sides[2]) {
+    const wh_option_list_t *given = sides[0].parameters;
+    for (size_t i = 0; i < given->count; ++i) {
+        bool is_read = false;
+        for (size_t s = 0; s < 2; ++s) {
+            const wh_log_run_t *run = sides[s].run;
+            is_read = is_read || (run->cell.is_whole && run->options.layout.parameter_count > 0 &&
+                                  !wh_sandbox_is_unread(run->cell.sandbox, given->items[i]));
+        }
+        if (!is_read) {
+            fprintf(stderr,
+                    "--set %s: no log's layout has read it (expected one with which a log was recorded)\n",
+                    given->items[i]);
+            return false;
+        }
+    }
+    return true;
+}
+
 /* One run of each; nothing of an earlier run may differ. */
 static bool compare_run(side_t sides[2], size_t number, result_t *result) {
     wh_compare_t found;
-    if (!read_log(&sides[0], number) || !read_log(&sides[1], number)) {
+    if (!read_log(&sides[0], number) || !read_log(&sides[1], number) || !are_read(sides)) {
         return false;
     }
     wh_log_run_t *const runs[2] = {sides[0].run, sides[1].run};
@@ -294,6 +354,9 @@ static bool compare_run(side_t sides[2], size_t number, result_t *result) {
     const wh_log_digests_t digests[2] = {sides[0].digests, sides[1].digests};
     if (!wh_compare_runs(runs, digests, &found)) {
         fprintf(stderr, "%s\n%s\n", runs[0]->message, runs[1]->message);
+        return false;
+    }
+    if (found.differing > 0 && !have_like_fields(sides)) {
         return false;
     }
     result->common += found.common;
@@ -443,6 +506,10 @@ static bool compare_sides(side_t sides[2], result_t *result) {
     if (sides[0].is_log) {
         return compare_logs(sides, result);
     }
+    if (sides[0].parameters->count > 0) {
+        fprintf(stderr, "--set: these are no logs (expected two logs)\n");
+        return false;
+    }
     compare_documents(sides, result);
     return true;
 }
@@ -475,7 +542,8 @@ int wh_app_diff(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     int status = WH_EXIT_USAGE;
     if (arguments.paths.count == 2) {
-        side_t sides[2] = {{.path = arguments.paths.items[0]}, {.path = arguments.paths.items[1]}};
+        side_t sides[2] = {{.path = arguments.paths.items[0], .parameters = &arguments.parameters},
+                           {.path = arguments.paths.items[1], .parameters = &arguments.parameters}};
         const wh_named_file_t named[] = {{"the first file", sides[0].path, false},
                                          {"the second file", sides[1].path, false}};
         status = wh_files_are_apart(named, 2, true) ? diff(&arguments, sides) : status;
@@ -483,5 +551,6 @@ int wh_app_diff(int argc, char **argv) {
         close_side(&sides[1]);
     }
     wh_option_list_free(&arguments.paths);
+    wh_option_list_free(&arguments.parameters);
     return status;
 }

@@ -82,13 +82,14 @@ bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks) {
     for (size_t i = 0; i < given->layout.parameter_count; ++i) {
         const char *assignment = given->layout.parameters[i];
         const int name = (int)strcspn(assignment, "=");
-        const bool is_unread = !cell->is_whole || wh_sandbox_is_unread(cell->sandbox, assignment);
-        if (!checks && !cell->is_whole) {
-            fprintf(stderr, "--set %s: %s (expected the log's layout, which --layout FILE names)\n",
-                    assignment, cell->note);
+        const bool is_read = (cell->is_whole && !wh_sandbox_is_unread(cell->sandbox, assignment)) ||
+                             (checks && !wh_sandbox_is_unread(checks, assignment));
+        if (!is_read && !cell->is_whole) {
+            fprintf(stderr, "%s: --set %s: %s; --layout FILE names another file\n", given->path, assignment,
+                    cell->note);
             return false;
         }
-        if (is_unread && (!checks || wh_sandbox_is_unread(checks, assignment))) {
+        if (!is_read) {
             fprintf(
                 stderr, "%s: --set %.*s: nobody read params.%.*s (expected one that the log's layout%s)\n",
                 given->path, name, assignment, name, assignment, checks ? " or the checks read" : " reads");

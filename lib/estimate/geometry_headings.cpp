@@ -17,6 +17,8 @@ double rare_of(double freedom) {
 namespace {
 
 constexpr double heading_misfit = 0.02; /* rad */
+/* Controllers tell angles to 0.001 degrees: headings that agree to their rounding have this spread, rad. */
+constexpr double rounding = 1e-5;
 constexpr double most_scale_sds = 6;
 
 /* The zero of yaw by a touch's heading: the direction of the tool's x as seen from the turned column, minus
@@ -90,7 +92,7 @@ void read_headings(const touches_t &data, const double *p, headings_t *headings)
 void average(headings_t *headings) {
     const auto count = static_cast<double>(headings->count);
     headings->sd = 1.4826 * (1 + 5 / count) * middle_of(headings->sizes, headings->count);
-    headings->sd = std::max(headings->sd, 1e-9);
+    headings->sd = std::max(headings->sd, rounding);
     headings->mean = 0;
     for (int round = 0; round < 4; ++round) {
         const double most = WH_GEOMETRY_ASIDE_SDS * headings->sd;

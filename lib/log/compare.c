@@ -97,6 +97,18 @@ static void put_hashes(const wanted_t wanted[2], wh_compare_t *found) {
     }
 }
 
+bool wh_compare_fields_fit(const wh_layout_t *a, const wh_layout_t *b) {
+    const size_t count = wh_slice_field_count(a);
+    bool fit = count == wh_slice_field_count(b);
+    for (size_t i = 0; i < count && fit; ++i) {
+        char names[2][WH_SLICE_FIELD_NAME];
+        (void)wh_slice_field_name(a, i, names[0]);
+        (void)wh_slice_field_name(b, i, names[1]);
+        fit = strcmp(names[0], names[1]) == 0;
+    }
+    return fit;
+}
+
 /* Names the first field that differs. */
 static void name_field(wh_log_run_t *const runs[2], const wanted_t wanted[2], wh_compare_t *found) {
     const wh_layout_t *const layouts[2] = {runs[0]->cell.layout, runs[1]->cell.layout};

@@ -35,6 +35,9 @@ bool wh_compare_read(wh_log_run_t *run, wh_log_run_options_t *options, wh_log_di
  * the reason in `message` of the failed run, if that did not work. Cost: linear in the slices. */
 bool wh_compare_runs(wh_log_run_t *const runs[2], const wh_log_digests_t digests[2], wh_compare_t *found);
 
+/* True if slices of these layouts have the same fields, by name and in order. */
+bool wh_compare_fields_fit(const wh_layout_t *a, const wh_layout_t *b);
+
 void wh_log_digests_free(wh_log_digests_t *digests);
 
 #endif

@@ -275,6 +275,23 @@ static void a_robot_is_found_exactly(void **state) {
     assert_string_equal(wh_geometry_name(WH_GEOMETRY_ZERO + WH_AXIS_R), "zero_r");
 }
 
+/* A controller tells headings to 0.001 degrees: one in three is rounded the other way. */
+static void the_last_digit_of_a_heading_is_no_contradiction(void **state) {
+    (void)state;
+    wh_geometry_estimate_t found;
+    make_touches(24);
+    for (size_t i = 0; i < 24; ++i) {
+        const double rounding = i % 3 == 0 ? 0.001 * DEG : 0;
+        touches[i].heading =
+            touches[i].axes[WH_AXIS_THETA] + touches[i].axes[WH_AXIS_YAW] + 85 * DEG + rounding;
+    }
+    touches[9].heading += 0.01 * DEG;
+    assert_int_equal(wh_geometry_estimate(touches, 24, false, &found), WH_OK);
+    for (size_t i = 0; i < 24; ++i) {
+        assert_int_equal(touches[i].is_heading_set_aside, i == 9);
+    }
+}
+
 static void robots_that_touches_do_not_tell_say_what_is_missing(void **state) {
     (void)state;
     wh_geometry_estimate_t found;
@@ -493,6 +510,7 @@ int main(void) {
         cmocka_unit_test(a_delay_is_refused_unless_it_is_asked_for),
         cmocka_unit_test(limits_that_times_do_not_tell_are_refused),
         cmocka_unit_test(a_robot_is_found_exactly),
+        cmocka_unit_test(the_last_digit_of_a_heading_is_no_contradiction),
         cmocka_unit_test(robots_that_touches_do_not_tell_say_what_is_missing),
         cmocka_unit_test(robots_are_refused_by_number),
         cmocka_unit_test(tables_are_read_by_columns_quotes_and_lines),
