@@ -177,13 +177,8 @@ static void put_unbegun(FILE *out, const wh_mcs_t *mcs, size_t slot) {
     }
 }
 
-char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = wh_memory_need(open_memstream(&text, &size));
-    for (size_t i = 0; i < mcs->armed.fault_count; ++i) {
-        put_unbegun(out, mcs, i);
-    }
+/* Tells the errors that still wait for a command. */
+static void put_alarms(FILE *out, const wh_mcs_t *mcs) {
     for (size_t i = 0; i < WH_MCS_ALARMS; ++i) {
         if (mcs->armed.alarms[i] != WH_OK) {
             put_comma(out);
@@ -193,6 +188,21 @@ char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
                         ? "its cause led to no such error in a command that can answer with it"
                         : "no command that can answer with it");
         }
+    }
+}
+
+char *wh_mcs_tell_never_came(const wh_mcs_t *mcs) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    for (size_t i = 0; i < mcs->armed.fault_count; ++i) {
+        put_unbegun(out, mcs, i);
+    }
+    put_alarms(out, mcs);
+    if (mcs->stop.at_slice != INT64_MAX) {
+        put_comma(out);
+        fprintf(out, "a STOP (stop_in, at %.10g s)",
+                (double)(mcs->stop.at_slice * mcs->track.slice_us) / 1e6);
     }
     const bool is_any = ftell(out) > 0;
     (void)fclose(out);

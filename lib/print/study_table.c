@@ -266,8 +266,9 @@ static void print_head(const table_t *table) {
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
     if (wh_study_is_of_noise(study)) {
-        wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
-                       "no error is drawn: the trials differ in the noise of sensors alone");
+        wh_style_print(
+            table->frame.style, table->frame.out, WH_INK_WARN,
+            "no error is drawn: the trials differ in the noise of sensors alone, if the script asks them");
         fputc('\n', table->frame.out);
     }
     if (study->whole) {
