@@ -23,6 +23,12 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
     {"schedule", 0, "FILE", "Write the schedule that a flow played, as waferhand schedule reads it",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.schedule_path)},
+    {"counted", 0, NULL,
+     "Leave out slices in which nothing can be decided; collisions are not looked for while something moves "
+     "in them",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, run.run.counts)},
+    {"strict", 0, NULL, "With --counted: refuse a cell with collision = true", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, run.run.looks_at_all)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
@@ -37,12 +43,44 @@ static void check_errors(const arguments_t *arguments, struct argp_state *state)
     }
 }
 
+/* The option that asks for each slice; null: none is given. */
+static const char *option_of_slices(const arguments_t *arguments) {
+    const wh_run_files_t *files = &arguments->run.files;
+    const struct {
+        bool is_given;
+        const char *option;
+    } options_of_slices[] = {{arguments->lcm, "--lcm"},
+                             {arguments->record.slices, "--record"},
+                             {arguments->record.all, "--record-all"},
+                             {files->page, "--report"},
+                             {files->scene, "--gltf"},
+                             {files->document, "--data"},
+                             {files->plots, "--svg"}};
+    for (size_t i = 0; i < sizeof options_of_slices / sizeof options_of_slices[0]; ++i) {
+        if (options_of_slices[i].is_given) {
+            return options_of_slices[i].option;
+        }
+    }
+    return NULL;
+}
+
+static void check_counted(const arguments_t *arguments, struct argp_state *state) {
+    const char *other = option_of_slices(arguments);
+    if (arguments->run.run.counts && other) {
+        argp_error(state, "--counted does not go with %s, which asks for each slice", other);
+    }
+    if (arguments->run.run.looks_at_all && !arguments->run.run.counts) {
+        argp_error(state, "--strict goes with --counted");
+    }
+}
+
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->url && !arguments->lcm) {
         argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
     }
     check_errors(arguments, state);
+    check_counted(arguments, state);
     if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
         argp_error(state, "--watch goes neither with --lcm nor with a recording");
     }

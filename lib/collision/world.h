@@ -163,6 +163,10 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list)
     WH_SYMBOL(wh_world_step);
 
+/* Slices were left out in which nothing was taken or let go: everything is here now, and nobody judges the
+ * way there. Cost: linear in the parts that may move. */
+void wh_world_jump(wh_world_t *world, const wh_world_input_t *input) WH_SYMBOL(wh_world_jump);
+
 /* Tells the world that a wafer that nobody holds was put there between two steps. */
 void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer)
     WH_SYMBOL(wh_world_place);

@@ -161,6 +161,10 @@ struct wh_world {
     wh_world_counters_t counters;
 };
 
+static inline uint32_t wh_world_next_step(const wh_world_t *world) {
+    return world->step < UINT32_MAX ? world->step + 1 : 2;
+}
+
 /* A sum of ways plus one more; never below the true sum. */
 static inline wh_real_t wh_world_add(wh_real_t sum, wh_real_t way) {
     return sum + (way + WH_WORLD_ROUNDING * (sum + way));

@@ -266,3 +266,11 @@ void wh_world_move(const wh_look_t *look) {
     }
     world->gone = wh_world_add(world->gone, 2 * most);
 }
+
+void wh_world_jump(wh_world_t *world, const wh_world_input_t *input) {
+    const wh_look_t look = {world, input, NULL};
+    world->slice = input->slice;
+    world->step = wh_world_next_step(world);
+    wh_world_move(&look);
+    wh_world_move(&look); /* `before` and `now` become equal */
+}

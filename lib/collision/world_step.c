@@ -113,7 +113,7 @@ static void judge_pairs(const wh_look_t *look) {
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list) {
     const wh_look_t look = {world, input, list};
     world->slice = input->slice;
-    world->step = world->step < UINT32_MAX ? world->step + 1 : 2;
+    world->step = wh_world_next_step(world);
     wh_world_move(&look);
     for (size_t i = 0; i < world->mover_count; ++i) {
         judge_rest(&look, &world->movers[i]);

@@ -1,5 +1,6 @@
 #include "clock.h"
 
+#include <math.h>
 #include <string.h>
 
 const char *wh_clock_kind_name(wh_clock_kind_t kind) {
@@ -126,6 +127,22 @@ void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
         clock->side = clock->pump_to;
         tell_pump(teller, WH_CLOCK_PUMP_ENDS, clock->side, now_us, now_us - clock->begun_us);
     }
+}
+
+/* Until a clean of an empty place is due; INFINITY: never. */
+static double until_idle_clean(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
+    const bool comes = place->phase == WH_CLOCK_FREE && of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER;
+    return comes ? (double)(of->idle_us - (now_us - place->empty_us)) : (double)INFINITY;
+}
+
+double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
+                         const wh_clock_place_t places[], int64_t now_us) {
+    double us = clock->is_pumping ? clock->left_us : (double)INFINITY;
+    for (int32_t i = 0; i < of->slots; ++i) {
+        const bool runs = places[i].phase == WH_CLOCK_PROCESSING || places[i].phase == WH_CLOCK_CLEANING;
+        us = fmin(us, runs ? places[i].left_us : until_idle_clean(of, &places[i], now_us));
+    }
+    return us;
 }
 
 /* ------------------------------------------------------------------------------------ wafers come and go */

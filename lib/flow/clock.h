@@ -86,6 +86,10 @@ void wh_clock_start(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_pla
 void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[], double us,
                    double rate, int64_t now_us, const wh_clock_teller_t *teller);
 
+/* How long nothing that runs there ends, and no clean begins by itself, at rate 1; INFINITY: nothing ever. */
+double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
+                         const wh_clock_place_t places[], int64_t now_us);
+
 /* These wafers lie in its slots now, WH_FLOW_NONE: none. `is_closed`: no blade is in it and its doors are
  * shut. All that can begin then begins. */
 void wh_clock_look(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[],

@@ -2,19 +2,25 @@
 
 #include "doors.h"
 
-/* Called after a step; wafers and grippers are as the step left them. */
-static void look_at(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
-                    const wh_state_t *state, wh_event_list_t *list) {
+/* The places of everything; wafers and grippers are as the state has them. */
+static wh_world_input_t input_of(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
+                                 const wh_state_t *state, wh_pose_t base_from_door[WH_DOORS]) {
     const wh_layout_t *layout = collision->layout;
-    wh_pose_t base_from_door[WH_DOORS];
     wh_pose_t poses[WH_GRIPPERS];
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         poses[g] = state->grippers[g].base_from_gripper;
     }
     wh_links_follow(&collision->links, layout, poses, axes, WH_LINKS_SAME);
     wh_layout_place_doors(layout, state->physics ? &state->physics->doors : NULL, axes, base_from_door);
-    const wh_world_input_t input = {slice, state->wafers, state->grippers, collision->links.bodies,
-                                    base_from_door};
+    return (wh_world_input_t){slice, state->wafers, state->grippers, collision->links.bodies, base_from_door};
+}
+
+/* Called after a step. */
+static void look_at(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
+                    const wh_state_t *state, wh_event_list_t *list) {
+    const wh_layout_t *layout = collision->layout;
+    wh_pose_t base_from_door[WH_DOORS];
+    const wh_world_input_t input = input_of(collision, slice, axes, state, base_from_door);
     if (collision->world) {
         wh_world_step(collision->world, &input, list);
     } else {
@@ -56,6 +62,15 @@ void wh_collision_observe(wh_collision_t *collision, const wh_real_t axes[], con
         }
     }
     look_at(collision, (uint64_t)state->seq, axes, state, NULL);
+}
+
+void wh_collision_jump(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
+                       const wh_state_t *state) {
+    wh_pose_t base_from_door[WH_DOORS];
+    const wh_world_input_t input = input_of(collision, slice, axes, state, base_from_door);
+    if (collision->world) {
+        wh_world_jump(collision->world, &input);
+    }
 }
 
 size_t wh_collision_bytes(const wh_layout_t *layout) {

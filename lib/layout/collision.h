@@ -23,6 +23,10 @@ size_t wh_collision_bytes(const wh_layout_t *layout);
 void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, wh_simulator_t *simulator,
                          void *memory);
 
+/* Slices up to this one were left out, with these axes at its end: nobody judges the way there. */
+void wh_collision_jump(wh_collision_t *collision, uint64_t slice, const wh_real_t axes[],
+                       const wh_state_t *state);
+
 /* The check for a simulator in another process. It takes the states that the simulator sends, and the
  * command's axes of the machine, or null if they are not known. It keeps clearances and curves; the simulator
  * itself reports hits. Set `layout` and `memory` before, as above, and `links` by wh_links_home. */

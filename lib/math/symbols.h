@@ -349,6 +349,7 @@
 #define wh_world_is_known WH_SYMBOL_RENAMED(wh_world_is_known)
 #define wh_world_item_of_wafer WH_SYMBOL_RENAMED(wh_world_item_of_wafer)
 #define wh_world_judge WH_SYMBOL_RENAMED(wh_world_judge)
+#define wh_world_jump WH_SYMBOL_RENAMED(wh_world_jump)
 #define wh_world_keep_clearance WH_SYMBOL_RENAMED(wh_world_keep_clearance)
 #define wh_world_list_near WH_SYMBOL_RENAMED(wh_world_list_near)
 #define wh_world_may_touch WH_SYMBOL_RENAMED(wh_world_may_touch)

@@ -11,6 +11,7 @@
 #include "../trial/given.h"
 #include "carrying.h"
 #include "clocks.h"
+#include "counted.h"
 #include "native.h"
 
 /* Shortens "lua/examples/../layouts" to "lua/layouts", if that is the same file: a symbolic link may make it
@@ -258,8 +259,15 @@ static int set_up_cell(lua_State *L) {
         wh_layout_give_errors(L, layout, mcs->wanted.errors, mcs->wanted.error_count);
     }
     layout->collision = layout->collision && !mcs->wanted.without_collisions;
+    if (layout->collision && mcs->wanted.counts && mcs->wanted.looks_at_all) {
+        return luaL_error(L,
+                          "%s: collision = true (--counted does not look for collisions in slices that it "
+                          "leaves out: expected a run without --strict, or without --counted)",
+                          path);
+    }
     set_up_run(L, mcs, layout);
     wh_mcs_begin_clocks(L, mcs);
+    wh_mcs_begin_counting(L, mcs);
     wh_mcs_push_layout(L, layout);
     return 1;
 }

@@ -251,6 +251,33 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
     }
 }
 
+int64_t wh_mcs_clocks_quiet(const wh_mcs_t *mcs) {
+    const struct wh_clocks *clocks = mcs->clocks;
+    double us = (double)INFINITY;
+    for (size_t i = 0; clocks && i < clocks->count; ++i) {
+        const wh_clocked_t *of = &clocks->of[i];
+        us = fmin(us, wh_clock_quiet_us(&of->of, &clocks->clocks[i], &clocks->places[of->first],
+                                        clocks->state->utime));
+    }
+    const double slices = ceil(us / (double)mcs->layout->slice_us) - 1;
+    return slices < 1e15 ? (int64_t)fmax(slices, 0) : INT64_MAX;
+}
+
+void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices) {
+    const struct wh_clocks *clocks = mcs->clocks;
+    const int64_t us = slices * mcs->layout->slice_us;
+    for (size_t i = 0; clocks && i < clocks->count; ++i) {
+        const wh_clocked_t *of = &clocks->of[i];
+        static const wh_clock_teller_t nobody = {NULL, NULL};
+        wh_clock_pass(&of->of, &clocks->clocks[i], &clocks->places[of->first], (double)us, 1,
+                      clocks->state->utime + us, &nobody);
+    }
+    if (clocks) {
+        clocks->state->seq += slices;
+        clocks->state->utime += us;
+    }
+}
+
 void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     const wh_layout_t *real = mcs->real;
     if (!wh_layout_takes_time(real)) {

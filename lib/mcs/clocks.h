@@ -41,6 +41,13 @@ struct wh_clocks {
 /* Sets them up if the layout has any; else nothing. Call it before the first slice. */
 void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs);
 
+/* The number of next slices in which no station does anything new, if nothing comes or goes and there is no
+ * fault; INT64_MAX: none ever. */
+int64_t wh_mcs_clocks_quiet(const wh_mcs_t *mcs);
+
+/* This number of these slices was left out. */
+void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices);
+
 /* True if nothing runs in the station, and nothing is to begin. */
 bool wh_mcs_is_station_idle(const wh_mcs_t *mcs, int32_t station);
 

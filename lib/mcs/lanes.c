@@ -5,6 +5,7 @@
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "counted.h"
 #include "native.h"
 #include "playing.h"
 
@@ -76,20 +77,25 @@ static void await_ends(const wh_mcs_t *mcs) {
     }
 }
 
+void wh_mcs_show_lanes(wh_mcs_t *mcs) {
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
+        if (mcs->lanes->of[i].is_busy) {
+            take_axes(mcs, &mcs->lanes->of[i]);
+            take_valves(mcs, &mcs->lanes->of[i]);
+        }
+    }
+    tell_recorder(mcs);
+}
+
 /* Plays one slice of all running segments. A refused slice has not taken place, and its segments are given
  * up where they were. */
 static wh_status_t play_slice(wh_mcs_t *mcs) {
     wh_real_t before[WH_AXES];
     memcpy(before, mcs->track.axes, sizeof before);
+    wh_mcs_show_lanes(mcs);
     for (size_t i = 0; i < mcs->lanes->count; ++i) {
-        wh_lane_t *lane = &mcs->lanes->of[i];
-        if (lane->is_busy) {
-            take_axes(mcs, lane);
-            take_valves(mcs, lane);
-            lane->is_drawn = false;
-        }
+        mcs->lanes->of[i].is_drawn = false;
     }
-    tell_recorder(mcs);
     ++mcs->track.slice;
     await_ends(mcs);
     const wh_status_t status = wh_mcs_play_slice(mcs, before);
@@ -132,7 +138,8 @@ static void take_end(wh_mcs_t *mcs, wh_status_t status) {
 /* Plays at most as many slices as are charged at once. True if no more may go out. */
 static bool play_charge(wh_mcs_t *mcs, wh_status_t *status) {
     bool is_over = false;
-    for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && !is_over; ++i) {
+    for (int64_t i = 0; i < WH_MCS_SLICES_PER_CHARGE && !is_over; ++i) {
+        i += i > 0 ? wh_mcs_leave_out(mcs, WH_MCS_SLICES_PER_CHARGE - 1 - i) : 0;
         is_over = draw_lanes(mcs);
         *status = is_over ? WH_OK : play_slice(mcs);
         is_over = is_over || *status != WH_OK || wh_mcs_stop_has_come(mcs) || mcs->stop.is_called;

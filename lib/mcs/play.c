@@ -5,6 +5,7 @@
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "counted.h"
 #include "native.h"
 #include "playing.h"
 
@@ -122,8 +123,9 @@ wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
     const double begin = wh_clock_seconds();
-    for (int i = 0; i < WH_MCS_SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
+    for (int64_t i = 0; i < WH_MCS_SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
         wh_real_t before[WH_AXES];
+        i += i > 0 ? wh_mcs_leave_out(mcs, WH_MCS_SLICES_PER_CHARGE - 1 - i) : 0;
         memcpy(before, mcs->track.axes, sizeof before);
         state = wh_track_next(&mcs->track, wh_mcs_sensors(mcs, &mcs->running.awaited));
         if (state == WH_TRACK_MOVING) {

@@ -23,6 +23,9 @@ void wh_mcs_begin_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
  * `before`. */
 wh_status_t wh_mcs_play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]);
 
+/* With tasks: the track and the recorder have the running segments of all tasks. */
+void wh_mcs_show_lanes(wh_mcs_t *mcs);
+
 /* The sensors for a track that awaits this. For an end switch all bits are on, or none. */
 uint32_t wh_mcs_sensors(const wh_mcs_t *mcs, const wh_awaited_t *awaited);
 

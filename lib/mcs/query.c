@@ -337,9 +337,16 @@ static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2])
     lua_setfield(L, -2, "parts");
 }
 
-/* Refuses a question about what nobody looks for. A budget that leaves collisions out for a first look goes
- * on. */
+/* Refuses a question about what nobody looks for, or has not looked for in all slices. A budget that leaves
+ * collisions out for a first look goes on. */
 static void check_looks(lua_State *L, wh_mcs_t *mcs, const char *word, bool looks) {
+    const int64_t moving = mcs->recorder.record->counted.moving;
+    if (looks && moving > 0) {
+        lua_pushfstring(L,
+                        "%s: collisions were not looked for in %I slices (expected a run without --counted)",
+                        word, (lua_Integer)moving);
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, lua_tostring(L, -1));
+    }
     if (!looks && !mcs->wanted.without_collisions) {
         lua_pushfstring(L, "%s: collisions are not looked for (expected a layout with collision = true)",
                         word);

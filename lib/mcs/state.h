@@ -37,7 +37,8 @@ typedef struct {
     wh_simulator_t simulator; /* first: its link is the cell's */
     wh_grips_room_t grips;
     wh_collision_t collision;
-    wh_trial_cell_t *trial; /* null: the cell is as in its layout */
+    wh_trial_cell_t *trial;     /* null: the cell is as in its layout */
+    struct wh_counted *counted; /* time is counted, see counted.h; null: each slice is played */
 } wh_local_cell_t;
 
 /* In a free run STATUS can tell the last slice that has come back if at most this many are on their
@@ -168,6 +169,8 @@ typedef struct {
     bool keeps_segments;     /* collect the played segments, for --segments */
     bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
+    bool counts;             /* leave out slices in which nothing can be decided: see counted.h */
+    bool looks_at_all;       /* with `counts`: refuse a cell whose collisions are to be looked for */
     bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     wh_mcs_partners_t partners;

@@ -433,6 +433,15 @@ static void put_verdict(const wh_record_t *record, json_t *root) {
     }
 }
 
+/* Nothing was looked for in the slices that were left out; it matters where something moved. */
+static json_t *counted_of(const wh_record_t *record) {
+    const wh_counted_record_t *counted = &record->counted;
+    const bool is_unlooked = record->checked && counted->moving > 0;
+    return wh_json_set(json_object(), "played %lld left_out %lld moving %lld not_looked_for %s",
+                       (json_int_t)(record->slices - counted->left_out), (json_int_t)counted->left_out,
+                       (json_int_t)counted->moving, is_unlooked ? WH_RECORD_COUNTED_UNLOOKED : NULL);
+}
+
 static void put_head(const wh_record_t *record, json_t *root) {
     (void)wh_json_set(root, "format %d", FORMAT);
     put_verdict(record, root);
@@ -444,6 +453,9 @@ static void put_head(const wh_record_t *record, json_t *root) {
         (void)wh_json_set(root, "crowded_slices %lld", (json_int_t)record->crowded);
     }
     wh_json_put(root, "not_looked_for", wh_json_text(record->unlooked));
+    if (record->counted.is_wanted) {
+        wh_json_put(root, "counted", counted_of(record));
+    }
     if (record->never_came) {
         wh_json_put(root, "never_came", wh_json_text(record->never_came));
     }

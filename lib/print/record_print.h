@@ -17,6 +17,8 @@
  * same), id (16 hex digits; null: it is no recording of ours), part, is_part (true, only when other parts
  * were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s, wall_s,
  * hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
+ *   counted:      (only of counted time) { played, left_out (slices), moving (those left out in which
+ *                 something moved), not_looked_for (in these, in words; null: nothing) }
  *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
  *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
  *                 a row), cycle (which of the marked ones it is, from 1; null: none is), first_command (its

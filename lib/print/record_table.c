@@ -374,6 +374,25 @@ static void print_times(const wh_printer_t *printer) {
     fprintf(printer->out, "hash %016llx\n", (unsigned long long)record->hash);
 }
 
+static void print_counted(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    const wh_counted_record_t *counted = &record->counted;
+    char count[WH_PRINT_NUMBER_SIZE];
+    if (!counted->is_wanted || wh_record_is_timed(record)) {
+        return;
+    }
+    fprintf(printer->out, "played %s of ", wh_print_count(count, record->slices - counted->left_out));
+    wh_print_counted(printer->out, record->slices, "slice", "slices");
+    fputs(": nothing was decided in the others\n", printer->out);
+    if (record->checked && counted->moving > 0) {
+        wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
+        fprintf(printer->out, WH_RECORD_COUNTED_UNLOOKED " were looked for in %s of ",
+                wh_print_count(count, record->slices - counted->moving));
+        wh_print_counted(printer->out, record->slices, "slice", "slices");
+        fputc('\n', printer->out);
+    }
+}
+
 /* A reason for the verdict, if there is one. */
 static void put_reason(FILE *out, const char **before, size_t count, const char *one, const char *many) {
     if (count > 0) {
@@ -432,6 +451,7 @@ static void print_summary(const wh_printer_t *printer) {
         ink = WH_INK_WARN;
     }
     print_times(printer);
+    print_counted(printer);
     if (record->unlooked) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, "%s\n", record->unlooked);

@@ -256,6 +256,10 @@ wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machin
     return activity->last.share;
 }
 
+void wh_activity_repeat(wh_activity_t *activity, int64_t slices) {
+    activity->shares[activity->last.share] += slices;
+}
+
 wh_share_t wh_activity_share(const wh_task_t *task, const wh_state_t *state) {
     wh_share_t share = task->moves ? WH_SHARE_EMPTY : task->share;
     for (size_t g = 0; g < state->gripper_count; ++g) {

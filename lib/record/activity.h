@@ -88,6 +88,9 @@ void wh_activity_narrow(wh_task_t *task, const wh_machine_t *machine, uint32_t a
 wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
                              const wh_command_t *command, const wh_state_t *state);
 
+/* Counts so many slices more that are like the last counted one. */
+void wh_activity_repeat(wh_activity_t *activity, int64_t slices);
+
 /* The share of a slice of this task that `state` answers. */
 wh_share_t wh_activity_share(const wh_task_t *task, const wh_state_t *state);
 

@@ -100,6 +100,13 @@ typedef struct {
     size_t note_count;
 } wh_record_log_t;
 
+/* Slices that counted time left out: in all, and those of them in which something moved, so that collisions
+ * and clearances were not looked for in them. */
+typedef struct {
+    bool is_wanted;
+    int64_t left_out, moving;
+} wh_counted_record_t;
+
 typedef struct {
     char *script;              /* path as given */
     const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
@@ -139,11 +146,12 @@ typedef struct {
     size_t centrings_left_out; /* centrings after WH_RECORD_CENTRINGS */
     bool has_tasks;            /* several commands may have run at once */
     wh_activity_t activity;
-    wh_station_reach_t *reach; /* layout->station_count of them, from home; null: nothing was rehearsed */
-    wh_wafer_record_t *wafers; /* layout->wafer_count of them */
-    const char *unlooked;      /* says what nobody looked for, a constant text; null: nothing */
-    char *never_came;          /* the faults and errors on purpose that did not come; null: none; owned */
-    bool checked;              /* for collisions; then these are the smallest gaps */
+    wh_station_reach_t *reach;   /* layout->station_count of them, from home; null: nothing was rehearsed */
+    wh_wafer_record_t *wafers;   /* layout->wafer_count of them */
+    const char *unlooked;        /* says what nobody looked for, a constant text; null: nothing */
+    wh_counted_record_t counted; /* slices that were left out */
+    char *never_came;            /* the faults and errors on purpose that did not come; null: none; owned */
+    bool checked;                /* for collisions; then these are the smallest gaps */
     wh_clearance_t clearances[WH_CLEARANCES];
     wh_flow_t *flow;     /* wafers through a tool of times alone; null: none; owned */
     wh_curves_t *curves; /* the gaps over time; null unless checked */
@@ -193,6 +201,7 @@ void wh_record_reason(const wh_record_t *record, char *reason, size_t size);
 
 /* A run whose layout has no collision check says this. */
 #define WH_RECORD_TIMES_ALONE "places, ways and collisions were not looked for: the robots are times alone"
+#define WH_RECORD_COUNTED_UNLOOKED "collisions and clearances"
 #define WH_RECORD_UNLOOKED "collisions were not looked for: the layout has no collision = true"
 
 /* True if not one slice was played, and no wafer of a flow went anywhere. */

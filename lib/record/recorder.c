@@ -176,6 +176,21 @@ void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, con
     }
 }
 
+void wh_recorder_repeat(wh_recorder_t *recorder, int64_t slices, const wh_state_t *state) {
+    wh_record_t *record = recorder->record;
+    recorder->slice += slices;
+    wh_activity_repeat(&record->activity, slices);
+    for (size_t i = 0; i < recorder->part_count; ++i) {
+        const wh_recorder_part_t *part = &recorder->parts[i];
+        if (part->command != WH_NONE) {
+            record->commands[part->command].shares[wh_activity_share(&part->task, state)] += slices;
+        }
+    }
+    if (recorder->running != WH_NONE && recorder->part_count == 0) {
+        record->commands[recorder->running].shares[record->activity.last.share] += slices;
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- waits */
 
 /* The open wait of the running task, or the number of all waits. */

@@ -62,6 +62,9 @@ void wh_recorder_events(wh_recorder_t *recorder, const wh_state_t *state);
 /* Counts a slice in its share of time. It reads the command's `seq` and valves only. */
 void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, const wh_state_t *state);
 
+/* Counts so many slices more, which are like the last one and were left out. */
+void wh_recorder_repeat(wh_recorder_t *recorder, int64_t slices, const wh_state_t *state);
+
 /* The end of a run with a layout. */
 typedef struct {
     const wh_wafer_t *wafers;

@@ -1,0 +1,151 @@
+#include "counted.h"
+
+#include <string.h>
+
+#include "clocks.h"
+#include "playing.h"
+
+/* Asking costs about as much as playing a slice: fewer slices are not worth it, and where something may be
+ * decided it is soon asked again. */
+#define FEW 4
+
+/* ------------------------------------------------------------------------------ how many may be left out? */
+
+/* A track goes on without an answer until its segment's last slice. */
+static int64_t until_end(const wh_mcs_t *mcs, const wh_track_t *track, const wh_awaited_t *awaited) {
+    const bool waits = track->segment.kind == WH_SEGMENT_SENSOR;
+    if (waits && (wh_mcs_sensors(mcs, awaited) >> track->segment.gripper & 1U) != 0) {
+        return 0;
+    }
+    return track->segment_slices - track->segment_slice - 1;
+}
+
+static int64_t until_segment_ends(const wh_mcs_t *mcs) {
+    int64_t slices = INT64_MAX;
+    if (!mcs->lanes) {
+        return until_end(mcs, &mcs->track, &mcs->running.awaited);
+    }
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        const int64_t its = lane->is_busy ? until_end(mcs, &lane->track, &lane->awaited) : INT64_MAX;
+        slices = its < slices ? its : slices;
+    }
+    return slices;
+}
+
+static int64_t until_stop(const wh_mcs_t *mcs) {
+    return mcs->stop.at_slice - mcs->track.slice - 1;
+}
+
+static int64_t until_scanned(const wh_mcs_t *mcs) {
+    return mcs->measuring.edge.armed ? 0 : INT64_MAX;
+}
+
+/* The axes that the running segments move. */
+static uint32_t moving_axes(const wh_mcs_t *mcs) {
+    uint32_t axes = mcs->lanes ? 0 : wh_quiet_axes(&mcs->track);
+    for (size_t i = 0; mcs->lanes && i < mcs->lanes->count; ++i) {
+        const wh_lane_t *lane = &mcs->lanes->of[i];
+        axes |= lane->is_busy ? wh_quiet_axes(&lane->track) & lane->axes : 0;
+    }
+    return axes;
+}
+
+static int64_t until_something_meets(const wh_mcs_t *mcs) {
+    return wh_quiet_slices(&mcs->local.counted->quiet, &mcs->local.simulator, &mcs->command,
+                           moving_axes(mcs));
+}
+
+/* The slices that each kind of decision allows; what is cheap to ask comes first. */
+static int64_t (*const limits[])(const wh_mcs_t *mcs) = {until_segment_ends, until_stop, until_scanned,
+                                                         wh_mcs_clocks_quiet, until_something_meets};
+
+static int64_t count_left_out(const wh_mcs_t *mcs, int64_t most) {
+    int64_t slices = most;
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0] && slices >= FEW; ++i) {
+        const int64_t allowed = limits[i](mcs);
+        slices = allowed < slices ? allowed : slices;
+    }
+    return slices >= FEW ? slices : 0;
+}
+
+/* ------------------------------------------------------------------------------------------- leaving out */
+
+static void jump(wh_track_t *track, int64_t slices) {
+    track->segment_slice += slices - 1;
+    track->slice += slices - 1;
+    (void)wh_track_next(track, 0);
+}
+
+static void jump_all(wh_mcs_t *mcs, int64_t slices) {
+    if (!mcs->lanes) {
+        jump(&mcs->track, slices);
+        return;
+    }
+    for (size_t i = 0; i < mcs->lanes->count; ++i) {
+        if (mcs->lanes->of[i].is_busy) {
+            jump(&mcs->lanes->of[i].track, slices);
+        }
+    }
+    wh_mcs_show_lanes(mcs);
+    mcs->track.slice += slices;
+}
+
+/* Motion control, the simulator and those who count slices are then behind them. */
+static void pass_slices(wh_mcs_t *mcs, int64_t slices) {
+    wh_record_t *record = mcs->recorder.record;
+    const bool moves = moving_axes(mcs) != 0;
+    jump_all(mcs, slices);
+    wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
+    wh_quiet_pass(&mcs->local.simulator, &mcs->command, slices);
+    if (mcs->local.collision.memory) {
+        wh_collision_jump(&mcs->local.collision, mcs->local.simulator.table.slice, mcs->command.axes,
+                          &mcs->state);
+    }
+    wh_mcs_clocks_pass(mcs, slices);
+    wh_recorder_repeat(&mcs->recorder, slices, &mcs->state);
+    mcs->recorder.part_count = 0;
+    record->counted.left_out += slices;
+    record->counted.moving += moves ? slices : 0;
+    if (mcs->wanted.keeps_segments) {
+        mcs->kept.segments[mcs->kept.segment_count - 1].slices += slices;
+    }
+}
+
+int64_t wh_mcs_leave_out(wh_mcs_t *mcs, int64_t most) {
+    struct wh_counted *counted = mcs->local.counted;
+    if (!counted || mcs->track.slice < counted->again) {
+        return 0;
+    }
+    const int64_t slices = count_left_out(mcs, most);
+    if (slices == 0) {
+        counted->again = mcs->track.slice + FEW;
+    } else {
+        pass_slices(mcs, slices);
+    }
+    return slices;
+}
+
+/* ---------------------------------------------------------------------------------------------- beginning */
+
+/* A drawn delay of a valve goes by each slice, and so does the cell without errors of a look ahead. */
+static bool goes_by_slices(const wh_mcs_t *mcs) {
+    const wh_trial_cell_t *trial = mcs->local.trial;
+    bool goes = trial && mcs->rehearsal.look_ahead;
+    for (size_t g = 0; trial && g < mcs->layout->machine.gripper_count; ++g) {
+        goes = goes || trial->lag[g] != 0;
+    }
+    return goes || mcs->wanted.listener.slice || mcs->wanted.partners.connect || mcs->wanted.decisions;
+}
+
+void wh_mcs_begin_counting(lua_State *L, wh_mcs_t *mcs) {
+    mcs->recorder.record->counted.is_wanted = mcs->wanted.counts;
+    if (!mcs->wanted.counts || goes_by_slices(mcs)) {
+        return;
+    }
+    struct wh_counted *counted = lua_newuserdatauv(L, sizeof *counted, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, counted);
+    memset(counted, 0, sizeof *counted);
+    wh_quiet_begin(&counted->quiet, &mcs->real->machine, mcs->real->physics.slice_s);
+    mcs->local.counted = counted;
+}
