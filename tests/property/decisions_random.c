@@ -1,7 +1,7 @@
 /* A trial that is replayed from the tape leaves the same result as the whole script: the
  * simulator's state and the tally, bit for bit. There are hundreds of trials; many of them fail,
  * are caught and take other ways. Random scripts with tasks are compared with a slow model of
- * tasks. */
+ * tasks, every other one in counted time. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -819,9 +819,11 @@ static void tasks_do_what_a_slow_model_does(void **state) {
     FILE *nowhere = fopen("/dev/null", "w");
     assert_true(file >= 0 && nowhere && close(file) == 0);
     size_t failed = 0, waits = 0, deadlocks = 0;
+    int64_t left_out = 0;
     wh_rounds_t rounds = WH_ROUNDS(40, SCRIPTS, 0.4);
     while (wh_round(&rounds)) {
-        const wh_script_run_options_t options = {.script = path, .limits = {.print_to = nowhere}};
+        const wh_script_run_options_t options = {
+            .script = path, .limits = {.print_to = nowhere}, .counts = rounds.number % 2 == 1};
         write_random_script(path);
         run_model();
         (void)wh_script_run(&run, &options);
@@ -833,12 +835,14 @@ static void tasks_do_what_a_slow_model_does(void **state) {
         assert_int_equal(run.record.slices, model.slice);
         failed += model.has_failed ? 1 : 0;
         waits += run.record.wait_count;
+        left_out += run.record.counted.left_out;
         deadlocks += run.record.failure && strstr(run.record.failure, "DEADLOCK") ? 1 : 0;
         wh_script_run_close(&run);
     }
     printf("%d scripts: %zu failed, %zu of them by a deadlock; %zu waits\n", rounds.made, failed, deadlocks,
            waits);
     assert_true(failed > 0 && deadlocks > 0 && waits > (size_t)rounds.made);
+    assert_true(left_out > 100 * rounds.made);
     assert_int_equal(fclose(nowhere), 0);
     assert_int_equal(remove(path), 0);
 }
