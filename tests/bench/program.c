@@ -102,6 +102,24 @@ static double cost_of(const char *command) {
                            before.ru_stime.tv_usec);
 }
 
+/* How many times less a counted run costs than the full one, of 22 wafers in three modules. */
+static void time_counted(const char *row, double goal) {
+    static const char full[] =
+        "build/waferhand run lua/examples/20_series.lua --set p=100 --set lot=22 >/dev/null";
+    double times[FEW_RUNS];
+    char line[200];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    (void)snprintf(line, sizeof line, "%s --counted", full);
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        const double whole = cost_of(full);
+        times[i] = whole / cost_of(line);
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "x the full run", &spread, false, goal);
+}
+
 /* A log read by a command, against the same log replayed. */
 static void time_reading(const char *row, const char *command, double goal) {
     char line[200];
@@ -125,10 +143,11 @@ int main(int argc, char **argv) {
     bench_begin("program", "", argc, argv);
     bench_note(
         "`waferhand run` on the transfer run and on the tool of example 27 with 1 ms slices, by its own "
-        "clock; its log read; a step counted by callgrind");
+        "clock; a long series, counted; a log read; a step counted by callgrind");
     time_run("run, real time", "01_transfer", RUNS, 5000);
     /* Two robots; collisions between all parts and the smallest gaps are checked. */
     time_run("tool, real time", "27_tool", FEW_RUNS, 300);
+    time_counted("counted, a long series", 5);
     time_reading("csv, of the tool's log", "csv -o", 4);
     time_reading("report, of the tool's log", "report -o", 0);
     count_step("step, 2 wafers", "step indexed 2 idle", 400);
