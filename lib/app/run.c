@@ -9,7 +9,7 @@ typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
     const char *url;
-    bool lcm, watch;
+    bool lcm, watch, counted, strict;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -26,9 +26,9 @@ static const wh_option_t options[] = {
     {"counted", 0, NULL,
      "Leave out slices in which nothing can be decided; collisions are not looked for while something moves "
      "in them",
-     WH_OPTION_FLAG, .variable = offsetof(arguments_t, run.run.counts)},
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
     {"strict", 0, NULL, "With --counted: refuse a cell with collision = true", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, run.run.looks_at_all)},
+     .variable = offsetof(arguments_t, strict)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
@@ -66,10 +66,10 @@ static const char *option_of_slices(const arguments_t *arguments) {
 
 static void check_counted(const arguments_t *arguments, struct argp_state *state) {
     const char *other = option_of_slices(arguments);
-    if (arguments->run.run.counts && other) {
+    if (arguments->counted && other) {
         argp_error(state, "--counted does not go with %s, which asks for each slice", other);
     }
-    if (arguments->run.run.looks_at_all && !arguments->run.run.counts) {
+    if (arguments->strict && !arguments->counted) {
         argp_error(state, "--strict goes with --counted");
     }
 }
@@ -127,6 +127,9 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.run.counts = !arguments.counted ? WH_MCS_COUNT_NONE
+                               : arguments.strict ? WH_MCS_COUNT_STRICT
+                                                  : WH_MCS_COUNT;
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
     const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);

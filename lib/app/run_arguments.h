@@ -50,6 +50,10 @@ typedef struct {
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
 
+/* The help of --counted of subcommands that play many runs, for WH_MCS_COUNT_BLIND. */
+#define WH_RUN_COUNTED_HELP                                                                                  \
+    "Leave out slices in which nothing can be decided; a cell with collision = true is played in full"
+
 /* The reason why errors do not go with options that describe the cell. */
 #define WH_RUN_ERRORS_ALONE "--error does not go with %s, which tells of the cell as its layout says"
 

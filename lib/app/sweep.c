@@ -10,6 +10,7 @@ typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
     uint64_t threads;
     const char *svg;
+    bool counted;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -18,6 +19,7 @@ static const wh_option_t options[] = {
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
     {"svg", 0, "FILE", "Also draw what the runs measure over the first parameter", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, svg)},
+    {"counted", 0, NULL, WH_RUN_COUNTED_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
     {"threads", 0, "N", "On so many threads (default: one for each processor)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, threads), 1, 1024},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
@@ -91,6 +93,7 @@ int wh_app_sweep(int argc, char **argv) {
     arguments_t arguments = {.threads = 0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.run.counts = arguments.counted ? WH_MCS_COUNT_BLIND : WH_MCS_COUNT_NONE;
     const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false},
                                      {"--svg", arguments.svg, true}};
     const int status = wh_files_are_apart(named, 2, true) ? sweep_all(&arguments) : WH_EXIT_USAGE;

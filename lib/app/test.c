@@ -17,7 +17,7 @@ typedef struct {
     uint64_t jobs;
     double timeout;
     const char *junit, *hashes, *shard;
-    bool tap, needs_expectations;
+    bool tap, needs_expectations, counted;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -36,6 +36,7 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, shard)},
     {"require-expectations", 0, NULL, "A script that expects nothing has failed", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, needs_expectations)},
+    {"counted", 0, NULL, WH_RUN_COUNTED_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
     {"set", 0, "NAME=VALUE", "Hand each script a parameter, which each must read, as with run",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
     {"budget", 0, "N", "End a script after N steps: 1 each of Lua, 20 a slice (default 1e9)", WH_OPTION_REAL,
@@ -208,6 +209,7 @@ int wh_app_test(int argc, char **argv) {
     wh_test_found_t found = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.run.counts = arguments.counted ? WH_MCS_COUNT_BLIND : WH_MCS_COUNT_NONE;
     int status = WH_EXIT_USAGE;
     if (wh_test_find(&arguments.paths, &found) && are_apart(&arguments, &found) &&
         take_share(&arguments, &found)) {

@@ -259,7 +259,7 @@ static int set_up_cell(lua_State *L) {
         wh_layout_give_errors(L, layout, mcs->wanted.errors, mcs->wanted.error_count);
     }
     layout->collision = layout->collision && !mcs->wanted.without_collisions;
-    if (layout->collision && mcs->wanted.counts && mcs->wanted.looks_at_all) {
+    if (layout->collision && mcs->wanted.counts == WH_MCS_COUNT_STRICT) {
         return luaL_error(L,
                           "%s: collision = true (--counted does not look for collisions in slices that it "
                           "leaves out: expected a run without --strict, or without --counted)",

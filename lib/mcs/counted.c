@@ -135,12 +135,13 @@ static bool goes_by_slices(const wh_mcs_t *mcs) {
     for (size_t g = 0; trial && g < mcs->layout->machine.gripper_count; ++g) {
         goes = goes || trial->lag[g] != 0;
     }
+    goes = goes || (mcs->layout->collision && mcs->wanted.counts == WH_MCS_COUNT_BLIND);
     return goes || mcs->wanted.listener.slice || mcs->wanted.partners.connect || mcs->wanted.decisions;
 }
 
 void wh_mcs_begin_counting(lua_State *L, wh_mcs_t *mcs) {
-    mcs->recorder.record->counted.is_wanted = mcs->wanted.counts;
-    if (!mcs->wanted.counts || goes_by_slices(mcs)) {
+    mcs->recorder.record->counted.is_wanted = mcs->wanted.counts != WH_MCS_COUNT_NONE;
+    if (mcs->wanted.counts == WH_MCS_COUNT_NONE || goes_by_slices(mcs)) {
         return;
     }
     struct wh_counted *counted = lua_newuserdatauv(L, sizeof *counted, 0);

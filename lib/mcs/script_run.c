@@ -131,7 +131,6 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->record.trial = options->error_count > 0 ? NULL : options->trial;
     run->mcs.wanted.without_collisions = options->without_collisions;
     run->mcs.wanted.counts = options->counts;
-    run->mcs.wanted.looks_at_all = options->looks_at_all;
     run->mcs.wanted.decisions = options->decisions;
     run->mcs.wanted.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);

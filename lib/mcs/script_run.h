@@ -22,7 +22,7 @@ typedef struct {
     const char *const *errors;
     size_t error_count;
     bool without_collisions;   /* no collision check, whatever the layout says */
-    bool counts, looks_at_all; /* see wh_mcs_wanted_t */
+    wh_mcs_count_t counts;     /* whether slices are left out */
     wh_decisions_t *decisions; /* all zero at first: keeps commands and readings; null: they are not kept */
 } wh_script_run_options_t;
 

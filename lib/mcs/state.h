@@ -162,6 +162,14 @@ typedef struct {
  * faults, from WH_FAULTS + 1. */
 #define WH_MCS_ALARMS 16
 
+/* Whether slices in which nothing can be decided are left out: see counted.h. */
+typedef enum {
+    WH_MCS_COUNT_NONE,   /* each slice is played */
+    WH_MCS_COUNT,        /* they are, also where collisions are looked for in the slices that are played */
+    WH_MCS_COUNT_STRICT, /* likewise; a cell with collision = true is refused */
+    WH_MCS_COUNT_BLIND   /* likewise; a cell with collision = true is played in full */
+} wh_mcs_count_t;
+
 /* The caller's wishes for a run; all may be zero. */
 typedef struct {
     bool refuses_unread;     /* the cell is not connected while a parameter is unread */
@@ -169,9 +177,8 @@ typedef struct {
     bool keeps_segments;     /* collect the played segments, for --segments */
     bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
-    bool counts;             /* leave out slices in which nothing can be decided: see counted.h */
-    bool looks_at_all;       /* with `counts`: refuse a cell whose collisions are to be looked for */
-    bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
+    wh_mcs_count_t counts;
+    bool limits_missed; /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     wh_mcs_partners_t partners;
     wh_mcs_listener_t listener;

@@ -36,7 +36,7 @@ static void compare(wh_script_run_options_t options, sums_t *sums) {
     sums->slices += run.record.slices;
     sums->events += run.record.event_count;
     wh_script_run_close(&run);
-    options.counts = true;
+    options.counts = WH_MCS_COUNT;
     (void)wh_script_run(&run, &options);
     sums->left_out += run.record.counted.left_out;
     sums->moving += run.record.counted.moving;

@@ -822,8 +822,10 @@ static void tasks_do_what_a_slow_model_does(void **state) {
     int64_t left_out = 0;
     wh_rounds_t rounds = WH_ROUNDS(40, SCRIPTS, 0.4);
     while (wh_round(&rounds)) {
-        const wh_script_run_options_t options = {
-            .script = path, .limits = {.print_to = nowhere}, .counts = rounds.number % 2 == 1};
+        const wh_script_run_options_t options = {.script = path,
+                                                 .limits = {.print_to = nowhere},
+                                                 .counts = rounds.number % 2 == 1 ? WH_MCS_COUNT
+                                                                                  : WH_MCS_COUNT_NONE};
         write_random_script(path);
         run_model();
         (void)wh_script_run(&run, &options);
