@@ -37,10 +37,6 @@ static int64_t until_stop(const wh_mcs_t *mcs) {
     return mcs->stop.at_slice - mcs->track.slice - 1;
 }
 
-static int64_t until_scanned(const wh_mcs_t *mcs) {
-    return mcs->measuring.edge.armed ? 0 : INT64_MAX;
-}
-
 /* The axes that the running segments move. */
 static uint32_t moving_axes(const wh_mcs_t *mcs) {
     uint32_t axes = mcs->lanes ? 0 : wh_quiet_axes(&mcs->track);
@@ -57,8 +53,8 @@ static int64_t until_something_meets(const wh_mcs_t *mcs) {
 }
 
 /* The slices that each kind of decision allows; what is cheap to ask comes first. */
-static int64_t (*const limits[])(const wh_mcs_t *mcs) = {until_segment_ends, until_stop, until_scanned,
-                                                         wh_mcs_clocks_quiet, until_something_meets};
+static int64_t (*const limits[])(const wh_mcs_t *mcs) = {until_segment_ends, until_stop, wh_mcs_clocks_quiet,
+                                                         until_something_meets};
 
 static int64_t count_left_out(const wh_mcs_t *mcs, int64_t most) {
     int64_t slices = most;

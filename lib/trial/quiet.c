@@ -79,12 +79,31 @@ static bool does_gripper_stand(const wh_simulator_t *simulator, size_t g, int32_
            does_hold_stand(simulator, g, moves);
 }
 
+static int64_t least_of(int64_t a, int64_t b) {
+    return a < b ? a : b;
+}
+
+/* A fault that waits for its time does nothing until then, and nothing once it is over. */
+static int64_t until_fault(const wh_simulator_t *simulator, const wh_command_t *last) {
+    const wh_faults_t *faults = &simulator->physics.faults;
+    int64_t slices = last->fault_count > 0 ? 0 : INT64_MAX;
+    for (size_t i = 0; i < faults->count; ++i) {
+        const wh_fault_slot_t *slot = &faults->slots[i];
+        if (slot->phase == WH_FAULT_WAITING) {
+            slices = least_of(slices, least_of(slot->fault.from, slot->fault.until) - last->seq - 1);
+        } else if (slot->phase != WH_FAULT_FREE && slot->phase != WH_FAULT_OVER) {
+            slices = 0;
+        }
+    }
+    return slices;
+}
+
 /* Nothing was ordered, and nothing goes on by itself. */
 static bool is_idle(const wh_simulator_t *simulator, const wh_command_t *last) {
     const wh_physics_state_t *physics = &simulator->physics;
-    return simulator->table.slice > 0 && physics->faults.count + last->fault_count == 0 &&
-           last->scan.kind == WH_SCAN_KEEP && last->latch.kind == WH_LATCH_KEEP && !physics->scan.armed &&
-           physics->scan.sample_count == 0 && !physics->latches.armed && physics->latches.latch_count == 0;
+    return simulator->table.slice > 0 && last->scan.kind == WH_SCAN_KEEP &&
+           last->latch.kind == WH_LATCH_KEEP && !physics->scan.armed && physics->scan.sample_count == 0 &&
+           !physics->latches.armed && physics->latches.latch_count == 0;
 }
 
 static bool do_doors_stand(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
@@ -180,10 +199,6 @@ static int64_t until_slots(const mover_t *mover, const wh_station_t *station) {
     return slices_until(mover, wh_vec3_norm(&aside), way_of(mover, mover->g));
 }
 
-static int64_t least_of(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
 /* Its z is base's, to the last bit. */
 static bool is_level(const wh_mat3_t *R) {
     return is_same(R->m[2][0], 0) && is_same(R->m[2][1], 0) && is_same(R->m[2][2], 1);
@@ -253,7 +268,9 @@ static int64_t until_near(const mover_t *mover) {
 int64_t wh_quiet_slices(const wh_quiet_t *quiet, const wh_simulator_t *simulator, const wh_command_t *last,
                         uint32_t axes) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    int64_t slices = is_idle(simulator, last) && do_doors_stand(quiet, simulator, last, axes) ? INT64_MAX : 0;
+    int64_t slices = is_idle(simulator, last) && do_doors_stand(quiet, simulator, last, axes)
+                         ? until_fault(simulator, last)
+                         : 0;
     for (size_t g = 0; g < storage->gripper_count && slices > 0; ++g) {
         const bool moves = (axes & quiet->movers[g]) != 0;
         slices = does_gripper_stand(simulator, g, last->grippers[g].valve, moves) ? slices : 0;
