@@ -822,10 +822,8 @@ static void tasks_do_what_a_slow_model_does(void **state) {
     int64_t left_out = 0;
     wh_rounds_t rounds = WH_ROUNDS(40, SCRIPTS, 0.4);
     while (wh_round(&rounds)) {
-        const wh_script_run_options_t options = {.script = path,
-                                                 .limits = {.print_to = nowhere},
-                                                 .counts = rounds.number % 2 == 1 ? WH_MCS_COUNT
-                                                                                  : WH_MCS_COUNT_NONE};
+        const wh_script_run_options_t options = {
+            .script = path, .limits = {.print_to = nowhere}, .counts = (wh_mcs_count_t)(rounds.number % 2)};
         write_random_script(path);
         run_model();
         (void)wh_script_run(&run, &options);
