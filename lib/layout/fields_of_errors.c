@@ -85,7 +85,7 @@ const wh_reader_field_t wh_layout_fault_station_slow[] = {
     {"kind", "\"station_slow\"", "a process, clean or pump takes longer", true},
     OF_EVERY_FAULT,
     STATION,
-    {"value", NUMBER, "how many times as long", true},
+    {"value", NUMBER, "how many times as long, 1 to 1000", true},
     END};
 const wh_reader_field_t wh_layout_fault_missing[] = {
     {"kind", "\"wafer_missing\"", "the wafer is taken out of the cell", true}, OF_EVERY_FAULT, WAFER, END};

@@ -74,9 +74,9 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     END};
 
 const wh_reader_field_t wh_layout_clean_fields[] = {
-    {"after", "integer", "wafers", false},
-    {"idle", NUMBER, "s without a wafer", false},
-    {"seconds", NUMBER, "s: how long it takes", true},
+    {"after", "integer", "wafers, at least 1", false},
+    {"idle", NUMBER, "s without a wafer, above 0", false},
+    {"seconds", NUMBER, "s: how long it takes, above 0", true},
     {"empty", SWITCH, "false: after the last wafer's process, with the wafer inside; true", false},
     END};
 

@@ -247,7 +247,8 @@ static void check_grip(wh_reader_t *reader, const wh_layout_t *layout, const wh_
 /* Reads the size of a fault. For crossed wafers another function reads `value` as a height. */
 static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
     const wh_real_t most = wh_fault_most(kind);
-    return most > 0 ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, most) : 0;
+    const wh_real_t least = kind == WH_FAULT_STATION_SLOW ? 1 : 0;
+    return most > 0 ? wh_reader_number(reader, "value", WH_REAL(NAN), least, most) : 0;
 }
 
 static int64_t slices_of(const wh_layout_t *layout, wh_real_t seconds) {

@@ -13,24 +13,9 @@ int64_t wh_timed_read_us(wh_reader_t *reader, const char *field, double fallback
     return wh_layout_us(wh_reader_number(reader, field, fallback, 0, WH_TIMED_LONGEST_S));
 }
 
-static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
-    if (!wh_reader_open(reader, "clean", wh_layout_clean_fields)) {
-        return;
-    }
-    if (!wh_reader_has(reader, "after") && !wh_reader_has(reader, "idle")) {
-        wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
-    }
-    station->clean_after = wh_reader_whole(reader, "after", 0, 0, 1000000);
-    station->clean_us = wh_timed_read_us(reader, "seconds", NAN);
-    station->cleans_full = !wh_reader_boolean(reader, "empty", true);
-    if (wh_reader_has(reader, "idle")) {
-        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
-    }
-    wh_reader_leave(reader);
-}
-
-/* A lock that turns in no time would turn again and again at one instant. */
-static int64_t read_pump_us(wh_reader_t *reader, const char *field, double fallback) {
+/* A lock that turns in no time would turn again and again at one instant.
+ * A clean of no time would be none. */
+static int64_t read_above_zero(wh_reader_t *reader, const char *field, double fallback) {
     const int64_t us = wh_timed_read_us(reader, field, fallback);
     if (us == 0) {
         (void)wh_reader_push(reader, field);
@@ -39,16 +24,34 @@ static int64_t read_pump_us(wh_reader_t *reader, const char *field, double fallb
     return us;
 }
 
+static void read_clean(wh_reader_t *reader, wh_flow_station_t *station) {
+    if (!wh_reader_open(reader, "clean", wh_layout_clean_fields)) {
+        return;
+    }
+    if (!wh_reader_has(reader, "after") && !wh_reader_has(reader, "idle")) {
+        wh_reader_fail(reader, NULL, "when it comes: `after` wafers, or `idle` seconds");
+    }
+    if (wh_reader_has(reader, "after")) {
+        station->clean_after = wh_reader_whole(reader, "after", 1, 1, 1000000);
+    }
+    station->clean_us = read_above_zero(reader, "seconds", NAN);
+    station->cleans_full = !wh_reader_boolean(reader, "empty", true);
+    if (wh_reader_has(reader, "idle")) {
+        station->idle_us = wh_layout_us(wh_reader_number(reader, "idle", 1, 1e-6, WH_TIMED_LONGEST_S));
+    }
+    wh_reader_leave(reader);
+}
+
 static void read_pump(wh_reader_t *reader, wh_flow_station_t *station, const wh_reader_field_t *pump_fields) {
     static const char *const states[] = {"atmosphere", "vacuum", NULL};
     station->is_lock = wh_reader_open(reader, "pump", pump_fields);
     if (station->is_lock) {
-        station->pump_us[WH_FLOW_VACUUM] = read_pump_us(reader, "down", NAN);
-        station->pump_us[WH_FLOW_ATMOSPHERE] = read_pump_us(reader, "up", NAN);
+        station->pump_us[WH_FLOW_VACUUM] = read_above_zero(reader, "down", NAN);
+        station->pump_us[WH_FLOW_ATMOSPHERE] = read_above_zero(reader, "up", NAN);
         station->empty_pump_us[WH_FLOW_VACUUM] =
-            read_pump_us(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
+            read_above_zero(reader, "empty_down", (double)station->pump_us[WH_FLOW_VACUUM] / 1e6);
         station->empty_pump_us[WH_FLOW_ATMOSPHERE] =
-            read_pump_us(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
+            read_above_zero(reader, "empty_up", (double)station->pump_us[WH_FLOW_ATMOSPHERE] / 1e6);
         wh_reader_leave(reader);
     } else if (wh_reader_has(reader, "state")) {
         wh_reader_refuse(reader, "state", NULL, "nothing: it has no `pump`");
