@@ -4,9 +4,9 @@
 #include <string.h>
 
 const char *wh_clock_kind_name(wh_clock_kind_t kind) {
-    static const char *const names[WH_CLOCK_KINDS] = {"process_begins", "process_ends", "process_cut",
-                                                      "taken",          "clean_begins", "clean_ends",
-                                                      "pump_begins",    "pump_ends"};
+    static const char *const names[WH_CLOCK_KINDS] = {
+        "process_begins", "process_ends", "process_cut", "taken", "clean_begins", "clean_ends",
+        "pump_begins",    "pump_ends",    "unprocessed", "late",  "clean_missed", "clean_cut"};
     return (unsigned)kind < WH_CLOCK_KINDS ? names[kind] : "unknown";
 }
 
@@ -63,29 +63,21 @@ static void begin_clean(const wh_flow_station_t *of, wh_clock_place_t *place, in
     tell_place(teller, WH_CLOCK_CLEAN_BEGINS, slot, place->wafer, now_us, of->clean_us);
 }
 
-static void set_done(wh_clock_place_t *place, int64_t now_us) {
-    place->phase = WH_CLOCK_DONE;
-    place->left_us = 0;
-    place->done_us = now_us;
-}
-
 static void end_process(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
                         const wh_clock_teller_t *teller) {
     tell_place(teller, WH_CLOCK_PROCESS_ENDS, slot, place->wafer, now_us, now_us - place->begun_us);
+    place->done_us = now_us;
+    place->left_us = 0;
     if (cleans_around(of, place)) {
         begin_clean(of, place, slot, now_us, teller);
     } else {
-        set_done(place, now_us);
+        place->phase = WH_CLOCK_DONE;
     }
 }
 
 /* A wafer in a place: it waits for its process, or there is none for it. */
-static void settle(const wh_flow_station_t *of, wh_clock_place_t *place, int64_t now_us) {
-    if (of->process_us > 0 || cleans_around(of, place)) {
-        place->phase = WH_CLOCK_WAITING;
-    } else {
-        set_done(place, now_us);
-    }
+static void settle(const wh_flow_station_t *of, wh_clock_place_t *place) {
+    place->phase = of->process_us > 0 || cleans_around(of, place) ? WH_CLOCK_WAITING : WH_CLOCK_DONE;
 }
 
 /* A wafer around which a place was cleaned is still to leave. */
@@ -98,9 +90,9 @@ static void end_clean(const wh_flow_station_t *of, wh_clock_place_t *place, int3
     place->left_us = 0;
     place->empty_us = now_us;
     if (is_around) {
-        set_done(place, now_us);
+        place->phase = WH_CLOCK_DONE;
     } else if (place->wafer != WH_FLOW_NONE) {
-        settle(of, place, now_us);
+        settle(of, place);
     } else {
         place->phase = WH_CLOCK_FREE;
     }
@@ -140,23 +132,63 @@ double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
     double us = clock->is_pumping ? clock->left_us : (double)INFINITY;
     for (int32_t i = 0; i < of->slots; ++i) {
         const bool runs = places[i].phase == WH_CLOCK_PROCESSING || places[i].phase == WH_CLOCK_CLEANING;
-        us = fmin(us, runs ? places[i].left_us : until_idle_clean(of, &places[i], now_us));
+        const double own_us = runs ? places[i].left_us : until_idle_clean(of, &places[i], now_us);
+        us = places[i].is_away ? 0 : fmin(us, own_us);
     }
     return us;
 }
 
 /* ------------------------------------------------------------------------------------ wafers come and go */
 
-static void leave(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
-                  const wh_clock_teller_t *teller) {
+static bool is_idle_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
+    return of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= of->idle_us;
+}
+
+bool wh_clock_is_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
+    return place->phase == WH_CLOCK_FREE && (place->is_clean_due || is_idle_clean_due(of, place, now_us));
+}
+
+/* A wafer that is awaited has ended the idle time. */
+static bool is_due_unless(const wh_flow_station_t *of, const wh_clock_place_t *place, bool is_awaited,
+                          int64_t now_us) {
+    return (place->is_clean_due || !is_awaited) && wh_clock_is_clean_due(of, place, now_us);
+}
+
+/* A process or a clean around the wafer is cut at once; all else waits until the wafer has left. */
+static void lift(wh_clock_place_t *place, int32_t slot, int64_t now_us, const wh_clock_teller_t *teller) {
     if (place->phase == WH_CLOCK_PROCESSING) {
         tell_place(teller, WH_CLOCK_PROCESS_CUT, slot, place->wafer, now_us, now_us - place->begun_us);
-    } else if (place->phase == WH_CLOCK_DONE) {
-        tell_place(teller, WH_CLOCK_TAKEN, slot, place->wafer, now_us, now_us - place->done_us);
+        place->phase = WH_CLOCK_WAITING;
+        place->is_cut = true;
+        place->left_us = 0;
+    } else if (place->phase == WH_CLOCK_CLEANING && place->is_around) {
+        tell_place(teller, WH_CLOCK_CLEAN_CUT, slot, place->wafer, now_us, now_us - place->begun_us);
+        place->phase = WH_CLOCK_DONE;
+        place->is_around = false;
+        place->left_us = 0;
+    }
+}
+
+static void tell_late(const wh_flow_station_t *of, const wh_clock_place_t *place, int32_t slot,
+                      int64_t stay_us, int64_t now_us, const wh_clock_teller_t *teller) {
+    if (of->window_us != WH_FLOW_NEVER && stay_us > of->window_us) {
+        tell_place(teller, WH_CLOCK_LATE, slot, place->wafer, now_us, stay_us - of->window_us);
+    }
+}
+
+static void leave(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
+                  const wh_clock_teller_t *teller) {
+    const int64_t stay_us = place->lifted_us - place->done_us;
+    if (place->phase == WH_CLOCK_DONE) {
+        tell_place(teller, WH_CLOCK_TAKEN, slot, place->wafer, now_us, stay_us);
+        tell_late(of, place, slot, stay_us, now_us, teller);
+    } else if (place->phase == WH_CLOCK_WAITING && !place->is_cut) {
+        tell_place(teller, WH_CLOCK_UNPROCESSED, slot, place->wafer, now_us, stay_us);
     }
     place->is_clean_due = !of->cleans_full && wh_clock_cleans_next(of, place);
     ++place->since_clean;
     place->wafer = WH_FLOW_NONE;
+    place->is_away = false;
     place->empty_us = now_us;
     if (place->phase != WH_CLOCK_CLEANING) {
         place->phase = WH_CLOCK_FREE;
@@ -165,45 +197,84 @@ static void leave(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t 
 }
 
 /* A wafer that comes into a running clean waits for its end. */
-static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t wafer, int64_t now_us) {
-    place->wafer = wafer;
-    if (place->phase != WH_CLOCK_CLEANING) {
-        settle(of, place, now_us);
+static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot,
+                  const wh_clock_seen_t *seen, int64_t now_us, const wh_clock_teller_t *teller) {
+    const bool is_due = is_due_unless(of, place, seen->is_awaited, now_us);
+    place->wafer = seen->wafer;
+    place->done_us = now_us;
+    place->is_cut = place->is_forced = false;
+    if (place->phase == WH_CLOCK_CLEANING) {
+        tell_place(teller, WH_CLOCK_CLEAN_MISSED, slot, place->wafer, now_us, (int64_t)place->left_us);
+    } else {
+        if (is_due) {
+            tell_place(teller, WH_CLOCK_CLEAN_MISSED, slot, place->wafer, now_us, of->clean_us);
+        }
+        settle(of, place);
     }
 }
 
-static bool is_idle_clean_due(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
-    return of->clean_us > 0 && of->idle_us != WH_FLOW_NEVER && now_us - place->empty_us >= of->idle_us;
-}
-
-static void begin(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, int64_t now_us,
-                  const wh_clock_teller_t *teller) {
-    if (place->phase == WH_CLOCK_WAITING && of->process_us > 0) {
+static void begin(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, bool is_awaited,
+                  int64_t now_us, const wh_clock_teller_t *teller) {
+    const bool may_begin = place->phase == WH_CLOCK_WAITING && !place->is_away && !place->is_bad;
+    if (may_begin && of->process_us > 0) {
         place->phase = WH_CLOCK_PROCESSING;
+        place->is_cut = false;
         place->left_us = (double)of->process_us;
         place->begun_us = now_us;
         tell_place(teller, WH_CLOCK_PROCESS_BEGINS, slot, place->wafer, now_us, of->process_us);
-    } else if (place->phase == WH_CLOCK_WAITING ||
-               (place->phase == WH_CLOCK_FREE &&
-                (place->is_clean_due || is_idle_clean_due(of, place, now_us)))) {
+    } else if (may_begin || is_due_unless(of, place, is_awaited, now_us)) {
         begin_clean(of, place, slot, now_us, teller);
     }
 }
 
+/* The wafer of the place lies there, well or not, or is away. */
+static void see_own(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot,
+                    const wh_clock_seen_t *seen, int64_t now_us, const wh_clock_teller_t *teller) {
+    const bool lies = place->wafer == seen->wafer;
+    if ((!lies || seen->is_bad) && !place->is_away) {
+        lift(place, slot, now_us, teller);
+        place->lifted_us = now_us;
+    }
+    place->is_away = !lies;
+    if (!lies && (!seen->keeps || seen->wafer != WH_FLOW_NONE)) {
+        leave(of, place, slot, now_us, teller);
+    }
+}
+
+static void see(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot,
+                const wh_clock_seen_t *seen, int64_t now_us, const wh_clock_teller_t *teller) {
+    place->is_bad = seen->wafer != WH_FLOW_NONE && seen->is_bad;
+    if (place->wafer != WH_FLOW_NONE) {
+        see_own(of, place, slot, seen, now_us, teller);
+    }
+    if (place->wafer == WH_FLOW_NONE && seen->wafer != WH_FLOW_NONE) {
+        enter(of, place, slot, seen, now_us, teller);
+    }
+}
+
 void wh_clock_look(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_place_t places[],
-                   const int32_t wafers[], bool is_closed, int64_t now_us, const wh_clock_teller_t *teller) {
+                   const wh_clock_seen_t seen[], bool is_closed, int64_t now_us,
+                   const wh_clock_teller_t *teller) {
     for (int32_t i = 0; i < of->slots; ++i) {
-        wh_clock_place_t *place = &places[i];
-        if (place->wafer != wafers[i] && place->wafer != WH_FLOW_NONE) {
-            leave(of, place, i, now_us, teller);
-        }
-        if (place->wafer != wafers[i]) {
-            enter(of, place, wafers[i], now_us);
-        }
+        see(of, &places[i], i, &seen[i], now_us, teller);
         if (is_closed && !clock->is_pumping) {
-            begin(of, place, i, now_us, teller);
+            begin(of, &places[i], i, seen[i].is_awaited, now_us, teller);
         }
     }
+}
+
+void wh_clock_lift_anew(wh_clock_place_t *place, int64_t now_us) {
+    place->lifted_us = place->is_away ? now_us : place->lifted_us;
+}
+
+int64_t wh_clock_judge(const wh_flow_station_t *of, const wh_clock_place_t *place, int32_t slot, bool lies,
+                       int64_t now_us, const wh_clock_teller_t *teller) {
+    if (place->phase != WH_CLOCK_DONE && !(place->phase == WH_CLOCK_CLEANING && place->is_around)) {
+        return -1;
+    }
+    const int64_t stay_us = (lies ? now_us : place->lifted_us) - place->done_us;
+    tell_late(of, place, slot, stay_us, now_us, teller);
+    return stay_us;
 }
 
 /* ----------------------------------------------------------------------------------------------- pumping */
@@ -230,7 +301,7 @@ bool wh_clock_pump(const wh_flow_station_t *of, wh_clock_t *clock, const wh_cloc
     return true;
 }
 
-double wh_clock_left_us(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+double wh_clock_left_us(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
     const double around = cleans_around(of, place) ? (double)of->clean_us : 0;
     switch (place->phase) {
     case WH_CLOCK_WAITING:
@@ -240,7 +311,7 @@ double wh_clock_left_us(const wh_flow_station_t *of, const wh_clock_place_t *pla
     case WH_CLOCK_CLEANING:
         return place->left_us;
     case WH_CLOCK_FREE:
-        return place->is_clean_due ? (double)of->clean_us : 0;
+        return wh_clock_is_clean_due(of, place, now_us) ? (double)of->clean_us : 0;
     case WH_CLOCK_DONE:
         break;
     }

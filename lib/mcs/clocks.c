@@ -1,7 +1,6 @@
 #include "clocks.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "../script/wh_module_values.h"
@@ -44,17 +43,17 @@ static void make_state(lua_State *L, struct wh_clocks *clocks) {
     const size_t head = (sizeof *clocks->state + 7) / 8 * 8;
     const size_t of_clocks = clocks->count * sizeof *clocks->clocks;
     const size_t of_places = clocks->place_count * sizeof *clocks->places;
-    clocks->state_bytes = head + of_clocks + of_places + clocks->place_count * sizeof *clocks->lying;
+    clocks->state_bytes = head + of_clocks + of_places + clocks->place_count * sizeof *clocks->seen;
     char *block = lua_memory(L, clocks->state_bytes);
     clocks->state = (void *)block;
     clocks->clocks = (void *)(block + head);
     clocks->places = (void *)(block + head + of_clocks);
-    clocks->lying = (void *)(block + head + of_clocks + of_places);
+    clocks->seen = (void *)(block + head + of_clocks + of_places);
     for (size_t i = 0; i < WH_MCS_ROBOTS; ++i) {
-        clocks->state->inside[i] = WH_NONE;
+        clocks->state->inside[i] = clocks->state->bringing[i] = WH_NONE;
     }
     for (size_t i = 0; i < clocks->place_count; ++i) {
-        clocks->lying[i] = WH_NONE;
+        clocks->seen[i].wafer = WH_NONE;
     }
     for (size_t i = 0; i < clocks->count; ++i) {
         const wh_clocked_t *of = &clocks->of[i];
@@ -62,121 +61,7 @@ static void make_state(lua_State *L, struct wh_clocks *clocks) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ telling */
-
-static const char *station_name(const struct wh_clocks *clocks, const wh_clocked_t *of) {
-    return clocks->mcs->layout->stations[of->station].name;
-}
-
-static const char *wafer_name(const struct wh_clocks *clocks, int32_t wafer) {
-    return clocks->mcs->layout->wafers[wafer].name;
-}
-
-static void imply(const wh_mcs_t *mcs, const char *text, bool ok) {
-    wh_record_add_implied(mcs->recorder.record, 0, text, ok);
-    if (!ok) {
-        wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
-    }
-}
-
-static void judge_stay(const struct wh_clocks *clocks, const wh_clocked_t *of, int32_t wafer,
-                       double stay_us) {
-    char text[400];
-    if (of->of.window_us == WH_FLOW_NEVER || clocks->state->tells_late) {
-        return;
-    }
-    const double over_us = stay_us - (double)of->of.window_us;
-    const int length =
-        snprintf(text, sizeof text, "%s leaves %s at most %.10g s after its process",
-                 wafer_name(clocks, wafer), station_name(clocks, of), (double)of->of.window_us / 1e6);
-    if (over_us > 0) {
-        snprintf(text + length, sizeof text - (size_t)length, "; it stayed %.10g s, %.10g s too long",
-                 stay_us / 1e6, over_us / 1e6);
-    }
-    imply(clocks->mcs, text, over_us <= 0);
-}
-
-static void judge_cut(const struct wh_clocks *clocks, const wh_clocked_t *of, const wh_clock_event_t *event) {
-    char text[400];
-    snprintf(text, sizeof text,
-             "the process of %s in %s comes to its end; the wafer was taken after %.10g of %.10g s",
-             wafer_name(clocks, event->wafer), station_name(clocks, of), (double)event->us / 1e6,
-             (double)of->of.process_us / 1e6);
-    imply(clocks->mcs, text, false);
-}
-
-typedef struct {
-    const struct wh_clocks *clocks;
-    const wh_clocked_t *of;
-} telling_t;
-
-static void tell(void *user, const wh_clock_event_t *event) {
-    const telling_t *telling = user;
-    const wh_mcs_t *mcs = telling->clocks->mcs;
-    wh_record_add_station_event(mcs->recorder.record,
-                                &(wh_station_event_record_t){telling->of->station, *event});
-    wh_mcs_tell(mcs, WH_MCS_STATION_TOLD, NULL);
-    if (event->kind == WH_CLOCK_TAKEN) {
-        judge_stay(telling->clocks, telling->of, event->wafer, (double)event->us);
-    } else if (event->kind == WH_CLOCK_PROCESS_CUT) {
-        judge_cut(telling->clocks, telling->of, event);
-    }
-}
-
-void wh_mcs_judge_stays(const wh_mcs_t *mcs) {
-    const struct wh_clocks *clocks = mcs->clocks;
-    for (size_t i = 0; clocks && i < clocks->count; ++i) {
-        const wh_clocked_t *of = &clocks->of[i];
-        for (int32_t slot = 0; slot < of->of.slots; ++slot) {
-            const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
-            const double stay_us = (double)(clocks->state->utime - place->done_us);
-            if (place->phase == WH_CLOCK_DONE && stay_us > (double)of->of.window_us) {
-                judge_stay(clocks, of, place->wafer, stay_us);
-            }
-        }
-    }
-}
-
-/* ------------------------------------------------------------------------------------------- what is seen */
-
-static void forget_wafer(struct wh_clocks *clocks, int32_t wafer) {
-    for (size_t i = 0; i < clocks->place_count; ++i) {
-        clocks->lying[i] = clocks->lying[i] == wafer ? WH_NONE : clocks->lying[i];
-    }
-}
-
-/* Finds the place in which a wafer lies that nobody holds. The first of two in one slot counts. */
-static void place_wafer(struct wh_clocks *clocks, const wh_state_t *state, int32_t wafer) {
-    const wh_wafer_t *is = &state->wafers[wafer];
-    wh_place_t place;
-    forget_wafer(clocks, wafer);
-    if (is->holder != WH_NONE || !wh_cell_locate(&clocks->mcs->real->cell, &is->base_from_wafer, &place) ||
-        clocks->by_station[place.station] == WH_NONE) {
-        return;
-    }
-    const wh_clocked_t *of = &clocks->of[clocks->by_station[place.station]];
-    int32_t *lying = &clocks->lying[of->first + (size_t)place.slot - 1];
-    *lying = *lying == WH_NONE ? wafer : *lying;
-}
-
-static void place_all(struct wh_clocks *clocks, const wh_state_t *state) {
-    for (size_t w = 0; w < state->wafer_count; ++w) {
-        place_wafer(clocks, state, (int32_t)w);
-    }
-}
-
-/* Wafers come and go with events; all are looked for where a state may have been missed. */
-static void see_wafers(struct wh_clocks *clocks, const wh_state_t *state) {
-    if (state->seq != clocks->state->seq + 1 || state->has_lost_events) {
-        place_all(clocks, state);
-        return;
-    }
-    for (size_t i = 0; i < state->event_count; ++i) {
-        if (wh_is_index(state->events[i].wafer, state->wafer_count)) {
-            place_wafer(clocks, state, state->events[i].wafer);
-        }
-    }
-}
+/* ----------------------------------------------------------------------------------------------- stepping */
 
 /* A door of the station that is not shut, or WH_NONE. */
 static int32_t find_open_door(const wh_mcs_t *mcs, uint32_t doors) {
@@ -209,13 +94,13 @@ static double rate_of(const wh_state_t *state, const wh_clocked_t *of) {
     return slow && slow->value > 1 ? 1 / slow->value : 1;
 }
 
-/* ----------------------------------------------------------------------------------------------- stepping */
-
-static void look(struct wh_clocks *clocks, size_t number) {
+/* `out`: the robot that has just come out of it, or WH_NONE. */
+static void look(struct wh_clocks *clocks, size_t number, const wh_state_t *state, int32_t out) {
     const wh_clocked_t *of = &clocks->of[number];
-    telling_t telling = {clocks, of};
-    const wh_clock_teller_t teller = {tell, &telling};
-    wh_clock_look(&of->of, &clocks->clocks[number], &clocks->places[of->first], &clocks->lying[of->first],
+    wh_clocks_telling_t telling = {clocks, of};
+    const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
+    wh_clocks_see_places(clocks, of, state, out);
+    wh_clock_look(&of->of, &clocks->clocks[number], &clocks->places[of->first], &clocks->seen[of->first],
                   is_closed(clocks, of), clocks->state->utime, &teller);
 }
 
@@ -225,7 +110,7 @@ static int begin(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     struct wh_clocks *clocks = mcs->clocks;
     for (size_t i = 0; clocks && i < clocks->count; ++i) {
-        look(clocks, i);
+        look(clocks, i, &mcs->state, WH_NONE);
     }
     return 0;
 }
@@ -237,17 +122,17 @@ static void hear(void *user, const wh_command_t *command, const wh_state_t *stat
     if (state->status != WH_OK || state->seq <= clocks->state->seq) {
         return;
     }
-    see_wafers(clocks, state);
+    wh_clocks_see_wafers(clocks, state);
     const double us = (double)(state->utime - clocks->state->utime);
     clocks->state->seq = state->seq;
     clocks->state->utime = state->utime;
     for (size_t i = 0; i < clocks->count; ++i) {
         const wh_clocked_t *of = &clocks->of[i];
-        telling_t telling = {clocks, of};
-        const wh_clock_teller_t teller = {tell, &telling};
+        wh_clocks_telling_t telling = {clocks, of};
+        const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
         wh_clock_pass(&of->of, &clocks->clocks[i], &clocks->places[of->first], us, rate_of(state, of),
                       state->utime, &teller);
-        look(clocks, i);
+        look(clocks, i, state, WH_NONE);
     }
 }
 
@@ -290,15 +175,17 @@ void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs) {
     number_stations(clocks, real);
     make_state(L, clocks);
     mcs->clocks = clocks;
-    place_all(clocks, &mcs->state);
+    wh_clocks_place_all(clocks, &mcs->state);
     wh_mcs_listen(mcs, hear, clocks);
     wh_decisions_measured(mcs->wanted.decisions, "stations that take time");
 }
 
 /* ---------------------------------------------------------------------------------------------- questions */
 
-static bool is_place_idle(const wh_clock_place_t *place) {
-    return place->phase == WH_CLOCK_DONE || (place->phase == WH_CLOCK_FREE && !place->is_clean_due);
+static bool is_place_idle(const struct wh_clocks *clocks, const wh_clocked_t *of, int32_t slot) {
+    const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
+    return place->phase == WH_CLOCK_DONE ||
+           (place->phase == WH_CLOCK_FREE && !wh_clock_is_clean_due(&of->of, place, clocks->state->utime));
 }
 
 static int32_t number_of(const wh_mcs_t *mcs, int32_t station) {
@@ -313,7 +200,7 @@ bool wh_mcs_is_station_idle(const wh_mcs_t *mcs, int32_t station) {
     const wh_clocked_t *of = &mcs->clocks->of[number];
     bool is_idle = !mcs->clocks->clocks[number].is_pumping;
     for (int32_t slot = 0; slot < of->of.slots; ++slot) {
-        is_idle = is_idle && is_place_idle(&mcs->clocks->places[of->first + (size_t)slot]);
+        is_idle = is_idle && is_place_idle(mcs->clocks, of, slot);
     }
     return is_idle;
 }
@@ -363,7 +250,8 @@ static int32_t clocked_argument(lua_State *L, const wh_mcs_t *mcs, int argument)
 
 /* native.place(station, slot): nothing if the station takes no time; else what goes on there: "empty",
  * "waiting", "processing", "cleaning" or "done"; the wafer's name or nil; s until nothing runs there, by the
- * description; and whether a clean comes when the wafer has left. */
+ * description; whether a clean comes when the wafer has left; and why no process may begin on the wafer, or
+ * nil. */
 static int read_place(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t number = clocked_argument(L, mcs, 1);
@@ -373,12 +261,15 @@ static int read_place(lua_State *L) {
     const wh_clocked_t *of = &mcs->clocks->of[number];
     const int32_t slot = wh_mcs_index(L, 2, (size_t)of->of.slots);
     const wh_clock_place_t *place = &mcs->clocks->places[of->first + (size_t)slot];
-    const bool is_due = place->phase == WH_CLOCK_FREE && place->is_clean_due;
+    const int64_t now_us = mcs->clocks->state->utime;
+    const bool is_due = wh_clock_is_clean_due(&of->of, place, now_us);
     lua_pushstring(L, is_due ? "cleaning" : wh_clock_phase_name(place->phase));
-    lua_pushstring(L, place->wafer == WH_NONE ? NULL : wafer_name(mcs->clocks, place->wafer));
-    lua_pushnumber(L, wh_clock_left_us(&of->of, place) / 1e6);
+    lua_pushstring(L, place->wafer == WH_NONE ? NULL : mcs->layout->wafers[place->wafer].name);
+    lua_pushnumber(L, wh_clock_left_us(&of->of, place, now_us) / 1e6);
     lua_pushboolean(L, !of->of.cleans_full && wh_clock_cleans_next(&of->of, place));
-    return 4;
+    char why[WH_CLOCKS_WHY_BYTES];
+    lua_pushstring(L, wh_clocks_why_bad(mcs->clocks, of, slot, why));
+    return 5;
 }
 
 /* native.pressure(station): nothing if it is no lock; else "vacuum" or "atmosphere", and if it pumps where to
@@ -419,49 +310,68 @@ static int read_rest(lua_State *L) {
     const wh_clocked_t *of = &mcs->clocks->of[number];
     double rest_us = mcs->clocks->clocks[number].left_us;
     for (int32_t slot = 0; slot < of->of.slots; ++slot) {
-        const double left_us = wh_clock_left_us(&of->of, &mcs->clocks->places[of->first + (size_t)slot]);
+        const double left_us = wh_clock_left_us(&of->of, &mcs->clocks->places[of->first + (size_t)slot],
+                                                mcs->clocks->state->utime);
         rest_us = left_us > rest_us ? left_us : rest_us;
     }
     lua_pushnumber(L, rest_us / 1e6);
     return 1;
 }
 
-/* True if the wafer lies there and may be taken; then since when. */
-static bool find_stay(const wh_mcs_t *mcs, int32_t number, int32_t wafer, int64_t *since_us) {
+/* The place of the station in which the wafer has come and not left, or null. */
+static const wh_clock_place_t *find_place(const wh_mcs_t *mcs, int32_t number, int32_t wafer) {
     const wh_clocked_t *of = &mcs->clocks->of[number];
     for (int32_t slot = 0; slot < of->of.slots; ++slot) {
         const wh_clock_place_t *place = &mcs->clocks->places[of->first + (size_t)slot];
-        if (place->phase == WH_CLOCK_DONE && place->wafer == wafer) {
-            *since_us = place->done_us;
-            return true;
+        if (place->wafer == wafer) {
+            return place;
         }
     }
-    return false;
+    return NULL;
+}
+
+static int push_stay(lua_State *L, int64_t us, bool is_there) {
+    lua_pushnumber(L, (double)us / 1e6);
+    lua_pushboolean(L, is_there);
+    return 2;
+}
+
+static int push_unended(lua_State *L) {
+    lua_pushnil(L);
+    lua_pushboolean(L, false);
+    return 2;
+}
+
+/* A stay that ended: the last event of the wafer there tells how. */
+static int push_ended(lua_State *L, const wh_record_t *record, int32_t station, int32_t wafer) {
+    for (size_t i = record->station_event_count; i > 0; --i) {
+        const wh_station_event_record_t *event = &record->station_events[i - 1];
+        const wh_clock_kind_t kind = event->event.kind;
+        const bool is_its = event->station == station && event->event.wafer == wafer;
+        if (is_its && kind == WH_CLOCK_TAKEN) {
+            return push_stay(L, event->event.us, false);
+        } else if (is_its && (kind == WH_CLOCK_UNPROCESSED || kind == WH_CLOCK_PROCESS_CUT)) {
+            return push_unended(L);
+        }
+    }
+    return 0;
 }
 
 /* native.stay(wafer, station): s that the wafer's last stay there lasted from its process's end until it was
- * taken, or until now; nil: there was none; then true if it still lies there. */
+ * taken, or until now, and true if it still lies there; nil and false: its process did not end; nil: there
+ * was no stay. */
 static int read_stay(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = wh_mcs_index(L, 1, mcs->layout->wafer_count);
     const int32_t station = wh_mcs_index(L, 2, mcs->layout->station_count);
     const int32_t number = number_of(mcs, station);
-    const wh_record_t *record = mcs->recorder.record;
-    int64_t since_us = 0;
-    if (number != WH_NONE && find_stay(mcs, number, wafer, &since_us)) {
-        lua_pushnumber(L, (double)(mcs->clocks->state->utime - since_us) / 1e6);
-        lua_pushboolean(L, true);
-        return 2;
+    const wh_clock_place_t *place = number == WH_NONE ? NULL : find_place(mcs, number, wafer);
+    if (!place) {
+        return push_ended(L, mcs->recorder.record, station, wafer);
     }
-    for (size_t i = record->station_event_count; i > 0; --i) {
-        const wh_station_event_record_t *event = &record->station_events[i - 1];
-        if (event->station == station && event->event.wafer == wafer && event->event.kind == WH_CLOCK_TAKEN) {
-            lua_pushnumber(L, (double)event->event.us / 1e6);
-            lua_pushboolean(L, false);
-            return 2;
-        }
-    }
-    return 0;
+    return place->phase == WH_CLOCK_DONE || place->is_around
+               ? push_stay(L, mcs->clocks->state->utime - place->done_us, true)
+               : push_unended(L);
 }
 
 /* ------------------------------------------------------------------------------------------------ changes */
@@ -479,7 +389,49 @@ static int set_inside(lua_State *L) {
         lua_isnoneornil(L, 2) ? WH_NONE : wh_mcs_index(L, 2, mcs->layout->station_count);
     const int32_t number = was == WH_NONE ? WH_NONE : clocks->by_station[was];
     if (number != WH_NONE) {
-        look(clocks, (size_t)number);
+        look(clocks, (size_t)number, &mcs->state, robot);
+    }
+    return 0;
+}
+
+/* native.brings(robot, station, slot): a command that was not refused brings a wafer there, nil: none does
+ * any more. No clean begins there for its idle time. */
+static int set_bringing(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t robot = wh_mcs_index(L, 1, WH_MCS_ROBOTS);
+    const int32_t number = lua_isnoneornil(L, 2) || !mcs->clocks ? WH_NONE : clocked_argument(L, mcs, 2);
+    if (mcs->clocks) {
+        mcs->clocks->state->bringing[robot] = WH_NONE;
+    }
+    if (number != WH_NONE) {
+        const wh_clocked_t *of = &mcs->clocks->of[number];
+        mcs->clocks->state->bringing[robot] = (int32_t)of->first + wh_mcs_index(L, 3, (size_t)of->of.slots);
+    }
+    return 0;
+}
+
+/* native.takes_by_force(station, slot): a command may take the wafer there, though its process has not
+ * begun. */
+static int set_forced(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t number = clocked_argument(L, mcs, 1);
+    luaL_argcheck(L, number != WH_NONE, 1, "it takes no time");
+    const wh_clocked_t *of = &mcs->clocks->of[number];
+    mcs->clocks->places[of->first + (size_t)wh_mcs_index(L, 2, (size_t)of->of.slots)].is_forced = true;
+    return 0;
+}
+
+/* native.sets_out(robot): a command of the robot begins. A wafer that it holds within a station is lifted
+ * anew: until now it stayed there. */
+static int lift_anew(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t robot = wh_mcs_index(L, 1, WH_MCS_ROBOTS);
+    struct wh_clocks *clocks = mcs->clocks;
+    for (size_t i = 0; clocks && i < clocks->place_count; ++i) {
+        wh_clock_place_t *place = &clocks->places[i];
+        if (place->is_away && wh_clocks_robot_of(mcs, &mcs->state.wafers[place->wafer]) == robot) {
+            wh_clock_lift_anew(place, clocks->state->utime);
+        }
     }
     return 0;
 }
@@ -493,8 +445,8 @@ static int begin_pump(lua_State *L) {
     struct wh_clocks *clocks = mcs->clocks;
     const wh_clocked_t *of = &clocks->of[number];
     const bool is_vacuum = strcmp(luaL_checkstring(L, 2), "vacuum") == 0;
-    telling_t telling = {clocks, of};
-    const wh_clock_teller_t teller = {tell, &telling};
+    wh_clocks_telling_t telling = {clocks, of};
+    const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
     lua_pushboolean(L, wh_clock_pump(&of->of, &clocks->clocks[number], &clocks->places[of->first],
                                      is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE, clocks->state->utime,
                                      &teller));
@@ -510,8 +462,16 @@ static int set_late(lua_State *L) {
     return 0;
 }
 
-const luaL_Reg wh_mcs_clock_functions[] = {{"begin_clocks", begin},     {"place", read_place},
-                                           {"pressure", read_pressure}, {"open_door", find_station_door},
-                                           {"rest", read_rest},         {"stay", read_stay},
-                                           {"stands_in", set_inside},   {"pump", begin_pump},
-                                           {"tell_late", set_late},     {NULL, NULL}};
+const luaL_Reg wh_mcs_clock_functions[] = {{"begin_clocks", begin},
+                                           {"place", read_place},
+                                           {"pressure", read_pressure},
+                                           {"open_door", find_station_door},
+                                           {"rest", read_rest},
+                                           {"stay", read_stay},
+                                           {"stands_in", set_inside},
+                                           {"brings", set_bringing},
+                                           {"takes_by_force", set_forced},
+                                           {"sets_out", lift_anew},
+                                           {"pump", begin_pump},
+                                           {"tell_late", set_late},
+                                           {NULL, NULL}};

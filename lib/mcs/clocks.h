@@ -21,9 +21,10 @@ typedef struct {
 
 /* All that changes, one block of memory; the arrays follow it. */
 typedef struct {
-    int64_t seq, utime;            /* of the last slice that was heard; 0: none */
-    int32_t inside[WH_MCS_ROBOTS]; /* the station in which the robot stands, or WH_NONE */
-    bool tells_late;               /* a stay beyond a window is told, and fails nothing */
+    int64_t seq, utime;              /* of the last slice that was heard; 0: none */
+    int32_t inside[WH_MCS_ROBOTS];   /* the station in which the robot stands, or WH_NONE */
+    int32_t bringing[WH_MCS_ROBOTS]; /* the place to which its command brings a wafer, or WH_NONE */
+    bool tells_late;                 /* a stay beyond a window is told, and fails nothing */
 } wh_clocks_state_t;
 
 struct wh_clocks {
@@ -35,8 +36,37 @@ struct wh_clocks {
     size_t state_bytes;
     wh_clock_t *clocks;       /* by number; within the state's block, as the next two */
     wh_clock_place_t *places; /* by place */
-    int32_t *lying;           /* by place: the wafer that lies there, or WH_NONE */
+    wh_clock_seen_t *seen;    /* by place */
 };
+
+/* The user of wh_clocks_tell. */
+typedef struct {
+    const struct wh_clocks *clocks;
+    const wh_clocked_t *of;
+} wh_clocks_telling_t;
+
+/* Keeps the event, tells it, and judges what it says: a wh_clock_teller_t. */
+void wh_clocks_tell(void *user, const wh_clock_event_t *event);
+
+/* Looks where all wafers lie. */
+void wh_clocks_place_all(struct wh_clocks *clocks, const wh_state_t *state);
+
+/* Looks again after a slice, if one of its events may have moved a wafer. */
+void wh_clocks_see_wafers(struct wh_clocks *clocks, const wh_state_t *state);
+
+/* Finds which wafers of a station were lifted and have not left it, and which places await one. `out`: the
+ * robot that has just come out, or WH_NONE. */
+void wh_clocks_see_places(struct wh_clocks *clocks, const wh_clocked_t *of, const wh_state_t *state,
+                          int32_t out);
+
+#define WH_CLOCKS_WHY_BYTES 200
+
+/* Why no process may begin on the wafer of the place, as `text`; null: it may. */
+const char *wh_clocks_why_bad(const struct wh_clocks *clocks, const wh_clocked_t *of, int32_t slot,
+                              char text[WH_CLOCKS_WHY_BYTES]);
+
+/* The robot that holds the wafer, or WH_NONE. */
+int32_t wh_clocks_robot_of(const wh_mcs_t *mcs, const wh_wafer_t *wafer);
 
 /* Sets them up if the layout has any; else nothing. Call it before the first slice. */
 void wh_mcs_begin_clocks(lua_State *L, wh_mcs_t *mcs);

@@ -49,10 +49,11 @@
  *                 handed_over by an edge grip: where the wafer lies in the pocket, gripper's frame, once the
  *                 plunger has closed, and the plunger then)
  *   station_events: only if stations take time: utime (us), kind ("process_begins", "process_ends",
- *                 "process_cut", "taken", "clean_begins", "clean_ends", "pump_begins", "pump_ends"), station,
- *                 slot and wafer (or null), side (of a pump: "vacuum" or "atmosphere"; else null), seconds:
- *                 how long what begins takes, what ends took, and how long a taken wafer stayed after its
- *                 process
+ *                 "process_cut", "taken", "clean_begins", "clean_ends", "pump_begins", "pump_ends",
+ *                 "unprocessed", "late", "clean_missed", "clean_cut": flow/clock.h), station, slot and wafer
+ *                 (or null), side (of a pump: "vacuum" or "atmosphere"; else null), seconds: how long what
+ *                 begins takes, what ends took, how long a taken wafer stayed after its process, an
+ *                 unprocessed one at all, how much a late one too long, and what was left of a missed clean
  *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
  *                 none): the smallest gaps of a run whose collisions were checked
  *   clearance_curves: kind, times_s, gaps (mm; null: wider than 20): for the kinds that were ever near, the

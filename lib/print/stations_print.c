@@ -24,12 +24,14 @@ json_t *wh_station_event_to_json(const void *subject, size_t i) {
 
 enum { BEGINS, STATION, SLOT, WHAT, WAFER, ENDS, STAYS };
 
-/* The word for the thing that an event begins; null: it begins nothing. */
+/* The word for the thing that an event begins, or whose begin it misses; null: for neither. */
 static const char *begins_what(const wh_clock_event_t *event) {
     switch ((int)event->kind) {
     case WH_CLOCK_PROCESS_BEGINS:
+    case WH_CLOCK_UNPROCESSED:
         return "process";
     case WH_CLOCK_CLEAN_BEGINS:
+    case WH_CLOCK_CLEAN_MISSED:
         return "clean";
     case WH_CLOCK_PUMP_BEGINS:
         return event->side == WH_FLOW_VACUUM ? "to vacuum" : "to atmosphere";
@@ -39,8 +41,7 @@ static const char *begins_what(const wh_clock_event_t *event) {
 }
 
 static bool ends(wh_clock_kind_t kind) {
-    return kind == WH_CLOCK_PROCESS_ENDS || kind == WH_CLOCK_PROCESS_CUT || kind == WH_CLOCK_CLEAN_ENDS ||
-           kind == WH_CLOCK_PUMP_ENDS;
+    return kind == WH_CLOCK_PROCESS_ENDS || kind == WH_CLOCK_CLEAN_ENDS || kind == WH_CLOCK_PUMP_ENDS;
 }
 
 /* The next event of the same slot, or of the station, behind this one; null: there is none. */
@@ -56,27 +57,71 @@ static const wh_clock_event_t *next_of(const wh_record_t *record, size_t *i) {
     return NULL;
 }
 
+static bool is_cut(wh_clock_kind_t kind) {
+    return kind == WH_CLOCK_PROCESS_CUT || kind == WH_CLOCK_CLEAN_CUT;
+}
+
+/* The end of what event `i` begins, whose number `i` then is; null: it goes on. Wafers may come and go
+ * meanwhile. */
+static const wh_clock_event_t *find_end(const wh_record_t *record, size_t *i) {
+    const wh_clock_event_t *event = next_of(record, i);
+    while (event && !ends(event->kind) && !is_cut(event->kind)) {
+        event = next_of(record, i);
+    }
+    return event;
+}
+
 static double window_s(const wh_record_t *record, int32_t station) {
     const wh_layout_times_t *times = record->layout ? record->layout->stations[station].times : NULL;
     return times && times->of.window_us != WH_FLOW_NEVER ? (double)times->of.window_us / 1e6 : HUGE_VAL;
 }
 
 static void put_end(wh_grid_t *grid, const wh_clock_event_t *end) {
-    if (end && end->kind == WH_CLOCK_PROCESS_CUT) {
+    if (end && is_cut(end->kind)) {
         wh_grid_text(grid, ENDS, WH_INK_BAD, "cut at %.3f", (double)end->at_us / 1e6);
-    } else if (end && ends(end->kind)) {
+    } else if (end) {
         wh_grid_number(grid, ENDS, WH_INK_PLAIN, (double)end->at_us / 1e6);
     } else {
         wh_grid_text(grid, ENDS, WH_INK_DIM, "goes on");
     }
 }
 
-static void put_stay(const wh_printer_t *printer, wh_grid_t *grid, int32_t station,
-                     const wh_clock_event_t *taken) {
-    if (taken && taken->kind == WH_CLOCK_TAKEN) {
-        const double stay_s = (double)taken->us / 1e6;
-        const bool is_late = stay_s > window_s(printer->record, station);
-        wh_grid_number(grid, STAYS, is_late ? WH_INK_BAD : WH_INK_PLAIN, stay_s);
+/* The stay behind a process that is event `i`, and with a window that it broke the limit beside it. */
+static void put_stay(const wh_printer_t *printer, wh_grid_t *grid, int32_t station, size_t i) {
+    const double limit_s = window_s(printer->record, station);
+    double stay_s = NAN;
+    for (const wh_clock_event_t *event = next_of(printer->record, &i);
+         event && event->kind != WH_CLOCK_PROCESS_BEGINS; event = next_of(printer->record, &i)) {
+        const double s = (double)event->us / 1e6;
+        stay_s = event->kind == WH_CLOCK_TAKEN ? s : event->kind == WH_CLOCK_LATE ? s + limit_s : stay_s;
+    }
+    if (stay_s > limit_s) {
+        wh_grid_text(grid, STAYS, WH_INK_BAD, "%.3f > %.10g", stay_s, limit_s);
+    } else if (!isnan(stay_s)) {
+        wh_grid_number(grid, STAYS, WH_INK_PLAIN, stay_s);
+    }
+}
+
+/* A process or a clean that never came, because its wafer went or came. */
+static void put_never(wh_grid_t *grid, const wh_clock_event_t *event) {
+    const bool is_process = event->kind == WH_CLOCK_UNPROCESSED;
+    wh_grid_text(grid, BEGINS, WH_INK_BAD, is_process ? "never" : "missed");
+    wh_grid_text(grid, ENDS, WH_INK_BAD, is_process ? "taken at %.3f" : "came at %.3f",
+                 (double)event->at_us / 1e6);
+}
+
+static void put_times(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
+    const wh_record_t *record = printer->record;
+    const wh_station_event_record_t *from = &record->station_events[i];
+    if (from->event.kind == WH_CLOCK_UNPROCESSED || from->event.kind == WH_CLOCK_CLEAN_MISSED) {
+        put_never(grid, &from->event);
+        return;
+    }
+    const wh_clock_event_t *end = find_end(record, &i);
+    wh_grid_number(grid, BEGINS, WH_INK_PLAIN, (double)from->event.at_us / 1e6);
+    put_end(grid, end);
+    if (end && end->kind == WH_CLOCK_PROCESS_ENDS) {
+        put_stay(printer, grid, from->station, i);
     }
 }
 
@@ -84,19 +129,14 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t i, cons
     const wh_record_t *record = printer->record;
     const wh_station_event_record_t *from = &record->station_events[i];
     const char *name = wh_record_station_name(record, from->station);
-    const wh_clock_event_t *end = next_of(record, &i);
     wh_grid_row(grid);
-    wh_grid_number(grid, BEGINS, WH_INK_PLAIN, (double)from->event.at_us / 1e6);
     wh_grid_text(grid, STATION, WH_INK_PLAIN, "%s", name ? name : "-");
     if (from->event.slot != WH_FLOW_NONE) {
         wh_grid_text(grid, SLOT, WH_INK_PLAIN, "%d", (int)from->event.slot + 1);
     }
     wh_grid_text(grid, WHAT, WH_INK_PLAIN, "%s", what);
     wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(printer, from->event.wafer));
-    put_end(grid, end);
-    if (end && end->kind == WH_CLOCK_PROCESS_ENDS) {
-        put_stay(printer, grid, from->station, next_of(record, &i));
-    }
+    put_times(printer, grid, i);
 }
 
 void wh_print_stations(const wh_printer_t *printer) {

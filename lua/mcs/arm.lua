@@ -172,6 +172,9 @@ return function(native, lookup, tasks, alarms)
       needs.unclear()
     end
     tasks.take(needs)
+    if needs and needs.robot then
+      native.sets_out(needs.robot)
+    end
     running_door[tasks.current()] = needs and needs.door
     return alarms.meet(word, action, ...)
   end
@@ -233,6 +236,9 @@ return function(native, lookup, tasks, alarms)
     alarms.mend(not ok and number)
     tasks.give_back()
     running[task], running_door[task] = nil, nil
+    if task.robot and not arm.state().held then
+      native.brings(task.robot)
+    end
     if ok then
       task.robot = nil
       native.finish()

@@ -74,7 +74,7 @@ return function(native, wh)
     calibrate = make("calibration", native, patterns, lookup, arm, player, targets, align, carrying.carry),
     teach = make("teaching", native, patterns, lookup, arm, player, targets, stations, slot_map),
   }
-  local added = make("added", native, lookup, arm, player, targets, align, centring, slot_map, own)
+  local added = make("added", native, lookup, arm, player, targets, align, centring, slot_map, times, own)
   for _, words in ipairs({ transfer, singles, tasks.words, added, make("faults", native, lookup, arm, alarms) }) do
     for name, word in pairs(words) do
       commands[name] = word

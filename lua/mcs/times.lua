@@ -33,32 +33,42 @@ return function(native, patterns, lookup, arm, player)
     native.fail("CLEANING", text:format(station.name, slot, seconds(left), station.name))
   end
 
-  -- The reason why a process has not begun.
-  local function why_waiting(station)
+  local function fail_due(station, slot, wafer)
+    local text = "%s slot %d is due when %s has left: GET, and PUT when it is clean"
+    native.fail("CLEANING", text:format(station.name, slot, wafer))
+  end
+
+  -- The reason why a process has not begun; `why`: how its wafer lies, unless that is well.
+  local function why_waiting(station, why)
     local door, inside = native.open_door(station.index), arm.find_inside(station.name)
-    return door and ('%s is not shut: close("%s") comes first'):format(door_name(door), door_name(door))
+    return why or door and ('%s is not shut: close("%s") comes first'):format(door_name(door), door_name(door))
       or inside and "the arm stands in it" or "the station pumps"
   end
 
   -- A wafer may be taken once nothing runs around it. With `force` also one whose process has not begun.
   local function check_get(target, station)
-    local phase, wafer, left = native.place(station.index, target.slot)
+    local phase, wafer, left, _, why = native.place(station.index, target.slot)
     if phase == "processing" then
       local text = '%s in %s slot %d needs %s s yet: wait_for("%s") comes first'
       native.fail("PROCESS_RUNNING", text:format(wafer, station.name, target.slot, seconds(left), station.name))
     elseif phase == "waiting" and not target.force then
       local text = "the process of %s in %s slot %d has not begun, for %s"
-      native.fail("PROCESS_RUNNING", text:format(wafer, station.name, target.slot, why_waiting(station)))
+      native.fail("PROCESS_RUNNING", text:format(wafer, station.name, target.slot, why_waiting(station, why)))
+    elseif phase == "waiting" then
+      native.takes_by_force(station.index, target.slot)
     elseif phase == "cleaning" and wafer then
       fail_cleaning(station, target.slot, left)
     end
   end
 
   local function check_put(target, station)
-    local phase, _, left = native.place(station.index, target.slot)
+    local phase, wafer, left, cleans, why = native.place(station.index, target.slot)
     if phase == "cleaning" then
       fail_cleaning(station, target.slot, left)
+    elseif wafer and cleans and why then
+      fail_due(station, target.slot, wafer)
     end
+    native.brings(target.robot, station.index, target.slot)
   end
 
   -- SWAP leaves the place no time for a clean.
@@ -66,9 +76,9 @@ return function(native, patterns, lookup, arm, player)
     check_get(target, station)
     local _, wafer, _, cleans = native.place(station.index, target.slot)
     if wafer and cleans then
-      local text = "%s slot %d is due when %s has left: GET, and PUT when it is clean"
-      native.fail("CLEANING", text:format(station.name, target.slot, wafer))
+      fail_due(station, target.slot, wafer)
     end
+    native.brings(target.robot, station.index, target.slot)
   end
 
   local CHECKS = { get = check_get, put = check_put, swap = check_swap }
@@ -106,13 +116,15 @@ return function(native, patterns, lookup, arm, player)
       return ("it is on its way to %s"):format(to)
     end
     for slot = 1, station.slots do
-      local phase, wafer = native.place(station.index, slot)
+      local phase, wafer, _, _, why = native.place(station.index, slot)
       if phase == "waiting" then
-        return ("the process of %s in slot %d has not begun, for %s"):format(wafer, slot, why_waiting(station))
+        return ("the process of %s in slot %d has not begun, for %s"):format(wafer, slot, why_waiting(station, why))
       elseif phase == "processing" then
         return ("the process of %s in slot %d goes on"):format(wafer, slot)
       elseif phase == "cleaning" then
-        return ("the clean of slot %d goes on or is due"):format(slot)
+        local door = native.open_door(station.index)
+        return ("the clean of slot %d goes on or is due%s"):format(slot,
+          door and ("; %s is not shut"):format(door_name(door)) or "")
       end
     end
   end
@@ -232,20 +244,21 @@ return function(native, patterns, lookup, arm, player)
     native.tell_late(how == "tell")
   end
 
-  -- Returns the verdict and the text of an expectation: the wafer's last stay there lasts at most so long.
+  -- Returns the verdict and the text of an expectation, and its name: the wafer's last stay there lasts at most so long.
   function times.judge_stay(wafer, name, most)
     local index, station = lookup.wafer(wafer), lookup.station(name)
     lookup.number("seconds", most, lookup.ranges.seconds)
     check_takes_time(station)
     local stay, is_there = native.stay(index, station.index)
-    local text = ("%s leaves %s at most %.10g s after its process"):format(wafer, name, most)
+    local name = ("%s leaves %s at most %.10g s after its process"):format(wafer, name, most)
     if not stay then
-      return false, text .. "; it was never done there"
+      return false, name .. (is_there == nil and "; it was never done there"
+        or "; the process of its last stay there has not ended"), name
     elseif stay <= most then
-      return true, text
+      return true, name, name
     end
-    return false, ("%s; it %s %.10g s, %.10g s too long"):format(text, is_there and "has been there for" or "stayed", stay,
-      stay - most)
+    return false, ("%s; it %s %.10g s, %.10g s too long"):format(name, is_there and "has been there for" or "stayed", stay,
+      stay - most), name
   end
 
   return times

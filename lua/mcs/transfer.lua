@@ -321,6 +321,7 @@ return function(native, patterns, lookup, arm, player, targets, align, centring,
       fields[#fields + 1] = prefix .. "correct"
       fields[#fields + 1] = prefix .. "stop"
     end
+    fields[#fields + 1] = "force"
     return lookup.command(word, station, slot, lookup.fields_text(options, fields))
   end
 

@@ -8,7 +8,7 @@
 static wh_flow_station_t station;
 static wh_clock_t clock_;
 static wh_clock_place_t places[2];
-static int32_t lying[2];
+static wh_clock_seen_t seen[2];
 static bool is_closed;
 static double rate;
 static int64_t now_us;
@@ -24,7 +24,7 @@ static void take(void *user, const wh_clock_event_t *event) {
 static const wh_clock_teller_t teller = {take, NULL};
 
 static void look(void) {
-    wh_clock_look(&station, &clock_, places, lying, is_closed, now_us, &teller);
+    wh_clock_look(&station, &clock_, places, seen, is_closed, now_us, &teller);
 }
 
 static void begin(int64_t process_us, int32_t clean_after, int64_t clean_us) {
@@ -38,7 +38,7 @@ static void begin(int64_t process_us, int32_t clean_after, int64_t clean_us) {
     told_count = 0;
     rate = 1;
     is_closed = true;
-    lying[0] = lying[1] = WH_FLOW_NONE;
+    seen[0] = seen[1] = (wh_clock_seen_t){.wafer = WH_FLOW_NONE};
     wh_clock_start(&station, &clock_, places);
     look();
 }
@@ -64,10 +64,10 @@ static void a_process_waits_until_it_is_closed_and_is_rounded_up(void **state) {
     (void)state;
     begin(2 * S + 1, 0, 0);
     is_closed = false;
-    lying[1] = 7;
+    seen[1].wafer = 7;
     pass(S);
     assert_int_equal(places[1].phase, WH_CLOCK_WAITING);
-    assert_true(wh_clock_left_us(&station, &places[1]) == 2e6 + 1);
+    assert_true(wh_clock_left_us(&station, &places[1], now_us) == 2e6 + 1);
     is_closed = true;
     look();
     assert_int_equal(places[1].phase, WH_CLOCK_PROCESSING);
@@ -76,7 +76,7 @@ static void a_process_waits_until_it_is_closed_and_is_rounded_up(void **state) {
     pass(SLICE);
     assert_int_equal(places[1].phase, WH_CLOCK_DONE);
     pass(S / 2);
-    lying[1] = WH_FLOW_NONE;
+    seen[1].wafer = WH_FLOW_NONE;
     look();
     assert_told(0, WH_CLOCK_PROCESS_BEGINS, 7, S, 2 * S + 1);
     assert_told(1, WH_CLOCK_PROCESS_ENDS, 7, 3 * S + SLICE, 2 * S + SLICE);
@@ -88,12 +88,12 @@ static void a_process_waits_until_it_is_closed_and_is_rounded_up(void **state) {
 static void a_door_that_opens_does_not_end_a_process_but_taking_its_wafer_does(void **state) {
     (void)state;
     begin(2 * S, 0, 0);
-    lying[0] = 1;
+    seen[0].wafer = 1;
     look();
     is_closed = false;
     pass(S);
     assert_int_equal(places[0].phase, WH_CLOCK_PROCESSING);
-    lying[0] = 2;
+    seen[0].wafer = 2;
     pass(SLICE);
     assert_told(1, WH_CLOCK_PROCESS_CUT, 1, S + SLICE, S + SLICE);
     assert_int_equal(places[0].phase, WH_CLOCK_WAITING);
@@ -103,7 +103,7 @@ static void a_door_that_opens_does_not_end_a_process_but_taking_its_wafer_does(v
 static void faults_make_it_slow_or_stop_it(void **state) {
     (void)state;
     begin(S, 0, 0);
-    lying[0] = 1;
+    seen[0].wafer = 1;
     look();
     rate = 0;
     pass(S);
@@ -115,9 +115,9 @@ static void faults_make_it_slow_or_stop_it(void **state) {
 }
 
 static void bring_and_take(int32_t wafer) {
-    lying[0] = wafer;
+    seen[0].wafer = wafer;
     pass(S);
-    lying[0] = WH_FLOW_NONE;
+    seen[0].wafer = WH_FLOW_NONE;
     look();
 }
 
@@ -131,10 +131,10 @@ static void a_clean_comes_after_its_wafers(void **state) {
     bring_and_take(2);
     assert_int_equal(places[0].phase, WH_CLOCK_FREE);
     is_closed = true;
-    lying[0] = WH_FLOW_NONE;
+    seen[0].wafer = WH_FLOW_NONE;
     bring_and_take(3);
     told_count = 0;
-    assert_true(wh_clock_left_us(&station, &places[0]) == 3e6);
+    assert_true(wh_clock_left_us(&station, &places[0], now_us) == 3e6);
     look();
     assert_int_equal(places[0].phase, WH_CLOCK_CLEANING);
     pass(3 * S);
@@ -146,15 +146,15 @@ static void a_clean_around_a_wafer_follows_its_process(void **state) {
     (void)state;
     begin(S, 1, 2 * S);
     station.cleans_full = true;
-    lying[0] = 1;
+    seen[0].wafer = 1;
     look();
-    assert_true(wh_clock_left_us(&station, &places[0]) == 3e6);
+    assert_true(wh_clock_left_us(&station, &places[0], now_us) == 3e6);
     pass(S);
     assert_int_equal(places[0].phase, WH_CLOCK_CLEANING);
     pass(2 * S);
     assert_told(3, WH_CLOCK_CLEAN_ENDS, 1, 3 * S, 2 * S);
     assert_int_equal(places[0].phase, WH_CLOCK_DONE);
-    lying[0] = WH_FLOW_NONE;
+    seen[0].wafer = WH_FLOW_NONE;
     look();
     assert_int_equal(places[0].phase, WH_CLOCK_FREE);
     assert_int_equal(places[0].since_clean, 0);
@@ -168,7 +168,7 @@ static void a_clean_comes_without_wafers(void **state) {
     pass(4 * S);
     assert_int_equal(told_count, 2);
     assert_told(0, WH_CLOCK_CLEAN_BEGINS, WH_FLOW_NONE, 4 * S, S);
-    lying[0] = 5; /* by somebody who did not ask */
+    seen[0].wafer = 5; /* by somebody who did not ask */
     pass(S);
     assert_int_equal(places[0].phase, WH_CLOCK_DONE);
 }
@@ -190,7 +190,7 @@ static void a_lock_pumps_with_and_without_a_wafer(void **state) {
     pass(S);
     assert_false(clock_.is_pumping);
     assert_int_equal(clock_.side, WH_FLOW_VACUUM);
-    lying[1] = 3;
+    seen[1].wafer = 3;
     look();
     assert_true(wh_clock_pump(&station, &clock_, places, WH_FLOW_ATMOSPHERE, now_us, &teller));
     pass(3 * S - SLICE);
@@ -198,6 +198,93 @@ static void a_lock_pumps_with_and_without_a_wafer(void **state) {
     pass(SLICE);
     assert_told(3, WH_CLOCK_PUMP_ENDS, WH_FLOW_NONE, 4 * S, 3 * S);
     assert_string_equal(wh_clock_side_name(told[3].side), "atmosphere");
+}
+
+/* It is lifted and set down again, without leaving the station. */
+static void lift_and_set_down(int32_t wafer, int64_t us) {
+    seen[0] = (wh_clock_seen_t){.wafer = WH_FLOW_NONE, .keeps = true};
+    pass(us);
+    seen[0] = (wh_clock_seen_t){.wafer = wafer};
+    look();
+}
+
+static void a_stay_goes_on_until_the_wafer_has_left(void **state) {
+    (void)state;
+    begin(S, 2, 3 * S);
+    station.window_us = 2 * S;
+    seen[0].wafer = 1;
+    pass(S);
+    lift_and_set_down(1, S);
+    assert_int_equal(places[0].phase, WH_CLOCK_DONE);
+    assert_int_equal(places[0].since_clean, 0);
+    pass(S);
+    seen[0] = (wh_clock_seen_t){.wafer = WH_FLOW_NONE, .keeps = true};
+    pass(S);
+    wh_clock_lift_anew(&places[0], now_us);
+    pass(S);
+    assert_int_equal(told_count, 2);
+    seen[0].keeps = false;
+    look();
+    assert_told(2, WH_CLOCK_TAKEN, 1, 5 * S, 3 * S - SLICE);
+    assert_told(3, WH_CLOCK_LATE, 1, 5 * S, S - SLICE);
+    assert_int_equal(places[0].phase, WH_CLOCK_FREE);
+    assert_int_equal(places[0].since_clean, 1);
+}
+
+static void a_process_that_never_began_is_told(void **state) {
+    (void)state;
+    begin(S, 0, 0);
+    seen[0] = (wh_clock_seen_t){.wafer = 1, .is_bad = true};
+    pass(2 * S);
+    assert_int_equal(places[0].phase, WH_CLOCK_WAITING);
+    seen[0] = (wh_clock_seen_t){.wafer = WH_FLOW_NONE};
+    look();
+    assert_told(0, WH_CLOCK_UNPROCESSED, 1, 2 * S, 2 * S - SLICE);
+    seen[0].wafer = 2;
+    pass(S / 2);
+    seen[0].is_bad = true;
+    look();
+    assert_told(2, WH_CLOCK_PROCESS_CUT, 2, 2 * S + S / 2, S / 2 - SLICE);
+    seen[0].wafer = WH_FLOW_NONE;
+    look();
+    assert_int_equal(told_count, 3);
+}
+
+static void a_wafer_that_comes_in_place_of_a_clean_is_told(void **state) {
+    (void)state;
+    begin(S, 1, 3 * S);
+    is_closed = false;
+    bring_and_take(1);
+    told_count = 0;
+    seen[0].wafer = 2;
+    look();
+    assert_told(0, WH_CLOCK_CLEAN_MISSED, 2, S, 3 * S);
+    begin(0, 0, 3 * S);
+    station.idle_us = S;
+    is_closed = false;
+    pass(2 * S);
+    assert_true(wh_clock_is_clean_due(&station, &places[0], now_us));
+    seen[0].is_awaited = true;
+    is_closed = true;
+    seen[0].wafer = 2;
+    seen[1].wafer = 3;
+    look();
+    assert_told(0, WH_CLOCK_CLEAN_MISSED, 3, 2 * S, 3 * S);
+    assert_int_equal(told_count, 1);
+}
+
+static void a_clean_around_a_wafer_belongs_to_its_stay(void **state) {
+    (void)state;
+    begin(S, 1, 2 * S);
+    station.cleans_full = true;
+    station.window_us = S;
+    seen[0].wafer = 1;
+    look();
+    pass(2 * S);
+    lift_and_set_down(1, SLICE);
+    assert_told(3, WH_CLOCK_CLEAN_CUT, 1, 2 * S + SLICE, S + SLICE);
+    assert_true(wh_clock_judge(&station, &places[0], 0, true, now_us, &teller) == S + SLICE);
+    assert_told(4, WH_CLOCK_LATE, 1, 2 * S + SLICE, SLICE);
 }
 
 static void kinds_have_names(void **state) {
@@ -218,6 +305,10 @@ int main(void) {
         cmocka_unit_test(a_clean_around_a_wafer_follows_its_process),
         cmocka_unit_test(a_clean_comes_without_wafers),
         cmocka_unit_test(a_lock_pumps_with_and_without_a_wafer),
+        cmocka_unit_test(a_stay_goes_on_until_the_wafer_has_left),
+        cmocka_unit_test(a_process_that_never_began_is_told),
+        cmocka_unit_test(a_wafer_that_comes_in_place_of_a_clean_is_told),
+        cmocka_unit_test(a_clean_around_a_wafer_belongs_to_its_stay),
         cmocka_unit_test(kinds_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
