@@ -177,6 +177,9 @@ static int expect_condition(lua_State *L) {
     const bool ok = lua_toboolean(L, 1) != 0;
     const char *text = pay_for_text(L, 2);
     wh_record_add_expectation(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
+    if (!lua_isnoneornil(L, 3)) {
+        wh_record_name_expectation(mcs->recorder.record, (size_t)luaL_checkinteger(L, 3));
+    }
     wh_mcs_tell(mcs, WH_MCS_EXPECTED, NULL);
     return 0;
 }

@@ -70,16 +70,24 @@ static wh_expectation_record_t *add_expectation(wh_record_t *record) {
 }
 
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
-    *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, false};
+    *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, false, 0};
 }
 
 void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok) {
     record->implied = wh_array_grow(record->implied, record->implied_count, &record->implied_capacity,
                                     sizeof *record->implied);
-    record->implied[record->implied_count++] = (wh_expectation_record_t){line, wh_text_copy(text), ok, true};
+    const char *found = strstr(text, "; ");
+    const size_t name = found ? (size_t)(found - text) : 0;
+    record->implied[record->implied_count++] =
+        (wh_expectation_record_t){line, wh_text_copy(text), ok, true, name};
     if (!ok) {
-        *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, true};
+        *add_expectation(record) = (wh_expectation_record_t){line, wh_text_copy(text), ok, true, name};
     }
+}
+
+void wh_record_name_expectation(wh_record_t *record, size_t bytes) {
+    wh_expectation_record_t *last = &record->expectations[record->expectation_count - 1];
+    last->name = bytes < strlen(last->text) ? bytes : 0;
 }
 
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {

@@ -39,6 +39,7 @@ typedef struct {
     char *text; /* the expectation's text; if it was not met, with the value found */
     bool ok;
     bool is_implied; /* a command or the end of the script implies it: nobody wrote it down */
+    size_t name;     /* how much of the text is alike in all trials, bytes; 0: all of it */
 } wh_expectation_record_t;
 
 /* A wafer that was placed well: see record/throughput.h. */
@@ -162,7 +163,13 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event,
                          const wh_seat_t *seat);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
+
+/* Adds an expectation that nobody wrote down. Behind "; " the text tells the findings. */
 void wh_record_add_implied(wh_record_t *record, int line, const char *text, bool ok);
+
+/* The findings begin after so many bytes of the last expectation's text. */
+void wh_record_name_expectation(wh_record_t *record, size_t bytes);
+
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; later calls do nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);

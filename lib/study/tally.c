@@ -95,6 +95,19 @@ static int place_of(const wh_expectation_record_t expected[], size_t index, int 
     return place;
 }
 
+/* The row of an expectation: its name tells nothing that one trial alone has found. */
+static wh_tally_row_t *expectation_row(wh_tally_t *tally, const wh_tally_row_t *key,
+                                       const wh_expectation_record_t *expected, uint64_t trial) {
+    if (expected->name == 0) {
+        return wh_tally_row(&tally->expectations, key, expected->text, trial);
+    }
+    char *name = wh_text_copy(expected->text);
+    name[expected->name] = '\0';
+    wh_tally_row_t *row = wh_tally_row(&tally->expectations, key, name, trial);
+    free(name);
+    return row;
+}
+
 /* Implied ones are counted from the record's `implied`, which also has those that were met. */
 static void add_expectations(wh_tally_t *tally, uint64_t trial, const wh_expectation_record_t expected[],
                              size_t count, bool is_implied) {
@@ -103,7 +116,7 @@ static void add_expectations(wh_tally_t *tally, uint64_t trial, const wh_expecta
         place = place_of(expected, i, place);
         if (expected[i].is_implied == is_implied) {
             const wh_tally_row_t key = {.line = expected[i].line, .is_implied = is_implied, .place = place};
-            wh_tally_row_t *row = wh_tally_row(&tally->expectations, &key, expected[i].text, trial);
+            wh_tally_row_t *row = expectation_row(tally, &key, &expected[i], trial);
             count_row(row, trial, !expected[i].ok);
         }
     }

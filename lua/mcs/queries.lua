@@ -71,6 +71,12 @@ return function(native, lookup, wh, judge_stay)
     return found.gap, found.limit ~= 0 and found.limit or nil, found.time, found.parts
   end
 
+  -- Without figures that one trial alone has found, the text is `name`.
+  local function expect_found(condition, text, name)
+    native.expect(condition, text, #name)
+    return condition
+  end
+
   -- States an expectation. If it is false, the run goes on and fails at its end. Returns the condition.
   function queries.expect(condition, text)
     if condition ~= nil and type(condition) ~= "boolean" then
@@ -109,6 +115,7 @@ return function(native, lookup, wh, judge_stay)
     local verdict, x, y, z, found, at = native.lies(index, station.index, place, dx, dy, tolerance)
     local text = "%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"
     text = text:format(wafer, station_name, slot, dx, dy, tolerance)
+    local name = text
     if verdict == 0 then
       text = ("%s; it %s"):format(text, where(found, at))
     elseif verdict == 1 then
@@ -117,13 +124,13 @@ return function(native, lookup, wh, judge_stay)
       text = math.abs(z) < most and text
         or ("%s, dZ %s (expected within %.10g mm of the slot's plane)"):format(text, found_text(z, 0, most), most)
     end
-    return queries.expect(verdict == 2, text)
+    return expect_found(verdict == 2, text, name)
   end
 
   -- Expects that the wafer's last stay in the station, from its process's end until it was taken, or until now, lasts at
   -- most so many seconds.
   function queries.expect_within(wafer, station, seconds)
-    return queries.expect(judge_stay(wafer, station, seconds))
+    return expect_found(judge_stay(wafer, station, seconds))
   end
 
   return queries
