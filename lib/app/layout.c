@@ -22,6 +22,16 @@ const wh_option_t wh_layout_options[] = {
      .variable = offsetof(wh_layout_arguments_t, memory_mib), 1, 1e6},
     {0}};
 
+/* True if a parameter that nobody read is refused: standard error then says so. */
+static bool is_unread_refused(const wh_layout_arguments_t *arguments) {
+    char unread[WH_SANDBOX_MESSAGE_BYTES];
+    const bool is_refused = arguments->refuses_unread && wh_sandbox_find_unread(arguments->sandbox, unread);
+    if (is_refused) {
+        fprintf(stderr, "%s: %s\n", arguments->path, unread);
+    }
+    return is_refused;
+}
+
 const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     wh_sandbox_result_t result;
     const wh_sandbox_limits_t limits = {.memory_bytes = (size_t)(arguments->memory_mib * 1048576)};
@@ -34,6 +44,8 @@ const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     arguments->sandbox = sandbox;
     if (!layout) {
         fprintf(stderr, "%s\n", result.message);
+    } else if (!layout->patterns && is_unread_refused(arguments)) {
+        return NULL;
     } else if (!layout->patterns) {
         wh_layout_arguments_note(arguments);
     }

@@ -144,7 +144,7 @@ static int act(arguments_t *arguments) {
 }
 
 int wh_app_schedule(int argc, char **argv) {
-    arguments_t arguments = {.layout = {.is_timed = true}};
+    arguments_t arguments = {.layout = {.is_timed = true, .refuses_unread = true}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = act(&arguments);
     wh_layout_arguments_free(&arguments.layout);

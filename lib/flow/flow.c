@@ -231,8 +231,12 @@ void wh_flow_play(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const 
     }
     result->over = play.count;
     result->left = plan->wafer_count - state.over;
-    result->no_cycle =
-        wh_flow_find_cycle(tool, plan, play.ends_us, play.count, &result->period, &result->cycle_us);
+    if (result->end == WH_FLOW_DONE || result->end == WH_FLOW_CUT) {
+        result->no_cycle =
+            wh_flow_find_cycle(tool, plan, play.ends_us, play.count, &result->period, &result->cycle_us);
+    } else {
+        result->no_cycle = wh_text_copy("the flow did not go on to its end");
+    }
     if (result->end == WH_FLOW_STUCK) {
         result->why = wh_flow_stuck_text(&state);
     } else if (state.cause) {

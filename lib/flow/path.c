@@ -8,7 +8,7 @@ const char *const wh_flow_path_words[WH_FLOW_PATH_WORDS] = {
     "move", "door", "pick", "place", "swap", "process", "clean", "pump", "down", "lot", "takt", "wait"};
 
 void wh_flow_log_add(wh_flow_log_t *log, const wh_flow_event_t *event) {
-    if (event->kind != WH_FLOW_EVENT_STAY && event->end_us > event->begin_us) {
+    if (event->kind != WH_FLOW_EVENT_STAY) {
         log->events = wh_array_grow(log->events, log->count, &log->capacity, sizeof *log->events);
         size_t at = log->count++;
         for (; at > 0 && log->events[at - 1].end_us > event->end_us; --at) {
@@ -22,6 +22,8 @@ typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
     const wh_flow_log_t *log;
+    const wh_flow_event_t **begins; /* the log's events, by their begins */
+    int64_t longest_shutting_us;
     wh_flow_part_t *parts;
     size_t count, capacity;
 } path_t;
@@ -45,6 +47,14 @@ static void add_part(path_t *path, wh_flow_path_word_t word, int32_t robot, int3
     path->parts[path->count++] = (wh_flow_part_t){word, robot, station, us};
 }
 
+static void add_event(path_t *path, const wh_flow_event_t *event) {
+    if (event->end_us > event->begin_us) {
+        add_part(path, words_of_events[event->kind], event->robot,
+                 event->robot == WH_FLOW_NONE ? event->station : WH_FLOW_NONE,
+                 event->end_us - event->begin_us);
+    }
+}
+
 /* The first event that ends at this time or later. */
 static size_t first_ending(const wh_flow_log_t *log, int64_t us) {
     size_t low = 0, high = log->count;
@@ -59,126 +69,339 @@ static size_t first_ending(const wh_flow_log_t *log, int64_t us) {
     return low;
 }
 
-/* How well the end of `before` explains the begin of `event`: 0 is best. */
-static int rank(const wh_flow_event_t *before, const wh_flow_event_t *event) {
-    if (event->robot != WH_FLOW_NONE && before->robot == event->robot) {
-        return 0;
-    }
-    if (before->wafer != WH_FLOW_NONE && (before->wafer == event->wafer || before->other == event->wafer)) {
-        return 1;
-    }
-    return before->station == event->station ? 2 : 3;
-}
-
 static bool is_access(const wh_flow_event_t *event) {
     return event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_PLACE ||
            event->kind == WH_FLOW_EVENT_SWAP;
 }
 
-/* True if the event could wait for what a station did by itself: its robot goes into that place or station,
- * or brings its wafer there next. */
-static bool could_wait_for(const path_t *path, const wh_flow_event_t *event, const wh_flow_event_t *doing) {
-    if (event->robot == WH_FLOW_NONE) {
-        return doing->station == event->station && doing->kind != WH_FLOW_EVENT_CLEAN;
-    }
+/* True if it takes a wafer out. */
+static bool takes(const wh_flow_event_t *event) {
+    return event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_SWAP;
+}
+
+/* True if it brings a wafer in. */
+static bool brings(const wh_flow_event_t *event) {
+    return event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP;
+}
+
+/* When the door behind an access is shut. */
+static int64_t shut_us(const path_t *path, const wh_flow_event_t *access) {
+    const size_t of = wh_flow_of(path->tool, access->robot, access->station);
+    return access->end_us + path->tool->doors[of].close_us;
+}
+
+/* ----------------------------------------------------------------------------------------- the robot's aim */
+
+/* The access for which a robot does something, and, if it takes a wafer there, the one that brings it on.
+ * Each may be null. */
+typedef struct {
+    const wh_flow_event_t *access, *placing;
+} aim_t;
+
+static const wh_flow_event_t *next_access(const path_t *path, const wh_flow_event_t *from, int32_t robot,
+                                          bool (*is_meant)(const wh_flow_event_t *)) {
     const wh_flow_event_t *const end = path->log->events + path->log->count;
-    for (const wh_flow_event_t *next = event; next < end; ++next) {
-        if (next->robot != event->robot || !is_access(next)) {
-            continue;
-        }
-        if (doing->kind == WH_FLOW_EVENT_CLEAN ? next->place == doing->place
-                                               : next->station == doing->station) {
-            return true;
-        }
-        if (next->kind != WH_FLOW_EVENT_PICK) {
-            return false;
-        }
-    }
-    return false;
-}
-
-static bool is_station_alone(const wh_flow_event_t *event) {
-    return event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
-           event->kind == WH_FLOW_EVENT_DOWN;
-}
-
-/* The event whose end lets this one begin, or null. */
-static const wh_flow_event_t *find_before(const path_t *path, const wh_flow_event_t *event) {
-    const wh_flow_event_t *best = NULL;
-    for (size_t i = first_ending(path->log, event->begin_us);
-         i < path->log->count && path->log->events[i].end_us == event->begin_us; ++i) {
-        const wh_flow_event_t *before = &path->log->events[i];
-        if (is_station_alone(before) && !could_wait_for(path, event, before)) {
-            continue;
-        }
-        if (!best || rank(before, event) < rank(best, event)) {
-            best = before;
-        }
-    }
-    return best;
-}
-
-static int64_t longest_shutting_us(const wh_flow_tool_t *tool) {
-    int64_t longest_us = 0;
-    for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
-        longest_us = tool->doors[i].close_us > longest_us ? tool->doors[i].close_us : longest_us;
-    }
-    return longest_us;
-}
-
-/* True if it is an access whose door is shut at this time. */
-static bool is_shut_at(const wh_flow_tool_t *tool, const wh_flow_event_t *event, int64_t us) {
-    return is_access(event) &&
-           event->end_us + tool->doors[wh_flow_of(tool, event->robot, event->station)].close_us == us;
-}
-
-/* The access whose door is shut at the begin of this event, or null. */
-static const wh_flow_event_t *find_shut(const path_t *path, const wh_flow_event_t *event) {
-    const wh_flow_event_t *best = NULL;
-    for (size_t i = first_ending(path->log, event->begin_us - longest_shutting_us(path->tool));
-         i < path->log->count && path->log->events[i].end_us < event->begin_us; ++i) {
-        const wh_flow_event_t *before = &path->log->events[i];
-        if (is_shut_at(path->tool, before, event->begin_us) && (!best || before->station == event->station)) {
-            best = before;
-        }
-    }
-    return best;
-}
-
-static const wh_flow_lot_t *find_lot(const path_t *path, int64_t us) {
-    for (size_t i = 0; i < path->plan->lot_count; ++i) {
-        if (path->plan->lots[i].arrives_us == us) {
-            return &path->plan->lots[i];
+    for (const wh_flow_event_t *next = from; next < end; ++next) {
+        if (next->robot == robot && is_meant(next)) {
+            return next;
         }
     }
     return NULL;
 }
 
-/* The last event that ends before this time, or null. */
-static const wh_flow_event_t *find_earlier(const path_t *path, int64_t us) {
-    const size_t first = first_ending(path->log, us);
-    return first > 0 ? &path->log->events[first - 1] : NULL;
+static aim_t aim_of(const path_t *path, const wh_flow_event_t *event) {
+    aim_t aim = {NULL, NULL};
+    if (event->robot != WH_FLOW_NONE) {
+        aim.access = next_access(path, event, event->robot, is_access);
+        aim.placing =
+            aim.access && takes(aim.access) ? next_access(path, aim.access + 1, event->robot, brings) : NULL;
+    }
+    return aim;
 }
 
-/* Goes back over what nothing that ended explains: a door, a lot, takt. Returns the event behind it, or
- * null. */
+static bool is_at(const wh_flow_event_t *access, int32_t station) {
+    return access && access->station == station;
+}
+
+/* ------------------------------------------------------------------------------------------------- causes */
+
+/* Why something began at an instant. */
+typedef struct {
+    int rank;                     /* 0 is best; UNKNOWN: nothing ended */
+    wh_flow_path_word_t word;     /* of the time up to the instant, if it is not the event's own */
+    int32_t station;              /* likewise */
+    const wh_flow_event_t *event; /* before it; null: nothing, the time is from the beginning on */
+    bool is_from_begin;           /* the time is from the event's begin on, not from its end */
+} cause_t;
+
+enum { NEEDED_FIRST, NEEDED, NEEDED_ONWARD, NEEDED_BESIDE, ENDED, UNKNOWN };
+
+static void offer(cause_t *best, const cause_t *cause) {
+    *best = cause->rank < best->rank ? *cause : *best;
+}
+
+static void offer_end(cause_t *best, int rank, const wh_flow_event_t *ended) {
+    offer(best, &(cause_t){rank, WH_FLOW_PATH_WORDS, WH_FLOW_NONE, ended, false});
+}
+
+/* How much an aim needed that this ended. */
+static int need_of_end(const aim_t *aim, int32_t robot, const wh_flow_event_t *ended) {
+    const wh_flow_event_t *access = aim->access;
+    if (robot != WH_FLOW_NONE && ended->robot == robot) {
+        return NEEDED_FIRST;
+    }
+    if (!access) {
+        return ENDED;
+    }
+    switch (ended->kind) {
+    case WH_FLOW_EVENT_PROCESS:
+        return (takes(access) || robot == WH_FLOW_NONE) && ended->wafer == access->wafer ? NEEDED : ENDED;
+    case WH_FLOW_EVENT_CLEAN:
+        return (takes(access) && ended->wafer == access->wafer) ||
+                       (brings(access) && ended->place == access->place)
+                   ? NEEDED
+                   : ENDED;
+    case WH_FLOW_EVENT_PICK:
+    case WH_FLOW_EVENT_PLACE:
+    case WH_FLOW_EVENT_SWAP:
+    case WH_FLOW_EVENT_PUMP:
+    case WH_FLOW_EVENT_DOWN:
+        return ended->station == access->station     ? NEEDED
+               : is_at(aim->placing, ended->station) ? NEEDED_ONWARD
+                                                     : ENDED;
+    case WH_FLOW_EVENT_MOVE:
+    case WH_FLOW_EVENT_OPEN:
+    case WH_FLOW_EVENT_STAY:
+    default:
+        return ENDED;
+    }
+}
+
+static void offer_ends(const path_t *path, const aim_t *aim, int32_t robot, int64_t us, cause_t *best) {
+    for (size_t i = first_ending(path->log, us); i < path->log->count && path->log->events[i].end_us == us;
+         ++i) {
+        const wh_flow_event_t *ended = &path->log->events[i];
+        if (ended->begin_us < us) {
+            offer_end(best, need_of_end(aim, robot, ended), ended);
+        }
+    }
+}
+
+static void offer_doors(const path_t *path, const aim_t *aim, int64_t us, cause_t *best) {
+    for (size_t i = first_ending(path->log, us - path->longest_shutting_us);
+         i < path->log->count && path->log->events[i].end_us < us; ++i) {
+        const wh_flow_event_t *before = &path->log->events[i];
+        if (is_access(before) && shut_us(path, before) == us) {
+            offer(best, &(cause_t){is_at(aim->access, before->station) ? NEEDED : ENDED, WH_FLOW_PATH_DOOR,
+                                   before->station, before, false});
+        }
+    }
+}
+
+static void offer_lots(const path_t *path, const aim_t *aim, int64_t us, cause_t *best) {
+    const wh_flow_event_t *access = aim->access;
+    for (size_t i = 0; i < path->plan->lot_count; ++i) {
+        if (path->plan->lots[i].arrives_us == us) {
+            const bool is_own = access && takes(access) && access->step == 0 &&
+                                path->plan->wafers[access->wafer].lot == (int32_t)i;
+            offer(best, &(cause_t){is_own ? NEEDED : ENDED, WH_FLOW_PATH_LOT, WH_FLOW_NONE, NULL, false});
+        }
+    }
+}
+
+/* The first of those that began at this time or later, by their begins. */
+static size_t first_beginning(const path_t *path, int64_t us) {
+    size_t low = 0, high = path->log->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (path->begins[middle]->begin_us < us) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* The next that began at this time, or null; `at` counts on. */
+static const wh_flow_event_t *next_begun(const path_t *path, int64_t us, size_t *at) {
+    return *at < path->log->count && path->begins[*at]->begin_us == us ? path->begins[(*at)++] : NULL;
+}
+
+/* A wafer's start keeps others back from its begin on, its door's opening included. */
+static void offer_takt(const path_t *path, const aim_t *aim, int64_t us, cause_t *best) {
+    const int64_t begin_us = us - path->plan->takt_us;
+    size_t at = first_beginning(path, begin_us);
+    if (path->plan->takt_us == 0) {
+        return;
+    }
+    for (const wh_flow_event_t *begun = next_begun(path, begin_us, &at); begun;
+         begun = next_begun(path, begin_us, &at)) {
+        const bool is_entering = begun->kind == WH_FLOW_EVENT_OPEN || takes(begun);
+        const wh_flow_event_t *start = is_entering ? aim_of(path, begun).access : NULL;
+        if (start && takes(start) && start->step == 0) {
+            const bool is_needed = aim->access && takes(aim->access) && aim->access->step == 0;
+            offer(best, &(cause_t){is_needed ? NEEDED : ENDED, WH_FLOW_PATH_TAKT, WH_FLOW_NONE, begun, true});
+        }
+    }
+}
+
+/* What a station's failure brings begins at a time that is given. */
+static void offer_failures(const path_t *path, int64_t us, cause_t *best) {
+    for (size_t i = 0; i < path->plan->down_count; ++i) {
+        if (path->plan->downs[i].at_us == us) {
+            offer(best, &(cause_t){ENDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false});
+        }
+    }
+}
+
+static void offer_all(const path_t *path, const aim_t *aim, int32_t robot, int64_t us, cause_t *best) {
+    offer_ends(path, aim, robot, us, best);
+    offer_doors(path, aim, us, best);
+    offer_takt(path, aim, us, best);
+    offer_lots(path, aim, us, best);
+    offer_failures(path, us, best);
+}
+
+/* True if what another robot began at the same instant could let this begin: it empties a place, or brings
+ * a wafer to a lock that turns. */
+static bool could_follow(const wh_flow_event_t *event, const aim_t *aim, const wh_flow_event_t *begun,
+                         const aim_t *of_begun) {
+    if (!of_begun->access || begun->robot == event->robot) {
+        return false;
+    }
+    if (event->robot == WH_FLOW_NONE) {
+        return is_at(of_begun->access, event->station) || is_at(of_begun->placing, event->station);
+    }
+    const bool is_entering = begun->kind == WH_FLOW_EVENT_OPEN || takes(begun);
+    return is_entering && takes(of_begun->access) &&
+           (is_at(aim->access, of_begun->access->station) || is_at(aim->placing, of_begun->access->station));
+}
+
+/* A lock turns for the access that comes next. */
+static aim_t aim_of_lock(const path_t *path, const wh_flow_event_t *pump) {
+    for (const wh_flow_event_t *next = pump; next < path->log->events + path->log->count; ++next) {
+        if (is_access(next) && next->station == pump->station) {
+            return (aim_t){next, NULL};
+        }
+    }
+    return (aim_t){NULL, NULL};
+}
+
+/* So many robots may begin at one instant because another one did. */
+#define DEEPEST 4
+
+/* What ended at the instant, the best of it for this; else for another robot that began with it, and let it
+ * begin. */
+static cause_t cause_of_choice(const path_t *path, const wh_flow_event_t *event, int depth) {
+    const int64_t us = event->begin_us;
+    cause_t best = {.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
+    const aim_t aim = event->kind == WH_FLOW_EVENT_PUMP ? aim_of_lock(path, event) : aim_of(path, event);
+    offer_all(path, &aim, event->robot, us, &best);
+    if (best.rank < NEEDED_BESIDE || depth == DEEPEST) {
+        return best;
+    }
+    size_t at = first_beginning(path, us);
+    for (const wh_flow_event_t *begun = next_begun(path, us, &at); begun; begun = next_begun(path, us, &at)) {
+        const aim_t of_begun = aim_of(path, begun);
+        if (begun != event && could_follow(event, &aim, begun, &of_begun)) {
+            cause_t other = cause_of_choice(path, begun, depth + 1);
+            other.rank = other.rank < NEEDED_BESIDE ? NEEDED_BESIDE : other.rank;
+            offer(&best, &other);
+        }
+    }
+    return best;
+}
+
+/* A process begins behind its wafer's placing and its door, or a failure. */
+static cause_t cause_of_process(const path_t *path, const wh_flow_event_t *event) {
+    cause_t best = {.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
+    const int64_t us = event->begin_us;
+    for (size_t i = first_ending(path->log, us - path->longest_shutting_us);
+         i < path->log->count && path->log->events[i].end_us <= us; ++i) {
+        const wh_flow_event_t *before = &path->log->events[i];
+        const bool is_own_end = before->end_us == us && before->begin_us < us;
+        const bool is_placing =
+            brings(before) &&
+            (before->kind == WH_FLOW_EVENT_SWAP ? before->other : before->wafer) == event->wafer;
+        if (is_placing && shut_us(path, before) == us) {
+            offer(&best, &(cause_t){NEEDED, before->end_us < us ? WH_FLOW_PATH_DOOR : WH_FLOW_PATH_WORDS,
+                                    event->station, before, false});
+        } else if (is_own_end && before->kind == WH_FLOW_EVENT_PROCESS && before->wafer == event->wafer) {
+            offer_end(&best, NEEDED_FIRST, before);
+        } else if (is_own_end && before->kind == WH_FLOW_EVENT_DOWN && before->station == event->station) {
+            offer_end(&best, NEEDED_ONWARD, before);
+        }
+    }
+    return best;
+}
+
+/* A clean of an empty place begins when the door is shut behind its wafer, when a failure ends, or when no
+ * wafer came for so long. */
+static cause_t cause_of_clean(const path_t *path, const wh_flow_event_t *event) {
+    cause_t best = {.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
+    const int64_t us = event->begin_us, idle_us = path->tool->stations[event->station].idle_us;
+    const wh_flow_event_t out = {
+        .kind = WH_FLOW_EVENT_PLACE, .station = event->station, .place = event->place};
+    const aim_t aim = {&out, NULL};
+    if (event->wafer != WH_FLOW_NONE) {
+        return cause_of_process(path, event);
+    }
+    offer_ends(path, &aim, WH_FLOW_NONE, us, &best);
+    offer_doors(path, &aim, us, &best);
+    if (best.rank == NEEDED || idle_us >= us) {
+        return best.rank == NEEDED
+                   ? best
+                   : (cause_t){.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
+    }
+    for (size_t i = first_ending(path->log, us - idle_us);
+         i < path->log->count && path->log->events[i].end_us == us - idle_us; ++i) {
+        if (takes(&path->log->events[i]) && path->log->events[i].place == event->place) {
+            return (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, &path->log->events[i], false};
+        }
+    }
+    return best;
+}
+
+static cause_t cause_of(const path_t *path, const wh_flow_event_t *event) {
+    switch (event->kind) {
+    case WH_FLOW_EVENT_PROCESS:
+        return cause_of_process(path, event);
+    case WH_FLOW_EVENT_CLEAN:
+        return cause_of_clean(path, event);
+    case WH_FLOW_EVENT_DOWN:
+        return (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false};
+    case WH_FLOW_EVENT_MOVE:
+    case WH_FLOW_EVENT_OPEN:
+    case WH_FLOW_EVENT_PICK:
+    case WH_FLOW_EVENT_PLACE:
+    case WH_FLOW_EVENT_SWAP:
+    case WH_FLOW_EVENT_PUMP:
+    case WH_FLOW_EVENT_STAY:
+    default:
+        return cause_of_choice(path, event, 0);
+    }
+}
+
+/* Goes back from the begin of an event to what let it begin: adds the time between, and what that took
+ * itself. Returns it, or null at the beginning. */
 static const wh_flow_event_t *go_back(path_t *path, const wh_flow_event_t *event) {
-    const int64_t at_us = event->begin_us;
-    const wh_flow_event_t *before = find_shut(path, event);
-    if (before) {
-        add_part(path, WH_FLOW_PATH_DOOR, WH_FLOW_NONE, before->station, at_us - before->end_us);
-        return before;
+    const int64_t us = event->begin_us;
+    cause_t cause = cause_of(path, event);
+    if (cause.rank == UNKNOWN) {
+        const size_t first = first_ending(path->log, us);
+        cause.event = first > 0 ? &path->log->events[first - 1] : NULL;
     }
-    if (find_lot(path, at_us)) {
-        add_part(path, WH_FLOW_PATH_LOT, WH_FLOW_NONE, WH_FLOW_NONE, at_us);
-        return NULL;
+    const int64_t from_us = !cause.event          ? 0
+                            : cause.is_from_begin ? cause.event->begin_us
+                                                  : cause.event->end_us;
+    if (us > from_us) {
+        add_part(path, cause.word, WH_FLOW_NONE, cause.station, us - from_us);
     }
-    before = find_earlier(path, at_us);
-    const bool is_start =
-        (event->kind == WH_FLOW_EVENT_PICK || event->kind == WH_FLOW_EVENT_OPEN) && path->plan->takt_us > 0;
-    add_part(path, is_start ? WH_FLOW_PATH_TAKT : WH_FLOW_PATH_WAIT, WH_FLOW_NONE, WH_FLOW_NONE,
-             at_us - (before ? before->end_us : 0));
-    return before;
+    if (cause.event && !cause.is_from_begin) {
+        add_event(path, cause.event);
+    }
+    return cause.event;
 }
 
 static int by_time(const void *a, const void *b) {
@@ -202,74 +425,46 @@ static const wh_flow_event_t *find_last(const wh_flow_log_t *log) {
     return NULL;
 }
 
+/* By their begins; of one instant in the order of the log. */
+static int by_begin(const void *a, const void *b) {
+    const wh_flow_event_t *one = *(const wh_flow_event_t *const *)a,
+                          *other = *(const wh_flow_event_t *const *)b;
+    return one->begin_us != other->begin_us ? (one->begin_us < other->begin_us ? -1 : 1)
+           : one < other                    ? -1
+                                            : one > other;
+}
+
+static void open_path(path_t *path) {
+    const wh_flow_tool_t *tool = path->tool;
+    path->begins = wh_array_new(path->log->count, sizeof *path->begins);
+    for (size_t i = 0; i < path->log->count; ++i) {
+        path->begins[i] = &path->log->events[i];
+    }
+    if (path->log->count > 0) {
+        qsort(path->begins, path->log->count, sizeof *path->begins, by_begin);
+    }
+    for (size_t i = 0; i < tool->robot_count * tool->station_count; ++i) {
+        const int64_t close_us = tool->doors[i].close_us;
+        path->longest_shutting_us =
+            close_us > path->longest_shutting_us ? close_us : path->longest_shutting_us;
+    }
+}
+
 wh_flow_part_t *wh_flow_path(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, const wh_flow_log_t *log,
                              size_t *count) {
-    path_t path = {tool, plan, log, NULL, 0, 0};
+    path_t path = {.tool = tool, .plan = plan, .log = log};
     const wh_flow_event_t *event = find_last(log);
-    while (event) {
-        const bool is_robots = event->robot != WH_FLOW_NONE;
-        add_part(&path, words_of_events[event->kind], event->robot, is_robots ? WH_FLOW_NONE : event->station,
-                 event->end_us - event->begin_us);
-        const wh_flow_event_t *before = event->begin_us > 0 ? find_before(&path, event) : NULL;
-        event = before || event->begin_us == 0 ? before : go_back(&path, event);
+    open_path(&path);
+    if (event) {
+        add_event(&path, event);
+    }
+    while (event && event->begin_us > 0) {
+        event = go_back(&path, event);
     }
     if (path.count > 0) {
         qsort(path.parts, path.count, sizeof *path.parts, by_time);
     }
+    free(path.begins);
     *count = path.count;
     return path.parts;
-}
-
-/* -------------------------------------------------------------------------------------------------- gains */
-
-static void shorten(int64_t times_us[], size_t count) {
-    for (size_t i = 0; i < count; ++i) {
-        times_us[i] -= (times_us[i] + 5) / 10;
-    }
-}
-
-static void shorten_robot(wh_flow_tool_t *tool, int32_t robot) {
-    const size_t of = wh_flow_of(tool, robot, 0), stations = tool->station_count;
-    shorten(&tool->pick_us[of], stations);
-    shorten(&tool->place_us[of], stations);
-    shorten(&tool->swap_us[of], stations);
-    shorten(&tool->move_us[of * stations], stations * stations);
-}
-
-static void shorten_station(wh_flow_tool_t *tool, int32_t station) {
-    wh_flow_station_t *of = &tool->stations[station];
-    of->is_shortened = true;
-    shorten(&of->process_us, 1);
-    shorten(&of->clean_us, 1);
-    shorten(of->pump_us, 2);
-    shorten(of->empty_pump_us, 2);
-    for (int32_t r = 0; r < (int32_t)tool->robot_count; ++r) {
-        wh_flow_door_t *door = &tool->doors[wh_flow_of(tool, r, station)];
-        shorten(&door->open_us, 1);
-        shorten(&door->close_us, 1);
-    }
-}
-
-wh_flow_gain_t *wh_flow_gains(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan) {
-    const size_t robots = tool->robot_count, stations = tool->station_count;
-    wh_flow_gain_t *gains = wh_array_new(robots + stations, sizeof *gains);
-    for (size_t i = 0; i < robots + stations; ++i) {
-        wh_flow_tool_t other;
-        wh_flow_result_t result;
-        const bool is_robot = i < robots;
-        const int32_t number = (int32_t)(is_robot ? i : i - robots);
-        wh_flow_tool_copy(&other, tool);
-        if (is_robot) {
-            shorten_robot(&other, number);
-        } else {
-            shorten_station(&other, number);
-        }
-        wh_flow_play(&other, plan, NULL, &result);
-        gains[i] = (wh_flow_gain_t){is_robot ? number : WH_FLOW_NONE, is_robot ? WH_FLOW_NONE : number,
-                                    result.end, result.makespan_us,
-                                    result.period > 0 ? (double)result.cycle_us / result.period : -1};
-        wh_flow_result_close(&result);
-        wh_flow_tool_close(&other);
-    }
-    return gains;
 }

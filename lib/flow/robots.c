@@ -234,7 +234,8 @@ static void tell_action(const wh_flow_state_t *state, int32_t robot, wh_flow_eve
                                    .other = other,
                                    .place = kind == WH_FLOW_EVENT_PICK ? at->from : at->to,
                                    .station = at->station,
-                                   .from = at->from};
+                                   .from = at->from,
+                                   .step = wafer == WH_FLOW_NONE ? 0 : state->wafers[wafer].step};
     wh_flow_tell(state, &event);
 }
 

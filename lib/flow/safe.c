@@ -127,6 +127,10 @@ static void look(world_t *world, const wh_flow_into_t into[], size_t count) {
 }
 
 bool wh_flow_is_safe(const wh_flow_state_t *state, const wh_flow_into_t into[], size_t count) {
+    return wh_flow_find_blocked(state, into, count) == WH_FLOW_NONE;
+}
+
+int32_t wh_flow_find_blocked(const wh_flow_state_t *state, const wh_flow_into_t into[], size_t count) {
     const size_t places = state->tool->place_count, stations = state->tool->station_count;
     world_t world = {state,
                      wh_array_new(places, sizeof *world.counts),
@@ -145,10 +149,13 @@ bool wh_flow_is_safe(const wh_flow_state_t *state, const wh_flow_into_t into[], 
             }
         }
     }
-    const bool is_safe = world.count == 0;
+    int32_t blocked = WH_FLOW_NONE;
+    for (size_t i = 0; i < world.count; ++i) {
+        blocked = i == 0 || world.wafers[i].wafer < blocked ? world.wafers[i].wafer : blocked;
+    }
     free(world.counts);
     free(world.reached);
     free(world.next);
     free(world.wafers);
-    return is_safe;
+    return blocked;
 }

@@ -16,4 +16,7 @@ typedef struct {
  * inside times the places of their routes. */
 bool wh_flow_is_safe(const wh_flow_state_t *state, const wh_flow_into_t into[], size_t count);
 
+/* The first wafer that could not come to its end then, or WH_FLOW_NONE: the tool is safe. */
+int32_t wh_flow_find_blocked(const wh_flow_state_t *state, const wh_flow_into_t into[], size_t count);
+
 #endif

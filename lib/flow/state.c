@@ -9,8 +9,8 @@ static void open_stations(wh_flow_state_t *state) {
     const wh_flow_tool_t *tool = state->tool;
     for (size_t i = 0; i < tool->place_count; ++i) {
         const int64_t idle_us = tool->stations[tool->place_stations[i]].idle_us;
-        state->places[i] = (wh_flow_place_t){WH_FLOW_NONE,  WH_FLOW_NONE, -1, WH_FLOW_NEVER,
-                                             WH_FLOW_NEVER, idle_us,      0,  false};
+        state->places[i] = (wh_flow_place_t){
+            WH_FLOW_NONE, WH_FLOW_NONE, -1, WH_FLOW_NEVER, WH_FLOW_NEVER, idle_us, 0, WH_FLOW_NONE, false};
     }
     for (size_t i = 0; i < tool->station_count; ++i) {
         state->stations[i] = (wh_flow_station_state_t){.user = WH_FLOW_NONE,

@@ -13,6 +13,7 @@ typedef struct {
     int64_t clean_us;    /* the end of a clean that runs, or WH_FLOW_NEVER */
     int64_t idle_us;     /* when a clean is due because no wafer came, or WH_FLOW_NEVER */
     int32_t since_clean; /* wafers */
+    int32_t owner;       /* the lot of a wafer that ends here: from its coming until the lot is over */
     bool is_clean_due;
 } wh_flow_place_t;
 

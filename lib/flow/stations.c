@@ -332,9 +332,9 @@ static void begin_cleans(wh_flow_state_t *state, int32_t number) {
     plan_cleans(state, number);
 }
 
-/* True if every wafer of the lot to which this one belongs is at its end. */
-static bool is_lot_over(const wh_flow_state_t *state, int32_t wafer) {
-    const wh_flow_lot_t *lot = &state->plan->lots[state->plan->wafers[wafer].lot];
+/* True if every wafer of the lot is at its end. */
+static bool is_lot_over(const wh_flow_state_t *state, int32_t number) {
+    const wh_flow_lot_t *lot = &state->plan->lots[number];
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
         if (!state->wafers[i].is_over) {
             return false;
@@ -352,16 +352,26 @@ static void arrive(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
         ++state->stations[state->tool->place_stations[wafer->place]].wafers;
         ++state->counts[wh_flow_step_index(state, (int32_t)i, 0)];
         wh_flow_step_enter(state, (int32_t)i);
+        if (state->plan->wafers[i].back != WH_FLOW_NONE) {
+            state->places[state->plan->wafers[i].back].owner = state->plan->wafers[i].lot;
+        }
     }
 }
 
-/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there or
- * come. */
+/* True if a wafer of a lot that is not over ends in this place. */
+static bool is_owned(const wh_flow_state_t *state, int32_t place) {
+    const int32_t owner = place == WH_FLOW_NONE ? WH_FLOW_NONE : state->places[place].owner;
+    return owner != WH_FLOW_NONE && !is_lot_over(state, owner);
+}
+
+/* Wafers of lots that are over leave the load ports where a lot arrives. False if others lie there, come, or
+ * will come back there, or to where this lot's wafers end. */
 static bool make_room(wh_flow_state_t *state, const wh_flow_lot_t *lot) {
     for (size_t i = lot->first_wafer; i < lot->first_wafer + lot->wafer_count; ++i) {
         const wh_flow_place_t *place = &state->places[state->plan->wafers[i].home];
-        if (place->coming != WH_FLOW_NONE ||
-            (place->wafer != WH_FLOW_NONE && !is_lot_over(state, place->wafer))) {
+        if (place->coming != WH_FLOW_NONE || is_owned(state, state->plan->wafers[i].home) ||
+            is_owned(state, state->plan->wafers[i].back) ||
+            (place->wafer != WH_FLOW_NONE && !is_lot_over(state, state->plan->wafers[place->wafer].lot))) {
             return false;
         }
     }

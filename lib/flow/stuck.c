@@ -5,6 +5,7 @@
 
 #include "../text/array.h"
 #include "flow.h"
+#include "safe.h"
 #include "transfer.h"
 
 typedef struct {
@@ -74,6 +75,57 @@ static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text
     }
 }
 
+/* Whose way to its end would be closed if the wafer went to a free place of the station, for which `safe`
+ * leaves that out; WH_FLOW_NONE: it may go to one, none is free, or nobody looks. */
+static int32_t find_shut_in(const wh_flow_state_t *state, int32_t wafer, const wh_flow_station_t *station) {
+    int32_t shut_in = WH_FLOW_NONE;
+    const int32_t end = wh_flow_end_of(state->plan, wafer, state->wafers[wafer].step + 1);
+    for (int32_t p = station->first_place; p < station->first_place + station->slots; ++p) {
+        const wh_flow_into_t into = {wafer, p};
+        const bool is_free =
+            state->places[p].wafer == WH_FLOW_NONE && state->places[p].coming == WH_FLOW_NONE;
+        if (!state->checks_safety || !is_free || (end != WH_FLOW_NONE && end != p)) {
+            continue;
+        }
+        const int32_t blocked = wh_flow_find_blocked(state, &into, 1);
+        if (blocked == WH_FLOW_NONE) {
+            return WH_FLOW_NONE;
+        }
+        shut_in = shut_in == WH_FLOW_NONE ? blocked : shut_in;
+    }
+    return shut_in;
+}
+
+/* Whose way would be closed, and who is at its end, if somebody is. */
+static void say_shut_in(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
+    const int32_t back = state->plan->wafers[wafer].back;
+    const int32_t there = back == WH_FLOW_NONE ? WH_FLOW_NONE : state->places[back].wafer;
+    say(text, " (free, but `safe` keeps it out: %s could not come to its end",
+        state->plan->wafers[wafer].name);
+    if (there != WH_FLOW_NONE && there != wafer) {
+        say(text, ", %s slot %d, where %s is)", station_name(state, state->tool->place_stations[back]),
+            (int)wh_flow_slot(state->tool, back), state->plan->wafers[there].name);
+    } else {
+        say(text, " then)");
+    }
+}
+
+/* "waits for B, where W1 is" */
+static void say_next(const wh_flow_state_t *state, int32_t wafer, int32_t number, text_t *text) {
+    const wh_flow_station_t *station = &state->tool->stations[number];
+    const int32_t other = find_other(state, wafer, station);
+    say(text, "%s", station->name);
+    say_down(state, number, text);
+    if (other != WH_FLOW_NONE) {
+        say(text, ", where %s is", state->plan->wafers[other].name);
+        return;
+    }
+    const int32_t shut_in = find_shut_in(state, wafer, station);
+    if (shut_in != WH_FLOW_NONE) {
+        say_shut_in(state, shut_in, text);
+    }
+}
+
 /* "W2 in X waits for B, where W1 is" */
 static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
@@ -86,13 +138,8 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
         say_down(state, state->tool->place_stations[at->place], text);
     }
     for (size_t i = 0; i < next->station_count; ++i) {
-        const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
-        const int32_t other = find_other(state, wafer, station);
-        say(text, "%s%s", i == 0 ? " waits for " : " or ", station->name);
-        say_down(state, next->stations[i], text);
-        if (other != WH_FLOW_NONE) {
-            say(text, ", where %s is", state->plan->wafers[other].name);
-        }
+        say(text, "%s", i == 0 ? " waits for " : " or ");
+        say_next(state, wafer, next->stations[i], text);
     }
     const int32_t laden = at->robot == WH_FLOW_NONE ? find_laden(state, wafer) : WH_FLOW_NONE;
     if (laden != WH_FLOW_NONE) {
@@ -100,7 +147,8 @@ static void say_wafer(const wh_flow_state_t *state, int32_t wafer, text_t *text)
     }
 }
 
-/* True if the wafer lies in its first place, and no place of its next step is free for it. */
+/* True if the wafer lies in its first place, and no place of its next step is free for it, or `safe` keeps
+ * it out of those that are. */
 static bool is_kept_out(const wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     bool kept_out = at->place != WH_FLOW_NONE && at->step == 0 && !at->is_over;
@@ -108,7 +156,8 @@ static bool is_kept_out(const wh_flow_state_t *state, int32_t wafer) {
         const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, 1);
         for (size_t i = 0; i < next->station_count; ++i) {
             const wh_flow_station_t *station = &state->tool->stations[next->stations[i]];
-            kept_out = kept_out && find_other(state, wafer, station) != WH_FLOW_NONE;
+            kept_out = kept_out && (find_other(state, wafer, station) != WH_FLOW_NONE ||
+                                    find_shut_in(state, wafer, station) != WH_FLOW_NONE);
         }
     }
     return kept_out;

@@ -1,4 +1,5 @@
-/* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, wafers, cycle_s, period,
+/* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, counted_s (of
+ * which shares are: the makespan, the cut, or when nobody went on), wafers, cycle_s, period,
  * per_hour, no_cycle (why there is none), may_block (safe is not held), longest_stay_s, path (parts of the
  * critical path, which add up to the makespan, the longest first), gains (what the flow takes if one robot or
  * station takes 10 % less time), robots and stations (shares of the time by class, which add up to 1;
@@ -115,7 +116,7 @@ static json_t *part(const void *subject, size_t i) {
     const wh_flow_part_t *of = &figures->parts[i];
     return wh_json_set(json_object(), "of %s what %s seconds %g share %g",
                        name_of(figures->tool, of->robot, of->station), wh_flow_path_words[of->word],
-                       (double)of->us / 1e6, (double)of->us / (double)figures->result.makespan_us);
+                       (double)of->us / 1e6, (double)of->us / (double)figures->end_us);
 }
 
 static json_t *gain(const void *subject, size_t i) {
@@ -137,7 +138,8 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
         flow->line, ends[result->end], result->why, (long long)result->over, (long long)result->left,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
-    (void)wh_json_set(object, "no_cycle %s may_block %i", result->no_cycle, result->may_block);
+    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g", result->no_cycle, result->may_block,
+                      (double)figures->end_us / 1e6);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
     return wh_json_add(object, "longest_stay_s path gains robots stations stays visits doings",
                        seconds(figures->longest_stay_us), wh_json_list(part, figures, figures->part_count),

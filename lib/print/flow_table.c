@@ -24,14 +24,18 @@ static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *fig
     } else {
         fprintf(printer->out, "no steady cycle: %s", result->no_cycle);
     }
-    const bool is_cut = result->end == WH_FLOW_CUT;
-    const int64_t all_us = is_cut ? figures->end_us : result->makespan_us;
+    static const char *const behind[] = {"run-out", "a stop: nobody could go on", "an early end", "cut"};
+    const bool has_rate = result->end == WH_FLOW_DONE || result->end == WH_FLOW_CUT;
     fprintf(printer->out, "\n%s %s in %.6f s, with start and %s",
             wh_print_count(count, (int64_t)result->over),
-            result->over == 1 ? "wafer at its end" : "wafers at their ends", seconds(all_us),
-            is_cut ? "cut" : "run-out");
-    if (result->over > 0 && all_us > 0) {
-        fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(all_us));
+            result->over == 1 ? "wafer at its end" : "wafers at their ends", seconds(figures->end_us),
+            behind[result->end]);
+    if (has_rate && result->over > 0 && figures->end_us > 0) {
+        fprintf(printer->out, ": %.1f an hour", 3600 * (double)result->over / seconds(figures->end_us));
+    }
+    if (figures->end_us != result->makespan_us) {
+        fprintf(printer->out, "\nshares are of %.6f s; the last placing ended at %.6f s",
+                seconds(figures->end_us), seconds(result->makespan_us));
     }
     fputc('\n', printer->out);
 }
@@ -133,13 +137,13 @@ static void print_path(const wh_printer_t *printer, const wh_flow_figures_t *fig
     wh_grid_t *grid = wh_grid_new(printer->style, 1, "of;doing;s{3,6};%{1}");
     for (size_t i = 0; i < figures->part_count && i < LISTED; ++i) {
         const wh_flow_part_t *part = &figures->parts[i];
-        const double values[] = {seconds(part->us),
-                                 100 * (double)part->us / (double)figures->result.makespan_us};
+        const double values[] = {seconds(part->us), 100 * (double)part->us / (double)figures->end_us};
         wh_grid_named_row(grid, name_of(figures->tool, part->robot, part->station));
         wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", wh_flow_path_words[part->word]);
         wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
     }
-    wh_print_titled(printer, "Critical path", grid);
+    const bool is_whole = figures->end_us == figures->result.makespan_us;
+    wh_print_titled(printer, is_whole ? "Critical path" : "Critical path, to the last placing", grid);
     if (figures->part_count > LISTED) {
         fprintf(printer->out, "and %zu more\n", figures->part_count - LISTED);
     }

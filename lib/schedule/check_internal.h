@@ -79,6 +79,7 @@ typedef struct {
     wh_check_robot_t *robots;
     wh_check_door_t *doors; /* by station, then by key */
     size_t door_count;
+    size_t doors_from_open; /* that shut first, in a schedule that does not say how it begins */
 } wh_schedule_state_t;
 
 /* Adds a finding; the text is "COLUMN: VALUE (expected ...)". */

@@ -165,6 +165,11 @@ static void judge_locks(wh_schedule_state_t *check, const facts_t *facts) {
         judge(check, WH_SCHEDULE_RULE_DOOR, true, "processes alone: no door opens or closes in the schedule");
     } else if (check->door_count == 0) {
         judge(check, WH_SCHEDULE_RULE_DOOR, false, "no door opens or closes in the schedule");
+    } else if (check->doors_from_open > 0) {
+        judge(check, WH_SCHEDULE_RULE_DOOR, true,
+              "where the schedule tells of doors, but not before the first row of %zu: it shuts, and nothing "
+              "has a start",
+              check->doors_from_open);
     } else if (has_door_of_many(check)) {
         judge(check, WH_SCHEDULE_RULE_DOOR, true,
               "where the schedule tells of doors; open ones during a process: at stations of one slot");

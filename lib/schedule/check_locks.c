@@ -31,7 +31,7 @@ static int by_door(const void *a, const void *b) {
     return one->key < other->key ? -1 : one->key > other->key;
 }
 
-/* The first row of a door says what it was before. */
+/* The first row of a door says what it was before, if nobody goes through it sooner. */
 static void begin_door_shut(const wh_schedule_state_t *check, wh_check_door_t *door, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     if (door->row == WH_CHECK_NO_ROW || of->begin_us < wh_check_row(check, door->row)->begin_us) {
@@ -63,12 +63,38 @@ static void list_doors(wh_schedule_state_t *check) {
     }
 }
 
+/* True if the schedule, or the layout, says how the tool begins: with doors that are shut. */
+static bool has_beginning(const wh_schedule_state_t *check) {
+    bool has_start = false;
+    for (size_t i = 0; i < check->schedule->count; ++i) {
+        has_start = has_start || check->schedule->rows[i].action == WH_SCHEDULE_START;
+    }
+    return check->tool || has_start;
+}
+
+/* Somebody must have opened the door for an access before its first row. */
+static void begin_access_shut(const wh_schedule_state_t *check, const wh_schedule_row_t *access) {
+    wh_check_door_t *door = wh_check_door_of(check, access);
+    if (door && access->begin_us < wh_check_row(check, door->row)->begin_us) {
+        door->state = WH_CHECK_SHUT;
+    }
+}
+
 void wh_check_open_doors(wh_schedule_state_t *check) {
     const wh_schedule_t *schedule = check->schedule;
+    const bool begins = has_beginning(check);
     list_doors(check);
     for (size_t i = 0; i < schedule->count; ++i) {
         if (is_door(&schedule->rows[i])) {
             begin_door_shut(check, wh_check_door_of(check, &schedule->rows[i]), (int32_t)i);
+        }
+    }
+    for (size_t i = 0; i < check->door_count && !begins; ++i) {
+        check->doors_from_open += check->doors[i].state == WH_CHECK_OPEN ? 1 : 0;
+    }
+    for (size_t i = 0; i < schedule->count && begins; ++i) {
+        if (wh_schedule_is_access(schedule->rows[i].action)) {
+            begin_access_shut(check, &schedule->rows[i]);
         }
     }
 }
@@ -166,10 +192,27 @@ static void check_inside(wh_schedule_state_t *check, int32_t row) {
     }
 }
 
+/* Rule 13 of a door: it does not open, or shut, twice without the other between. */
+static void check_door_again(wh_schedule_state_t *check, int32_t row, const wh_check_door_t *door) {
+    wh_check_text_t text;
+    const wh_schedule_row_t *of = wh_check_row(check, row);
+    const wh_schedule_row_t *before = wh_check_row(check, door->row);
+    const bool is_access_told = of->action == WH_SCHEDULE_CLOSE && door->access_us > before->end_us;
+    if (door->row == row || before->action != of->action || before->begin_us > of->begin_us ||
+        is_access_told) {
+        return; /* who went through a shut door is found, and shuts it behind him */
+    }
+    wh_check_found(check, WH_SCHEDULE_RULE_DOOR, row, door->row,
+                   "begin_s: %.10g (expected a time when the door is %s: before it, %s)",
+                   wh_check_seconds(of->begin_us), of->action == WH_SCHEDULE_OPEN ? "shut" : "open",
+                   wh_check_describe(check, door->row, &text));
+}
+
 void wh_check_begin_door(wh_schedule_state_t *check, int32_t row) {
     const wh_schedule_row_t *of = wh_check_row(check, row);
     const bool opens = of->action == WH_SCHEDULE_OPEN;
     wh_check_door_t *door = wh_check_door_of(check, of);
+    check_door_again(check, row, door);
     if (opens) {
         check_inside(check, row);
         check_other_door(check, row, door);

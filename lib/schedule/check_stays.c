@@ -184,6 +184,7 @@ void wh_check_begin_clean(wh_schedule_state_t *check, int32_t row) {
     const wh_flow_station_t *station = wh_check_station(check, of->station);
     wh_check_place_t *place = &check->places[of->place];
     const bool is_full = place->count > 0;
+    (void)wh_check_is_early(check, WH_SCHEDULE_RULE_CLEAN, row, place->clean_us, place->clean_row);
     if (!wh_check_is_early(check, WH_SCHEDULE_RULE_CLEAN, row, place->placing_us, place->placing_row) &&
         station && is_full && !station->cleans_full) {
         wh_check_found(check, WH_SCHEDULE_RULE_CLEAN, row, check->wafers[place->head].row,

@@ -41,7 +41,8 @@ typedef struct {
     column_t columns[WH_SCHEDULE_COLUMNS];
     char theirs[WH_SCHEDULE_COLUMNS][WH_SCHEDULE_NAME + 1];
     bool has_functions;
-    int names, actions, skip, expand, row; /* places on the stack; 0: not there */
+    int names, actions, skip, expand, common, row; /* places on the stack; 0: not there */
+    bool *doubled;                                 /* columns whose names are there twice; on the stack */
     size_t fields;
     bool is_refused;
 } map_t;
@@ -65,10 +66,16 @@ static int take_function(wh_reader_t *reader, map_t *map, const char *field) {
 static size_t find_field(wh_reader_t *reader, const map_t *map, const char *column, const char *name) {
     const wh_rows_t *rows = &map->schedule->rows;
     char meant[WH_NEAREST_TEXT];
+    size_t found = rows->count;
     for (size_t i = 0; i < rows->count; ++i) {
-        if (strcmp(rows->fields[i], name) == 0) {
-            return i;
+        if (strcmp(rows->fields[i], name) == 0 && found < rows->count) {
+            wh_reader_refuse(reader, column, name, "a column that is there once in the first line of %s",
+                             map->path);
         }
+        found = strcmp(rows->fields[i], name) == 0 ? i : found;
+    }
+    if (found < rows->count) {
+        return found;
     }
     wh_reader_refuse(
         reader, column, name, "a column of the first line of %s%s", map->path,
@@ -229,15 +236,60 @@ static void translate_action(lua_State *L, const map_t *map, wh_schedule_cell_t 
     }
 }
 
-/* A table of the file's row, at map->row. */
+/* A row's function reads a column that is not there, or there twice. Upvalues: the map, the names. */
+static int refuse_column(lua_State *L) {
+    const map_t *map = lua_touserdata(L, lua_upvalueindex(1));
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : luaL_typename(L, 2);
+    char meant[WH_NEAREST_TEXT];
+    const char **names = lua_newuserdatauv(L, (map->fields + 1) * sizeof *names, 0);
+    for (size_t i = 0; i < map->fields; ++i) {
+        lua_rawgeti(L, lua_upvalueindex(2), (lua_Integer)i + 1);
+        names[i] = lua_tostring(L, -1);
+        lua_pop(L, 1); /* the list keeps it */
+        if (strcmp(names[i], name) == 0) {
+            return luaL_error(L, "row.%s: this column is there twice", name);
+        }
+    }
+    return luaL_error(L, "row.%s: no column of the first line of %s%s", name, map->path,
+                      wh_text_did_you_mean(meant, "; ", "", wh_text_nearest(name, names, map->fields)));
+}
+
+/* The list of the columns' names, and what rows have in common, at map->names and map->common. */
+static void make_names(lua_State *L, map_t *map) {
+    const wh_rows_t *rows = &map->schedule->rows;
+    map->fields = rows->count;
+    map->doubled = lua_newuserdatauv(L, map->fields + 1, 0);
+    lua_createtable(L, (int)map->fields, 0);
+    map->names = lua_gettop(L);
+    for (size_t i = 0; i < map->fields; ++i) {
+        map->doubled[i] = false;
+        for (size_t k = 0; k < map->fields; ++k) {
+            map->doubled[i] = map->doubled[i] || (k != i && strcmp(rows->fields[k], rows->fields[i]) == 0);
+        }
+        lua_pushstring(L, rows->fields[i]);
+        lua_rawseti(L, map->names, (lua_Integer)i + 1);
+    }
+    lua_createtable(L, 0, 1);
+    map->common = lua_gettop(L);
+    lua_pushlightuserdata(L, map);
+    lua_pushvalue(L, map->names);
+    lua_pushcclosure(L, refuse_column, 2);
+    lua_setfield(L, map->common, "__index");
+}
+
+/* A table of the file's row, at map->row. A column that is there twice is left out. */
 static void make_row(lua_State *L, const map_t *map) {
     const wh_rows_t *rows = &map->schedule->rows;
     lua_createtable(L, 0, (int)map->fields);
     for (size_t i = 0; i < map->fields; ++i) {
-        lua_rawgeti(L, map->names, (lua_Integer)i + 1);
-        lua_pushstring(L, rows->fields[i]);
-        lua_rawset(L, -3);
+        if (!map->doubled[i]) {
+            lua_rawgeti(L, map->names, (lua_Integer)i + 1);
+            lua_pushstring(L, rows->fields[i]);
+            lua_rawset(L, -3);
+        }
     }
+    lua_pushvalue(L, map->common);
+    lua_setmetatable(L, -2);
     lua_replace(L, map->row);
 }
 
@@ -304,17 +356,10 @@ static void expand_row(lua_State *L, map_t *map) {
 /* Runs protected; the file is open, and its first line is read. */
 static int read_rows(lua_State *L) {
     map_t *map = lua_touserdata(L, 1);
-    wh_rows_t *rows = &map->schedule->rows;
     luaL_checkstack(L, 64, NULL);
     evaluate(L, map);
     read_map(L, map);
-    map->fields = rows->count;
-    lua_createtable(L, (int)map->fields, 0);
-    map->names = lua_gettop(L);
-    for (size_t i = 0; i < map->fields; ++i) {
-        lua_pushstring(L, rows->fields[i]);
-        lua_rawseti(L, map->names, (lua_Integer)i + 1);
-    }
+    make_names(L, map);
     lua_pushnil(L);
     map->row = lua_gettop(L);
     while (!map->is_refused && wh_schedule_next(map->schedule, map->fields)) {

@@ -56,7 +56,8 @@ class Model:
 
     def read_lots(self):
         lots = sorted(enumerate(self.flow["lots"]), key=lambda pair: (pair[1].get("arrives", 0), -pair[1].get("priority", 0), pair[0]))
-        for _, lot in lots:
+        self.ahead = [lot for _, lot in lots]   # they come one after another
+        for lot in self.ahead:
             for name, station, slot in lot["wafers"]:
                 self.wafers.append(Wafer(name, lot, len(self.wafers), self.stations[station].places[slot - 1]))
             self.instants.add(lot.get("arrives", 0))
@@ -324,14 +325,31 @@ class Model:
             if robot.doing and robot.doing[0] <= self.now:
                 finish, robot.doing = robot.doing[1], None
                 finish()
+        while self.ahead and self.ahead[0].get("arrives", 0) <= self.now and self.may_come(self.ahead[0]):
+            self.come(self.ahead.pop(0))
         for wafer in self.wafers:
-            if wafer.entered is None and wafer.lot.get("arrives", 0) <= self.now and not wafer.rows:
-                if wafer.home.wafer or wafer.home.coming:
-                    raise Refused(f"{wafer.name}: {wafer.home.station.name} slot {wafer.home.slot} is not empty")
-                wafer.place, wafer.home.wafer, wafer.entered, wafer.done = wafer.home, wafer, self.now, self.now
             if wafer.place and not wafer.ended and wafer.place.station.failed_at(self.now):
                 wafer.ended = wafer.lost = True
             wafer.ended = wafer.ended or wafer.lies() and self.following(wafer, wafer.step) is None
+
+    def is_over(self, lot):
+        return all(wafer.ended for wafer in self.wafers if wafer.lot is lot)
+
+    def may_come(self, lot):
+        """A carrier stays until its lot is over: nobody else comes into its wafers' last places, or is to come back there."""
+        mine = [wafer for wafer in self.wafers if wafer.lot is lot]
+        others = [wafer for wafer in self.wafers if wafer.entered is not None and wafer.lot.get("back") and not self.is_over(wafer.lot)]
+        taken = {wafer.steps[-1][0][0] for wafer in others}
+        ends = {wafer.steps[-1][0][0] for wafer in mine if lot.get("back")}
+        homes = {wafer.home for wafer in mine}
+        lying = [place.wafer for place in homes if place.wafer]
+        return not taken & (homes | ends) and not any(place.coming for place in homes) and all(self.is_over(wafer.lot) for wafer in lying)
+
+    def come(self, lot):
+        for wafer in (each for each in self.wafers if each.lot is lot):
+            if wafer.home.wafer:
+                wafer.home.wafer.place = None
+            wafer.place, wafer.home.wafer, wafer.entered, wafer.done = wafer.home, wafer, self.now, self.now
 
     def begin_all(self):
         """Cleans after idle time, and pumps; processes and cleans that are due were begun with what ended."""

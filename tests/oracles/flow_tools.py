@@ -14,7 +14,7 @@ LEVELS = ("one robot, one lot, single places", "parallel places, slots, times by
           "several robots and shared buffers", "re-entrant and mixed routes, lots that arrive, priorities, back", "doors and locks with pumps",
           "stations that are down", "lists drawn at random, safe = false", "all together",
           "all together in whole seconds: much happens at one instant", "the same tools with a second lock beside each, and not safe",
-          "the tools of level 10 with parallel steps that share stations")
+          "the tools of level 10 with parallel steps that share stations", "and lots that come into slots of lots that are not over")
 RULES = ("backward", "first_come", "longest_wait", "swap")
 
 
@@ -194,7 +194,7 @@ class Maker:
             if self.has(5, 0.5) or self.routes[given["route"]]["steps"][-1]["stations"] == ["LP1"]:
                 given["back"] = "LP1"
             self.lots.append(given)
-            number, slot = number + size, slot + size
+            number, slot = number + size, 1 if self.has(13, 0.7) else slot + size
             at += self.draw.choice((0, self.time(10, 200)))
         if self.has(9, 0.2) and len(self.lots) > 1:
             self.lots[-1]["dummy"] = True
