@@ -90,7 +90,7 @@ static int64_t shut_us(const path_t *path, const wh_flow_event_t *access) {
     return access->end_us + path->tool->doors[of].close_us;
 }
 
-/* ----------------------------------------------------------------------------------------- the robot's aim */
+/* ---------------------------------------------------------------------------------------- the robot's aim */
 
 /* The access for which a robot does something, and, if it takes a wafer there, the one that brings it on.
  * Each may be null. */
@@ -144,37 +144,33 @@ static void offer_end(cause_t *best, int rank, const wh_flow_event_t *ended) {
     offer(best, &(cause_t){rank, WH_FLOW_PATH_WORDS, WH_FLOW_NONE, ended, false});
 }
 
+/* True if the wafer that the access takes had to wait for that, or the place into which it brings one. */
+static bool is_for_access(const wh_flow_event_t *access, int32_t robot, const wh_flow_event_t *ended) {
+    const bool takes_it = (takes(access) || robot == WH_FLOW_NONE) && ended->wafer == access->wafer;
+    return ended->kind == WH_FLOW_EVENT_PROCESS
+               ? takes_it
+               : takes_it || (brings(access) && ended->place == access->place);
+}
+
+/* True if it keeps others out of its station. */
+static bool is_in_station(const wh_flow_event_t *event) {
+    return event->kind != WH_FLOW_EVENT_MOVE && event->kind != WH_FLOW_EVENT_OPEN;
+}
+
 /* How much an aim needed that this ended. */
 static int need_of_end(const aim_t *aim, int32_t robot, const wh_flow_event_t *ended) {
-    const wh_flow_event_t *access = aim->access;
     if (robot != WH_FLOW_NONE && ended->robot == robot) {
         return NEEDED_FIRST;
     }
-    if (!access) {
+    if (!aim->access || !is_in_station(ended)) {
         return ENDED;
     }
-    switch (ended->kind) {
-    case WH_FLOW_EVENT_PROCESS:
-        return (takes(access) || robot == WH_FLOW_NONE) && ended->wafer == access->wafer ? NEEDED : ENDED;
-    case WH_FLOW_EVENT_CLEAN:
-        return (takes(access) && ended->wafer == access->wafer) ||
-                       (brings(access) && ended->place == access->place)
-                   ? NEEDED
-                   : ENDED;
-    case WH_FLOW_EVENT_PICK:
-    case WH_FLOW_EVENT_PLACE:
-    case WH_FLOW_EVENT_SWAP:
-    case WH_FLOW_EVENT_PUMP:
-    case WH_FLOW_EVENT_DOWN:
-        return ended->station == access->station     ? NEEDED
-               : is_at(aim->placing, ended->station) ? NEEDED_ONWARD
-                                                     : ENDED;
-    case WH_FLOW_EVENT_MOVE:
-    case WH_FLOW_EVENT_OPEN:
-    case WH_FLOW_EVENT_STAY:
-    default:
-        return ENDED;
+    if (ended->kind == WH_FLOW_EVENT_PROCESS || ended->kind == WH_FLOW_EVENT_CLEAN) {
+        return is_for_access(aim->access, robot, ended) ? NEEDED : ENDED;
     }
+    return ended->station == aim->access->station ? NEEDED
+           : is_at(aim->placing, ended->station)  ? NEEDED_ONWARD
+                                                  : ENDED;
 }
 
 static void offer_ends(const path_t *path, const aim_t *aim, int32_t robot, int64_t us, cause_t *best) {
@@ -228,6 +224,11 @@ static const wh_flow_event_t *next_begun(const path_t *path, int64_t us, size_t 
     return *at < path->log->count && path->begins[*at]->begin_us == us ? path->begins[(*at)++] : NULL;
 }
 
+/* True if the aim is to take a wafer out of its first place. */
+static bool is_start(const aim_t *aim) {
+    return aim->access && takes(aim->access) && aim->access->step == 0;
+}
+
 /* A wafer's start keeps others back from its begin on, its door's opening included. */
 static void offer_takt(const path_t *path, const aim_t *aim, int64_t us, cause_t *best) {
     const int64_t begin_us = us - path->plan->takt_us;
@@ -238,15 +239,15 @@ static void offer_takt(const path_t *path, const aim_t *aim, int64_t us, cause_t
     for (const wh_flow_event_t *begun = next_begun(path, begin_us, &at); begun;
          begun = next_begun(path, begin_us, &at)) {
         const bool is_entering = begun->kind == WH_FLOW_EVENT_OPEN || takes(begun);
-        const wh_flow_event_t *start = is_entering ? aim_of(path, begun).access : NULL;
-        if (start && takes(start) && start->step == 0) {
-            const bool is_needed = aim->access && takes(aim->access) && aim->access->step == 0;
-            offer(best, &(cause_t){is_needed ? NEEDED : ENDED, WH_FLOW_PATH_TAKT, WH_FLOW_NONE, begun, true});
+        const aim_t of_begun = aim_of(path, begun);
+        if (is_entering && is_start(&of_begun)) {
+            offer(best,
+                  &(cause_t){is_start(aim) ? NEEDED : ENDED, WH_FLOW_PATH_TAKT, WH_FLOW_NONE, begun, true});
         }
     }
 }
 
-/* What a station's failure brings begins at a time that is given. */
+/* A station fails at a time that is given. */
 static void offer_failures(const path_t *path, int64_t us, cause_t *best) {
     for (size_t i = 0; i < path->plan->down_count; ++i) {
         if (path->plan->downs[i].at_us == us) {
@@ -288,10 +289,10 @@ static aim_t aim_of_lock(const path_t *path, const wh_flow_event_t *pump) {
     return (aim_t){NULL, NULL};
 }
 
-/* So many robots may begin at one instant because another one did. */
+/* Robots that begin at one instant, each because another one did. */
 #define DEEPEST 4
 
-/* What ended at the instant, the best of it for this; else for another robot that began with it, and let it
+/* The best for this of all that ended at the instant; else for another robot that began with it, and let it
  * begin. */
 static cause_t cause_of_choice(const path_t *path, const wh_flow_event_t *event, int depth) {
     const int64_t us = event->begin_us;
@@ -313,24 +314,28 @@ static cause_t cause_of_choice(const path_t *path, const wh_flow_event_t *event,
     return best;
 }
 
+/* Something that ended before a process, or before the clean around its wafer, and let that begin. */
+static void offer_before_process(const path_t *path, const wh_flow_event_t *event,
+                                 const wh_flow_event_t *before, cause_t *best) {
+    const int64_t us = event->begin_us;
+    const int32_t placed = before->kind == WH_FLOW_EVENT_SWAP ? before->other : before->wafer;
+    const bool is_process = before->kind == WH_FLOW_EVENT_PROCESS && before->wafer == event->wafer;
+    if (brings(before) && placed == event->wafer && shut_us(path, before) == us) {
+        offer(best, &(cause_t){NEEDED, WH_FLOW_PATH_DOOR, event->station, before, false});
+    }
+    if (before->end_us == us) {
+        const bool is_failure = before->kind == WH_FLOW_EVENT_DOWN && before->station == event->station;
+        offer_end(best, is_process ? NEEDED_FIRST : is_failure ? NEEDED_ONWARD : UNKNOWN, before);
+    }
+}
+
 /* A process begins behind its wafer's placing and its door, or a failure. */
 static cause_t cause_of_process(const path_t *path, const wh_flow_event_t *event) {
     cause_t best = {.rank = UNKNOWN, .word = WH_FLOW_PATH_WAIT, .station = WH_FLOW_NONE};
-    const int64_t us = event->begin_us;
-    for (size_t i = first_ending(path->log, us - path->longest_shutting_us);
-         i < path->log->count && path->log->events[i].end_us <= us; ++i) {
-        const wh_flow_event_t *before = &path->log->events[i];
-        const bool is_own_end = before->end_us == us && before->begin_us < us;
-        const bool is_placing =
-            brings(before) &&
-            (before->kind == WH_FLOW_EVENT_SWAP ? before->other : before->wafer) == event->wafer;
-        if (is_placing && shut_us(path, before) == us) {
-            offer(&best, &(cause_t){NEEDED, before->end_us < us ? WH_FLOW_PATH_DOOR : WH_FLOW_PATH_WORDS,
-                                    event->station, before, false});
-        } else if (is_own_end && before->kind == WH_FLOW_EVENT_PROCESS && before->wafer == event->wafer) {
-            offer_end(&best, NEEDED_FIRST, before);
-        } else if (is_own_end && before->kind == WH_FLOW_EVENT_DOWN && before->station == event->station) {
-            offer_end(&best, NEEDED_ONWARD, before);
+    for (size_t i = first_ending(path->log, event->begin_us - path->longest_shutting_us);
+         i < path->log->count && path->log->events[i].end_us <= event->begin_us; ++i) {
+        if (&path->log->events[i] != event) {
+            offer_before_process(path, event, &path->log->events[i], &best);
         }
     }
     return best;
@@ -364,23 +369,14 @@ static cause_t cause_of_clean(const path_t *path, const wh_flow_event_t *event) 
 }
 
 static cause_t cause_of(const path_t *path, const wh_flow_event_t *event) {
-    switch (event->kind) {
-    case WH_FLOW_EVENT_PROCESS:
+    if (event->kind == WH_FLOW_EVENT_PROCESS) {
         return cause_of_process(path, event);
-    case WH_FLOW_EVENT_CLEAN:
-        return cause_of_clean(path, event);
-    case WH_FLOW_EVENT_DOWN:
-        return (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false};
-    case WH_FLOW_EVENT_MOVE:
-    case WH_FLOW_EVENT_OPEN:
-    case WH_FLOW_EVENT_PICK:
-    case WH_FLOW_EVENT_PLACE:
-    case WH_FLOW_EVENT_SWAP:
-    case WH_FLOW_EVENT_PUMP:
-    case WH_FLOW_EVENT_STAY:
-    default:
-        return cause_of_choice(path, event, 0);
     }
+    if (event->kind == WH_FLOW_EVENT_CLEAN) {
+        return cause_of_clean(path, event);
+    }
+    return event->kind == WH_FLOW_EVENT_DOWN ? (cause_t){NEEDED, WH_FLOW_PATH_WAIT, WH_FLOW_NONE, NULL, false}
+                                             : cause_of_choice(path, event, 0);
 }
 
 /* Goes back from the begin of an event to what let it begin: adds the time between, and what that took

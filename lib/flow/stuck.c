@@ -75,8 +75,8 @@ static void say_down(const wh_flow_state_t *state, int32_t station, text_t *text
     }
 }
 
-/* Whose way to its end would be closed if the wafer went to a free place of the station, for which `safe`
- * leaves that out; WH_FLOW_NONE: it may go to one, none is free, or nobody looks. */
+/* A wafer that could not come to its end if this one went to a free place of the station: `safe` leaves that
+ * out. WH_FLOW_NONE: it may go to one, none is free, or nobody looks. */
 static int32_t find_shut_in(const wh_flow_state_t *state, int32_t wafer, const wh_flow_station_t *station) {
     int32_t shut_in = WH_FLOW_NONE;
     const int32_t end = wh_flow_end_of(state->plan, wafer, state->wafers[wafer].step + 1);
@@ -96,12 +96,11 @@ static int32_t find_shut_in(const wh_flow_state_t *state, int32_t wafer, const w
     return shut_in;
 }
 
-/* Whose way would be closed, and who is at its end, if somebody is. */
+/* The wafer whose way would be closed, and who is at its end, if somebody is. */
 static void say_shut_in(const wh_flow_state_t *state, int32_t wafer, text_t *text) {
     const int32_t back = state->plan->wafers[wafer].back;
     const int32_t there = back == WH_FLOW_NONE ? WH_FLOW_NONE : state->places[back].wafer;
-    say(text, " (free, but `safe` keeps it out: %s could not come to its end",
-        state->plan->wafers[wafer].name);
+    say(text, " (free, but safe keeps it out: %s could not come to its end", state->plan->wafers[wafer].name);
     if (there != WH_FLOW_NONE && there != wafer) {
         say(text, ", %s slot %d, where %s is)", station_name(state, state->tool->place_stations[back]),
             (int)wh_flow_slot(state->tool, back), state->plan->wafers[there].name);

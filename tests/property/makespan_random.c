@@ -17,7 +17,7 @@ static int64_t random_us(bool is_round, double least_s, double most_s) {
                     : (int64_t)(FLOW_S * wh_test_uniform(least_s, most_s));
 }
 
-/* The same for all that the robot serves: a part is so many of them. */
+/* One time for all that the robot serves: a part is so many of them. */
 static void draw_robot(wh_flow_tool_t *tool, int32_t robot, bool is_round) {
     const int64_t pick_us = random_us(is_round, 1, 6), place_us = random_us(is_round, 1, 6),
                   move_us = random_us(is_round, 1, 5), swap_us = random_us(is_round, 3, 12);
@@ -178,44 +178,52 @@ static int64_t makespan_with(flow_case_t *flow, const doing_t *doing, int64_t by
     return makespan_us;
 }
 
+static int64_t opening_us(const wh_flow_tool_t *tool, int32_t robot) {
+    int64_t open_us = 0;
+    for (int32_t s = 0; s < (int32_t)tool->station_count; ++s) {
+        const int64_t us = tool->doors[wh_flow_of(tool, robot, s)].open_us;
+        open_us = us > open_us ? us : open_us;
+    }
+    return open_us;
+}
+
 /* How long one of them is; 0: there is none in this tool. */
+static int64_t length_of_robot_us(const wh_flow_tool_t *tool, const doing_t *doing) {
+    const size_t of = wh_flow_of(tool, doing->robot, 0);
+    return doing->word == WH_FLOW_PATH_MOVE    ? tool->move_us[of * tool->station_count + 1]
+           : doing->word == WH_FLOW_PATH_PICK  ? tool->pick_us[of]
+           : doing->word == WH_FLOW_PATH_PLACE ? tool->place_us[of]
+           : doing->word == WH_FLOW_PATH_SWAP  ? tool->swap_us[of]
+                                               : opening_us(tool, doing->robot);
+}
+
+static int64_t length_of_station_us(const flow_case_t *flow, const doing_t *doing) {
+    const wh_flow_station_t *station = &flow->tool.stations[doing->station];
+    const bool fails = flow->plan.down_count > 0 && flow->plan.downs[0].station == doing->station;
+    return doing->word == WH_FLOW_PATH_PROCESS ? station->process_us
+           : doing->word == WH_FLOW_PATH_CLEAN ? station->clean_us
+           : doing->word == WH_FLOW_PATH_PUMP  ? station->pump_us[0]
+           : doing->word == WH_FLOW_PATH_DOOR
+               ? flow->tool.doors[wh_flow_of(&flow->tool, 0, doing->station)].close_us
+           : fails ? flow->plan.downs[0].for_us
+                   : 0;
+}
+
 static int64_t length_us(const flow_case_t *flow, const doing_t *doing) {
-    const wh_flow_tool_t *tool = &flow->tool;
-    const int32_t s = doing->station, r = doing->robot == WH_FLOW_NONE ? 0 : doing->robot;
-    int64_t door_us = 0;
-    for (int32_t i = 0; doing->robot != WH_FLOW_NONE && i < (int32_t)tool->station_count; ++i) {
-        const int64_t us = tool->doors[wh_flow_of(tool, r, i)].open_us;
-        door_us = us > door_us ? us : door_us;
+    const wh_flow_plan_t *plan = &flow->plan;
+    if (doing->robot != WH_FLOW_NONE) {
+        return length_of_robot_us(&flow->tool, doing);
     }
-    switch (doing->word) {
-    case WH_FLOW_PATH_MOVE:
-        return tool->move_us[wh_flow_of(tool, r, 0) * tool->station_count + 1];
-    case WH_FLOW_PATH_PICK:
-        return tool->pick_us[wh_flow_of(tool, r, 0)];
-    case WH_FLOW_PATH_PLACE:
-        return tool->place_us[wh_flow_of(tool, r, 0)];
-    case WH_FLOW_PATH_SWAP:
-        return tool->swap_us[wh_flow_of(tool, r, 0)];
-    case WH_FLOW_PATH_DOOR:
-        return doing->robot != WH_FLOW_NONE ? door_us : tool->doors[wh_flow_of(tool, 0, s)].close_us;
-    case WH_FLOW_PATH_PROCESS:
-        return tool->stations[s].process_us;
-    case WH_FLOW_PATH_CLEAN:
-        return tool->stations[s].clean_us;
-    case WH_FLOW_PATH_PUMP:
-        return tool->stations[s].pump_us[0];
-    case WH_FLOW_PATH_DOWN:
-        return flow->plan.down_count > 0 && flow->plan.downs[0].station == s ? flow->plan.downs[0].for_us : 0;
-    case WH_FLOW_PATH_LOT:
-        return flow->plan.lot_count > 1 ? flow->plan.lots[1].arrives_us : 0;
-    case WH_FLOW_PATH_TAKT:
-        return flow->plan.takt_us;
-    case WH_FLOW_PATH_WAIT:
-        return flow->plan.down_count > 0 ? flow->plan.downs[0].at_us : 0;
-    case WH_FLOW_PATH_WORDS:
-    default:
-        return 0;
+    if (doing->station != WH_FLOW_NONE) {
+        return length_of_station_us(flow, doing);
     }
+    if (doing->word == WH_FLOW_PATH_TAKT) {
+        return plan->takt_us;
+    }
+    const bool is_lot = doing->word == WH_FLOW_PATH_LOT;
+    return is_lot && plan->lot_count > 1     ? plan->lots[1].arrives_us
+           : !is_lot && plan->down_count > 0 ? plan->downs[0].at_us
+                                             : 0;
 }
 
 static int64_t part_us(const wh_flow_figures_t *figures, const doing_t *doing) {
