@@ -93,7 +93,7 @@ static bool end_way(const wh_flow_state_t *state, const wh_flow_target_t targets
 }
 
 int32_t wh_flow_swap_way(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t begin_us) {
-    wh_flow_into_t moves[LONGEST];
+    wh_flow_into_t moves[LONGEST] = {{0}};
     wh_flow_target_t targets[WH_FLOW_TARGETS];
     int32_t arm = wh_flow_free_arm(state, robot, wafer);
     for (size_t count = 0; count < LONGEST && !is_among(moves, count, wafer); ++count) {

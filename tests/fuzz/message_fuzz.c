@@ -356,17 +356,15 @@ static bool is_index(int32_t index, size_t count) {
 
 /* True if `other` names what this kind of event has there. */
 static bool other_is_known(const wh_event_t *event, size_t wafers, size_t grippers) {
-    switch (event->kind) {
-    case WH_EVENT_SLOT_OCCUPIED:
-        return is_index(event->other, wafers);
-    case WH_EVENT_HANDED_OVER:
-    case WH_EVENT_CONTESTED:
+    const wh_event_kind_t kind = event->kind;
+    const bool is_pushed = kind == WH_EVENT_PUSHED_THROUGH;
+    if (kind == WH_EVENT_HANDED_OVER || kind == WH_EVENT_CONTESTED) {
         return is_index(event->other, grippers);
-    case WH_EVENT_PUSHED_THROUGH:
-        return is_index(event->other, wafers) || (event->other == WH_NONE && event->wafer != WH_NONE);
-    default:
-        return true;
     }
+    if (is_pushed && event->other == WH_NONE) {
+        return event->wafer != WH_NONE;
+    }
+    return (!is_pushed && kind != WH_EVENT_SLOT_OCCUPIED) || is_index(event->other, wafers);
 }
 
 /* The rule of grasp/event.h: the code that explains an event looks its wafer and grippers up. */
