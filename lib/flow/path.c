@@ -19,10 +19,14 @@ void wh_flow_log_add(wh_flow_log_t *log, const wh_flow_event_t *event) {
 }
 
 typedef struct {
+    const wh_flow_event_t *event;
+} begin_t;
+
+typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
     const wh_flow_log_t *log;
-    const wh_flow_event_t **begins; /* the log's events, by their begins */
+    begin_t *begins; /* the log's events, by their begins */
     int64_t longest_shutting_us;
     wh_flow_part_t *parts;
     size_t count, capacity;
@@ -210,7 +214,7 @@ static size_t first_beginning(const path_t *path, int64_t us) {
     size_t low = 0, high = path->log->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (path->begins[middle]->begin_us < us) {
+        if (path->begins[middle].event->begin_us < us) {
             low = middle + 1;
         } else {
             high = middle;
@@ -221,7 +225,8 @@ static size_t first_beginning(const path_t *path, int64_t us) {
 
 /* The next that began at this time, or null; `at` counts on. */
 static const wh_flow_event_t *next_begun(const path_t *path, int64_t us, size_t *at) {
-    return *at < path->log->count && path->begins[*at]->begin_us == us ? path->begins[(*at)++] : NULL;
+    return *at < path->log->count && path->begins[*at].event->begin_us == us ? path->begins[(*at)++].event
+                                                                             : NULL;
 }
 
 /* True if the aim is to take a wafer out of its first place. */
@@ -423,8 +428,7 @@ static const wh_flow_event_t *find_last(const wh_flow_log_t *log) {
 
 /* By their begins; of one instant in the order of the log. */
 static int by_begin(const void *a, const void *b) {
-    const wh_flow_event_t *one = *(const wh_flow_event_t *const *)a,
-                          *other = *(const wh_flow_event_t *const *)b;
+    const wh_flow_event_t *one = ((const begin_t *)a)->event, *other = ((const begin_t *)b)->event;
     return one->begin_us != other->begin_us ? (one->begin_us < other->begin_us ? -1 : 1)
            : one < other                    ? -1
                                             : one > other;
@@ -434,7 +438,7 @@ static void open_path(path_t *path) {
     const wh_flow_tool_t *tool = path->tool;
     path->begins = wh_array_new(path->log->count, sizeof *path->begins);
     for (size_t i = 0; i < path->log->count; ++i) {
-        path->begins[i] = &path->log->events[i];
+        path->begins[i].event = &path->log->events[i];
     }
     if (path->log->count > 0) {
         qsort(path->begins, path->log->count, sizeof *path->begins, by_begin);
