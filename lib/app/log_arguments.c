@@ -85,8 +85,9 @@ bool wh_log_arguments_check_set(const wh_log_run_t *run, wh_sandbox_t *checks) {
         const bool is_read = (cell->is_whole && !wh_sandbox_is_unread(cell->sandbox, assignment)) ||
                              (checks && !wh_sandbox_is_unread(checks, assignment));
         if (!is_read && !cell->is_whole) {
-            fprintf(stderr, "%s: --set %s: %s; --layout FILE names another file\n", given->path, assignment,
-                    cell->note);
+            const bool is_told = strstr(cell->note, "(expected ") != NULL;
+            fprintf(stderr, "%s: --set %s: %s%s\n", given->path, assignment, cell->note,
+                    is_told ? "" : " (expected the log's layout, which --layout FILE names)");
             return false;
         }
         if (!is_read) {
