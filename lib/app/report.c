@@ -28,6 +28,7 @@ static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_log_more_options, offsetof(arguments_t, more), NULL, NULL},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
+    {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
@@ -94,6 +95,7 @@ static const char *find_foreign(const wh_run_arguments_t *run) {
            : run->memory_mib > 0   ? "--memory"
            : run->run.limits.trust ? "--trust"
            : run->errors.count > 0 ? "--error"
+           : run->counting.counted ? "--counted"
                                    : NULL;
 }
 

@@ -9,7 +9,7 @@ typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
     const char *url;
-    bool lcm, watch, counted, strict;
+    bool lcm, watch;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -23,12 +23,6 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
     {"schedule", 0, "FILE", "Write the schedule that a flow played, as waferhand schedule reads it",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.schedule_path)},
-    {"counted", 0, NULL,
-     "Leave out slices in which nothing can be decided; collisions are not looked for while something moves "
-     "in them",
-     WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
-    {"strict", 0, NULL, "With --counted: refuse a cell with collision = true", WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, strict)},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
@@ -45,17 +39,12 @@ static void check_errors(const arguments_t *arguments, struct argp_state *state)
 
 /* The option that asks for each slice; null: none is given. */
 static const char *option_of_slices(const arguments_t *arguments) {
-    const wh_run_files_t *files = &arguments->run.files;
     const struct {
         bool is_given;
         const char *option;
     } options_of_slices[] = {{arguments->lcm, "--lcm"},
                              {arguments->record.slices, "--record"},
-                             {arguments->record.all, "--record-all"},
-                             {files->page, "--report"},
-                             {files->scene, "--gltf"},
-                             {files->document, "--data"},
-                             {files->plots, "--svg"}};
+                             {arguments->record.all, "--record-all"}};
     for (size_t i = 0; i < sizeof options_of_slices / sizeof options_of_slices[0]; ++i) {
         if (options_of_slices[i].is_given) {
             return options_of_slices[i].option;
@@ -66,11 +55,8 @@ static const char *option_of_slices(const arguments_t *arguments) {
 
 static void check_counted(const arguments_t *arguments, struct argp_state *state) {
     const char *other = option_of_slices(arguments);
-    if (arguments->counted && other) {
+    if (arguments->run.counting.counted && other) {
         argp_error(state, "--counted does not go with %s, which asks for each slice", other);
-    }
-    if (arguments->strict && !arguments->counted) {
-        argp_error(state, "--strict goes with --counted");
     }
 }
 
@@ -90,6 +76,7 @@ static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
+    {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
@@ -127,9 +114,6 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    arguments.run.run.counts = !arguments.counted ? WH_MCS_COUNT_NONE
-                               : arguments.strict ? WH_MCS_COUNT_STRICT
-                                                  : WH_MCS_COUNT;
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
     const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);

@@ -150,6 +150,28 @@ void wh_run_errors_check(const void *filled, struct argp_state *state) {
     }
 }
 
+/* ----------------------------------------------------------------------------------------------- counting */
+
+const wh_option_t wh_run_counting_options[] = {
+    {"counted", 0, NULL,
+     "Leave out slices in which nothing can be decided; collisions are not looked for while something moves "
+     "in them",
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, counting.counted)},
+    {"strict", 0, NULL, "With --counted: refuse a cell with collision = true", WH_OPTION_FLAG,
+     .variable = offsetof(wh_run_arguments_t, counting.strict)},
+    {0}};
+
+void wh_run_counting_check(const void *filled, struct argp_state *state) {
+    const wh_run_counting_t *counting = &((const wh_run_arguments_t *)filled)->counting;
+    if (counting->strict && !counting->counted) {
+        argp_error(state, "--strict goes with --counted");
+    }
+}
+
+static wh_mcs_count_t counts_of(const wh_run_counting_t *counting) {
+    return !counting->counted ? WH_MCS_COUNT_NONE : counting->strict ? WH_MCS_COUNT_STRICT : WH_MCS_COUNT;
+}
+
 /* ------------------------------------------------------------------------------------------------ command */
 
 char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
@@ -167,6 +189,9 @@ char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     for (size_t i = 0; i < run->error_count; ++i) {
         fputs(" --error ", out);
         wh_output_word(out, run->errors[i]);
+    }
+    if (run->counts != WH_MCS_COUNT_NONE) {
+        fputs(run->counts == WH_MCS_COUNT_STRICT ? " --counted --strict" : " --counted", out);
     }
     (void)fclose(out);
     return text;
@@ -421,6 +446,7 @@ void wh_run_arguments_take(wh_run_arguments_t *arguments) {
     arguments->run.error_count = arguments->errors.count;
     arguments->run.limits.instructions = (uint64_t)arguments->budget;
     arguments->run.limits.memory_bytes = (size_t)(arguments->memory_mib * 1048576);
+    arguments->run.counts = counts_of(&arguments->counting);
 }
 
 void wh_run_arguments_free(wh_run_arguments_t *arguments) {

@@ -24,6 +24,11 @@ bool wh_run_files_wanted(const wh_run_files_t *files);
 /* Fills the signals with each slice that motion control has played, and marks where a run begins anew. */
 wh_mcs_listener_t wh_run_listener(wh_signals_t *signals);
 
+/* Counted time; zero it to begin with. */
+typedef struct {
+    bool counted, strict;
+} wh_run_counting_t;
+
 /* Zero it to begin with. */
 typedef struct {
     wh_script_run_options_t run; /* run.script is null when none was named */
@@ -45,10 +50,15 @@ typedef struct {
     bool quiet;                    /* print no tables, and nothing at all without `json` */
     const char *command;           /* the subcommand that plays it again; null: run */
     wh_run_files_t files;
+    wh_run_counting_t counting;
 } wh_run_arguments_t;
 
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
+
+/* --counted and --strict, for a run in this process: also into a wh_run_arguments_t, with their check. */
+extern const wh_option_t wh_run_counting_options[];
+void wh_run_counting_check(const void *filled, struct argp_state *state);
 
 /* The help of --counted of subcommands that play many runs, for WH_MCS_COUNT_BLIND. */
 #define WH_RUN_COUNTED_HELP                                                                                  \

@@ -24,6 +24,7 @@ typedef struct {
     uint64_t trials, seed, trial, threads, worst;
     const char *state, *csv;
     double require;
+    bool counted;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -46,6 +47,7 @@ static const wh_option_t options[] = {
     {"csv", 0, "FILE",
      "Write a line for each trial into FILE: if it was ok, where the wafers end up, and what was drawn",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, csv)},
+    {"counted", 0, NULL, WH_RUN_COUNTED_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"set", 0, "NAME=VALUE",
@@ -222,6 +224,7 @@ int wh_app_study(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     fill_in(&arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.run.counts = arguments.counted ? WH_MCS_COUNT_BLIND : WH_MCS_COUNT_NONE;
     const bool all = arguments.trial == NO_TRIAL;
     const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false},
                                      {"--state", arguments.state, true},

@@ -9,6 +9,10 @@
  * decided it is soon asked again. */
 #define FEW 4
 
+/* A listener hears of every so many slices that are left out, while something moves: curves that go through
+ * these are smooth enough for a page. */
+#define HEARD_US 10000
+
 /* ------------------------------------------------------------------------------ how many may be left out? */
 
 /* A track goes on without an answer until its segment's last slice. */
@@ -87,13 +91,40 @@ static void jump_all(wh_mcs_t *mcs, int64_t slices) {
     mcs->track.slice += slices;
 }
 
-/* Motion control, the simulator and those who count slices are then behind them. */
-static void pass_slices(wh_mcs_t *mcs, int64_t slices) {
-    wh_record_t *record = mcs->recorder.record;
-    const bool moves = moving_axes(mcs) != 0;
+/* Motion control and the simulator are then behind them. */
+static void pass_some(wh_mcs_t *mcs, int64_t slices) {
     jump_all(mcs, slices);
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
     wh_quiet_pass(&mcs->local.simulator, &mcs->command, slices);
+}
+
+/* The listener gets the state after the last of them, which is the one that playing them gives. */
+static void tell_listener(const wh_mcs_t *mcs) {
+    const wh_mcs_listener_t *listener = &mcs->wanted.listener;
+    if (listener->slice) {
+        wh_state_t state = mcs->state;
+        state.seq = mcs->command.seq;
+        state.utime = mcs->command.utime;
+        state.event_count = 0;
+        listener->slice(listener->user, &mcs->command, &state);
+    }
+}
+
+static void pass_and_tell(wh_mcs_t *mcs, int64_t slices, bool moves) {
+    const int64_t heard = HEARD_US / mcs->track.slice_us;
+    const int64_t most = moves && mcs->wanted.listener.slice ? (heard > 1 ? heard : 1) : slices;
+    for (int64_t left = slices, next = 0; left > 0; left -= next) {
+        next = left < most ? left : most;
+        pass_some(mcs, next);
+        tell_listener(mcs);
+    }
+}
+
+/* Those who count slices are then behind them, too. */
+static void pass_slices(wh_mcs_t *mcs, int64_t slices) {
+    wh_record_t *record = mcs->recorder.record;
+    const bool moves = moving_axes(mcs) != 0;
+    pass_and_tell(mcs, slices, moves);
     if (mcs->local.collision.memory) {
         wh_collision_jump(&mcs->local.collision, mcs->local.simulator.table.slice, mcs->command.axes,
                           &mcs->state);
@@ -132,7 +163,7 @@ static bool goes_by_slices(const wh_mcs_t *mcs) {
         goes = goes || trial->lag[g] != 0;
     }
     goes = goes || (mcs->layout->collision && mcs->wanted.counts == WH_MCS_COUNT_BLIND);
-    return goes || mcs->wanted.listener.slice || mcs->wanted.partners.connect || mcs->wanted.decisions;
+    return goes || mcs->wanted.partners.connect || mcs->wanted.decisions;
 }
 
 void wh_mcs_begin_counting(lua_State *L, wh_mcs_t *mcs) {

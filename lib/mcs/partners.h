@@ -67,7 +67,8 @@ typedef struct {
  * was accepted. */
 typedef void wh_slice_listener_t(void *user, const wh_command_t *command, const wh_state_t *state);
 
-/* The listener of a run, for any partners; each function may be null. */
+/* The listener of a run, for any partners; each function may be null. Counted time tells
+ * it of slices left out: of the last one of a rest, and of one each 10 ms of a motion. */
 typedef struct {
     wh_slice_listener_t *slice;
     /* A command of the record begins or has ended. Called before the first slice. */

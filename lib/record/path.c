@@ -87,12 +87,16 @@ static double slope_at(const wh_path_t *curve, size_t i) {
     if (after == before) {
         return 0;
     }
-    const double slope = (after->value - before->value) / (double)(after->slice - before->slice);
+    const double whole = (double)(after->slice - before->slice);
+    const double chord = (after->value - before->value) / whole;
     if (before == at || after == at) {
-        return slope;
+        return chord;
     }
-    const double to = (at->value - before->value) / (double)(at->slice - before->slice);
-    const double from = (after->value - at->value) / (double)(after->slice - at->slice);
+    const double width = (double)(at->slice - before->slice), next = (double)(after->slice - at->slice);
+    const double to = (at->value - before->value) / width;
+    const double from = (after->value - at->value) / next;
+    /* Where samples are missing on one side, the nearer one tells more. */
+    const double slope = is_same(width, next) ? chord : (next * to + width * from) / whole;
     const double least = to * from > 0 ? 3 * fmin(fabs(to), fabs(from)) : 0;
     return fabs(slope) <= least ? slope : copysign(least, slope);
 }

@@ -10,6 +10,7 @@
 #include "../text/array.h"
 #include "../text/json.h"
 #include "../view/scene.h"
+#include "notes_document.h"
 #include "scans_document.h"
 
 #define FORMAT 2
@@ -73,22 +74,6 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
     wh_json_text_value(text, "parameters", object);
 }
 
-/* Behind the notes of a log, or in their place: what nobody looked for. */
-static void put_note(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    const wh_record_t *record = document->record;
-    char note[2000];
-    if (i < document->note_count) {
-        put_text(text, NULL, document->notes[i]);
-        return;
-    }
-    if (i == document->note_count && record->unlooked) {
-        (void)snprintf(note, sizeof note, "%c%s.", 'C', record->unlooked + 1);
-    } else {
-        (void)snprintf(note, sizeof note, "Never came, and so were not tried: %s.", record->never_came);
-    }
-    put_text(text, NULL, note);
-}
-
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
     wh_json_text_integer(text, "format", FORMAT);
@@ -97,8 +82,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
     put_text(text, "source", document->source);
-    const size_t more = (document->record->unlooked ? 1U : 0U) + (document->record->never_came ? 1U : 0U);
-    put_each(text, document, "notes", document->note_count + more, put_note);
+    wh_notes_document_put(text, document);
     wh_json_text_value(text, "run", json_incref(document->run));
     put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
@@ -579,7 +563,7 @@ static void put_clearance(wh_json_text_t *text, const wh_document_t *document, s
 static void put_tracks(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
     const size_t grippers = signals->layout->machine.gripper_count;
-    const bool has_gaps = document->record->checked && document->record->curves;
+    const bool has_gaps = document->record->curves && wh_notes_document_looked(document->record);
     wh_json_text_begin(text, "tracks", '{');
     put_each(text, document, "axes", signals->axis_count, put_axis_track);
     put_each(text, document, "grippers", grippers, put_own);

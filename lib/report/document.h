@@ -4,7 +4,7 @@
  * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run", "log" or "session"; notes: [text], what a log did not tell, and what was not looked
- *                for
+ *                at or for
  *   run          what `run --json` prints, whole (print/record_print.h), with centrings on the way; of a log
  *                what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
@@ -38,7 +38,8 @@
  *                each gripper against `nearest`: the wafer that it holds, or otherwise the one nearest to the
  *                three limits together (record/counterpart.h), while it is within 20 mm and twice
  *                near_projxy
- *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
+ *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]; none of
+ *                counted time, which does not look for them in slices left out
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events that get a mark in the cell
  *   scans        edge scans (record/scans.h), in the chuck's frame: [{ number, begin_s, end_s, gripper,
  *                station (or null), count (ordered; below 0 clockwise), taken, missed (of them), verdict
