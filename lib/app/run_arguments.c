@@ -159,12 +159,17 @@ const wh_option_t wh_run_counting_options[] = {
      WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, counting.counted)},
     {"strict", 0, NULL, "With --counted: refuse a cell with collision = true", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, counting.strict)},
+    {"verify", 0, "N",
+     "With --counted: play at least N stretches of the slices that could be left out, from all of the run, "
+     "and "
+     "fail if something is decided in them",
+     WH_OPTION_WHOLE, .variable = offsetof(wh_run_arguments_t, counting.verify), 1, 1000000000},
     {0}};
 
 void wh_run_counting_check(const void *filled, struct argp_state *state) {
     const wh_run_counting_t *counting = &((const wh_run_arguments_t *)filled)->counting;
-    if (counting->strict && !counting->counted) {
-        argp_error(state, "--strict goes with --counted");
+    if ((counting->strict || counting->verify > 0) && !counting->counted) {
+        argp_error(state, "%s goes with --counted", counting->strict ? "--strict" : "--verify");
     }
 }
 
@@ -447,6 +452,7 @@ void wh_run_arguments_take(wh_run_arguments_t *arguments) {
     arguments->run.limits.instructions = (uint64_t)arguments->budget;
     arguments->run.limits.memory_bytes = (size_t)(arguments->memory_mib * 1048576);
     arguments->run.counts = counts_of(&arguments->counting);
+    arguments->run.verify = arguments->counting.verify;
 }
 
 void wh_run_arguments_free(wh_run_arguments_t *arguments) {

@@ -27,6 +27,7 @@ wh_mcs_listener_t wh_run_listener(wh_signals_t *signals);
 /* Counted time; zero it to begin with. */
 typedef struct {
     bool counted, strict;
+    uint64_t verify;
 } wh_run_counting_t;
 
 /* Zero it to begin with. */
@@ -56,7 +57,8 @@ typedef struct {
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */
 extern const wh_option_t wh_run_options[];
 
-/* --counted and --strict, for a run in this process: also into a wh_run_arguments_t, with their check. */
+/* --counted, --strict and --verify, for a run in this process: also into a wh_run_arguments_t, with their
+ * check. */
 extern const wh_option_t wh_run_counting_options[];
 void wh_run_counting_check(const void *filled, struct argp_state *state);
 

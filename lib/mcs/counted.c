@@ -1,7 +1,10 @@
 #include "counted.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "clocks.h"
 #include "playing.h"
 
@@ -139,6 +142,82 @@ static void pass_slices(wh_mcs_t *mcs, int64_t slices) {
     }
 }
 
+/* --------------------------------------------------------------------------------------------- verifying */
+
+/* All that pass_some changes. */
+typedef struct {
+    wh_track_t track;
+    wh_command_t command;
+    wh_machine_cache_t cache;
+    wh_simulator_t simulator;
+    wh_gripper_t grippers[WH_GRIPPERS];
+    wh_wafer_t *wafers;
+    wh_lanes_t *lanes; /* null: there are none */
+} saved_t;
+
+static void save(const wh_mcs_t *mcs, saved_t *saved) {
+    const wh_grasp_storage_t *storage = &mcs->local.simulator.table.storage;
+    saved->track = mcs->track;
+    saved->command = mcs->command;
+    saved->cache = mcs->cache;
+    saved->simulator = mcs->local.simulator;
+    memcpy(saved->grippers, storage->grippers, storage->gripper_count * sizeof *storage->grippers);
+    saved->wafers = wh_array_new(storage->wafer_count, sizeof *saved->wafers);
+    memcpy(saved->wafers, storage->wafers, storage->wafer_count * sizeof *storage->wafers);
+    saved->lanes = NULL;
+    if (mcs->lanes) {
+        saved->lanes = wh_array_new(1, sizeof *saved->lanes);
+        *saved->lanes = *mcs->lanes;
+    }
+}
+
+static void put_back(wh_mcs_t *mcs, saved_t *saved) {
+    const wh_grasp_storage_t *storage = &saved->simulator.table.storage;
+    mcs->track = saved->track;
+    mcs->command = saved->command;
+    mcs->cache = saved->cache;
+    mcs->local.simulator = saved->simulator;
+    memcpy(storage->grippers, saved->grippers, storage->gripper_count * sizeof *storage->grippers);
+    memcpy(storage->wafers, saved->wafers, storage->wafer_count * sizeof *storage->wafers);
+    if (saved->lanes) {
+        *mcs->lanes = *saved->lanes;
+    }
+    free(saved->wafers);
+    free(saved->lanes);
+}
+
+/* Leaves the stretch out to see what that gives, and goes back: it is played then. */
+static void expect_stretch(wh_mcs_t *mcs, int64_t slices) {
+    struct wh_counted *counted = mcs->local.counted;
+    saved_t saved;
+    const int64_t first = mcs->track.slice + 1;
+    save(mcs, &saved);
+    pass_some(mcs, slices);
+    mcs->recorder.part_count = 0;
+    wh_verify_expect(&counted->verify, first, &mcs->command, wh_simulator_hash(&mcs->local.simulator),
+                     mcs->state.sensors);
+    put_back(mcs, &saved);
+    counted->again = mcs->track.slice + slices;
+}
+
+static void hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    const wh_mcs_t *mcs = user;
+    wh_verify_t *verify = &mcs->local.counted->verify;
+    const int64_t first = verify->first, last = verify->last;
+    const uint64_t hash = command->seq == last ? wh_simulator_hash(&mcs->local.simulator) : 0;
+    const char *difference = wh_verify_slice(verify, command, state, hash);
+    const char *text = wh_mcs_running_text(mcs);
+    if (difference && verify->difference[0] == '\0') {
+        (void)snprintf(verify->difference, sizeof verify->difference,
+                       "slices %lld to %lld%s%.100s: %s in slice %lld", (long long)first, (long long)last,
+                       text ? ", " : "", text ? text : "", difference, (long long)command->seq);
+    }
+}
+
+const char *wh_mcs_miscounted(const wh_mcs_t *mcs) {
+    return mcs->local.counted ? mcs->local.counted->verify.difference : "";
+}
+
 int64_t wh_mcs_leave_out(wh_mcs_t *mcs, int64_t most) {
     struct wh_counted *counted = mcs->local.counted;
     if (!counted || mcs->track.slice < counted->again) {
@@ -147,9 +226,13 @@ int64_t wh_mcs_leave_out(wh_mcs_t *mcs, int64_t most) {
     const int64_t slices = count_left_out(mcs, most);
     if (slices == 0) {
         counted->again = mcs->track.slice + FEW;
-    } else {
-        pass_slices(mcs, slices);
+        return 0;
     }
+    if (wh_verify_takes(&counted->verify)) {
+        expect_stretch(mcs, slices);
+        return 0;
+    }
+    pass_slices(mcs, slices);
     return slices;
 }
 
@@ -168,6 +251,7 @@ static bool goes_by_slices(const wh_mcs_t *mcs) {
 
 void wh_mcs_begin_counting(lua_State *L, wh_mcs_t *mcs) {
     mcs->recorder.record->counted.is_wanted = mcs->wanted.counts != WH_MCS_COUNT_NONE;
+    mcs->recorder.record->counted.is_verified = mcs->wanted.verify > 0;
     if (mcs->wanted.counts == WH_MCS_COUNT_NONE || goes_by_slices(mcs)) {
         return;
     }
@@ -175,5 +259,9 @@ void wh_mcs_begin_counting(lua_State *L, wh_mcs_t *mcs) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, counted);
     memset(counted, 0, sizeof *counted);
     wh_quiet_begin(&counted->quiet, &mcs->real->machine, mcs->real->physics.slice_s);
+    counted->verify.wanted = mcs->wanted.verify;
     mcs->local.counted = counted;
+    if (mcs->wanted.verify > 0) {
+        wh_mcs_listen(mcs, hear_slice, mcs);
+    }
 }

@@ -8,6 +8,7 @@
 #include "../script/wh_module.h"
 #include "../script/wh_module_values.h"
 #include "clocks.h"
+#include "counted.h"
 #include "native.h"
 
 wh_mcs_t *wh_mcs_of(lua_State *L) {
@@ -319,6 +320,21 @@ static void judge_heard(wh_mcs_t *mcs) {
     }
 }
 
+/* Slices that counted time would leave out were played, and something was decided in them. */
+static void judge_counted(wh_mcs_t *mcs) {
+    char text[WH_VERIFY_BYTES + 100];
+    wh_counted_record_t *counted = &mcs->recorder.record->counted;
+    if (mcs->local.counted) {
+        counted->stretches = mcs->local.counted->verify.stretches;
+        counted->verified = mcs->local.counted->verify.verified;
+    }
+    if (wh_mcs_miscounted(mcs)[0] != '\0') {
+        (void)snprintf(text, sizeof text, "nothing to decide in slices that counted time leaves out; %s",
+                       wh_mcs_miscounted(mcs));
+        add_expectation(mcs, text, false);
+    }
+}
+
 /* A script that ends while a command is held has left the robot in a station. One that failed says why. */
 static void judge_held(wh_mcs_t *mcs) {
     char text[WH_MCS_HELD_BYTES + 100];
@@ -346,6 +362,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         judge_missed(mcs, end.missed);
         judge_heard(mcs);
     }
+    judge_counted(mcs);
     judge_held(mcs);
     wh_mcs_judge_stays(mcs);
     if (!mcs->recorder.record->failure && mcs->layout) {

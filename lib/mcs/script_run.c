@@ -131,6 +131,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->record.trial = options->error_count > 0 ? NULL : options->trial;
     run->mcs.wanted.without_collisions = options->without_collisions;
     run->mcs.wanted.counts = options->counts;
+    run->mcs.wanted.verify = options->verify;
     run->mcs.wanted.decisions = options->decisions;
     run->mcs.wanted.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);

@@ -23,6 +23,7 @@ typedef struct {
     size_t error_count;
     bool without_collisions;   /* no collision check, whatever the layout says */
     wh_mcs_count_t counts;     /* whether slices are left out */
+    uint64_t verify;           /* stretches of them that are played all the same */
     wh_decisions_t *decisions; /* all zero at first: keeps commands and readings; null: they are not kept */
 } wh_script_run_options_t;
 

@@ -15,8 +15,9 @@
 #include "rehearsal.h"
 
 /* The listeners for slices: decisions, recorder, origins, the collected scan, the data of STATUS, a collision
- * check beside a remote simulator, the stations' clockwork, late valves, and the run's listener. */
-#define WH_MCS_LISTENERS 9
+ * check beside a remote simulator, the stations' clockwork, late valves, verified slices, and the run's
+ * listener. */
+#define WH_MCS_LISTENERS 10
 
 /* The most lines of a script that are listed as calling lines, for a command within functions. */
 #define WH_MCS_CALLERS 4
@@ -178,6 +179,7 @@ typedef struct {
     bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
     wh_mcs_count_t counts;
+    uint64_t verify;    /* so many stretches of slices that could be left out are played, see verify.h */
     bool limits_missed; /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     wh_mcs_partners_t partners;

@@ -18,7 +18,8 @@
  * were not read), notes [text] }), script, layout (path or null), slices, missed, simulated_s, wall_s,
  * hash (16 hex digits), not_looked_for (in words; null: nothing is known that was not),
  *   counted:      (only of counted time) { played, left_out (slices), moving (those left out in which
- *                 something moved), not_looked_for (in these, in words; null: nothing) }
+ *                 something moved), not_looked_for (in these, in words; null: nothing); with --verify
+ *                 stretches (that could be left out), verified (those of them that were played) }
  *   steady_cycle: { wafers_per_hour (null: there is no figure), reason (why not, or why there is no such
  *                 cycle, in words, or null), found, begin_s, end_s, wafers, times (how many like it come in
  *                 a row), cycle (which of the marked ones it is, from 1; null: none is), first_command (its

@@ -384,6 +384,11 @@ static void print_counted(const wh_printer_t *printer) {
     fprintf(printer->out, "played %s of ", wh_print_count(count, record->slices - counted->left_out));
     wh_print_counted(printer->out, record->slices, "slice", "slices");
     fputs(": nothing was decided in the others\n", printer->out);
+    if (counted->is_verified) {
+        fprintf(printer->out, "verified %s of ", wh_print_count(count, (int64_t)counted->verified));
+        wh_print_counted(printer->out, (int64_t)counted->stretches, "stretch", "stretches");
+        fputs(" that could be left out, by playing them\n", printer->out);
+    }
     if (record->checked && counted->moving > 0) {
         wh_style_print(printer->style, printer->out, WH_INK_WARN, "! ");
         fprintf(printer->out, WH_RECORD_COUNTED_UNLOOKED " were looked for in %s of ",

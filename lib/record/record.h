@@ -106,6 +106,8 @@ typedef struct {
 typedef struct {
     bool is_wanted;
     int64_t left_out, moving;
+    bool is_verified;             /* some stretches that could be left out were played and compared */
+    uint64_t stretches, verified; /* all such stretches, and those of them */
 } wh_counted_record_t;
 
 typedef struct {
