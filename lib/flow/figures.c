@@ -113,22 +113,6 @@ static void blame(measure_t *measure, const wh_flow_state_t *state, const wh_flo
     }
 }
 
-static void check_window(wh_flow_figures_t *figures, const wh_flow_state_t *state,
-                         const wh_flow_event_t *stay) {
-    const int64_t window_us = state->tool->stations[stay->station].window_us;
-    const int64_t stay_us = stay->end_us - stay->begin_us;
-    if (wh_flow_process_us(state, stay->wafer, stay->station) == 0 && window_us == WH_FLOW_NEVER) {
-        return;
-    }
-    figures->longest_stay_us = stay_us > figures->longest_stay_us ? stay_us : figures->longest_stay_us;
-    if (wh_flow_over_window_us(state, stay) > 0) {
-        figures->breaches = wh_array_grow(figures->breaches, figures->breach_count, &figures->breach_capacity,
-                                          sizeof *figures->breaches);
-        figures->breaches[figures->breach_count++] = (wh_flow_breach_t){
-            stay->wafer, stay->station, stay->step, stay->begin_us, stay->end_us, window_us};
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------- visits */
 
 static void begin_visit(measure_t *measure, const wh_flow_event_t *stay) {
@@ -214,7 +198,7 @@ static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh
     account_wafer(measure, state, event->wafer, event->end_us);
     if (event->step > 0) {
         blame(measure, state, event);
-        check_window(measure->figures, state, event);
+        wh_flow_stays_add(&measure->figures->stays, state, event);
     }
     if (measure->open) {
         note_coming(measure->figures, state, event->wafer);
@@ -348,7 +332,7 @@ static void end(void *context, const wh_flow_state_t *state) {
     wh_flow_event_t stay;
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
         if (wh_flow_open_stay(state, w, &stay)) {
-            check_window(measure->figures, state, &stay);
+            wh_flow_stays_add(&measure->figures->stays, state, &stay);
         }
     }
     for (size_t p = 0; p < state->tool->place_count; ++p) {
@@ -381,6 +365,7 @@ static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool,
         .blocked_by_station = wh_array_new(stations * stations, sizeof *figures->blocked_by_station),
         .placed = wh_array_new(stations, sizeof *figures->placed),
     };
+    wh_flow_stays_open(&figures->stays, tool);
 }
 
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
@@ -415,7 +400,7 @@ void wh_flow_figures_close(wh_flow_figures_t *figures) {
     free(figures->blocked_by_robot);
     free(figures->blocked_by_station);
     free(figures->placed);
-    free(figures->breaches);
+    wh_flow_stays_close(&figures->stays);
     free(figures->parts);
     free(figures->gains);
     free(figures->visits);

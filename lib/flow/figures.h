@@ -4,6 +4,7 @@
 #define WH_FLOW_FIGURES_H
 
 #include "path.h"
+#include "stays.h"
 #include "waiting.h"
 
 /* The time of a station's places. */
@@ -22,12 +23,6 @@ typedef enum {
 /* Names for people and for JSON, such as waits_wafer. */
 extern const char *const wh_flow_robot_class_names[WH_FLOW_ROBOT_CLASSES];
 extern const char *const wh_flow_station_class_names[WH_FLOW_STATION_CLASSES];
-
-/* A stay after a process that was longer than the window. */
-typedef struct {
-    int32_t wafer, station, step;
-    int64_t done_us, taken_us, window_us;
-} wh_flow_breach_t;
 
 /* A wafer's visit to a place, from the begin of the transfer there on. Times that have not come are
  * WH_FLOW_NEVER; the place is WH_FLOW_NONE until it lies there. */
@@ -59,8 +54,7 @@ typedef struct {
     int64_t *blocked_by_robot;                    /* of WH_FLOW_STATION_BLOCKED, by station and robot */
     int64_t *blocked_by_station;                  /* by station and station */
     size_t *placed;                               /* wafers placed, by station */
-    wh_flow_breach_t *breaches;
-    size_t breach_count, breach_capacity;
+    wh_flow_stays_t stays;
     wh_flow_visit_t *visits; /* by the end of placing, at last those under way; none if not asked for */
     size_t visit_count, visit_capacity;
     int64_t *came_us;        /* by wafer: when it came to its first place, or WH_FLOW_NEVER; null likewise */
@@ -70,10 +64,9 @@ typedef struct {
     size_t way_count, way_capacity;
     wh_flow_part_t *parts; /* of the critical path, the longest first; none if visits are not kept */
     size_t part_count;
-    wh_flow_gain_t *gains;   /* by robot, then by station; null if not asked for */
-    int64_t longest_stay_us; /* after a process */
-    uint64_t hash;           /* of all that was told, in its order */
-    int64_t end_us;          /* up to which time is counted: the makespan, the cut, or when nobody went on */
+    wh_flow_gain_t *gains; /* by robot, then by station; null if not asked for */
+    uint64_t hash;         /* of all that was told, in its order */
+    int64_t end_us;        /* up to which time is counted: the makespan, the cut, or when nobody went on */
 } wh_flow_figures_t;
 
 /* A flow that a run has played: it owns the plan. */

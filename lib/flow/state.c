@@ -187,7 +187,7 @@ void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *probl
 bool wh_flow_open_stay(const wh_flow_state_t *state, int32_t wafer, wh_flow_event_t *stay) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     if (at->is_over || at->step == 0 || at->place == WH_FLOW_NONE || at->taker != WH_FLOW_NONE ||
-        at->done_us > state->now_us) {
+        at->done_us - at->clean_us > state->now_us) {
         return false;
     }
     *stay = (wh_flow_event_t){.kind = WH_FLOW_EVENT_STAY,
@@ -202,7 +202,11 @@ bool wh_flow_open_stay(const wh_flow_state_t *state, int32_t wafer, wh_flow_even
     return true;
 }
 
+int64_t wh_flow_stay_us(const wh_flow_state_t *state, const wh_flow_event_t *stay) {
+    return stay->end_us - stay->begin_us + state->wafers[stay->wafer].clean_us;
+}
+
 int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay) {
     const int64_t window_us = state->tool->stations[stay->station].window_us;
-    return stay->step == 0 || window_us == WH_FLOW_NEVER ? -1 : stay->end_us - stay->begin_us - window_us;
+    return stay->step == 0 || window_us == WH_FLOW_NEVER ? -1 : wh_flow_stay_us(state, stay) - window_us;
 }

@@ -180,11 +180,15 @@ static inline bool wh_flow_is_clean_behind(const wh_flow_state_t *state, int32_t
 /* The station in whose place the wafer lies, or WH_FLOW_NONE. */
 int32_t wh_flow_station_of(const wh_flow_state_t *state, int32_t wafer);
 
-/* The stay up to now of a wafer that lies done in its place, and which nobody has begun to take. False if it
- * does not, or is at its end, or in its first place. */
+/* The stay up to now of a wafer that lies processed in its place, and which nobody has begun to take. False
+ * if it does not, or is at its end, or in its first place. */
 bool wh_flow_open_stay(const wh_flow_state_t *state, int32_t wafer, wh_flow_event_t *stay);
 
-/* How much longer than its station's window a stay lasts from its begin to `end_us`; below 0: it does not. */
+/* How long a wafer has stayed since its process ended, with the clean around it, if there is one. Ask before
+ * it is placed elsewhere. */
+int64_t wh_flow_stay_us(const wh_flow_state_t *state, const wh_flow_event_t *stay);
+
+/* How much longer than its station's window that is; below 0: it is not. */
 int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay);
 
 /* Tells the plan's own function, if there is one; it may end the flow. */

@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../flow/textbook.h"
+#include "../flow/waits.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "flow_own.h"
@@ -20,17 +22,48 @@ static void set_seconds(lua_State *L, const char *name, int64_t us) {
 }
 
 /* Each wafer's stay that was longer than its station's window. */
-static void push_breaches(lua_State *L, const wh_flow_figures_t *figures) {
-    lua_createtable(L, (int)figures->breach_count, 0);
-    for (size_t i = 0; i < figures->breach_count; ++i) {
-        const wh_flow_breach_t *breach = &figures->breaches[i];
-        lua_createtable(L, 0, 4);
-        wh_lua_set_text(L, "wafer", figures->plan->wafers[breach->wafer].name);
-        wh_lua_set_text(L, "station", figures->tool->stations[breach->station].name);
-        set_seconds(L, "done_s", breach->done_us);
-        set_seconds(L, "stay_s", breach->taken_us - breach->done_us);
-        set_seconds(L, "window_s", breach->window_us);
+static void push_late(lua_State *L, const wh_flow_figures_t *figures) {
+    lua_createtable(L, (int)figures->stays.late_count, 0);
+    for (size_t i = 0; i < figures->stays.late_count; ++i) {
+        const wh_flow_stay_t *stay = &figures->stays.late[i];
+        lua_createtable(L, 0, 5);
+        wh_lua_set_text(L, "wafer", figures->plan->wafers[stay->wafer].name);
+        wh_lua_set_text(L, "station", figures->tool->stations[stay->station].name);
+        set_seconds(L, "done_s", stay->done_us);
+        set_seconds(L, "stay_s", stay->taken_us - stay->done_us);
+        set_seconds(L, "window_s", stay->window_us);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* The waits: robots' waits by cause, done wafers' by the robot or station that kept them. */
+static void push_waits(lua_State *L, const wh_flow_figures_t *figures) {
+    size_t count = 0;
+    wh_flow_wait_t *waits = wh_flow_waits(figures, &count);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; ++i) {
+        const wh_flow_wait_t *wait = &waits[i];
+        lua_createtable(L, 0, 3);
+        wh_lua_set_text(L, "who", wait->cause ? "robots" : "wafers");
+        wh_lua_set_text(L, "cause",
+                        wait->cause                   ? wait->cause
+                        : wait->robot != WH_FLOW_NONE ? figures->tool->robots[wait->robot].name
+                                                      : figures->tool->stations[wait->station].name);
+        set_seconds(L, "seconds", wait->us);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    free(waits);
+}
+
+/* The smallest gap to a window, and the cycle of the textbook, where there is one. */
+static void push_limits(lua_State *L, const wh_flow_figures_t *figures) {
+    const wh_flow_textbook_t textbook = wh_flow_textbook(figures->tool, figures->plan);
+    if (!textbook.why) {
+        lua_pushnumber(L, textbook.cycle_us / 1e6);
+        lua_setfield(L, -2, "textbook_s");
+    }
+    if (figures->stays.nearest_count > 0) {
+        set_seconds(L, "gap_s", wh_flow_gap_us(&figures->stays.nearest[0]));
     }
 }
 
@@ -82,7 +115,7 @@ static void push_path(lua_State *L, const wh_flow_figures_t *figures) {
 static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     static const char *const ends[] = {"done", "stuck", "broken", "cut"};
     const wh_flow_result_t *result = &figures->result;
-    lua_createtable(L, 0, 12);
+    lua_createtable(L, 0, 16);
     wh_lua_set_text(L, "end", ends[result->end]);
     set_seconds(L, "makespan_s", result->makespan_us);
     wh_lua_set_integer(L, "wafers", (int64_t)result->over);
@@ -100,9 +133,12 @@ static void push_result(lua_State *L, const wh_flow_figures_t *figures) {
     if (result->why) {
         wh_lua_set_text(L, "why", result->why);
     }
-    set_seconds(L, "longest_stay_s", figures->longest_stay_us);
-    push_breaches(L, figures);
+    set_seconds(L, "longest_stay_s", figures->stays.longest_us);
+    push_limits(L, figures);
+    push_late(L, figures);
     lua_setfield(L, -2, "stays");
+    push_waits(L, figures);
+    lua_setfield(L, -2, "waits");
     push_path(L, figures);
     lua_setfield(L, -2, "path");
     push_all_shares(L, figures);
@@ -131,12 +167,11 @@ static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     if (figures->result.end == WH_FLOW_STUCK || figures->result.end == WH_FLOW_BROKEN) {
         judge_end(record, flow, error);
     }
-    for (size_t i = 0; i < figures->breach_count && !flow->is_lateness_told; ++i) {
-        const wh_flow_breach_t *breach = &figures->breaches[i];
+    for (size_t i = 0; i < figures->stays.late_count && !flow->is_lateness_told; ++i) {
+        const wh_flow_stay_t *stay = &figures->stays.late[i];
         (void)snprintf(text, sizeof text, "%s out of %s at most %.6g s after its process; it stayed %.6g s",
-                       figures->plan->wafers[breach->wafer].name,
-                       figures->tool->stations[breach->station].name, seconds(breach->window_us),
-                       seconds(breach->taken_us - breach->done_us));
+                       figures->plan->wafers[stay->wafer].name, figures->tool->stations[stay->station].name,
+                       seconds(stay->window_us), seconds(stay->taken_us - stay->done_us));
         wh_record_add_expectation(record, flow->line, text, false);
     }
 }

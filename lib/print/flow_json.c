@@ -1,15 +1,20 @@
-/* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, counted_s (of
- * which shares are: the makespan, the cut, or when nobody went on), wafers, cycle_s, period,
- * per_hour, no_cycle (why there is none), may_block (safe is not held), longest_stay_s, path (parts of the
- * critical path, which add up to the makespan, the longest first), gains (what the flow takes if one robot or
- * station takes 10 % less time), robots and stations (shares of the time by class, which add up to 1;
- * blocked_by by name, s), stays (beyond their windows), visits (each wafer's, by the end of placing; at last
- * those under way, with null for what has not come), doings (pumps, vents, cleans and failures of stations,
- * by their ends). */
+/* A flow as JSON. Members: end (done, stuck, broken, cut), why, makespan_s, counted_s (of which shares are:
+ * the makespan, the cut, or when nobody went on), wafers, cycle_s, period, per_hour, no_cycle (why there is
+ * none), textbook (its cycle beside that, or why none), busiest (who has the least time to spare), may_block
+ * (safe is not held), longest_stay_s, path (parts of the critical path, which add up to the makespan, the
+ * longest first), gains (what the flow takes if one robot or station takes 10 % less time), waits (robots'
+ * by cause, done wafers' by who kept them), windows (by station), gaps (the smallest ones of all), robots
+ * and stations (shares of the time by class, which add up to 1; blocked_by by name, s), stays (beyond their
+ * windows), lots (with their wafers), visits (each wafer's, by the end of placing; at last those under way,
+ * with null for what has not come), doings (pumps, vents, cleans and failures of stations, by their ends),
+ * ways (of robots, only where a page or a schedule asks for them). */
 #include "record_print.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "../flow/textbook.h"
+#include "../flow/waits.h"
 #include "../text/json.h"
 
 static const char *const ends[] = {"done", "stuck", "broken", "cut"};
@@ -66,13 +71,62 @@ static json_t *station(const void *subject, size_t s) {
                        blocked_by(figures, s), NULL);
 }
 
-static json_t *breach(const void *subject, size_t i) {
-    const wh_flow_figures_t *figures = subject;
-    const wh_flow_breach_t *of = &figures->breaches[i];
-    return wh_json_set(json_object(), "wafer %s station %s done_s %g stay_s %g window_s %g",
+static json_t *stay(const wh_flow_figures_t *figures, const wh_flow_stay_t *of) {
+    return wh_json_set(json_object(), "wafer %s station %s done_s %g stay_s %g window_s %g gap_s %g",
                        figures->plan->wafers[of->wafer].name, figures->tool->stations[of->station].name,
                        (double)of->done_us / 1e6, (double)(of->taken_us - of->done_us) / 1e6,
-                       (double)of->window_us / 1e6);
+                       (double)of->window_us / 1e6, (double)wh_flow_gap_us(of) / 1e6);
+}
+
+static json_t *late(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    return stay(figures, &figures->stays.late[i]);
+}
+
+static json_t *gap(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    return stay(figures, &figures->stays.nearest[i]);
+}
+
+static json_t *windows(const wh_flow_figures_t *figures) {
+    json_t *list = json_array();
+    for (size_t s = 0; s < figures->tool->station_count; ++s) {
+        const wh_flow_window_t *of = &figures->stays.windows[s];
+        const int64_t window_us = figures->tool->stations[s].window_us;
+        if (window_us == WH_FLOW_NEVER) {
+            continue;
+        }
+        json_t *object = wh_json_set(json_object(), "station %s window_s %g stays %lld late %lld",
+                                     figures->tool->stations[s].name, (double)window_us / 1e6,
+                                     (long long)of->count, (long long)of->late);
+        wh_json_put(object, "nearest", of->count > 0 ? stay(figures, &of->nearest) : json_null());
+        (void)json_array_append_new(list, object);
+    }
+    return list;
+}
+
+static json_t *lot_wafer(const wh_flow_figures_t *figures, size_t w) {
+    const wh_flow_wafer_t *of = &figures->plan->wafers[w];
+    const int32_t home = of->home;
+    json_t *object = wh_json_set(json_object(), "name %s station %s slot %d", of->name,
+                                 figures->tool->stations[figures->tool->place_stations[home]].name,
+                                 (int)wh_flow_slot(figures->tool, home));
+    wh_json_put(object, "came_s", seconds(figures->came_us ? figures->came_us[w] : WH_FLOW_NEVER));
+    return object;
+}
+
+static json_t *lot(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_lot_t *of = &figures->plan->lots[i];
+    json_t *object = wh_json_set(json_object(), "name %s route %s arrives_s %g priority %d dummy %i",
+                                 of->name, figures->plan->routes[of->route].name,
+                                 (double)of->arrives_us / 1e6, (int)of->priority, of->is_dummy);
+    json_t *list = json_array();
+    for (size_t w = of->first_wafer; w < of->first_wafer + of->wafer_count; ++w) {
+        (void)json_array_append_new(list, lot_wafer(figures, w));
+    }
+    wh_json_put(object, "wafers", list);
+    return object;
 }
 
 static json_t *visit(const void *subject, size_t i) {
@@ -119,6 +173,54 @@ static json_t *part(const void *subject, size_t i) {
                        (double)of->us / 1e6, (double)of->us / (double)figures->end_us);
 }
 
+static json_t *way(const void *subject, size_t i) {
+    const wh_flow_figures_t *figures = subject;
+    const wh_flow_way_t *of = &figures->ways[i];
+    return wh_json_set(json_object(), "robot %s from %s to %s begin_s %g end_s %g",
+                       figures->tool->robots[of->robot].name, figures->tool->stations[of->from].name,
+                       figures->tool->stations[of->to].name, (double)of->begin_us / 1e6,
+                       (double)of->end_us / 1e6);
+}
+
+static json_t *waits(const wh_flow_figures_t *figures) {
+    json_t *list = json_array();
+    size_t count = 0;
+    wh_flow_wait_t *all = wh_flow_waits(figures, &count);
+    for (size_t i = 0; i < count; ++i) {
+        const wh_flow_wait_t *of = &all[i];
+        const char *cause = of->cause ? of->cause : name_of(figures->tool, of->robot, of->station);
+        (void)json_array_append_new(list, wh_json_set(json_object(), "who %s cause %s seconds %g",
+                                                      of->cause ? "robots" : "wafers", cause,
+                                                      (double)of->us / 1e6));
+    }
+    free(all);
+    return list;
+}
+
+/* limits: the robot, or the stations of the step, whose bound it is. */
+static json_t *textbook(const wh_flow_figures_t *figures) {
+    const wh_flow_textbook_t of = wh_flow_textbook(figures->tool, figures->plan);
+    const double cycle_s = of.why ? (double)NAN : of.cycle_us / 1e6;
+    json_t *object = wh_json_set(json_object(), "cycle_s %g per_hour %g", cycle_s, 3600 / cycle_s);
+    wh_json_put(object, "why", of.why ? wh_json_text(of.why) : json_null());
+    json_t *limits = json_array();
+    const wh_flow_step_t *step = of.why || of.step == 0 ? NULL : &figures->plan->routes[0].steps[of.step];
+    for (size_t k = 0; step && k < step->station_count; ++k) {
+        (void)json_array_append_new(limits, wh_json_text(figures->tool->stations[step->stations[k]].name));
+    }
+    if (!of.why && of.step == 0) {
+        (void)json_array_append_new(limits, wh_json_text(figures->tool->robots[0].name));
+    }
+    wh_json_put(object, "limits", limits);
+    return object;
+}
+
+static json_t *busiest(const wh_flow_figures_t *figures) {
+    const wh_flow_busy_t of = wh_flow_busiest(figures);
+    return wh_json_set(json_object(), "of %s share %g", name_of(figures->tool, of.robot, of.station),
+                       of.share);
+}
+
 static json_t *gain(const void *subject, size_t i) {
     const wh_flow_figures_t *figures = subject;
     const wh_flow_gain_t *of = &figures->gains[i];
@@ -141,12 +243,20 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
     (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g", result->no_cycle, result->may_block,
                       (double)figures->end_us / 1e6);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
-    return wh_json_add(object, "longest_stay_s path gains robots stations stays visits doings",
-                       seconds(figures->longest_stay_us), wh_json_list(part, figures, figures->part_count),
-                       wh_json_list(gain, figures, gain_count),
-                       wh_json_list(robot, figures, figures->tool->robot_count),
-                       wh_json_list(station, figures, figures->tool->station_count),
-                       wh_json_list(breach, figures, figures->breach_count),
-                       wh_json_list(visit, figures, figures->visit_count),
-                       wh_json_list(doing, figures, figures->doing_count), NULL);
+    (void)wh_json_add(object, "textbook busiest longest_stay_s path gains waits windows gaps",
+                      textbook(figures), busiest(figures), seconds(figures->stays.longest_us),
+                      wh_json_list(part, figures, figures->part_count),
+                      wh_json_list(gain, figures, gain_count), waits(figures), windows(figures),
+                      wh_json_list(gap, figures, figures->stays.nearest_count), NULL);
+    (void)wh_json_add(object, "robots stations stays lots visits doings",
+                      wh_json_list(robot, figures, figures->tool->robot_count),
+                      wh_json_list(station, figures, figures->tool->station_count),
+                      wh_json_list(late, figures, figures->stays.late_count),
+                      wh_json_list(lot, figures, figures->plan->lot_count),
+                      wh_json_list(visit, figures, figures->visit_count),
+                      wh_json_list(doing, figures, figures->doing_count), NULL);
+    if (figures->ways) {
+        wh_json_put(object, "ways", wh_json_list(way, figures, figures->way_count));
+    }
+    return object;
 }

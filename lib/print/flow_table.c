@@ -1,15 +1,46 @@
 /* A flow: its rate first, then where the time of robots and stations went, and stays beyond windows. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "../flow/textbook.h"
+#include "../flow/waits.h"
 #include "../text/array.h"
 #include "print_internal.h"
 
-/* The most breaches of windows that are listed. */
+/* The most rows of a list. */
 #define LISTED 20
 
 static double seconds(int64_t us) {
     return (double)us / 1e6;
+}
+
+static const char *name_of(const wh_flow_tool_t *tool, int32_t robot, int32_t station) {
+    return robot != WH_FLOW_NONE     ? tool->robots[robot].name
+           : station != WH_FLOW_NONE ? tool->stations[station].name
+                                     : "-";
+}
+
+/* The closed form's cycle and what limits it, and who has the least time to spare. */
+static void print_limits(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_textbook_t textbook = wh_flow_textbook(figures->tool, figures->plan);
+    const wh_flow_busy_t busiest = wh_flow_busiest(figures);
+    if (textbook.why) {
+        fprintf(printer->out, "no closed form for the cycle: %s\n", textbook.why);
+    } else {
+        fprintf(printer->out, "by closed form: one in %.6g s, for ", textbook.cycle_us / 1e6);
+        const wh_flow_step_t *step = &figures->plan->routes[0].steps[textbook.step];
+        for (size_t k = 0; k < step->station_count; ++k) {
+            wh_print_say(printer, "%s%s", k > 0 ? ", " : "", figures->tool->stations[step->stations[k]].name);
+        }
+        wh_print_say(printer, "%s", textbook.step == 0 ? figures->tool->robots[0].name : "");
+        fputc('\n', printer->out);
+    }
+    if (busiest.share > 0) {
+        wh_print_say(printer, "busiest: %s, %.1f %% of the time",
+                     name_of(figures->tool, busiest.robot, busiest.station), 100 * busiest.share);
+        fputc('\n', printer->out);
+    }
 }
 
 static void print_rate(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
@@ -127,12 +158,6 @@ static void print_stations(const wh_printer_t *printer, const wh_flow_figures_t 
     wh_print_titled(printer, "Stations", grid);
 }
 
-static const char *name_of(const wh_flow_tool_t *tool, int32_t robot, int32_t station) {
-    return robot != WH_FLOW_NONE     ? tool->robots[robot].name
-           : station != WH_FLOW_NONE ? tool->stations[station].name
-                                     : "-";
-}
-
 static void print_path(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1, "of;doing;s{3,6};%{1}");
     for (size_t i = 0; i < figures->part_count && i < LISTED; ++i) {
@@ -172,21 +197,58 @@ static void print_gains(const wh_printer_t *printer, const wh_flow_figures_t *fi
     wh_print_titled(printer, "Gains", grid);
 }
 
-static void print_breaches(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+/* Sums over all robots, and over all wafers that are done. */
+static void print_waits(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    size_t count = 0;
+    wh_flow_wait_t *waits = wh_flow_waits(figures, &count);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "who waits;for;s{3,6}");
+    for (size_t i = 0; i < count; ++i) {
+        const wh_flow_wait_t *wait = &waits[i];
+        const char *cause = wait->cause ? wait->cause : name_of(figures->tool, wait->robot, wait->station);
+        wh_grid_named_row(grid, wait->cause ? "robots" : "done wafers");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s", wait->cause ? "a " : "", cause);
+        wh_grid_number(grid, 2, WH_INK_PLAIN, seconds(wait->us));
+    }
+    wh_print_titled(printer, "Waits by cause", grid);
+    free(waits);
+}
+
+/* Each window, with the stay that came nearest to its end or went furthest beyond it. */
+static void print_windows(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1,
+                                  "station;window s{3,6};stays{0};too long{0};wafer;stay s{3,6};left s{3,6}");
+    for (size_t s = 0; s < figures->tool->station_count; ++s) {
+        const wh_flow_window_t *window = &figures->stays.windows[s];
+        const wh_flow_stay_t *nearest = &window->nearest;
+        if (window->count == 0) {
+            continue;
+        }
+        const double values[] = {seconds(nearest->window_us), (double)window->count, (double)window->late};
+        const double stay[] = {seconds(nearest->taken_us - nearest->done_us),
+                               seconds(wh_flow_gap_us(nearest))};
+        wh_grid_named_row(grid, figures->tool->stations[s].name);
+        wh_grid_numbers(grid, 1, values, sizeof values / sizeof values[0]);
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%s", figures->plan->wafers[nearest->wafer].name);
+        wh_grid_numbers(grid, 5, stay, sizeof stay / sizeof stay[0]);
+    }
+    wh_print_titled(printer, "Windows, and the smallest gap to each", grid);
+}
+
+static void print_late(const wh_printer_t *printer, const wh_flow_figures_t *figures) {
+    const wh_flow_stays_t *stays = &figures->stays;
     wh_grid_t *grid = wh_grid_new(printer->style, 1,
                                   "wafer;station;done at s{3,6};stay s{3,6};window s{3,6};too long s{3,6}");
-    for (size_t i = 0; i < figures->breach_count && i < LISTED; ++i) {
-        const wh_flow_breach_t *breach = &figures->breaches[i];
-        const int64_t stay_us = breach->taken_us - breach->done_us;
-        const double values[] = {seconds(breach->done_us), seconds(stay_us), seconds(breach->window_us),
-                                 seconds(stay_us - breach->window_us)};
-        wh_grid_named_row(grid, figures->plan->wafers[breach->wafer].name);
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", figures->tool->stations[breach->station].name);
+    for (size_t i = 0; i < stays->late_count && i < LISTED; ++i) {
+        const wh_flow_stay_t *stay = &stays->late[i];
+        const double values[] = {seconds(stay->done_us), seconds(stay->taken_us - stay->done_us),
+                                 seconds(stay->window_us), -seconds(wh_flow_gap_us(stay))};
+        wh_grid_named_row(grid, figures->plan->wafers[stay->wafer].name);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", figures->tool->stations[stay->station].name);
         wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
     }
     wh_print_titled(printer, "Stays beyond their windows", grid);
-    if (figures->breach_count > LISTED) {
-        fprintf(printer->out, "and %zu more\n", figures->breach_count - LISTED);
+    if (stays->late_count > LISTED) {
+        fprintf(printer->out, "and %zu more\n", stays->late_count - LISTED);
     }
 }
 
@@ -218,10 +280,13 @@ void wh_print_flow(const wh_printer_t *printer) {
     }
     wh_print_title(printer, "Flow");
     print_rate(printer, &flow->figures);
+    print_limits(printer, &flow->figures);
     print_notes(printer, &flow->figures);
     print_robots(printer, &flow->figures);
     print_stations(printer, &flow->figures);
     print_path(printer, &flow->figures);
     print_gains(printer, &flow->figures);
-    print_breaches(printer, &flow->figures);
+    print_waits(printer, &flow->figures);
+    print_windows(printer, &flow->figures);
+    print_late(printer, &flow->figures);
 }

@@ -25,6 +25,7 @@ typedef struct {
     int64_t done_us;           /* its process is over, as far as is known */
     int64_t processed_us;      /* of rows, in this stay */
     int64_t whole_us;          /* when they had lasted as long as the layout says; WH_FLOW_NEVER: not yet */
+    int64_t around_us;         /* of done_us: a clean around it, which has no row */
     uint64_t routes;           /* by which it may go, by their bits */
     bool is_lost;              /* it left all routes; told once */
     bool has_start;

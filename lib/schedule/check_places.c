@@ -92,6 +92,7 @@ void wh_check_begin_start(wh_schedule_state_t *check, int32_t row) {
     wafer->where = WH_CHECK_LIES;
     wafer->placed_us = wafer->done_us = of->begin_us;
     wafer->whole_us = WH_FLOW_NEVER;
+    wafer->around_us = 0;
     wafer->row = row;
     wh_check_set_out(check, of->wafer, of->place);
 }
@@ -191,6 +192,7 @@ void wh_check_end_put(wh_schedule_state_t *check, int32_t row, int32_t number) {
     wafer->process_row = WH_CHECK_NO_ROW;
     wafer->processed_us = 0;
     wafer->whole_us = WH_FLOW_NEVER;
+    wafer->around_us = 0;
     wafer->placed_us = of->end_us;
     if (check->tool) {
         wafer->placed_us += check->tool->doors[wh_check_pair(check, of)].close_us;

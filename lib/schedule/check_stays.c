@@ -99,18 +99,16 @@ static void check_process(wh_schedule_state_t *check, int32_t row, const wh_chec
     }
 }
 
-/* Rule 9. A clean around the wafer belongs to its process. */
+/* Rule 9. A clean around the wafer belongs to its stay. */
 static void check_window(wh_schedule_state_t *check, int32_t row, int32_t number, int64_t until_us) {
     const wh_check_wafer_t *wafer = &check->wafers[number];
     const int32_t of = check->schedule->places[wafer->place].station;
     const wh_flow_station_t *station = wh_check_station(check, of);
-    const wh_check_place_t *place = &check->places[wafer->place];
     if (!station || station->window_us == WH_FLOW_NEVER || wafer->visits == 0) {
         return;
     }
-    const int64_t processed_us = wafer->whole_us < wafer->done_us ? wafer->whole_us : wafer->done_us;
-    const bool is_around = place->cleaned_us >= wafer->placed_us && place->clean_us > processed_us;
-    const int64_t done_us = is_around ? place->clean_us : processed_us;
+    const int64_t last_us = wafer->done_us - wafer->around_us;
+    const int64_t done_us = wafer->whole_us < last_us ? wafer->whole_us : last_us;
     if (!wh_check_is_behind(until_us, done_us + station->window_us)) {
         return;
     }
@@ -161,6 +159,7 @@ static void check_clean_inside(wh_schedule_state_t *check, int32_t row, wh_check
         }
     } else {
         wafer->done_us += station->clean_us;
+        wafer->around_us = station->clean_us;
     }
 }
 
