@@ -33,8 +33,8 @@ typedef struct {
         cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
     int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
     bool is_lock, is_load_port;
-    bool is_shortened;                    /* processes of steps, too, take 10 % less: see wh_flow_gains */
-    wh_flow_side_t side;                  /* of a lock, at the beginning */
+    int32_t less_ppm;    /* processes of steps, too, take so much less: see wh_flow_shorten */
+    wh_flow_side_t side; /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
 
@@ -94,6 +94,15 @@ bool wh_flow_step_has(const wh_flow_step_t *step, int32_t station);
 
 /* A tool of its own, equal to a numbered one, but without its routes. */
 void wh_flow_tool_copy(wh_flow_tool_t *copy, const wh_flow_tool_t *tool);
+
+/* A time that is less by so many millionths, up to 999,999, rounded to the next microsecond. */
+static inline int64_t wh_flow_less_us(int64_t us, int32_t ppm) {
+    return us - us / 1000000 * ppm - (us % 1000000 * ppm + 500000) / 1000000;
+}
+
+/* Each time of one robot (its moves, picks, places, swaps), or of one station (its processes, in any route,
+ * cleans, pumps and doors), takes so many millionths less. The other one is WH_FLOW_NONE. */
+void wh_flow_shorten(wh_flow_tool_t *tool, int32_t robot, int32_t station, int32_t ppm);
 
 /* To be called once after each station has its number of slots: numbers the places. */
 void wh_flow_tool_number(wh_flow_tool_t *tool);

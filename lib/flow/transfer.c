@@ -21,7 +21,7 @@ int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t 
     if (state->wafers[wafer].step == 0) {
         return 0;
     }
-    return of_step == WH_FLOW_NONE ? of->process_us : of_step - (of->is_shortened ? (of_step + 5) / 10 : 0);
+    return of_step == WH_FLOW_NONE ? of->process_us : wh_flow_less_us(of_step, of->less_ppm);
 }
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {

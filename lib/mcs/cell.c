@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../layout/doors.h"
+#include "../layout/faster.h"
 #include "../layout/layout_fields.h"
 #include "../layout/reach.h"
 #include "../reading/layout_read.h"
@@ -259,6 +260,9 @@ static int set_up_cell(lua_State *L) {
         wh_layout_give_errors(L, layout, mcs->wanted.errors, mcs->wanted.error_count);
     }
     layout->collision = layout->collision && !mcs->wanted.without_collisions;
+    if (mcs->wanted.faster > 0) {
+        wh_layout_hasten(layout, mcs->wanted.faster - 1, mcs->wanted.faster_share);
+    }
     if (layout->collision && mcs->wanted.counts == WH_MCS_COUNT_STRICT) {
         return luaL_error(L,
                           "%s: collision = true (--counted does not look for collisions in slices that it "

@@ -132,6 +132,8 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.wanted.without_collisions = options->without_collisions;
     run->mcs.wanted.counts = options->counts;
     run->mcs.wanted.verify = options->verify;
+    run->mcs.wanted.faster = options->faster;
+    run->mcs.wanted.faster_share = options->faster_share;
     run->mcs.wanted.decisions = options->decisions;
     run->mcs.wanted.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);

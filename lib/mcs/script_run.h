@@ -24,6 +24,8 @@ typedef struct {
     bool without_collisions;   /* no collision check, whatever the layout says */
     wh_mcs_count_t counts;     /* whether slices are left out */
     uint64_t verify;           /* stretches of them that are played all the same */
+    size_t faster;             /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */
+    double faster_share;       /* and by how much */
     wh_decisions_t *decisions; /* all zero at first: keeps commands and readings; null: they are not kept */
 } wh_script_run_options_t;
 

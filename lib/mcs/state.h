@@ -179,7 +179,9 @@ typedef struct {
     bool keeps_ways;         /* likewise the ways of a flow's robots, for --schedule */
     bool without_collisions; /* no collision check, whatever the layout says */
     wh_mcs_count_t counts;
-    uint64_t verify;    /* so many stretches of slices that could be left out are played, see verify.h */
+    uint64_t verify; /* so many stretches of slices that could be left out are played, see verify.h */
+    size_t faster;   /* number of what takes less time, from 1, see wh_layout_hasten; 0: nothing */
+    double faster_share;
     bool limits_missed; /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     wh_mcs_partners_t partners;

@@ -37,25 +37,33 @@ static double figure_of(const wh_sweep_point_t *point, size_t k) {
     return value;
 }
 
-/* True if any run has this figure; `FIGURES`: a reason. */
+/* Behind the figures come words: what is busiest, and why a run is not ok. */
+enum { BUSIEST = FIGURES, WHY, COLUMNS };
+
+static bool has(const wh_sweep_point_t *point, size_t k) {
+    return k == BUSIEST ? point->busiest != NULL
+           : k == WHY   ? point->reason != NULL
+                        : (bool)isfinite(figure_of(point, k));
+}
+
+/* True if any run has this. */
 static bool has_any(const wh_script_sweep_t *sweep, size_t k) {
+    bool any = false;
     for (size_t i = 0; i < sweep->point_count; ++i) {
-        const wh_sweep_point_t *point = &sweep->points[i];
-        if (k == FIGURES ? point->reason != NULL : (bool)isfinite(figure_of(point, k))) {
-            return true;
-        }
+        any = any || has(&sweep->points[i], k);
     }
-    return false;
+    return any;
 }
 
 static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *style,
-                           const bool shown[FIGURES + 1]) {
+                           const bool shown[COLUMNS]) {
     char columns[400] = "";
     wh_grid_t *grid = wh_grid_new(style, sweep->axis_count, NULL);
     for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
         const size_t size = strlen(sweep->axes[axis].name) + sizeof "{0,12}";
         char *heading = wh_array_new(size, 1);
-        (void)snprintf(heading, size, "%s{0,12}", sweep->axes[axis].name);
+        (void)snprintf(heading, size, "%s%s", sweep->axes[axis].name,
+                       sweep->axes[axis].words ? "" : "{0,12}");
         wh_grid_columns(grid, heading);
         free(heading);
     }
@@ -65,30 +73,45 @@ static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *sty
                       ? (size_t)snprintf(columns + length, sizeof columns - length, "%s", figures[k].heading)
                       : 0;
     }
-    (void)snprintf(columns + length, sizeof columns - length, "%s", shown[FIGURES] ? ";why" : "");
+    (void)snprintf(columns + length, sizeof columns - length, "%s%s", shown[BUSIEST] ? ";busiest" : "",
+                   shown[WHY] ? ";why" : "");
     wh_grid_columns(grid, columns);
     return grid;
 }
 
-static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i,
-                    const bool shown[FIGURES + 1]) {
-    const wh_sweep_point_t *point = &sweep->points[i];
-    size_t column = 0;
-    wh_grid_row(grid);
-    for (; column < sweep->axis_count; ++column) {
-        wh_grid_number(grid, column, WH_INK_PLAIN, wh_sweep_value(sweep, i, column));
-    }
-    wh_grid_text(grid, column++, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
-                 verdicts[point->verdict]);
+/* The figures and words from a column on. */
+static void add_figures(const wh_sweep_point_t *point, wh_grid_t *grid, size_t column,
+                        const bool shown[COLUMNS]) {
     for (size_t k = 0; k < FIGURES; ++k) {
         if (isfinite(figure_of(point, k))) {
             wh_grid_number(grid, column, WH_INK_PLAIN, figure_of(point, k));
         }
         column += shown[k] ? 1 : 0;
     }
+    if (point->busiest) {
+        wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->busiest);
+    }
+    column += shown[BUSIEST] ? 1 : 0;
     if (point->reason) {
         wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->reason);
     }
+}
+
+static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i, const bool shown[COLUMNS]) {
+    const wh_sweep_point_t *point = &sweep->points[i];
+    size_t column = 0;
+    char text[WH_SWEEP_VALUE];
+    wh_grid_row(grid);
+    for (; column < sweep->axis_count; ++column) {
+        if (sweep->axes[column].words) {
+            wh_grid_text(grid, column, WH_INK_PLAIN, "%s", wh_sweep_word(sweep, i, column, text));
+        } else {
+            wh_grid_number(grid, column, WH_INK_PLAIN, wh_sweep_value(sweep, i, column));
+        }
+    }
+    wh_grid_text(grid, column++, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                 verdicts[point->verdict]);
+    add_figures(point, grid, column, shown);
 }
 
 /* The run that is ok and has most wafers per hour, or else takes least time; point_count if none is ok. */
@@ -115,8 +138,7 @@ static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
     fputs("the fastest of them:", out);
     for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
         char value[WH_SWEEP_VALUE];
-        wh_sweep_text(wh_sweep_value(sweep, best, axis), value);
-        fprintf(out, " --set %s=%s", sweep->axes[axis].name, value);
+        fprintf(out, " --set %s=%s", sweep->axes[axis].name, wh_sweep_word(sweep, best, axis, value));
     }
     fprintf(out, ", %.3f s simulated\n", sweep->points[best].simulated_s);
 }
@@ -124,7 +146,7 @@ static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
 /* A range whose steps do not lead to its end. */
 static void print_end(const wh_sweep_axis_t *axis, FILE *out) {
     const double last = axis->start + axis->step * (double)(axis->count - 1);
-    if (fabs(last - axis->end) > 1e-9 * fabs(axis->step)) {
+    if (!axis->words && fabs(last - axis->end) > 1e-9 * fabs(axis->step)) {
         char texts[2][WH_SWEEP_VALUE];
         wh_sweep_text(last, texts[0]);
         wh_sweep_text(axis->end, texts[1]);
@@ -181,8 +203,8 @@ static void print_warnings(const wh_script_sweep_t *sweep, FILE *out) {
 
 int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_style_t *style) {
     const size_t ok = wh_sweep_count(sweep, WH_SWEEP_OK);
-    bool shown[FIGURES + 1];
-    for (size_t k = 0; k <= FIGURES; ++k) {
+    bool shown[COLUMNS];
+    for (size_t k = 0; k < COLUMNS; ++k) {
         shown[k] = has_any(sweep, k);
     }
     wh_grid_t *grid = new_grid(sweep, style, shown);
@@ -207,8 +229,38 @@ int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_sty
 
 static json_t *axis(const void *subject, size_t i) {
     const wh_sweep_axis_t *of = &((const wh_script_sweep_t *)subject)->axes[i];
+    if (of->words) {
+        json_t *words = json_array();
+        for (size_t k = 0; k < of->count; ++k) {
+            wh_json_append(words, wh_json_text(of->words[k]));
+        }
+        return wh_json_add(wh_json_set(json_object(), "name %s", of->name), "values", words, NULL);
+    }
     return wh_json_set(json_object(), "name %s start %g step %g count %lld", of->name, of->start, of->step,
                        (json_int_t)of->count);
+}
+
+const char *wh_sweep_verdict(const wh_sweep_point_t *point) {
+    return verdicts[point->verdict];
+}
+
+json_t *wh_sweep_put_run(const wh_sweep_point_t *point, json_t *object) {
+    (void)wh_json_set(object,
+                      "verdict %s reason %s simulated_s %g wafers_per_hour %g dr_proj_z %g dr_proj_xy %g "
+                      "gap %g checked %i caught_errors %i",
+                      verdicts[point->verdict], point->reason, point->simulated_s, point->wafers_per_hour,
+                      point->projz, point->projxy, point->gap, point->checked, point->caught);
+    if (point->busiest) {
+        wh_json_put(object, "busiest", wh_json_text(point->busiest));
+    }
+    if (point->never_came) {
+        wh_json_put(object, "never_came", wh_json_text(point->never_came));
+    }
+    if (point->is_cut) {
+        wh_json_put(object, "cut", json_true());
+    }
+    return wh_json_add(object, "hash",
+                       point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);
 }
 
 static json_t *run(const void *subject, size_t i) {
@@ -219,22 +271,11 @@ static json_t *run(const void *subject, size_t i) {
     }
     json_t *values = json_array();
     for (size_t k = 0; k < sweep->axis_count; ++k) {
-        wh_json_append(values, wh_json_real(wh_sweep_value(sweep, i, k)));
+        char text[WH_SWEEP_VALUE];
+        wh_json_append(values, sweep->axes[k].words ? wh_json_text(wh_sweep_word(sweep, i, k, text))
+                                                    : wh_json_real(wh_sweep_value(sweep, i, k)));
     }
-    json_t *object = wh_json_add(json_object(), "values", values, NULL);
-    (void)wh_json_set(object,
-                      "verdict %s reason %s simulated_s %g wafers_per_hour %g dr_proj_z %g dr_proj_xy %g "
-                      "gap %g checked %i caught_errors %i",
-                      verdicts[point->verdict], point->reason, point->simulated_s, point->wafers_per_hour,
-                      point->projz, point->projxy, point->gap, point->checked, point->caught);
-    if (point->never_came) {
-        wh_json_put(object, "never_came", wh_json_text(point->never_came));
-    }
-    if (point->is_cut) {
-        wh_json_put(object, "cut", json_true());
-    }
-    return wh_json_add(object, "hash",
-                       point->verdict == WH_SWEEP_BAD ? json_null() : wh_json_hash(point->hash), NULL);
+    return wh_sweep_put_run(point, wh_json_add(json_object(), "values", values, NULL));
 }
 
 int wh_sweep_print_json(const wh_script_sweep_t *sweep, FILE *out) {

@@ -10,11 +10,12 @@
 /* The most parameters that vary. */
 #define WH_SWEEP_AXES 4
 
-/* A parameter that takes the values start, start + step, ... up to end. */
+/* A parameter that takes the values start, start + step, ... up to end; or these words. */
 typedef struct {
     char *name;
     double start, step, end; /* the last value is below the end if the step does not lead to it */
     size_t count;
+    char **words; /* null: numbers */
 } wh_sweep_axis_t;
 
 typedef enum {
@@ -36,6 +37,7 @@ typedef struct {
     bool is_cut;          /* its flow was cut with wafers not at their ends */
     bool caught;          /* it is ok, and its script caught an error */
     char *never_came;     /* the faults and errors on purpose that did not come; null: none */
+    char *busiest;        /* of a flow: the robot or station that limits it, and its share; null: none */
     uint64_t hash;
 } wh_sweep_point_t;
 
@@ -43,13 +45,18 @@ typedef struct {
     wh_script_run_options_t run;   /* of each; its parameters are set here */
     const char *const *parameters; /* NAME=START:STEP:END, and NAME=VALUE, which stays */
     size_t parameter_count;
+    const char *const *each; /* NAME=A,B,C: values as they stand, behind the ranges */
+    size_t each_count;
     wh_sweep_axis_t *axes; /* the last one varies first */
     size_t axis_count;
     wh_sweep_point_t *points;
     size_t point_count;
 } wh_script_sweep_t;
 
-/* Reads the parameters. Zero `sweep` except run, parameters and parameter_count, and close it in any case.
+/* True if the text is meant as a range: two colons behind the '=', the first after a number. */
+bool wh_sweep_is_range(const char *parameter);
+
+/* Reads the parameters. Zero `sweep` except run, parameters, each and their counts, and close it in any case.
  * False, and the reason on stderr, if a range is invalid, if none is given, or if there are too many runs.
  * Memory that runs out ends the program. */
 bool wh_sweep_open(wh_script_sweep_t *sweep);
@@ -59,11 +66,20 @@ void wh_sweep_close(wh_script_sweep_t *sweep);
  * False, and the reason on stderr, if there is no thread. */
 bool wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
 
-/* The value that a run has on an axis. */
+/* Plays one run, and judges it; the caller closes the run and frees the point. */
+void wh_sweep_point_play(const wh_script_run_options_t *options, wh_script_run_t *run,
+                         wh_sweep_point_t *point);
+void wh_sweep_point_free(wh_sweep_point_t *point);
+
+/* The value that a run has on an axis; of words their number, from 1. */
 double wh_sweep_value(const wh_script_sweep_t *sweep, size_t point, size_t axis);
 
 /* The text with which an axis' value is handed over. */
 #define WH_SWEEP_VALUE 32
 void wh_sweep_text(double value, char text[WH_SWEEP_VALUE]);
+
+/* A run's value as that text, in `text`, or its word, which the sweep keeps. */
+const char *wh_sweep_word(const wh_script_sweep_t *sweep, size_t point, size_t axis,
+                          char text[WH_SWEEP_VALUE]);
 
 #endif

@@ -1,0 +1,96 @@
+#include <math.h>
+
+#include "../text/grid.h"
+#include "sweep_print.h"
+#include "unlooked.h"
+
+/* -------------------------------------------------------------------------------------------------- table */
+
+static void add_row(wh_grid_t *grid, const char *name, const wh_sweep_point_t *point, double gain) {
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
+    wh_grid_text(grid, 1, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                 wh_sweep_verdict(point));
+    if (isfinite(point->simulated_s)) {
+        wh_grid_number(grid, 2, WH_INK_PLAIN, point->simulated_s);
+    }
+    if (isfinite(point->wafers_per_hour)) {
+        wh_grid_number(grid, 3, WH_INK_PLAIN, point->wafers_per_hour);
+    }
+    if (isfinite(gain)) {
+        wh_grid_number(grid, 4, WH_INK_PLAIN, 100 * gain);
+    }
+    if (point->reason) {
+        wh_grid_text(grid, 5, WH_INK_PLAIN, "%s", point->reason);
+    }
+}
+
+static size_t count_ok(const wh_paces_t *paces) {
+    size_t ok = paces->base.verdict == WH_SWEEP_OK ? 1 : 0;
+    for (size_t i = 0; i < paces->count; ++i) {
+        ok += paces->paces[i].point.verdict == WH_SWEEP_OK ? 1 : 0;
+    }
+    return ok;
+}
+
+static void add_unlooked(wh_print_unlooked_t *unlooked, const wh_sweep_point_t *point) {
+    const bool played = point->verdict == WH_SWEEP_OK || point->verdict == WH_SWEEP_FAILED;
+    unlooked->unchecked += played && !point->checked && !point->is_timed ? 1 : 0;
+    unlooked->timed += played && point->is_timed ? 1 : 0;
+    unlooked->cut += played && point->is_cut ? 1 : 0;
+}
+
+static void print_unlooked(const wh_paces_t *paces, FILE *out) {
+    wh_print_unlooked_t unlooked = {"! ", "run", 0, 0, 0};
+    add_unlooked(&unlooked, &paces->base);
+    for (size_t i = 0; i < paces->count; ++i) {
+        add_unlooked(&unlooked, &paces->paces[i].point);
+    }
+    wh_print_unlooked(&unlooked, out);
+}
+
+int wh_paces_print_table(const wh_paces_t *paces, FILE *out, const wh_style_t *style) {
+    const size_t ok = count_ok(paces);
+    wh_grid_t *grid = wh_grid_new(style, 1, NULL);
+    wh_grid_columns(grid, "faster;result;simulated s{3};wafers/h{1};gain %{2};why");
+    add_row(grid, "(nothing)", &paces->base, HUGE_VAL);
+    for (size_t i = 0; i < paces->count; ++i) {
+        if (paces->paces[i].point.verdict != WH_SWEEP_UNDONE) {
+            add_row(grid, paces->paces[i].name, &paces->paces[i].point, paces->paces[i].gain);
+        }
+    }
+    wh_style_put(out, paces->run.script);
+    fprintf(out, ", each with %.6g %% less time\n\n", 100 * paces->share);
+    wh_grid_print(grid, out);
+    fputc('\n', out);
+    wh_style_print(style, out, ok == paces->count + 1 ? WH_INK_GOOD : WH_INK_BAD, "%zu of %zu runs ok", ok,
+                   paces->count + 1);
+    fputc('\n', out);
+    print_unlooked(paces, out);
+    return ferror(out) ? -1 : 0;
+}
+
+/* --------------------------------------------------------------------------------------------------- JSON */
+
+static json_t *pace(const void *subject, size_t i) {
+    const wh_paced_run_t *of = &((const wh_paces_t *)subject)->paces[i];
+    return of->point.verdict == WH_SWEEP_UNDONE
+               ? NULL
+               : wh_sweep_put_run(&of->point,
+                                  wh_json_set(json_object(), "name %s gain %g", of->name, of->gain));
+}
+
+int wh_paces_print_json(const wh_paces_t *paces, FILE *out) {
+    bool is_whole = true;
+    for (size_t i = 0; i < paces->count; ++i) {
+        is_whole = is_whole && paces->paces[i].point.verdict != WH_SWEEP_UNDONE;
+    }
+    json_t *root =
+        wh_json_set(json_object(), "format %d ok %i interrupted %i script %s saved %g", 1,
+                    count_ok(paces) == paces->count + 1, !is_whole, paces->run.script, paces->share);
+    wh_json_put(root, "base", wh_sweep_put_run(&paces->base, json_object()));
+    wh_json_put(root, "faster", wh_json_list(pace, paces, paces->count));
+    const int status = wh_json_print(root, out);
+    json_decref(root);
+    return status;
+}
