@@ -213,8 +213,8 @@ typedef struct {
 
 static bool write_page(void *user, FILE *out) {
     content_t *content = user;
-    return wh_page_write(out, WH_PAGE_REPORT, content->document->title, content->text, content->size,
-                         content->message);
+    const char *page = content->document->signals ? WH_PAGE_REPORT : WH_PAGE_FLOW;
+    return wh_page_write(out, page, content->document->title, content->text, content->size, content->message);
 }
 
 static bool write_scene(void *user, FILE *out) {
@@ -298,6 +298,20 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
     return wh_record_print_table(record, stdout, &style, &arguments->sections);
 }
 
+/* Robots that are times alone have a page, too, if there was a flow. */
+static bool write_flow(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
+    const wh_document_t document = {.source = "run", .record = &run->record};
+    const char *expected = arguments->files.scene ? "robots with axes for --gltf: here they are times alone"
+                           : !run->record.flow || !run->record.flow->figures.tool
+                               ? "a flow: the robots are times alone"
+                               : NULL;
+    if (expected) {
+        fprintf(stderr, "%s: nothing to show (expected %s)\n", run->record.layout->path, expected);
+        return false;
+    }
+    return wh_run_files_write(arguments, &document);
+}
+
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                          wh_signals_t *signals) {
     if (!wh_run_files_wanted(&arguments->files)) {
@@ -309,9 +323,7 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
         return false;
     }
     if (run->record.layout->tool) {
-        fprintf(stderr, "%s: nothing to show (expected robots with axes: here they are times alone)\n",
-                run->record.layout->path);
-        return false;
+        return write_flow(arguments, run);
     }
     if (!signals->layout) {
         wh_signals_begin(signals, run->record.layout, true);
@@ -470,7 +482,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
         arguments->run.listener = wh_run_listener(&signals);
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
-    arguments->run.keep_ways = arguments->schedule_path != NULL;
+    arguments->run.keep_ways = arguments->schedule_path || wh_run_files_wanted(&arguments->files);
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
     const int status = hand_on(arguments, &run, &signals, outcome);

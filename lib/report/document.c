@@ -74,8 +74,21 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
     wh_json_text_value(text, "parameters", object);
 }
 
-static void put_head(wh_json_text_t *text, const wh_document_t *document) {
+/* A flow by times alone has no slices. */
+static void put_span(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
+    if (!signals) {
+        put_exact(text, "begin_s", 0);
+        put_exact(text, "duration_s", document->record->simulated_s);
+        return;
+    }
+    put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
+    wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
+    put_exact(text, "begin_s", wh_signals_seconds(signals, signals->first));
+    put_exact(text, "duration_s", wh_signals_seconds(signals, signals->last));
+}
+
+static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     wh_json_text_integer(text, "format", FORMAT);
     put_text(text, "title", document->title);
     put_text(text, "version", WH_VERSION);
@@ -84,10 +97,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "source", document->source);
     wh_notes_document_put(text, document);
     wh_json_text_value(text, "run", json_incref(document->run));
-    put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
-    wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
-    put_exact(text, "begin_s", wh_signals_seconds(signals, signals->first));
-    put_exact(text, "duration_s", wh_signals_seconds(signals, signals->last));
+    put_span(text, document);
 }
 
 /* -------------------------------------------------------------------------------------------------- names */
@@ -577,21 +587,27 @@ static void put_tracks(wh_json_text_t *text, const wh_document_t *document) {
     wh_json_text_end(text, '}');
 }
 
+static void put_cell(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_signals_t *signals = document->signals;
+    put_names(text, document);
+    put_wafer(text, signals->layout);
+    put_machine(text, document);
+    put_limits(text, &signals->layout->grasp);
+    put_slots(text, signals->layout);
+    put_thinning(text, signals);
+    put_tracks(text, document);
+    put_each(text, document, "marks", signals->mark_count, put_mark);
+    wh_scans_document_put(text, signals, document->record);
+    wh_json_text_value(text, "scene", wh_scene_make(signals, document->title, false));
+}
+
 int wh_document_write(const wh_document_t *document, FILE *out) {
     wh_json_text_t text = {.out = out};
-    const wh_signals_t *signals = document->signals;
     wh_json_text_begin(&text, NULL, '{');
     put_head(&text, document);
-    put_names(&text, document);
-    put_wafer(&text, signals->layout);
-    put_machine(&text, document);
-    put_limits(&text, &signals->layout->grasp);
-    put_slots(&text, signals->layout);
-    put_thinning(&text, signals);
-    put_tracks(&text, document);
-    put_each(&text, document, "marks", signals->mark_count, put_mark);
-    wh_scans_document_put(&text, signals, document->record);
-    wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
+    if (document->signals) {
+        put_cell(&text, document);
+    }
     wh_json_text_end(&text, '}');
     fputc('\n', out);
     return text.failed || fflush(out) != 0 || ferror(out) ? -1 : 0;

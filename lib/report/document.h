@@ -7,7 +7,8 @@
  *                at or for
  *   run          what `run --json` prints, whole (print/record_print.h), with centrings on the way; of a log
  *                what it holds
- *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
+ *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s. A flow by times alone
+ *                has no slices, and ends here
  *   names        wafers, grippers, stations, doors (only if there are any): [name]; axes: [{ name, unit "mm"
  *                or "rad", low, high, speed }] (nulls: not known)
  *   wafer        diameter, thickness, notch (about its z from its x; only if it has one)
@@ -69,7 +70,7 @@ typedef struct {
     size_t note_count;
     json_t *run;                 /* borrowed */
     const wh_record_t *record;   /* for its curves and limits; its layout is the signals' */
-    const wh_signals_t *signals; /* finished */
+    const wh_signals_t *signals; /* finished; null: of a flow by times alone */
 } wh_document_t;
 
 /* 0, or -1 when `out` does not take it. Ends the program if out of memory. */

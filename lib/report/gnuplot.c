@@ -110,7 +110,7 @@ void wh_plot_begin(wh_plot_t *plot, const wh_plot_frame_t *frame, const char *ti
                 "set xrange [from_s:to_s]\n"
                 "# Whether so many letters fit between two times.\n"
                 "fits(letters, a, b) = a >= from_s && b <= to_s && \\\n"
-                "    letters * 6.4 + 4 < (b - a) / (to_s - from_s) * (W - %d)\n",
+                "    letters * 6.4 + 4 < 1.0 * (b - a) / (to_s - from_s) * (W - %d)\n",
                 begin, end, frame->left + right);
     }
     fputs("set multiplot\n", plot->script);

@@ -1,5 +1,7 @@
 #include "notes_document.h"
 
+#include <ctype.h>
+
 bool wh_notes_document_looked(const wh_record_t *record) {
     return record->checked && record->counted.moving == 0;
 }
@@ -23,7 +25,8 @@ static void note_counted(const wh_record_t *record, char note[], size_t size) {
 
 static void note_unlooked(const wh_record_t *record, char note[], size_t size) {
     if (record->unlooked) {
-        (void)snprintf(note, size, "%c%s.", 'C', record->unlooked + 1);
+        (void)snprintf(note, size, "%c%s.", toupper((unsigned char)record->unlooked[0]),
+                       record->unlooked + 1);
     }
 }
 

@@ -228,7 +228,8 @@ static void clear(const wh_plots_t *plots) {
     (void)rmdir(plots->folder);
 }
 
-static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+/* Plots of a cell with slices. */
+static void make_cell(wh_plots_t *plots) {
     if (plots->end_s > plots->begin_s) {
         wh_plots_proximity(plots);
         wh_plots_signals(plots);
@@ -240,6 +241,14 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
     wh_plots_offsets(plots);
     wh_plots_scans(plots);
     wh_plots_centrings(plots);
+}
+
+static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    if (plots->document->signals) {
+        make_cell(plots);
+    }
+    wh_plots_flow(plots);
+    wh_plots_shares(plots);
     if (plots->error != 0) {
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;
@@ -262,10 +271,13 @@ static bool make_within(const wh_document_t *document, const char *folder,
         return false;
     }
     const wh_signals_t *signals = document->signals;
-    wh_plots_t plots = {.document = document,
-                        .folder = within,
-                        .begin_s = signals->first > 0 ? wh_signals_seconds(signals, signals->first) : 0,
-                        .end_s = signals->last > 0 ? wh_signals_seconds(signals, signals->last) : 0};
+    wh_plots_t plots = {.document = document, .folder = within};
+    if (signals) {
+        plots.begin_s = signals->first > 0 ? wh_signals_seconds(signals, signals->first) : 0;
+        plots.end_s = signals->last > 0 ? wh_signals_seconds(signals, signals->last) : 0;
+    } else {
+        plots.end_s = document->record->simulated_s;
+    }
     const bool made = make(&plots, folder, message);
     clear(&plots);
     free(plots.names);

@@ -39,5 +39,7 @@ void wh_plots_clearances(wh_plots_t *plots);
 void wh_plots_offsets(wh_plots_t *plots);
 void wh_plots_scans(wh_plots_t *plots);
 void wh_plots_centrings(wh_plots_t *plots);
+void wh_plots_flow(wh_plots_t *plots);
+void wh_plots_shares(wh_plots_t *plots);
 
 #endif

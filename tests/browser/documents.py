@@ -55,10 +55,10 @@ def text_of(name, document):
     return path.read_text(encoding="utf-8").replace("</script", "<\\/script")
 
 
-def assemble(document, path):
+def assemble(document, path, template="report.html.in"):
     """Writes the page that shows the document."""
-    template = (PAGE / "report.html.in").read_text(encoding="utf-8")
-    page = re.sub(r"@([A-Za-z.]+)@", lambda found: text_of(found[1], document), template)
+    template = (PAGE / template).read_text(encoding="utf-8")
+    page = re.sub(r"@([A-Za-z._]+)@", lambda found: text_of(found[1], document), template)
     pathlib.Path(path).write_text(page, encoding="utf-8")
 
 
@@ -128,10 +128,10 @@ def keyframes(scene, kind):
             if len(each) == 2]
 
 
-def page_of(document, name):
+def page_of(document, name, template="report.html.in"):
     """The page of a document that was changed here."""
     page = FOLDER / f"{name}.html"
-    assemble(document, page)
+    assemble(document, page, template)
     return page
 
 

@@ -72,7 +72,8 @@
             const last = Math.min(Math.floor((bar.to - window[0]) / width), count - 1);
             for (let i = Math.max(Math.floor((bar.from - window[0]) / width), 0); i <= last; ++i) {
                 const within = Math.min(bar.to, window[0] + (i + 1) * width) - Math.max(bar.from, window[0] + i * width);
-                columns[i].set(bar.colour, (columns[i].get(bar.colour) || 0) + Math.max(within, 0) / width);
+                columns[i].set(bar.colour, (columns[i].get(bar.colour) || 0) + Math.max(within, 0) / width
+                    * (bar.level === undefined ? 1 : bar.level));
             }
         });
         return columns;

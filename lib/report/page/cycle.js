@@ -24,8 +24,21 @@
         W.say('the plots show the first steady cycle');
     };
 
+    /* The cycle of a flow: between two wafers' ends in the middle third. */
+    function ofFlow(flow) {
+        const last = new Map();
+        (flow.visits || []).filter((visit) => typeof visit.placed_s === 'number')
+            .forEach((visit) => last.set(visit.wafer, visit.placed_s));
+        const ends = Array.from(last.values()).sort((a, b) => a - b);
+        const begin = Math.floor(ends.length / 3);
+        const times = Math.floor((ends.length - 2 * begin) / flow.period);
+        return { found: times > 0, begin_s: ends[begin], end_s: ends[begin + flow.period], times };
+    }
+
+    const toldOf = (doc) => (doc.run.flow && doc.run.flow.period > 0 ? ofFlow(doc.run.flow) : doc.run.steady_cycle || {});
+
     function read(doc) {
-        const told = doc.run.steady_cycle || {};
+        const told = toldOf(doc);
         const within = told.found === true && told.begin_s >= doc.begin && told.end_s <= doc.duration + 1e-9
             && told.end_s > told.begin_s;
         cycle.found = within ? { window: [told.begin_s, told.end_s], times: told.times } : null;
@@ -66,7 +79,7 @@
 
     cycle.start = function (doc) {
         read(doc);
-        if (cycle.found && doc.duration - doc.begin > COMB * (cycle.found.window[1] - cycle.found.window[0])) {
+        if (!doc.run.flow && cycle.found && doc.duration - doc.begin > COMB * (cycle.found.window[1] - cycle.found.window[0])) {
             cycle.show();
         }
         cycle.opened = W.clock.window.slice();

@@ -5,7 +5,8 @@
     const view = (name) => () => W.stage.view && W.stage.show(name);
     const option = (name) => () => W.stage.view && W.stage.toggle(name);
 
-    const KEYS = [
+    /* Keys of a page with a scene. */
+    const SCENE = [
         { keys: [' '], name: 'Space', text: 'play or pause', act: () => W.clock.toggle() },
         { keys: ['ArrowLeft'], name: '\u2190', text: 'one slice back', act: () => W.clock.stepSlice(-1) },
         { keys: ['ArrowRight'], name: '\u2192', text: 'one slice on', act: () => W.clock.stepSlice(1) },
@@ -28,6 +29,9 @@
         { keys: ['x'], name: 'x', text: 'section: a plane that cuts the cell', act: () => W.stage.view && W.stage.section() },
         { keys: ['l'], name: 'l', text: 'a link to this moment and view', act: () => W.link.take() },
         { keys: ['p'], name: 'p', text: 'save the picture', act: () => W.stage.view && W.link.picture() },
+    ];
+
+    const PLOTS = [
         { keys: ['+', '='], name: '+', text: 'plots: shorter time', act: () => W.clock.zoom(0.5) },
         { keys: ['-'], name: '\u2212', text: 'plots: longer time', act: () => W.clock.zoom(2) },
         { keys: ['c'], name: 'c', text: 'plots: the first steady cycle', act: () => W.cycle.show() },
@@ -39,6 +43,8 @@
     const MOVES = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End'];
     const OWN = { BUTTON: [' '], SUMMARY: [' '], checkbox: [' '], radio: [' ', ...MOVES], range: MOVES };
 
+    const known = () => (W.stage ? SCENE : []).concat(PLOTS);
+
     /* True for keys that the focused element needs itself; the scrubber's keys do the same as the page's. */
     function isTaken(target, key) {
         const kind = target.tagName === 'INPUT' ? target.type : target.tagName;
@@ -47,7 +53,7 @@
 
     function pressed(event) {
         const key = (event.shiftKey && event.key.startsWith('Arrow') ? 'Shift+' : '') + event.key;
-        const found = KEYS.find((each) => each.keys.includes(key));
+        const found = known().find((each) => each.keys.includes(key));
         const other = event.ctrlKey || event.altKey || event.metaKey || document.getElementById('help').open;
         if (found && !other && !isTaken(event.target, event.key)) {
             event.preventDefault();
@@ -63,12 +69,13 @@
             }
         },
         start() {
-            const rows = KEYS.map(({ name, text }) => W.element('tr', {}, W.element('td', {}, W.element('kbd', {}, name)),
+            const rows = known().map(({ name, text }) => W.element('tr', {}, W.element('td', {}, W.element('kbd', {}, name)),
                 W.element('td', {}, text)));
             const dialog = document.getElementById('help');
             dialog.append(W.element('h2', {}, 'Keys'), W.element('table', {}, W.element('tbody', {}, ...rows)),
-                W.element('p', {}, 'In the picture: drag to orbit, with the right button to move, scroll to zoom once it has '
-                    + 'the focus. In the plots: drag to zoom, click to go there, double click for the whole run.'),
+                W.element('p', {}, W.stage ? 'In the picture: drag to orbit, with the right button to move, scroll to '
+                    + 'zoom once it has the focus. ' : '',
+                'In the plots: drag to zoom, click to go there, double click for the whole run.'),
                 W.element('button', { type: 'button', click: () => dialog.close() }, 'Close'));
             document.addEventListener('keydown', pressed);
         },

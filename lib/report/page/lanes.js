@@ -5,10 +5,11 @@
     const ROW = 26;
     const AXIS = 20;
     const RIGHT = 10;
+    const MISS = 3; /* pixels */
     const charts = [];
     const lanes = {};
 
-    const left = () => W.plots.gutter() - 9;
+    const left = () => W.axis.gutter() - 9;
     const width = (chart) => Math.max(chart.canvas.clientWidth - left() - RIGHT, 10);
     const spot = (chart, t) => left() + width(chart) * (t - W.clock.window[0]) / (W.clock.window[1] - W.clock.window[0]);
 
@@ -55,15 +56,32 @@
         const begin = Math.max(spot(chart, bar.from), left());
         const end = Math.min(spot(chart, bar.to), left() + width(chart));
         const wide = Math.max(end - begin, 1);
-        pen.globalAlpha = bar.alternate && i % 2 ? 0.82 : 1;
+        pen.globalAlpha = bar.level !== undefined ? 0.35 : bar.alternate && i % 2 ? 0.82 : 1;
         pen.fillStyle = W.theme.colour(bar.colour);
-        pen.fillRect(begin, y + 4, wide, ROW - 8);
+        const high = (ROW - 8) * (bar.level === undefined ? 1 : bar.level);
+        pen.fillRect(begin, y + ROW - 4 - high, wide, high);
         pen.globalAlpha = 1;
-        if (wide > 20) {
+        if (bar.level !== undefined) {
+            pen.fillStyle = W.theme.colour('ink');
+            drawText(pen, wide > 20 ? bar.text : '', begin + 5, y + ROW / 2 + 4, wide - 9);
+        } else if (wide > 20) {
             pen.fillStyle = W.theme.colour('panel');
             pen.fillRect(begin, y + 4, 1, ROW - 8);
             pen.fillStyle = W.theme.colour('on-series');
             drawText(pen, bar.text || '', begin + 5, y + ROW / 2 + 4, wide - 9);
+        }
+    }
+
+    /* Draws an outline around the bars of the chosen wafer, and a thicker one around the bar in hand. */
+    function mark(chart, pen, bar, y) {
+        const isInHand = chart.bar === bar;
+        if (isInHand || (chart.group.marked && chart.group.marked(bar))) {
+            const begin = Math.max(spot(chart, bar.from), left());
+            const end = Math.min(spot(chart, bar.to), left() + width(chart));
+            pen.strokeStyle = W.theme.colour('ink');
+            pen.lineWidth = isInHand ? 3 : 2;
+            pen.strokeRect(begin, y + 3, Math.max(end - begin, 1), ROW - 6);
+            pen.lineWidth = 1;
         }
     }
 
@@ -110,6 +128,7 @@
         for (let i = begin; i < end; ++i) {
             drawBar(chart, pen, lane.bars[i], y, i);
         }
+        lane.bars.slice(begin, end).forEach((bar) => mark(chart, pen, bar, y));
     }
 
     /* Draws a level from 0 to 1, filled. */
@@ -162,12 +181,22 @@
         follow(chart);
     }
 
-    const follow = (chart) => W.plots.place(chart.cursor, left(), width(chart));
+    const follow = (chart) => W.axis.place(chart.cursor, left(), width(chart));
 
     const timeAt = (chart, event) => {
         const x = event.clientX - chart.canvas.getBoundingClientRect().left - left();
         return W.clock.window[0] + (W.clock.window[1] - W.clock.window[0]) * W.clamp(x / width(chart), 0, 1);
     };
+
+    /* The bar under a pointer, which may miss a narrow one by a little, or null. */
+    function barAt(chart, event) {
+        const row = Math.floor((event.clientY - chart.canvas.getBoundingClientRect().top) / ROW);
+        const lane = chart.group.lanes[row];
+        const t = timeAt(chart, event);
+        const slack = MISS * (W.clock.window[1] - W.clock.window[0]) / width(chart);
+        const found = lane ? lane.bars.slice(first(lane.bars, t - slack), after(lane.bars, t + slack)) : [];
+        return found.find((bar) => bar.from <= t && bar.to > t) || found[0] || null;
+    }
 
     /* A click takes the time there, a drag zooms, a double click shows the whole run again. */
     function listen(chart) {
@@ -179,6 +208,7 @@
                 W.clock.setWindow(...times);
             } else if (from) {
                 W.clock.seek(timeAt(chart, from));
+                (chart.group.choose || (() => {}))(barAt(chart, from));
             }
             from = null;
         });
@@ -195,7 +225,8 @@
         charts.push(chart);
         listen(chart);
         new ResizeObserver(() => draw(chart)).observe(chart.canvas);
-        return [W.element('div', { class: 'frame' }, chart.canvas, chart.cursor), chart.banded];
+        const readout = group.choose ? [W.hand.listen(chart, barAt, draw)] : [];
+        return [W.element('div', { class: 'frame' }, chart.canvas, chart.cursor), ...readout, chart.banded];
     }
 
     lanes.section = function (group) {

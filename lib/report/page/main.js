@@ -17,7 +17,6 @@
     function plots(doc) {
         host('plots').append(W.cycle.toolbar());
         W.plots.start(doc);
-        W.lanes.start();
         const curves = W.curves.groups(doc);
         const bars = W.bars.groups(doc);
         host('plots').append(W.plots.section(curves[0]), ...bars.map(W.lanes.section),
@@ -50,6 +49,8 @@
         W.clock.start(doc);
         W.cycle.start(doc);
         part(host('head'), () => W.summary.start(doc));
+        W.lanes.start();
+        part(host('flow'), () => W.flow.start(doc, host('flow')));
         part(host('canvas'), () => W.stage.start(doc));
         part(host('transport'), () => W.transport.start(doc));
         part(host('now'), () => W.now.start(doc));

@@ -5,9 +5,6 @@
 
     const plots = { panels: [], seen: null, doc: null };
 
-    /* The width left of the plots, for numbers and names. */
-    plots.gutter = () => (document.body.clientWidth < 560 ? 70 : 92);
-
     const area = (panel) => panel.graph.getArea();
 
     const extent = ([from, to]) => to - from;
@@ -118,7 +115,7 @@
             rightGap: 10, underlayCallback: underlay(panel), interactionModel: interaction(),
             axes: {
                 x: { axisLabelFormatter: timeTick, pixelsPerLabel: 62 },
-                y: { axisLabelFormatter: valueTick, axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 20 },
+                y: { axisLabelFormatter: valueTick, axisLabelWidth: W.axis.gutter() - 14, pixelsPerLabel: 20 },
             },
             clickCallback: (event) => W.clock.seek(panel.graph.toDataXCoord(panel.graph.eventToDomCoords(event)[0])),
             drawCallback: (graph, initial) => { if (!initial) { zoomed(panel); } },
@@ -137,7 +134,7 @@
 
     function data(panel) {
         panel.bands = [];
-        const pixels = Math.max(panel.host.clientWidth - plots.gutter(), 100);
+        const pixels = Math.max(panel.host.clientWidth - W.axis.gutter(), 100);
         const rows = W.reduce.rows(panel.curves, W.clock.window, pixels, panel.bands);
         panel.banded.hidden = !panel.bands.some(Boolean);
         return rows;
@@ -190,23 +187,12 @@
         follow(panel);
     }
 
-    /* Places the cursor's line, which the bars share: at the time if it is within the window, and nowhere otherwise. */
-    plots.place = function (cursor, left, width) {
-        const [from, to] = W.clock.window;
-        const inside = W.clock.now >= from && W.clock.now <= to;
-        cursor.hidden = !inside;
-        if (inside) {
-            const x = left + width * (W.clock.now - from) / (to - from);
-            cursor.style.transform = `translateX(${x.toFixed(2)}px)`;
-        }
-    };
-
     function follow(panel) {
         if (!panel.graph || !panel.seen) {
             return;
         }
         const { x, w } = area(panel);
-        plots.place(panel.cursor, x, w);
+        W.axis.place(panel.cursor, x, w);
         panel.values.forEach(({ curve, value, note }) => {
             const now = curve.at(W.clock.now);
             value.textContent = W.number(now, curve.decimals);

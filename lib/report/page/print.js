@@ -3,15 +3,25 @@
     'use strict';
 
     let still = null;
+    let unfolded = [];
+
+    /* Paper has no folds. */
+    function unfold() {
+        unfolded = Array.from(document.querySelectorAll('#flow details:not([open])'));
+        unfolded.forEach((each) => { each.open = true; });
+    }
 
     function before() {
         W.clock.pause();
         W.theme.show('light');
         W.clock.flush();
-        W.plots.showAll();
         W.lanes.showAll();
-        W.scans.resize();
-        if (W.stage.view) {
+        unfold();
+        if (W.plots) {
+            W.plots.showAll();
+            W.scans.resize();
+        }
+        if (W.stage && W.stage.view) {
             W.stage.view.paint();
             still = W.element('img', { id: 'still', src: W.stage.view.still(), alt: 'The cell at the shown time' });
             document.getElementById('canvas').append(still);
@@ -23,6 +33,7 @@
             still.remove();
             still = null;
         }
+        unfolded.forEach((each) => { each.open = false; });
         W.theme.restore();
     }
 

@@ -84,7 +84,7 @@
             strokeWidth: 1.4, highlightCircleSize: 0, rightGap: 10, dateWindow: [0, 360], valueRange: kind.range(rows),
             underlayCallback: drawMark(scan),
             axes: { x: { axisLabelFormatter: degrees, pixelsPerLabel: 62 },
-                y: { axisLabelFormatter: values, axisLabelWidth: W.plots.gutter() - 14, pixelsPerLabel: 24 } },
+                y: { axisLabelFormatter: values, axisLabelWidth: W.axis.gutter() - 14, pixelsPerLabel: 24 } },
             drawCallback: (graph, initial) => { if (!initial) { follow(graph); } },
         }, looks(kind));
     }

@@ -122,8 +122,10 @@
 
     W.summary = {
         start(doc) {
-            const tiles = [expectations(doc), commands(doc), events(doc), throughput(doc), duration(doc),
-                recording(doc)];
+            const flow = W.flow.tiles(doc);
+            const isFlowAlone = flow.length > 0 && !doc.scene;
+            const tiles = flow.concat(expectations(doc), isFlowAlone ? [] : [commands(doc), events(doc), throughput(doc),
+                duration(doc), recording(doc)]);
             const theme = W.element('button', { type: 'button', id: 'theme', title: 'Light or dark (t)',
                 'aria-keyshortcuts': 't', click: W.theme.toggle }, 'Light / dark');
             const help = W.element('button', { type: 'button', id: 'helping', title: 'Keys (?)',

@@ -139,7 +139,7 @@
             'Clearances are not shown: collisions were not checked in this run.');
     }
 
-    W.tables = { section, row, num,
+    W.tables = { section, row, num, expectations,
         start(doc, host) {
             host.append(wafers(doc), expectations(doc), commands(doc), events(doc), clearances(doc), throughput(doc));
         } };

@@ -74,7 +74,7 @@ static const char two_panels[] =
     "set xrange [from_s:to_s]\n"
     "# Whether so many letters fit between two times.\n"
     "fits(letters, a, b) = a >= from_s && b <= to_s && \\\n"
-    "    letters * 6.4 + 4 < (b - a) / (to_s - from_s) * (W - 118)\n"
+    "    letters * 6.4 + 4 < 1.0 * (b - a) / (to_s - from_s) * (W - 118)\n"
     "set multiplot\n"
     "\n"
     "set tmargin at screen 1 - (top + 12) / H\n"
