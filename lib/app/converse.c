@@ -70,24 +70,32 @@ static const char *mechanism_of(const wh_transcript_t *played, size_t port) {
     return is_named ? played->heads[port + 1].text : NULL;
 }
 
+static bool add_port(wh_host_t *host, const wh_host_port_t *port) {
+    if (strcmp(port->dialect, WH_DIALECT_CONTROL) == 0) {
+        return wh_host_add_control(host, NULL);
+    }
+    return (host->count > 0 && wh_host_needs_port(host) ? wh_host_add_port : wh_host_add)(host, port);
+}
+
 /* Adds each port's dialect, from `port "NAME FILE"`. */
 static bool add_ports(wh_host_t *host) {
     const wh_transcript_t *played = host->played;
+    size_t at = 0; /* the controller of the next head: clients who share a port come with it */
     for (size_t i = 0; i < played->head_count; ++i) {
         const wh_transcript_head_t *head = &played->heads[i];
         const char *file = strchr(head->text, ' ');
         if (strcmp(head->name, "port") != 0) {
             continue;
         }
-        if (!file || host->count == WH_HOST_PORTS) {
+        if (!file || at == WH_HOST_CONTROLLERS) {
             return refuse(played, head->line, "no port (expected \"NAME DIALECT\", at most 8)");
         }
         const wh_host_port_t port = {.dialect = file + 1, .mechanism = mechanism_of(played, i)};
-        if (!wh_host_add(host, &port)) {
-            fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect.message);
+        if (at == host->count && !add_port(host, &port)) {
+            fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect->message);
             return false;
         }
-        const char *name = host->controllers[host->count - 1]->name;
+        const char *name = host->controllers[at++]->name;
         if (strncmp(name, head->text, strlen(name)) != 0 || head->text[strlen(name)] != ' ') {
             return refuse(played, head->line, "the dialect is of another mechanism than its port");
         }

@@ -5,12 +5,19 @@
 #include "../record/record.h"
 #include "../text/options.h"
 #include "app.h"
+#include "dialect_say.h"
 
 typedef struct {
     const char *path;
+    wh_option_list_t said;
 } arguments_t;
 
-static const wh_option_t options[] = {{0}};
+static const wh_option_t options[] = {
+    {"say", 0, "FRAME",
+     "Show what comes of this frame without a cell: its lines and what the host hears at once; may be "
+     "given more than once",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, said)},
+    {0}};
 static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
@@ -33,6 +40,41 @@ static bool does(const wh_dialect_t *dialect, const wh_word_t *word) {
         }
     }
     return false;
+}
+
+static bool is_action_at_once(const wh_dialect_command_t *command) {
+    return command->kind == WH_WORD_ACTION && command->when == WH_WHEN_AT_ONCE;
+}
+
+static bool is_answered_when_idle(const wh_dialect_command_t *command) {
+    return command->when == WH_WHEN_IDLE;
+}
+
+/* Prints the commands that are answered at an unusual time. */
+static void print_times(const wh_dialect_t *dialect, bool (*is_one)(const wh_dialect_command_t *command),
+                        const char *time) {
+    int count = 0;
+    for (size_t i = 0; i < dialect->command_count; ++i) {
+        if (is_one(&dialect->commands[i])) {
+            printf("%s%s", count++ == 0 ? "" : ", ", dialect->commands[i].name);
+        }
+    }
+    if (count > 0) {
+        printf(": answered when %s\n", time);
+    }
+}
+
+static void print_order(const wh_dialect_t *dialect) {
+    const wh_dialect_clients_t *clients = &dialect->clients;
+    for (size_t i = 0; clients->port_count > 1 && i < clients->port_count; ++i) {
+        printf("%s%s%s", i == 0 ? "ports that share it: " : ", ", clients->ports[i],
+               i + 1 < clients->port_count ? "" : "\n");
+    }
+    if (clients->in_order) {
+        puts("answers come in the order of the requests");
+    }
+    print_times(dialect, is_action_at_once, "they begin");
+    print_times(dialect, is_answered_when_idle, "the controller is idle");
 }
 
 /* True if the controller could do the word: an ACKN only where one is awaited. */
@@ -128,9 +170,13 @@ int wh_app_dialect(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     if (!wh_dialect_open(&dialect, arguments.path)) {
         fprintf(stderr, "%s\n", dialect.message);
+    } else if (arguments.said.count > 0) {
+        status =
+            wh_dialect_say(&dialect, &arguments.said) && wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     } else {
         printf("%s, for the %s: %zu commands\n", dialect.name, wh_mechanism_names[dialect.mechanism],
                dialect.command_count);
+        print_order(&dialect);
         print_commands(&dialect, false);
         print_commands(&dialect, true);
         print_errors(&dialect);
@@ -139,5 +185,6 @@ int wh_app_dialect(int argc, char **argv) {
         status = wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     }
     wh_dialect_close(&dialect);
+    wh_option_list_free(&arguments.said);
     return status;
 }

@@ -13,6 +13,7 @@
 #include "app.h"
 #include "layout_arguments.h"
 #include "run_arguments.h"
+#include "serve_beside.h"
 #include "serve_cell.h"
 
 typedef struct {
@@ -23,6 +24,8 @@ typedef struct {
     bool lockstep;
     const char *transcript, *coverage;
     wh_serve_cell_arguments_t cell;
+    wh_serve_beside_t beside;
+    wh_allow_t allow;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -55,7 +58,7 @@ static void check(const void *given, struct argp_state *state) {
     if (arguments->dialects.count == 0) {
         argp_error(state, "which --dialect?");
     }
-    if (ports != arguments->dialects.count || ports > WH_HOST_PORTS) {
+    if (ports < arguments->dialects.count || ports > WH_HOST_PORTS) {
         argp_error(state,
                    "%zu --dialect, %zu --tcp and --pty (expected one port for each dialect, at most %d)",
                    arguments->dialects.count, ports, WH_HOST_PORTS);
@@ -67,6 +70,7 @@ static void check(const void *given, struct argp_state *state) {
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
+    {wh_serve_beside_options, offsetof(arguments_t, beside), NULL, NULL},
     {wh_serve_cell_options, offsetof(arguments_t, cell), NULL, wh_serve_cell_check},
     {wh_record_options, offsetof(arguments_t, cell.record), NULL, wh_record_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
@@ -100,15 +104,12 @@ static int place_of(int argc, char **argv, const char *item) {
 }
 
 static bool open_port(wh_host_t *host, const wh_host_port_t *port) {
-    if (!wh_host_add(host, port)) {
-        fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect.message);
+    const size_t first = host->count;
+    if (!(port->dialect ? wh_host_add : wh_host_add_port)(host, port)) {
+        fprintf(stderr, "%s\n", host->controllers[host->count - 1]->dialect->message);
         return false;
     }
-    const wh_controller_t *controller = host->controllers[host->count - 1];
-    fprintf(stderr, "serve: %s, %s, at %s%s\n", controller->name, controller->dialect.name,
-            controller->line.port.place,
-            port->is_pty || controller->line.port.is_local ? ""
-                                                           : ": whoever reaches this machine can command it");
+    wh_serve_beside_tell(host, host->controllers[first], host->controllers[first]->dialect->name);
     return true;
 }
 
@@ -126,24 +127,64 @@ static const char *mechanism_of(const arguments_t *arguments, size_t dialect, in
     return found;
 }
 
-/* Each dialect has the next port of the command line, of either kind. */
+/* The next port of the command line, of either kind. */
+typedef struct {
+    const arguments_t *arguments;
+    int argc;
+    char **argv;
+    size_t tcp, pty; /* taken so far */
+} addresses_t;
+
+/* False: none is left. */
+static bool take_address(addresses_t *at, wh_host_port_t *port) {
+    const arguments_t *arguments = at->arguments;
+    const bool has_tcp = at->tcp < arguments->tcp.count;
+    const bool has_pty = at->pty < arguments->pty.count;
+    const int tcp = has_tcp ? place_of(at->argc, at->argv, arguments->tcp.items[at->tcp]) : at->argc;
+    const int pty = has_pty ? place_of(at->argc, at->argv, arguments->pty.items[at->pty]) : at->argc;
+    port->is_pty = pty < tcp;
+    if (has_tcp || has_pty) {
+        port->address = port->is_pty ? arguments->pty.items[at->pty++] : arguments->tcp.items[at->tcp++];
+    }
+    return has_tcp || has_pty;
+}
+
+static bool refuse_count(const wh_host_t *host, const addresses_t *at) {
+    const size_t given = at->arguments->tcp.count + at->arguments->pty.count;
+    const wh_dialect_t *dialect = host->count > 0 ? host->controllers[host->count - 1]->dialect : NULL;
+    if (dialect && wh_host_needs_port(host)) {
+        fprintf(stderr, "%s: %zu --tcp and --pty (expected one for each of the %zu ports that it names)\n",
+                dialect->path, given, dialect->clients.port_count);
+    } else {
+        fprintf(stderr, "%zu --tcp and --pty (expected %zu, one for each dialect or port that it names)\n",
+                given, at->tcp + at->pty);
+    }
+    return false;
+}
+
+/* Opens a dialect with all of its ports, each at the next address. */
+static bool open_dialect(wh_host_t *host, addresses_t *at, size_t i) {
+    wh_host_port_t port = {.dialect = at->arguments->dialects.items[i],
+                           .mechanism = mechanism_of(at->arguments, i, at->argc, at->argv)};
+    bool good = (take_address(at, &port) || refuse_count(host, at)) && open_port(host, &port);
+    while (good && wh_host_needs_port(host)) {
+        port.dialect = NULL;
+        good = (take_address(at, &port) || refuse_count(host, at)) && open_port(host, &port);
+    }
+    return good;
+}
+
 static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
-    size_t t = 0;
-    size_t p = 0;
+    addresses_t at = {.arguments = arguments, .argc = argc, .argv = argv};
     size_t named = 0;
     for (size_t i = 0; i < arguments->dialects.count; ++i) {
-        const int tcp = t < arguments->tcp.count ? place_of(argc, argv, arguments->tcp.items[t]) : argc;
-        const int pty = p < arguments->pty.count ? place_of(argc, argv, arguments->pty.items[p]) : argc;
-        const bool is_pty = pty < tcp;
-        const wh_host_port_t port = {.dialect = arguments->dialects.items[i],
-                                     .mechanism = mechanism_of(arguments, i, argc, argv),
-                                     .address =
-                                         is_pty ? arguments->pty.items[p++] : arguments->tcp.items[t++],
-                                     .is_pty = is_pty};
-        named += port.mechanism ? 1 : 0;
-        if (!open_port(host, &port)) {
+        named += mechanism_of(arguments, i, argc, argv) ? 1 : 0;
+        if (!open_dialect(host, &at, i)) {
             return false;
         }
+    }
+    if (at.tcp + at.pty < arguments->tcp.count + arguments->pty.count) {
+        return refuse_count(host, &at);
     }
     if (named < arguments->mechanisms.count) {
         fprintf(stderr, "--mechanism: %zu of %zu (expected one behind each --dialect at most)\n", named,
@@ -158,7 +199,7 @@ static bool open_ports(wh_host_t *host, const arguments_t *arguments, int argc, 
 static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
     wh_transcript_head_t *heads =
         wh_array_new(2 + arguments->layout.parameters.count + 2 * host->count, sizeof *heads);
-    char ports[WH_HOST_PORTS][PATH_MAX + 80];
+    char(*ports)[PATH_MAX + 80] = wh_array_new(host->count + 1, sizeof *ports);
     size_t count = 0;
     heads[count++] = (wh_transcript_head_t){"layout", arguments->layout.path, 0};
     for (size_t i = 0; i < arguments->layout.parameters.count; ++i) {
@@ -169,15 +210,16 @@ static bool write_heads(const wh_host_t *host, const arguments_t *arguments) {
     }
     for (size_t i = 0; i < host->count; ++i) {
         const wh_controller_t *controller = host->controllers[i];
-        snprintf(ports[i], sizeof ports[i], "%s %s", controller->name, controller->dialect.path);
+        snprintf(ports[i], sizeof *ports, "%s %s", controller->name, controller->dialect->path);
         heads[count++] = (wh_transcript_head_t){"port", ports[i], 0};
-        if (controller->mechanism.name) {
+        if (controller->mechanism.name && controller->leader == controller) {
             heads[count++] = (wh_transcript_head_t){"mechanism", controller->mechanism.name, 0};
         }
     }
     const bool written = (host->writes_json ? wh_transcript_write_json_heads
                                             : wh_transcript_write_heads)(host->transcript, heads, count);
     free(heads);
+    free(ports);
     return written;
 }
 
@@ -317,23 +359,27 @@ static void say_untried(void *user, const char *list) {
     fprintf(stderr, "serve: never came, and so were not tried: %s\n", list);
 }
 
+static void say_controller(const wh_controller_t *controller) {
+    const wh_controller_counters_t *c = &controller->counters;
+    const wh_port_counters_t *port = &controller->line.port.counters;
+    fprintf(stderr,
+            "serve: %s: %" PRIu64 " client%s, %" PRIu64 " frame%s, %" PRIu64 " bad, %" PRIu64
+            " repeated, %" PRIu64 " action%s, %" PRIu64 " busy, %" PRIu64 " without an ACKN, %" PRIu64
+            " mistake%s of the dialect\n",
+            controller->name, port->clients, WH_PLURAL(port->clients), c->frames, WH_PLURAL(c->frames),
+            c->bad, c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
+            WH_PLURAL(c->mistakes));
+    if (port->idle > 0) {
+        fprintf(stderr, "serve: %s: %" PRIu64 " silent client%s closed\n", controller->name, port->idle,
+                port->idle == 1 ? " was" : "s were");
+    }
+}
+
 static void say_counters(const wh_host_t *host) {
     const wh_session_t *session = host->session;
     for (size_t i = 0; i < host->count; ++i) {
-        const wh_controller_t *controller = host->controllers[i];
-        const wh_controller_counters_t *c = &controller->counters;
-        fprintf(stderr,
-                "serve: %s: %" PRIu64 " client%s, %" PRIu64 " frame%s, %" PRIu64 " bad, %" PRIu64
-                " repeated, %" PRIu64 " action%s, %" PRIu64 " busy, %" PRIu64 " without an ACKN, %" PRIu64
-                " mistake%s of the dialect\n",
-                controller->name, controller->line.port.counters.clients,
-                WH_PLURAL(controller->line.port.counters.clients), c->frames, WH_PLURAL(c->frames), c->bad,
-                c->repeated, c->actions, WH_PLURAL(c->actions), c->busy, c->unacknowledged, c->mistakes,
-                WH_PLURAL(c->mistakes));
-        if (controller->line.port.counters.idle > 0) {
-            fprintf(stderr, "serve: %s: %" PRIu64 " silent client%s closed\n", controller->name,
-                    controller->line.port.counters.idle,
-                    controller->line.port.counters.idle == 1 ? " was" : "s were");
+        if (wh_host_is_first_of_port(host, i) || host->controllers[i]->line.port.counters.clients > 0) {
+            say_controller(host->controllers[i]);
         }
     }
     const int64_t slices = wh_session_slice(session);
@@ -351,6 +397,16 @@ static void say_counters(const wh_host_t *host) {
     }
     fprintf(stderr, "serve: %" PRId64 " slice%s, hash %016" PRIx64 "\n", slices, WH_PLURAL(slices),
             wh_session_hash(session));
+}
+
+/* How fast simulated time has passed, if a rate was asked for. */
+static void say_rate(const wh_host_t *host, const arguments_t *arguments) {
+    const int64_t wall_us = host->clock.wall_us - host->clock.held_us;
+    if (arguments->rate > 0 && wall_us > 0 && host->clock.run_us > 0) {
+        fprintf(stderr, "serve: --rate %g: %.3g reached, %.3f s in %.3f s\n", arguments->rate,
+                (double)host->clock.run_us / (double)wall_us, (double)host->clock.run_us / 1e6,
+                (double)wall_us / 1e6);
+    }
 }
 
 /* A served run: its session, host, signals and cell. */
@@ -399,9 +455,16 @@ static bool run_host(served_t *served, arguments_t *arguments) {
     wh_host_run(&served->host);
     wh_mcs_finish(&served->session.mcs);
     say_counters(&served->host);
+    say_rate(&served->host, arguments);
     const bool reported = write_report(arguments, &served->session, &served->signals);
     const bool covered = keep_coverage(&served->host, arguments->coverage);
     return close_transcript(&served->host, arguments) && reported && covered;
+}
+
+/* Opens all ports and the transcript, and says so. */
+static bool listen_all(wh_host_t *host, const arguments_t *arguments, int argc, char **argv) {
+    return open_ports(host, arguments, argc, argv) && wh_serve_beside_open(&arguments->beside, host) &&
+           open_transcript(host, arguments) && wh_serve_beside_ready(&arguments->beside, host);
 }
 
 static int serve(arguments_t *arguments, int argc, char **argv) {
@@ -414,9 +477,11 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
     if (wh_run_files_wanted(&arguments->run.files)) {
         host->next = wh_run_listener(&served.signals);
     }
-    const bool good = check_coverage(arguments->coverage) && are_writable(arguments) &&
-                      open_session(&served, arguments) && open_ports(host, arguments, argc, argv) &&
-                      open_transcript(host, arguments) && run_host(&served, arguments);
+    host->allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
+    const bool may_begin = wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
+                           check_coverage(arguments->coverage) && are_writable(arguments);
+    const bool good = may_begin && open_session(&served, arguments) &&
+                      listen_all(host, arguments, argc, argv) && run_host(&served, arguments);
     return close_served(&served) && good ? WH_EXIT_MET : WH_EXIT_USAGE;
 }
 
@@ -430,6 +495,7 @@ static bool is_apart(const arguments_t *arguments) {
                                      {"--data", files->document, true},
                                      {"--svg", files->plots, true},
                                      {"--transcript", arguments->transcript, true},
+                                     {"--ready", arguments->beside.ready, true},
                                      {option, record, true},
                                      {"--coverage", arguments->coverage, true}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], false);
@@ -448,5 +514,6 @@ int wh_app_serve(int argc, char **argv) {
     wh_option_list_free(&arguments.mechanisms);
     wh_option_list_free(&arguments.tcp);
     wh_option_list_free(&arguments.pty);
+    wh_option_list_free(&arguments.beside.allowed);
     return status;
 }

@@ -42,7 +42,7 @@ PROGRAM_SOURCES := $(filter-out $(RANKS_SOURCE),$(wildcard $(HOST_ROOMS:%=lib/%/
 PROGRAM_CXX_SOURCES := $(wildcard $(HOST_ROOMS:%=lib/%/*.cpp))
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
-EMBEDDED_LUA := $(patsubst lua/%,$(B)/precompiled/%,$(filter lua/mcs/%,$(LUA_SOURCES)))
+EMBEDDED_LUA := $(patsubst lua/%,$(B)/precompiled/%,$(filter lua/mcs/% lua/dialects/control.lua,$(LUA_SOURCES)))
 PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
 HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*/*.h lib/*/*.def)
 

@@ -10,6 +10,12 @@ void wh_host_begin_clock(wh_host_t *host, wh_controller_t *controller);
 /* If ports move side by side: this controller's running action ends with this error. */
 void wh_controller_end_job(wh_controller_t *controller, wh_status_t status, const char *why);
 
+/* Actions that wait behind what runs end as STOPPED; queries go on waiting. */
+void wh_controller_stop_queue(wh_controller_t *controller);
+
+/* Actions that are answered when they begin, and have begun, are answered now. */
+void wh_host_tell_begun(wh_host_t *host);
+
 /* Ends this port's running action. */
 void wh_controller_stop_running(wh_controller_t *controller);
 

@@ -9,14 +9,19 @@
 #include <lauxlib.h>
 
 #include "../record/record.h"
-#include "../script/reader.h"
+#include "../script/embedded.h"
 #include "../script/wh_module.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
+#include "dialect_internal.h"
 #include "mechanism.h"
 #include "pace.h"
 
 char wh_dialect_key;
+char wh_dialect_layout_key;
+
+const char *const wh_host_event_names[WH_HOST_EVENTS + 1] = {"wafer",    "sensor", "valve", "hold",
+                                                             "position", "error",  NULL};
 
 static const wh_reader_field_t dialect_fields[] = {
     {"name", "string", "what it is", true},
@@ -37,26 +42,23 @@ static const wh_reader_field_t dialect_fields[] = {
     {"timing", "table", "of answers", false},
     {"baud", "number", "the pace of the line", false},
     {"second_client", "string", "what becomes of it", false},
+    {"ports", "table", "the names of the ports that share it", false},
+    {"in_order", "boolean", "the next frame is read once all before it are answered", false},
+    {"events", "table", "the kinds of events that it is told", false},
+    {"connected", "function", "a client has come", false},
+    {"gone", "function", "a client has gone", false},
     {"idle", "number", "s after which a silent client is closed", false},
     {"completes_to", "string", "who hears of a command's end", false},
     {"chaos", "table", "what befalls frames on the line", false},
     {0}};
 
-static const wh_reader_field_t framing_fields[] = {{"start", "string", "", false},
-                                                   {"replies", "table", "", false},
-                                                   {"ends", "table", "", true},
-                                                   {"sum", "string", "", false},
-                                                   {"separator", "string", "", false},
-                                                   {"sums_start", "boolean", "", false},
-                                                   {"sums_separator", "boolean", "", false},
-                                                   {"skips_empty", "boolean", "", false},
-                                                   {"shortest", "number", "", false},
-                                                   {"longest", "number", "", false},
-                                                   {"timeout", "number", "", false},
+static const wh_reader_field_t command_fields[] = {{"does", "string", "", true},
+                                                   {"run", "function", "", false},
+                                                   {"answer", "function", "", false},
+                                                   {"when", "string", "", false},
+                                                   {"queue", "number", "", false},
+                                                   {"closes", "boolean", "", false},
                                                    {0}};
-
-static const wh_reader_field_t command_fields[] = {
-    {"does", "string", "", true}, {"run", "function", "", false}, {"answer", "function", "", false}, {0}};
 
 /* In the order of wh_encoder_t. */
 static const wh_reader_field_t encode_fields[] = {{"acknowledge", "function", "", false},
@@ -96,83 +98,6 @@ static bool has_function(wh_reader_t *reader, const wh_reader_field_t *field) {
     }
     lua_pop(reader->L, 1);
     return type == LUA_TFUNCTION;
-}
-
-/* ------------------------------------------------------------------------------------------------ framing */
-
-/* The text on top of the stack, which is popped. */
-static wh_framing_mark_t take_mark(wh_reader_t *reader, const char *field) {
-    wh_framing_mark_t mark = {.size = 0};
-    size_t size = 0;
-    const char *bytes = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tolstring(reader->L, -1, &size) : NULL;
-    if (!bytes || size < 1 || size > WH_FRAMING_MARK) {
-        wh_reader_fail(reader, field, "a text of 1 to %d bytes", WH_FRAMING_MARK);
-    }
-    memcpy(mark.bytes, bytes, size);
-    mark.size = size;
-    lua_pop(reader->L, 1);
-    return mark;
-}
-
-static wh_framing_mark_t read_mark(wh_reader_t *reader, const char *field) {
-    if (wh_reader_push(reader, field) == LUA_TNIL) {
-        lua_pop(reader->L, 1);
-        return (wh_framing_mark_t){.size = 0};
-    }
-    return take_mark(reader, field);
-}
-
-/* A list of marks. Returns how many there are. */
-static size_t read_marks(wh_reader_t *reader, const char *field, wh_framing_mark_t marks[]) {
-    if (!wh_reader_enter(reader, field)) {
-        return 0;
-    }
-    const size_t count = wh_reader_list(reader);
-    if (count < 1 || count > WH_FRAMING_MARKS) {
-        wh_reader_fail(reader, NULL, "1 to %d texts", WH_FRAMING_MARKS);
-    }
-    for (size_t i = 0; i < count; ++i) {
-        char name[8];
-        (void)snprintf(name, sizeof name, "[%zu]", i + 1);
-        lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
-        marks[i] = take_mark(reader, name);
-    }
-    wh_reader_leave(reader);
-    return count;
-}
-
-static void validate_framing(const wh_reader_t *reader, const wh_framing_t *framing) {
-    char problem[WH_FRAMING_PROBLEM_BYTES];
-    if (!wh_framing_validate(framing, problem)) {
-        luaL_error(reader->L, "%s: framing.%s", reader->file, problem);
-    }
-}
-
-static void read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
-    static const char *const sums[] = {"none", "add", "xor", "complement", NULL};
-    wh_framing_t *framing = &dialect->framing;
-    if (!wh_reader_open(reader, "framing", framing_fields)) {
-        wh_reader_fail(reader, "framing", "a table");
-    }
-    *framing = wh_framing_default();
-    framing->starts[0] = read_mark(reader, "start");
-    framing->start_count = framing->starts[0].size > 0 ? 1 : 0;
-    framing->end_count = read_marks(reader, "ends", framing->ends);
-    framing->sum = (wh_sum_kind_t)wh_reader_choice(reader, "sum", WH_SUM_NONE, sums);
-    framing->separator = read_mark(reader, "separator");
-    framing->sums_start = wh_reader_boolean(reader, "sums_start", false);
-    framing->sums_separator = wh_reader_boolean(reader, "sums_separator", false);
-    framing->skips_empty = wh_reader_boolean(reader, "skips_empty", true);
-    framing->shortest = (size_t)wh_reader_whole(reader, "shortest", 0, 0, WH_FRAMING_LINE);
-    framing->longest = (size_t)wh_reader_whole(reader, "longest", WH_FRAMING_LINE, 16, WH_FRAMING_LINE);
-    framing->timeout_us = (int64_t)(wh_reader_number(reader, "timeout", 0, 0, 3600) * 1e6);
-    dialect->replies = *framing;
-    const size_t replies = read_marks(reader, "replies", dialect->replies.starts);
-    dialect->replies.start_count = replies > 0 ? replies : framing->start_count;
-    dialect->replies.shortest = 0;
-    validate_framing(reader, framing);
-    validate_framing(reader, &dialect->replies);
-    wh_reader_leave(reader);
 }
 
 /* ------------------------------------------------------------------------------------------------- tables */
@@ -258,6 +183,31 @@ static void read_does(wh_reader_t *reader, wh_dialect_command_t *command) {
     }
 }
 
+static bool may_wait(wh_word_kind_t kind) {
+    return kind == WH_WORD_QUERY || kind == WH_WORD_ALWAYS || kind == WH_WORD_LOCAL;
+}
+
+/* When it is answered, and what may wait behind it. */
+static void read_when(wh_reader_t *reader, wh_dialect_command_t *command) {
+    static const char *const times[] = {"at once", "idle", "end", NULL};
+    const bool is_action = command->kind == WH_WORD_ACTION;
+    const wh_when_t usual = is_action ? WH_WHEN_END : WH_WHEN_AT_ONCE;
+    command->when = (wh_when_t)wh_reader_choice(reader, "when", (int)usual, times);
+    if (command->when != usual && command->when != (is_action ? WH_WHEN_AT_ONCE : WH_WHEN_IDLE)) {
+        wh_reader_refuse(reader, "when", times[command->when], "%s",
+                         is_action ? "\"at once\" or \"end\" of an action"
+                                   : "\"at once\" or \"idle\" of what is no action");
+    }
+    if (command->when == WH_WHEN_IDLE && !may_wait(command->kind)) {
+        wh_reader_refuse(reader, "when", "idle", "\"at once\" of STOP, HOLD, RESUME, RATE and ACKN");
+    }
+    command->queue = wh_reader_whole(reader, "queue", 0, 0, WH_DIALECT_QUEUE);
+    if (command->queue > 0 && !is_action) {
+        wh_reader_refuse(reader, "queue", "", "none: only actions wait behind what runs");
+    }
+    command->closes = wh_reader_boolean(reader, "closes", false);
+}
+
 /* Refuses words that the controller's mechanism cannot do. */
 static void check_mechanism(const wh_reader_t *reader, const wh_dialect_t *dialect,
                             const wh_dialect_command_t *command) {
@@ -279,6 +229,7 @@ static void read_command(wh_reader_t *reader, wh_dialect_t *dialect, const char 
     wh_reader_refuse_unknown(reader, command_fields);
     read_does(reader, command);
     check_mechanism(reader, dialect, command);
+    read_when(reader, command);
     wh_reader_field_t run = command_fields[1];
     run.required = command->kind == WH_WORD_LOCAL;
     (void)has_function(reader, &run);
@@ -350,17 +301,84 @@ static void read_states(wh_reader_t *reader, wh_dialect_t *dialect) {
     wh_reader_leave(reader);
 }
 
+/* The name of this port, of the list on top of the stack. */
+static void read_port(wh_reader_t *reader, wh_dialect_clients_t *clients, size_t i) {
+    char name[32];
+    (void)snprintf(name, sizeof name, "[%zu]", i + 1);
+    lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
+    const char *text = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tostring(reader->L, -1) : "";
+    const size_t size = strlen(text);
+    if (size < 1 || size > 15 || strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_") != size) {
+        wh_reader_fail(reader, name, "a name of 1 to 15 small letters, digits and _");
+    }
+    memcpy(clients->ports[i], text, size + 1);
+    for (size_t other = 0; other < i; ++other) {
+        if (strcmp(clients->ports[other], text) == 0) {
+            wh_reader_fail(reader, name, "another name than that of port %zu", other + 1);
+        }
+    }
+    lua_pop(reader->L, 1);
+}
+
+/* The names of its ports, as far as it has several. */
+static void read_ports(wh_reader_t *reader, wh_dialect_clients_t *clients) {
+    clients->port_count = 1;
+    if (!wh_reader_enter(reader, "ports")) {
+        return;
+    }
+    clients->port_count = wh_reader_list(reader);
+    if (clients->port_count < 1 || clients->port_count > WH_DIALECT_PORTS) {
+        wh_reader_fail(reader, NULL, "1 to %d names", WH_DIALECT_PORTS);
+    }
+    for (size_t i = 0; i < clients->port_count; ++i) {
+        read_port(reader, clients, i);
+    }
+    wh_reader_leave(reader);
+}
+
+static void read_events(wh_reader_t *reader, wh_dialect_clients_t *clients) {
+    clients->events = 1U << WH_HOST_WAFER;
+    if (!wh_reader_enter(reader, "events")) {
+        return;
+    }
+    clients->events = 0;
+    const size_t count = wh_reader_list(reader);
+    for (size_t i = 0; i < count; ++i) {
+        size_t kind = 0;
+        lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
+        const char *text = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tostring(reader->L, -1) : "";
+        while (kind < WH_HOST_EVENTS && strcmp(wh_host_event_names[kind], text) != 0) {
+            ++kind;
+        }
+        if (kind == WH_HOST_EVENTS) {
+            wh_reader_fail(reader, NULL, "a list of wafer, sensor, valve, hold, position and error");
+        }
+        clients->events |= 1U << kind;
+        lua_pop(reader->L, 1);
+    }
+    wh_reader_leave(reader);
+}
+
+static void read_clients(wh_reader_t *reader, wh_dialect_t *dialect) {
+    static const char *const seconds[] = {"refuse", "take_over", "share", NULL};
+    wh_dialect_clients_t *clients = &dialect->clients;
+    read_ports(reader, clients);
+    read_events(reader, clients);
+    clients->second = (wh_port_second_t)wh_reader_choice(reader, "second_client", 0, seconds);
+    clients->in_order = wh_reader_boolean(reader, "in_order", false);
+    clients->greets = has_function(reader, &(wh_reader_field_t){"connected", "function", "", false});
+    clients->heeds_going = has_function(reader, &(wh_reader_field_t){"gone", "function", "", false});
+}
+
 static void read_timing(wh_reader_t *reader, wh_dialect_t *dialect) {
-    static const char *const clients[] = {"refuse", "take_over", NULL};
     static const char *const hearers[] = {"asker", "next", NULL};
     wh_reader_open_section(reader, "timing", timing_fields);
     dialect->timing.ack_s = wh_reader_number(reader, "ack", 0, 0, 3600);
     dialect->timing.busy_s = wh_reader_number(reader, "busy", 0, 0, 3600);
     dialect->timing.ackn_s = wh_reader_number(reader, "ackn", 0, 0, 3600);
     wh_reader_leave(reader);
-    dialect->takes_over = wh_reader_choice(reader, "second_client", 0, clients) == 1;
     dialect->timing.idle_s = wh_reader_number(reader, "idle", 0, 0, 86400);
-    dialect->completes_to_next = wh_reader_choice(reader, "completes_to", 0, hearers) == 1;
+    dialect->clients.completes_to_next = wh_reader_choice(reader, "completes_to", 0, hearers) == 1;
     dialect->timing.baud = wh_reader_whole(reader, "baud", 0, 0, WH_PACE_MOST);
     if (!wh_pace_validate(dialect->timing.baud)) {
         (void)wh_reader_push(reader, "baud");
@@ -392,7 +410,7 @@ static int read_dialect(lua_State *L) {
     wh_reader_refuse_unknown(&reader, dialect_fields);
     wh_reader_text(&reader, "name", NULL, dialect->name, sizeof dialect->name);
     dialect->mechanism = (wh_mechanism_t)wh_reader_choice(&reader, "mechanism", 0, wh_mechanism_names);
-    read_framing(&reader, dialect);
+    wh_dialect_read_framing(&reader, dialect);
     read_units(&reader, dialect);
     check_names(&reader, "stations");
     check_names(&reader, "arms");
@@ -403,6 +421,7 @@ static int read_dialect(lua_State *L) {
     read_encoders(&reader, dialect);
     read_errors(&reader, dialect);
     read_states(&reader, dialect);
+    read_clients(&reader, dialect);
     read_timing(&reader, dialect);
     read_chaos(&reader, dialect);
     return 0;
@@ -415,11 +434,23 @@ static int open_libraries(lua_State *L) {
     return wh_dialect_open_host(L);
 }
 
+/* The tester's own, which is built in; null: a file. */
+static const wh_embedded_t *find_embedded(const char *path) {
+    for (size_t i = 0; strcmp(path, WH_DIALECT_CONTROL) == 0 && i < wh_embedded_count; ++i) {
+        if (strcmp(wh_embedded[i].name, "dialects/control.lua") == 0) {
+            return &wh_embedded[i];
+        }
+    }
+    return NULL;
+}
+
 /* Runs protected. */
 static int run_file(lua_State *L) {
     wh_sandbox_result_t result;
     const wh_dialect_t *dialect = lua_touserdata(L, 1);
-    if (!wh_sandbox_evaluate(L, dialect->path, &result)) {
+    const wh_embedded_t *file = find_embedded(dialect->path);
+    if (file ? !wh_sandbox_evaluate_code(L, file->name, file->text, file->size, &result)
+             : !wh_sandbox_evaluate(L, dialect->path, &result)) {
         return luaL_error(L, "%s", result.message);
     }
     lua_rawsetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);

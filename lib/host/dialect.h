@@ -15,6 +15,7 @@
 #include "chaos.h"
 #include "framing.h"
 #include "mechanism.h"
+#include "port.h"
 #include "words.h"
 
 /* The limits of a dialect's memory and instructions. */
@@ -27,6 +28,21 @@
 /* The most lines that one of their commands may make, and the most of our words in one `does`. */
 #define WH_DIALECT_LINES 16
 #define WH_DIALECT_DOES 8
+/* The most ports that share one dialect, and the clients of a port whose `second_client` is "share". */
+#define WH_DIALECT_PORTS 4
+#define WH_DIALECT_SHARERS 4
+/* The most actions that wait behind one that runs. */
+#define WH_DIALECT_QUEUE 16
+
+/* The time of a command's answer. A query is answered at once or when its controller is idle, an action
+ * when it begins ("at once") or at its end. */
+typedef enum { WH_WHEN_AT_ONCE, WH_WHEN_IDLE, WH_WHEN_END } wh_when_t;
+
+/* A client of a port. */
+typedef struct {
+    const char *port; /* its name in the dialect's `ports` */
+    uint64_t number;  /* among the clients of the dialect, from 1 */
+} wh_client_t;
 
 /* A command of theirs. */
 typedef struct {
@@ -34,6 +50,9 @@ typedef struct {
     wh_word_kind_t kind;
     const wh_word_t *does[WH_DIALECT_DOES]; /* all of that kind */
     size_t does_count;
+    wh_when_t when;
+    int queue;   /* how many such actions wait behind what runs; 0: they are refused as busy */
+    bool closes; /* its client is closed behind the answer */
 } wh_dialect_command_t;
 
 /* The code and text that their host is told for one of our errors. */
@@ -71,6 +90,30 @@ typedef struct {
     int64_t baud;  /* 0: as fast as possible */
 } wh_dialect_timing_t;
 
+/* The events that a dialect asks for in `events`; without that, those of wafers alone. */
+typedef enum {
+    WH_HOST_WAFER,    /* something befell a wafer */
+    WH_HOST_SENSOR,   /* a gripper's vacuum sensor has changed */
+    WH_HOST_VALVE,    /* a gripper's valve was switched */
+    WH_HOST_HOLD,     /* a HOLD begins, or ends */
+    WH_HOST_POSITION, /* an action has ended well */
+    WH_HOST_ERROR,    /* an action has failed */
+    WH_HOST_EVENTS
+} wh_host_event_kind_t;
+extern const char *const wh_host_event_names[WH_HOST_EVENTS + 1];
+
+/* Whom it talks to, and how. */
+typedef struct {
+    wh_port_second_t second;
+    bool completes_to_next; /* the end of a command is told to whoever is there; else only to the client that
+                             * asked */
+    bool in_order;          /* the next frame of a port is read once all before it are answered */
+    bool greets, heeds_going; /* the dialect has the functions `connected` and `gone` */
+    unsigned events;          /* it is told these: bits, 1 << WH_HOST_WAFER */
+    size_t port_count;        /* at least 1 */
+    char ports[WH_DIALECT_PORTS][WH_DIALECT_NAME_BYTES]; /* their names; empty: it has one */
+} wh_dialect_clients_t;
+
 /* Read-only for others. Must not be moved while it is open. */
 typedef struct {
     wh_sandbox_t *sandbox;
@@ -82,9 +125,7 @@ typedef struct {
     wh_dialect_units_t units;
     wh_dialect_timing_t timing;
     wh_chaos_t chaos;
-    bool takes_over;        /* a second client takes the place of the first; else it is refused */
-    bool completes_to_next; /* the end of a command is told to whoever is there; else only to the client that
-                             * asked */
+    wh_dialect_clients_t clients;
     bool encodes[WH_ENCODERS];
     wh_dialect_command_t *commands;
     size_t command_count, command_capacity;
@@ -97,6 +138,9 @@ typedef struct {
     size_t text_size;
     size_t text_start; /* the one of `replies` before it */
 } wh_dialect_t;
+
+/* The path of the dialect of a tester beside the hosts, which is built in. */
+#define WH_DIALECT_CONTROL ":control"
 
 /* Reads the file. False, with the reason in `message`, if it cannot be read or says something wrong: file,
  * field, value, and what was expected. To be closed either way. */
@@ -134,9 +178,9 @@ typedef struct {
     char sequence[WH_DIALECT_NAME_BYTES]; /* empty: it has none */
 } wh_request_t;
 
-/* Calls decode(frame). It always makes a request, which must go to wh_dialect_forget. */
-wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const char *frame, size_t size, wh_request_t *request,
-                               wh_failure_t *failure);
+/* Calls decode(frame, client). It always makes a request, which must go to wh_dialect_forget. */
+wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const char *frame,
+                               size_t size, wh_request_t *request, wh_failure_t *failure);
 void wh_dialect_forget(wh_dialect_t *dialect, wh_request_t *request);
 
 /* Makes our lines for a request, or for a LOCAL one its answer as the only line. */
@@ -144,11 +188,6 @@ typedef struct {
     char lines[WH_DIALECT_LINES][WH_DIALECT_LINE_BYTES];
     size_t count;
 } wh_lines_t;
-
-/* Calls the command's run(request). A line that begins with none of the words that its `does` names is a
- * mistake. */
-wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_lines_t *lines,
-                            wh_failure_t *failure);
 
 /* ------------------------------------------------------------------------------------------------ a reply */
 
@@ -161,7 +200,8 @@ typedef struct {
     bool is_held;                         /* a HOLD stands */
     const wh_layout_t *layout;            /* whose robots and grippers these are; null: none */
     const wh_port_mechanism_t *mechanism; /* what the port stands for; null with no layout */
-    uint32_t sensors; /* what the vacuum sensors of its grippers say: bit g of gripper g */
+    uint32_t sensors;       /* what the vacuum sensors of its grippers say: bit g of gripper g */
+    const wh_pose_t *poses; /* of the grippers, base_from_gripper; null: none */
 } wh_result_t;
 
 /* An event that concerns a wafer. */
@@ -169,8 +209,17 @@ typedef struct {
     const char *kind;  /* wh_event_name */
     bool is_complaint; /* of the cell: such as slot_occupied */
     const char *wafer, *gripper;
-    double seconds; /* simulated, since the run's beginning */
+    double seconds;     /* simulated, since the run's beginning */
+    int value;          /* a sensor or valve is on, a HOLD begins: 0 or 1; an error's number; -1: none */
+    const char *at;     /* the controller whose action or HOLD it is; null: none's */
+    wh_client_t client; /* to whom it is told */
 } wh_host_event_t;
+
+/* Calls the command's run(request, now). `now` is asked for a result of WH_OK only if that function takes it.
+ * A line that begins with none of the words that its `does` names is a mistake. */
+typedef void wh_now_t(void *user, wh_result_t *now);
+wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_now_t *ask, void *user,
+                            wh_lines_t *lines, wh_failure_t *failure);
 
 /* The arguments of an encoder besides its kind; those that it does not take are null. */
 typedef struct {
@@ -185,6 +234,11 @@ typedef struct {
  * Without text (null) nothing is sent. An encoder that the dialect does not have makes none. */
 bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_told_t *told);
 
+/* Calls connected(client) or gone(client), if the dialect has them: `text` is then a greeting. False: a
+ * mistake, see `message`. */
+bool wh_dialect_welcome(wh_dialect_t *dialect, const wh_client_t *client);
+bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client);
+
 /* True if the last call failed because the dialect refused by host.refuse: then `failure` says why. An
  * `answer` may refuse so, too. */
 bool wh_dialect_refused(const wh_dialect_t *dialect, wh_failure_t *failure);
@@ -195,8 +249,13 @@ const char *wh_dialect_code(const wh_dialect_t *dialect, wh_status_t number);
 /* True if the table of errors has it. */
 bool wh_dialect_speaks(const wh_dialect_t *dialect, wh_status_t number);
 
-/* Registry keys of the dialect's table and of the table `host` of its functions; for lib/host alone. */
+/* The layout that host.nearest and host.pose look at; null: none. It must outlive the dialect, or the next
+ * call. */
+void wh_dialect_show(wh_dialect_t *dialect, const wh_layout_t *layout);
+
+/* Registry keys of the dialect's table and of the layout; for lib/host alone. */
 extern char wh_dialect_key;
+extern char wh_dialect_layout_key;
 int wh_dialect_open_host(lua_State *L);
 
 #endif

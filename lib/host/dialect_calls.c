@@ -5,13 +5,11 @@
 
 #include <lauxlib.h>
 
-#include "../layout/axes.h"
 #include "../record/record.h"
 #include "../script/wh_module_values.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
-#include "dialect.h"
-#include "values.h"
+#include "dialect_internal.h"
 
 const char *const wh_encoder_names[WH_ENCODERS] = {[WH_ENCODE_ACKNOWLEDGE] = "acknowledge",
                                                    [WH_ENCODE_ANSWER] = "answer",
@@ -26,8 +24,11 @@ const char *const wh_encoder_names[WH_ENCODERS] = {[WH_ENCODE_ACKNOWLEDGE] = "ac
 /* A call of one function, and its result. */
 typedef struct {
     wh_dialect_t *dialect;
+    const wh_client_t *client;
     const char *frame;
     size_t size;
+    wh_now_t *ask;
+    void *user;
     wh_request_t *request;
     wh_lines_t *lines;
     wh_encoder_t encoder;
@@ -90,17 +91,6 @@ static wh_decoded_t outcome_of(wh_dialect_t *dialect, bool done, wh_failure_t *f
     return wh_dialect_refused(dialect, failure) ? WH_DECODED_REFUSED : WH_DECODED_MISTAKE;
 }
 
-/* Pushes a field of the dialect's table and of the table in it. */
-static void push_of(lua_State *L, const char *field, const char *within) {
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_key);
-    lua_getfield(L, -1, field);
-    lua_remove(L, -2);
-    if (within) {
-        lua_getfield(L, -1, within);
-        lua_remove(L, -2);
-    }
-}
-
 /* ----------------------------------------------------------------------------------------------- decoding */
 
 /* Raises what host.refuse does. */
@@ -141,13 +131,21 @@ static const wh_dialect_command_t *find_command(const wh_dialect_t *dialect, con
     return NULL;
 }
 
+/* Pushes { port = , number = }. */
+static void push_client(lua_State *L, const wh_client_t *client) {
+    lua_createtable(L, 0, 2);
+    wh_lua_set_text(L, "port", client->port);
+    wh_lua_set_integer(L, "number", (lua_Integer)client->number);
+}
+
 /* Runs protected. */
 static int decode_frame(lua_State *L) {
     char name[WH_DIALECT_NAME_BYTES];
     call_t *it = lua_touserdata(L, 1);
-    push_of(L, "decode", NULL);
+    wh_dialect_push(L, "decode", NULL);
     lua_pushlstring(L, it->frame, it->size);
-    lua_call(L, 1, 1);
+    push_client(L, it->client);
+    lua_call(L, 2, 1);
     if (lua_isnil(L, -1)) {
         return 0;
     }
@@ -167,9 +165,9 @@ static int decode_frame(lua_State *L) {
     return 0;
 }
 
-wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const char *frame, size_t size, wh_request_t *request,
-                               wh_failure_t *failure) {
-    call_t it = {.dialect = dialect, .frame = frame, .size = size, .request = request};
+wh_decoded_t wh_dialect_decode(wh_dialect_t *dialect, const wh_client_t *client, const char *frame,
+                               size_t size, wh_request_t *request, wh_failure_t *failure) {
+    call_t it = {.dialect = dialect, .client = client, .frame = frame, .size = size, .request = request};
     *request = (wh_request_t){.reference = LUA_NOREF};
     memset(failure, 0, sizeof *failure);
     const bool done = call_dialect(dialect, decode_frame, &it);
@@ -215,16 +213,35 @@ static void take_typed_line(lua_State *L, const call_t *it) {
     lua_pop(L, 1);
 }
 
+/* True if the function on top of the stack has a second parameter. */
+static bool takes_second(lua_State *L) {
+    lua_Debug debug;
+    lua_pushvalue(L, -1);
+    return lua_getinfo(L, ">u", &debug) != 0 && (debug.nparams >= 2 || debug.isvararg != 0);
+}
+
+static void push_now(lua_State *L, const call_t *it) {
+    wh_result_t now = {.answer = "", .status = ""};
+    if (it->ask) {
+        it->ask(it->user, &now);
+    }
+    wh_dialect_push_now(L, it->dialect, &now);
+}
+
 /* Runs protected. */
 static int run_command(lua_State *L) {
     call_t *it = lua_touserdata(L, 1);
     const wh_dialect_command_t *command = it->request->command;
-    push_of(L, "commands", command->name);
+    wh_dialect_push(L, "commands", command->name);
     if (lua_getfield(L, -1, "run") == LUA_TNIL) {
         lua_pushstring(L, command->does[0]->name);
     } else {
+        const bool takes_now = takes_second(L);
         lua_rawgeti(L, LUA_REGISTRYINDEX, it->request->reference);
-        lua_call(L, 1, 1);
+        if (takes_now) {
+            push_now(L, it);
+        }
+        lua_call(L, takes_now ? 2 : 1, 1);
     }
     if (!lua_istable(L, -1)) {
         take_typed_line(L, it);
@@ -240,10 +257,10 @@ static int run_command(lua_State *L) {
     return 0;
 }
 
-wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_lines_t *lines,
-                            wh_failure_t *failure) {
+wh_decoded_t wh_dialect_run(wh_dialect_t *dialect, const wh_request_t *request, wh_now_t *ask, void *user,
+                            wh_lines_t *lines, wh_failure_t *failure) {
     wh_request_t asked = *request;
-    call_t it = {.dialect = dialect, .request = &asked, .lines = lines};
+    call_t it = {.dialect = dialect, .request = &asked, .ask = ask, .user = user, .lines = lines};
     lines->count = 0;
     memset(failure, 0, sizeof *failure);
     return outcome_of(dialect, call_dialect(dialect, run_command, &it), failure);
@@ -259,122 +276,16 @@ static void push_request(lua_State *L, const wh_request_t *request) {
     }
 }
 
-/* Sets ok, number, name, code and text of an error, or of none, in the table on top of the stack. */
-static void set_error(lua_State *L, const wh_dialect_t *dialect, wh_status_t number, const char *code) {
-    wh_lua_set_boolean(L, "ok", number == WH_OK);
-    wh_lua_set_integer(L, "number", number);
-    if (number != WH_OK) {
-        wh_lua_set_text(L, "name", wh_status_name(number));
-        wh_lua_set_text(L, "code", code[0] != '\0' ? code : wh_dialect_code(dialect, number));
-        wh_lua_set_text(L, "text", wh_record_error_text(number));
-    }
-}
-
 static void push_failure(lua_State *L, const wh_dialect_t *dialect, const wh_failure_t *failure) {
     lua_newtable(L);
-    set_error(L, dialect, failure->number, failure->code);
+    wh_dialect_set_error(L, dialect, failure->number, failure->code);
     wh_lua_set_text(L, "detail", failure->detail);
-}
-
-/* Sets `state`, theirs, of the table on top of the stack. */
-static void set_state(lua_State *L, const wh_result_t *result) {
-    char phase[WH_DIALECT_NAME_BYTES];
-    wh_value_copy(result->status, "phase", phase, sizeof phase);
-    push_of(L, "states", NULL);
-    if (lua_istable(L, -1)) {
-        lua_getfield(L, -1, result->is_held ? "held" : phase);
-        lua_setfield(L, -3, "state");
-    }
-    lua_pop(L, 1);
-}
-
-/* The port's robot; the first robot if the port has none or stands for the whole cell. */
-static size_t find_robot(const wh_result_t *result) {
-    const wh_port_mechanism_t *mechanism = result->mechanism;
-    const bool is_named = mechanism->kind == WH_MECHANISM_ROBOT && mechanism->name;
-    return result->layout->robot_count > 1 && is_named ? (size_t)mechanism->index : 0;
-}
-
-/* The name of an axis in STATUS: with several robots its robot's name comes first. */
-static void name_axis(const wh_result_t *result, const char *axis, char name[WH_DIALECT_LINE_BYTES]) {
-    const wh_layout_t *layout = result->layout;
-    char robot[WH_DIALECT_NAME_BYTES * (size_t)3] = "";
-    const bool has_several = layout->robot_count > 1;
-    if (has_several) {
-        (void)wh_value_spell(layout->robots[find_robot(result)].name, robot, sizeof robot);
-    }
-    (void)snprintf(name, WH_DIALECT_LINE_BYTES, "%s%s%s", robot, has_several ? "." : "", axis);
-}
-
-/* The sign of an axis in their direction. */
-static double sign_of(const wh_dialect_t *dialect, const char *axis) {
-    static const char *const signed_axes[] = {"theta", "r", "z", "yaw"};
-    for (size_t i = 0; i < sizeof signed_axes / sizeof signed_axes[0]; ++i) {
-        if (strcmp(axis, signed_axes[i]) == 0) {
-            return dialect->units.signs[i];
-        }
-    }
-    return 1;
-}
-
-static void set_axis(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result, size_t axis) {
-    const wh_machine_t *machine = &result->layout->machine;
-    const char *own = wh_axis_name(machine, axis);
-    const double unit = wh_axis_turns(machine, axis) ? dialect->units.angle : dialect->units.length;
-    char name[WH_DIALECT_LINE_BYTES];
-    name_axis(result, own, name);
-    const double at = strtod(wh_value_begin(result->status, name), NULL);
-    wh_lua_set_number(L, own, sign_of(dialect, own) * at / unit + 0.0); /* no -0 */
-}
-
-/* Sets only the axes that the robot has. */
-static void set_position(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result) {
-    const wh_machine_t *machine = result->layout ? &result->layout->machine : NULL;
-    lua_createtable(L, 0, WH_CHAIN_AXES);
-    for (size_t axis = 0; machine && axis < wh_machine_robot_axes(machine); ++axis) {
-        size_t own;
-        if (wh_machine_robot_of(machine, axis, &own) == (int32_t)find_robot(result) &&
-            wh_axis_exists(machine, axis)) {
-            set_axis(L, dialect, result, axis);
-        }
-    }
-    lua_setfield(L, -2, "position");
-}
-
-/* Sets fields by our name of a gripper, as it is typed. */
-static void set_sensors(lua_State *L, const wh_result_t *result) {
-    const wh_layout_t *layout = result->layout;
-    char spelt[WH_DIALECT_LINE_BYTES];
-    lua_newtable(L);
-    for (size_t g = 0; layout && g < layout->machine.gripper_count; ++g) {
-        const bool is_its_own = (result->mechanism->grippers >> g & 1U) != 0;
-        if (is_its_own && wh_value_spell(layout->grippers[g].name, spelt, sizeof spelt)) {
-            wh_lua_set_boolean(L, spelt, (result->sensors >> g & 1U) != 0);
-        }
-    }
-    lua_setfield(L, -2, "sensors");
-}
-
-static void push_result(lua_State *L, const call_t *it) {
-    const wh_result_t *result = it->told->result;
-    lua_newtable(L);
-    set_error(L, it->dialect, result->number, "");
-    wh_lua_set_text(L, "answer", result->answer);
-    wh_lua_set_number(L, "seconds", result->seconds);
-    wh_lua_set_boolean(L, "is_held", result->is_held);
-    wh_push_values(L, result->answer);
-    lua_setfield(L, -2, "values");
-    wh_push_values(L, result->status);
-    lua_setfield(L, -2, "status");
-    set_state(L, result);
-    set_position(L, it->dialect, result);
-    set_sensors(L, result);
 }
 
 /* A command's own `answer` makes result.reply of the result on top of the stack. */
 static void set_reply(lua_State *L, const call_t *it) {
     const wh_dialect_command_t *command = it->told->request->command;
-    push_of(L, "commands", command->name);
+    wh_dialect_push(L, "commands", command->name);
     if (lua_getfield(L, -1, "answer") == LUA_TFUNCTION) {
         push_request(L, it->told->request);
         lua_pushvalue(L, -4);
@@ -393,6 +304,14 @@ static void push_event(lua_State *L, const wh_host_event_t *event) {
     wh_lua_set_number(L, "seconds", event->seconds);
     wh_lua_set_text(L, "wafer", event->wafer);
     wh_lua_set_text(L, "gripper", event->gripper);
+    wh_lua_set_text(L, "port", event->client.port);
+    wh_lua_set_integer(L, "client", (lua_Integer)event->client.number);
+    if (event->value >= 0) {
+        wh_lua_set_integer(L, "value", event->value);
+    }
+    if (event->at) {
+        wh_lua_set_text(L, "at", event->at);
+    }
 }
 
 /* Pushes the arguments of the encoder. Returns how many there are. */
@@ -404,7 +323,7 @@ static int push_told(lua_State *L, const call_t *it) {
         ++count;
     }
     if (told->result) {
-        push_result(L, it);
+        wh_dialect_push_result(L, it->dialect, told->result);
         if (told->request && told->result->number == WH_OK) {
             set_reply(L, it);
         }
@@ -444,14 +363,13 @@ static size_t take_start(lua_State *L, const call_t *it) {
 }
 
 /* Replaces the list at index 2 by its texts with a byte 0 between them. */
-static void join_frames(lua_State *L, const call_t *it) {
+static void join_frames(lua_State *L, const call_t *it, const char *function) {
     luaL_Buffer buffer;
     luaL_buffinit(L, &buffer);
     const lua_Integer count = (lua_Integer)lua_rawlen(L, 2);
     for (lua_Integer i = 1; i <= count; ++i) {
         if (lua_rawgeti(L, 2, i) != LUA_TSTRING) {
-            luaL_error(L, "%s: encode.%s: entry %d is no text", it->dialect->path,
-                       wh_encoder_names[it->encoder], (int)i);
+            luaL_error(L, "%s: %s: entry %d is no text", it->dialect->path, function, (int)i);
         }
         luaL_addvalue(&buffer);
         luaL_addlstring(&buffer, "", i < count ? 1 : 0);
@@ -460,38 +378,86 @@ static void join_frames(lua_State *L, const call_t *it) {
     lua_replace(L, 2);
 }
 
+/* Makes the dialect's text of the value at index 2; nil: none. `function` names it in messages. */
+static void take_text(lua_State *L, const call_t *it, const char *function) {
+    wh_dialect_t *dialect = it->dialect;
+    size_t size = 0;
+    if (lua_istable(L, 2)) {
+        join_frames(L, it, function);
+    }
+    const char *text = lua_type(L, 2) == LUA_TSTRING ? lua_tolstring(L, 2, &size) : NULL;
+    if (!text || size > WH_FRAMING_LINE) {
+        luaL_error(L,
+                   "%s: %s returned no frame (expected a text of at most %d bytes, a list of texts, or nil)",
+                   dialect->path, function, WH_FRAMING_LINE);
+        return;
+    }
+    dialect->text = wh_array_new(size + 1, 1);
+    memcpy(dialect->text, text, size);
+    dialect->text_size = size;
+}
+
 /* Runs protected. */
 static int encode_body(lua_State *L) {
     call_t *it = lua_touserdata(L, 1);
     wh_dialect_t *dialect = it->dialect;
-    size_t size = 0;
-    push_of(L, "encode", wh_encoder_names[it->encoder]);
+    char function[40];
+    wh_dialect_push(L, "encode", wh_encoder_names[it->encoder]);
     lua_call(L, push_told(L, it), 2);
     if (lua_isnil(L, -2)) {
         return 0;
     }
     dialect->text_start = take_start(L, it);
     lua_settop(L, 3);
-    if (lua_istable(L, 2)) {
-        join_frames(L, it);
-    }
-    const char *text = lua_type(L, 2) == LUA_TSTRING ? lua_tolstring(L, 2, &size) : NULL;
-    if (!text || size > WH_FRAMING_LINE) {
-        return luaL_error(L,
-                          "%s: encode.%s returned no frame (expected a text of at most %d bytes, a list of "
-                          "texts, or nil)",
-                          dialect->path, wh_encoder_names[it->encoder], WH_FRAMING_LINE);
-    }
-    dialect->text = wh_array_new(size + 1, 1);
-    memcpy(dialect->text, text, size);
-    dialect->text_size = size;
+    (void)snprintf(function, sizeof function, "encode.%s", wh_encoder_names[it->encoder]);
+    take_text(L, it, function);
     return 0;
+}
+
+static void drop_text(wh_dialect_t *dialect) {
+    free(dialect->text);
+    dialect->text = NULL;
+    dialect->text_size = 0;
+    dialect->text_start = 0;
 }
 
 bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_told_t *told) {
     call_t it = {.dialect = dialect, .encoder = encoder, .told = told};
-    free(dialect->text);
-    dialect->text = NULL;
-    dialect->text_size = 0;
+    drop_text(dialect);
     return !dialect->encodes[encoder] || call_dialect(dialect, encode_body, &it);
+}
+
+/* ------------------------------------------------------------------------------------------------ clients */
+
+/* Runs protected. */
+static int call_connected(lua_State *L) {
+    const call_t *it = lua_touserdata(L, 1);
+    wh_dialect_push(L, "connected", NULL);
+    push_client(L, it->client);
+    lua_call(L, 1, 1);
+    if (!lua_isnil(L, 2)) {
+        take_text(L, it, "connected");
+    }
+    return 0;
+}
+
+/* Runs protected. */
+static int call_gone(lua_State *L) {
+    const call_t *it = lua_touserdata(L, 1);
+    wh_dialect_push(L, "gone", NULL);
+    push_client(L, it->client);
+    lua_call(L, 1, 0);
+    return 0;
+}
+
+bool wh_dialect_welcome(wh_dialect_t *dialect, const wh_client_t *client) {
+    call_t it = {.dialect = dialect, .client = client};
+    drop_text(dialect);
+    return !dialect->clients.greets || call_dialect(dialect, call_connected, &it);
+}
+
+bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client) {
+    call_t it = {.dialect = dialect, .client = client};
+    drop_text(dialect);
+    return !dialect->clients.heeds_going || call_dialect(dialect, call_gone, &it);
 }

@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "../math/trig.h"
 #include "../record/record.h"
 #include "../script/wh_module_values.h"
 #include "dialect.h"
@@ -246,6 +247,93 @@ static int their_name(lua_State *L) {
     return 1;
 }
 
+/* ------------------------------------------------------------------------------------ the layout's places */
+
+static const wh_layout_t *find_layout(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &wh_dialect_layout_key);
+    const wh_layout_t *layout = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return layout;
+}
+
+/* The station with this name as it is typed; the count: there is none. */
+static size_t find_spelt_station(const wh_layout_t *layout, const char *name) {
+    char spelt[WH_DIALECT_LINE_BYTES];
+    size_t s = 0;
+    while (s < layout->station_count &&
+           (!wh_value_spell(layout->stations[s].name, spelt, sizeof spelt) || strcmp(spelt, name) != 0)) {
+        ++s;
+    }
+    return s;
+}
+
+/* host.pose(station, slot): x, y, z (mm) and yaw (degrees) of a slot, by our name as host.station gives it.
+ * Refuses what is not there. Without a cell, as in `waferhand dialect`, all are 0. */
+static int slot_pose(lua_State *L) {
+    const wh_layout_t *layout = find_layout(L);
+    const char *name = luaL_checkstring(L, 1);
+    const lua_Integer slot = luaL_optinteger(L, 2, 1);
+    wh_pose_t pose = {.R = wh_mat3_identity()};
+    if (layout) {
+        const size_t s = find_spelt_station(layout, name);
+        if (s == layout->station_count) {
+            return refuse_by(L, WH_STATUS_NO_SUCH_STATION, name);
+        }
+        if (slot < 1 || slot > layout->places[s].slots) {
+            return refuse_by(L, WH_STATUS_NO_SUCH_SLOT, luaL_tolstring(L, 2, NULL));
+        }
+        pose = wh_station_slot(&layout->places[s], (int32_t)slot);
+    }
+    lua_createtable(L, 0, 4);
+    wh_lua_set_number(L, "x", pose.r.x);
+    wh_lua_set_number(L, "y", pose.r.y);
+    wh_lua_set_number(L, "z", pose.r.z);
+    wh_lua_set_number(L, "yaw", wh_atan2(pose.R.m[1][0], pose.R.m[0][0]) * 180 / WH_PI);
+    return 1;
+}
+
+/* host.nearest(x, y, z): the slot nearest to a point, mm: { station = , slot = , distance = }; the first one
+ * of several. Without a cell nil. */
+static int find_nearest(lua_State *L) {
+    const wh_layout_t *layout = find_layout(L);
+    const wh_vec3_t point = {luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3)};
+    char spelt[WH_DIALECT_LINE_BYTES] = "";
+    double least = INFINITY;
+    int32_t station = WH_NONE;
+    int32_t nearest = 0;
+    for (size_t s = 0; layout && s < layout->station_count; ++s) {
+        for (int32_t slot = 1; slot <= layout->places[s].slots; ++slot) {
+            const wh_pose_t pose = wh_station_slot(&layout->places[s], slot);
+            const wh_vec3_t way = wh_vec3_subtract(&pose.r, &point);
+            const double square = wh_vec3_dot(&way, &way);
+            if (square < least) {
+                least = square;
+                station = (int32_t)s;
+                nearest = slot;
+            }
+        }
+    }
+    if (station == WH_NONE || !wh_value_spell(layout->stations[station].name, spelt, sizeof spelt)) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_createtable(L, 0, 3);
+    wh_lua_set_text(L, "station", spelt);
+    wh_lua_set_integer(L, "slot", nearest);
+    wh_lua_set_number(L, "distance", sqrt(least));
+    return 1;
+}
+
+void wh_dialect_show(wh_dialect_t *dialect, const wh_layout_t *layout) {
+    lua_State *L = wh_sandbox_state(dialect->sandbox);
+    union {
+        const wh_layout_t *shown;
+        void *kept;
+    } held = {layout};
+    lua_pushlightuserdata(L, held.kept);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &wh_dialect_layout_key);
+}
+
 /* ------------------------------------------------------------------------------------- the layout's names */
 
 /* The layout's name of this number; null: no more. */
@@ -329,6 +417,8 @@ int wh_dialect_open_host(lua_State *L) {
                                          {"degrees", our_degrees},
                                          {"length", their_length},
                                          {"angle", their_angle},
+                                         {"nearest", find_nearest},
+                                         {"pose", slot_pose},
                                          {"name", their_name},
                                          {"code", their_code},
                                          {"alarm", find_alarm},

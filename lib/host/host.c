@@ -13,7 +13,9 @@
 #include "journal.h"
 #include "line.h"
 #include "playing.h"
+#include "queue.h"
 #include "reading.h"
+#include "requests.h"
 #include "telling.h"
 
 /* The most times that the ports are checked between two slices. */
@@ -38,7 +40,7 @@ static unsigned serve_controller(wh_host_t *host, wh_controller_t *controller) {
 /* Each time another port comes first, because the first one may use up the time for Lua. A transcript tells
  * all that it has for this slice. False: nothing more can come before the next slice. */
 static bool serve_ports(wh_host_t *host) {
-    bool goes_on = !host->played; /* a client may always come */
+    bool goes_on = wh_host_go_on(host) || !host->played; /* a client may always come */
     unsigned told = 0;
     do {
         told = 0;
@@ -54,7 +56,7 @@ static bool serve_ports(wh_host_t *host) {
 
 /* Waits for a client, at most until `until_us`, and serves all ports. False: nothing more can come. */
 static bool wait_and_serve(wh_host_t *host, int64_t until_us) {
-    struct pollfd polls[WH_HOST_PORTS * WH_PORT_POLLS];
+    struct pollfd polls[WH_HOST_CONTROLLERS * WH_PORT_POLLS];
     size_t count = 0;
     const int64_t longest = wh_host_now(host) + LONGEST_WAIT_US;
     int64_t due = until_us < longest ? until_us : longest;
@@ -100,6 +102,7 @@ static bool wait_held(wh_host_t *host) {
         host->clock.lua_us = 0;
     }
     host->clock.base_wall_us += wh_host_now(host) - begin;
+    host->clock.held_us += wh_host_now(host) - begin;
     return goes_on || !host->is_held;
 }
 
@@ -113,6 +116,24 @@ static void tell_events(wh_host_t *host, const wh_state_t *state) {
             wh_controller_event(host->controllers[i], &state->events[e], (double)state->utime / 1e6);
         }
     }
+}
+
+/* Tells which sensors and valves have changed since the slice before. */
+static void tell_changes(wh_host_t *host, const wh_command_t *command, const wh_state_t *state) {
+    uint32_t valves = 0;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        valves |= command->grippers[g].valve == WH_VALVE_OPEN ? 1U << g : 0;
+    }
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        if (((valves ^ host->valves) >> g & 1U) != 0) {
+            wh_host_tell_change(host, WH_HOST_VALVE, g, (int)(valves >> g & 1U));
+        }
+        if (((state->sensors ^ host->sensors) >> g & 1U) != 0) {
+            wh_host_tell_change(host, WH_HOST_SENSOR, g, (int)(state->sensors >> g & 1U));
+        }
+    }
+    host->valves = valves;
+    host->sensors = state->sensors;
 }
 
 /* Serves the ports until the slice's time is over. */
@@ -143,11 +164,16 @@ static void on_slice(void *user, const wh_command_t *command, const wh_state_t *
     host->clock.lua_us = 0;
     wh_host_heed_clock(host);
     tell_events(host, state);
+    tell_changes(host, command, state);
+    wh_host_tell_begun(host);
     serve_slice(host);
 }
 
 static void on_boundary(void *user, const wh_layout_t *layout) {
     const wh_host_t *host = user;
+    for (size_t i = 0; i < host->count; ++i) {
+        wh_dialect_show(host->controllers[i]->dialect, layout);
+    }
     if (host->next.boundary) {
         host->next.boundary(host->next.user, layout);
     }
@@ -159,13 +185,24 @@ wh_mcs_listener_t wh_host_listener(wh_host_t *host) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
+/* Plays it, and adds up the time that it takes. A RESET, which sets the clock back, counts as none. */
+static void play_action(wh_controller_t *action) {
+    wh_host_t *host = action->host;
+    const int64_t wall = wh_host_now(host);
+    const int64_t run = wh_session_time_us(host->session);
+    wh_controller_play(action);
+    const int64_t passed = wh_session_time_us(host->session) - run;
+    host->clock.wall_us += passed > 0 ? wh_host_now(host) - wall : 0;
+    host->clock.run_us += passed > 0 ? passed : 0;
+}
+
 static void run_loop(wh_host_t *host) {
     bool goes_on = true;
     while (goes_on && !*host->stop && !wh_host_differs(host)) {
         wh_controller_t *action = wh_host_next_action(host);
         host->clock.lua_us = 0;
         if (action) {
-            wh_controller_play(action);
+            play_action(action);
         }
         goes_on = wait_and_serve(host, action ? 0 : wh_host_now(host) + LONGEST_WAIT_US) || action;
     }
@@ -185,12 +222,13 @@ bool wh_host_converse(wh_host_t *host) {
 static bool is_alone(const wh_host_t *host, wh_controller_t *controller) {
     for (size_t i = 0; i + 1 < host->count; ++i) {
         const wh_controller_t *other = host->controllers[i];
-        if (wh_mechanisms_clash(&other->mechanism, &controller->mechanism)) {
+        if (other->leader != controller->leader && !other->leader->is_tester &&
+            wh_mechanisms_clash(&other->mechanism, &controller->mechanism)) {
             const char *name = controller->mechanism.name;
             char text[WH_SANDBOX_MESSAGE_BYTES];
             (void)snprintf(text, sizeof text, "mechanism: %.63s (expected one that no other port stands for)",
                            name ? name : wh_mechanism_names[controller->mechanism.kind]);
-            wh_dialect_note(&controller->dialect, text);
+            wh_dialect_note(controller->dialect, text);
             return false;
         }
     }
@@ -199,7 +237,7 @@ static bool is_alone(const wh_host_t *host, wh_controller_t *controller) {
 
 /* False if the layout has none of that name. */
 static bool find_mechanism(wh_controller_t *controller, const char *name) {
-    wh_dialect_t *dialect = &controller->dialect;
+    wh_dialect_t *dialect = controller->dialect;
     const wh_layout_t *layout = wh_session_layout(controller->host->session);
     char problem[WH_MECHANISM_PROBLEM];
     controller->mechanism = wh_mechanism_all(dialect->mechanism, layout);
@@ -221,11 +259,16 @@ static bool is_name_taken(const wh_controller_t *controller) {
     return is_taken;
 }
 
-/* Gives the port a name that needs no quotes in a transcript, and that no other port has. */
-static void give_name(wh_controller_t *controller) {
+/* Gives the port a name that needs no quotes in a transcript, and that no other port has: its mechanism's,
+ * with its own name in `ports` and, for a further client of a shared port, a number. */
+static void give_name(wh_controller_t *controller, size_t client) {
     const wh_port_mechanism_t *mechanism = &controller->mechanism;
-    const char *kind = wh_mechanism_names[mechanism->kind];
-    (void)snprintf(controller->name, sizeof controller->name, "%s", mechanism->name ? mechanism->name : kind);
+    const bool is_tester = controller->leader->is_tester;
+    const char *kind = is_tester ? "control" : wh_mechanism_names[mechanism->kind];
+    char text[4 * WH_DIALECT_NAME_BYTES];
+    (void)snprintf(text, sizeof text, "%.40s%s%.15s", mechanism->name ? mechanism->name : kind,
+                   controller->role[0] != '\0' ? "." : "", controller->role);
+    (void)snprintf(controller->name, sizeof controller->name, client > 1 ? "%s.%zu" : "%s", text, client);
     for (char *c = controller->name; *c; ++c) {
         *c = isalnum((unsigned char)*c) || strchr("_-.", *c) ? *c : '_';
     }
@@ -234,48 +277,123 @@ static void give_name(wh_controller_t *controller) {
     }
 }
 
-/* Opens the port that was asked for; where a transcript is played, its host's side is the port. */
-static bool open_port(wh_controller_t *controller, const wh_host_port_t *asked) {
+/* Opens the port that was asked for; where a transcript is played, its host's side is the port. `beside`: the
+ * port of the first client where several share a place; null: this is it. */
+static bool open_port(wh_controller_t *controller, const wh_host_port_t *asked, const wh_port_t *beside) {
     char problem[WH_PORT_PROBLEM_BYTES];
     wh_port_line_t *line = &controller->line;
     wh_transcript_t *played = controller->host->played;
-    const wh_port_second_t second = controller->dialect.takes_over ? WH_PORT_TAKEOVER : WH_PORT_REFUSE;
     if (played) {
         wh_port_open_transcript(&line->port, played, controller->name);
         line->is_open = true;
+    } else if (beside) {
+        line->is_open = wh_port_open_beside(&line->port, beside, problem);
     } else {
         line->is_open = asked->is_pty ? wh_port_open_pty(&line->port, asked->address, problem)
-                                      : wh_port_open_tcp(&line->port, asked->address, second, problem);
+                                      : wh_port_open_tcp(&line->port, asked->address,
+                                                         controller->dialect->clients.second, problem);
     }
     if (!line->is_open) {
-        (void)snprintf(controller->dialect.message, sizeof controller->dialect.message, "%.1000s", problem);
+        (void)snprintf(controller->dialect->message, sizeof controller->dialect->message, "%.1000s", problem);
     }
+    line->port.allow = controller->host->allow;
     return line->is_open;
 }
 
-bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
+/* A controller without a port yet; `leader` null: it leads, and its dialect is still to be opened. */
+static wh_controller_t *append_controller(wh_host_t *host, wh_controller_t *leader) {
+    wh_controller_t *controller = wh_array_new(1, sizeof *controller);
+    controller->number = (uint32_t)host->count;
+    host->controllers[host->count++] = controller;
+    controller->host = host;
+    controller->leader = leader ? leader : controller;
+    controller->dialect = leader ? leader->dialect : wh_array_new(1, sizeof *controller->dialect);
+    controller->mechanism = controller->leader->mechanism;
+    controller->role = "";
+    controller->owed.due_us = INT64_MAX;
+    controller->action.request = (wh_request_t){.reference = LUA_NOREF};
+    return controller;
+}
+
+static void begin_line(wh_controller_t *controller, const char *role, size_t client) {
+    controller->role = role;
+    give_name(controller, client);
+    controller->line.in_pace.baud = controller->line.out_pace.baud = controller->dialect->timing.baud;
+    (void)wh_framer_init(&controller->line.framer, &controller->dialect->framing);
+    (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect->framing);
+}
+
+/* Opens this controller's port and, where clients share one, a controller for each further client. */
+static bool open_ports(wh_controller_t *controller, const wh_host_port_t *port, const char *role) {
+    wh_host_t *host = controller->host;
+    const bool is_shared = controller->dialect->clients.second == WH_PORT_SHARE && !port->is_pty;
+    begin_line(controller, role, 1);
+    bool good = open_port(controller, port, NULL);
+    for (size_t client = 2; good && is_shared && client <= WH_DIALECT_SHARERS; ++client) {
+        wh_controller_t *other = append_controller(host, controller->leader);
+        begin_line(other, role, client);
+        good = open_port(other, port, &controller->line.port);
+    }
+    return good;
+}
+
+/* How many of the last dialect's ports are open. */
+static size_t count_ports(const wh_host_t *host, const wh_controller_t *leader) {
+    size_t count = 0;
+    const char *last = NULL;
+    for (size_t i = leader->number; i < host->count; ++i) {
+        count += host->controllers[i]->role != last ? 1 : 0;
+        last = host->controllers[i]->role;
+    }
+    return count;
+}
+
+bool wh_host_needs_port(const wh_host_t *host) {
+    const wh_controller_t *leader = host->count > 0 ? host->controllers[host->count - 1]->leader : NULL;
+    return leader && count_ports(host, leader) < leader->dialect->clients.port_count;
+}
+
+bool wh_host_add_port(wh_host_t *host, const wh_host_port_t *port) {
+    wh_controller_t *leader = host->controllers[host->count - 1]->leader;
+    const char *role = leader->dialect->clients.ports[count_ports(host, leader)];
+    return open_ports(append_controller(host, leader), port, role);
+}
+
+static void begin_host(wh_host_t *host) {
     if (!host->shown) {
         host->shown = wh_array_new(WH_HOST_NUMBERS, sizeof *host->shown);
         host->texts = wh_array_new(1, sizeof *host->texts);
         host->clock.rest_us = host->played ? 0 : SERVE_EACH_US;
     }
-    wh_controller_t *controller = wh_array_new(1, sizeof *controller);
-    controller->number = (uint32_t)host->count;
-    host->controllers[host->count++] = controller;
-    controller->host = host;
-    controller->owed.due_us = INT64_MAX;
-    controller->action.request = (wh_request_t){.reference = LUA_NOREF};
+}
+
+bool wh_host_add(wh_host_t *host, const wh_host_port_t *port) {
+    begin_host(host);
+    wh_controller_t *controller = append_controller(host, NULL);
+    ++host->leaders;
     const wh_layout_t *layout = wh_session_layout(host->session);
-    if (!wh_dialect_open(&controller->dialect, port->dialect) ||
+    if (!wh_dialect_open(controller->dialect, port->dialect) ||
         !find_mechanism(controller, port->mechanism) || !is_alone(host, controller) ||
-        (layout && !wh_dialect_fits(&controller->dialect, layout))) {
+        (layout && !wh_dialect_fits(controller->dialect, layout))) {
         return false;
     }
-    give_name(controller);
-    controller->line.in_pace.baud = controller->line.out_pace.baud = controller->dialect.timing.baud;
-    (void)wh_framer_init(&controller->line.framer, &controller->dialect.framing);
-    (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect.framing);
-    return open_port(controller, port);
+    wh_dialect_show(controller->dialect, layout);
+    return open_ports(controller, port, controller->dialect->clients.ports[0]);
+}
+
+bool wh_host_add_control(wh_host_t *host, const char *address) {
+    const wh_host_port_t port = {.dialect = WH_DIALECT_CONTROL, .address = address};
+    const wh_layout_t *layout = wh_session_layout(host->session);
+    begin_host(host);
+    wh_controller_t *controller = append_controller(host, NULL);
+    ++host->leaders;
+    controller->is_tester = true;
+    controller->mechanism = wh_mechanism_all(WH_MECHANISM_CELL, layout);
+    if (!wh_dialect_open(controller->dialect, port.dialect)) {
+        return false;
+    }
+    wh_dialect_show(controller->dialect, layout);
+    return open_ports(controller, &port, controller->dialect->clients.ports[0]);
 }
 
 static void close_controller(wh_controller_t *controller) {
@@ -284,19 +402,26 @@ static void close_controller(wh_controller_t *controller) {
     }
     wh_sent_drop(&controller->line.out);
     wh_sent_drop(&controller->line.in);
+    wh_queue_drop_client(controller);
     free(controller->repeat.reply.text);
     free(controller->action.ended_text);
-    wh_dialect_close(&controller->dialect);
-    free(controller);
 }
 
 void wh_host_close(wh_host_t *host) {
     for (size_t i = 0; i < host->count; ++i) {
         close_controller(host->controllers[i]);
     }
+    for (size_t i = host->count; i > 0; --i) {
+        wh_controller_t *controller = host->controllers[i - 1];
+        if (controller->leader == controller) {
+            wh_dialect_close(controller->dialect);
+            free(controller->dialect);
+        }
+        free(controller);
+    }
     free(host->shown);
     free(host->texts);
     host->shown = NULL;
     host->texts = NULL;
-    host->count = 0;
+    host->count = host->leaders = 0;
 }

@@ -35,6 +35,15 @@ typedef struct {
  * controller's: host->controllers[host->count - 1]. */
 bool wh_host_add(wh_host_t *host, const wh_host_port_t *port);
 
+/* True if the last dialect has more ports than were opened: its `ports`. Then another one is added, of which
+ * only the address counts. False, with the reason, as above. */
+bool wh_host_needs_port(const wh_host_t *host);
+bool wh_host_add_port(wh_host_t *host, const wh_host_port_t *port);
+
+/* Adds the port of a tester beside the hosts: JSON lines, see lua/dialects/serving.md. False, with the
+ * reason, as above. */
+bool wh_host_add_control(wh_host_t *host, const char *address);
+
 /* To be the session's listener. */
 wh_mcs_listener_t wh_host_listener(wh_host_t *host);
 

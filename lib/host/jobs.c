@@ -7,6 +7,7 @@
 #include "../text/array.h"
 #include "../text/utf8.h"
 #include "actions.h"
+#include "queue.h"
 #include "status.h"
 
 static double seconds_of(const wh_controller_t *controller) {
@@ -38,11 +39,12 @@ static bool take_job(void *user, wh_mcs_job_t *job) {
         wh_controller_end_unbegun(controller, WH_STATUS_STOPPED, "it waited and was not begun");
         controller = wh_host_next_action(host);
     }
-    if (!controller || (is_any_running(host) && wh_session_is_full(host->session))) {
+    if (!controller || wh_controller_needs_all(controller) ||
+        (is_any_running(host) && wh_session_is_full(host->session))) {
         return false;
     }
     wh_session_renew(host->session);
-    controller->action.is_running = true;
+    controller->action.is_running = controller->action.has_begun = true;
     controller->action.line_number = 0;
     controller->action.line_command = wh_session_record(host->session)->command_count;
     controller->action.ended = WH_OK;
@@ -51,7 +53,7 @@ static bool take_job(void *user, wh_mcs_job_t *job) {
     const wh_port_mechanism_t *mechanism = &controller->mechanism;
     *job = (wh_mcs_job_t){.number = wh_controller_job(controller),
                           .line = controller->action.lines.lines[0],
-                          .may_wait = controller->dialect.timing.busy_s > 0,
+                          .may_wait = controller->dialect->timing.busy_s > 0,
                           .robot = WH_NONE};
     if (mechanism->kind == WH_MECHANISM_ROBOT) {
         job->robot = mechanism->index;
@@ -89,9 +91,9 @@ static void end_action(wh_controller_t *controller, bool failed) {
     const size_t at = controller->action.line_number < last ? controller->action.line_number : last;
     controller->action.is_running = false;
     if (failed) {
-        controller->action.failed = controller->action.ended;
-        (void)snprintf(controller->action.failed_line, sizeof controller->action.failed_line, "%s",
-                       controller->action.lines.lines[at]);
+        wh_action_t *told = &controller->leader->action;
+        told->failed = controller->action.ended;
+        (void)snprintf(told->failed_line, sizeof told->failed_line, "%s", controller->action.lines.lines[at]);
     }
     if (host->holder == controller) {
         host->is_held = false;
@@ -101,10 +103,19 @@ static void end_action(wh_controller_t *controller, bool failed) {
                       seconds_of(controller));
 }
 
+/* The controller whose action this job is. */
+static wh_controller_t *find_of_job(const wh_host_t *host, int32_t job) {
+    size_t i = 0;
+    while (!host->controllers[i]->action.is_running || wh_controller_job(host->controllers[i]) != job) {
+        ++i;
+    }
+    return host->controllers[i];
+}
+
 /* After a CLEAR it waits for a slice, with which the fault ends; nobody hears the answer of that wait. */
 static const char *end_job_line(void *user, int32_t job, wh_status_t status, const char *answer) {
     wh_host_t *host = user;
-    wh_controller_t *controller = host->controllers[job - 1];
+    wh_controller_t *controller = find_of_job(host, job);
     const size_t last = controller->action.lines.count - 1;
     if (controller->action.line_number <= last) {
         keep_answer(controller, status, answer);

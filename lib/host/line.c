@@ -5,6 +5,7 @@
 
 #include "../text/array.h"
 #include "journal.h"
+#include "queue.h"
 
 static void note_line(const wh_controller_t *controller, wh_transcript_kind_t kind, const uint8_t *bytes,
                       size_t size) {
@@ -50,7 +51,7 @@ static bool enqueue_copy(wh_controller_t *controller, bool is_to_host, const uin
 
 void wh_controller_enqueue(wh_controller_t *controller, bool is_to_host, const uint8_t *bytes, size_t size,
                            int64_t due_us, bool is_acknowledgement) {
-    const wh_chaos_t *chaos = &controller->dialect.chaos;
+    const wh_chaos_t *chaos = &controller->dialect->chaos;
     uint64_t *number = is_to_host ? &controller->line.frames_out : &controller->line.frames_in;
     const wh_chaos_place_t place = {controller->number, is_to_host, (*number)++};
     const wh_chaos_fate_t fate = wh_chaos_fate(chaos, place, is_acknowledgement);
@@ -73,8 +74,8 @@ void wh_sent_drop(wh_sent_t *sent) {
 /* ------------------------------------------------------------------------------------------------ clients */
 
 void wh_controller_forget_client(wh_controller_t *controller) {
-    (void)wh_framer_init(&controller->line.framer, &controller->dialect.framing);
-    (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect.framing);
+    (void)wh_framer_init(&controller->line.framer, &controller->dialect->framing);
+    (void)wh_framer_init(&controller->line.before_chaos, &controller->dialect->framing);
     wh_sent_drop(&controller->line.in);
     wh_sent_drop(&controller->line.out);
     wh_ring_drop(&controller->line.waiting, controller->line.waiting.count);
@@ -82,12 +83,15 @@ void wh_controller_forget_client(wh_controller_t *controller) {
     controller->repeat.reply.text = NULL;
     controller->owed.due_us = INT64_MAX;
     controller->line.has_gone = false;
+    controller->line.closes = false;
     controller->action.is_left = controller->action.is_there;
+    wh_queue_drop_client(controller);
 }
 
 void wh_controller_note_going(wh_controller_t *controller) {
     if (controller->line.has_gone) {
         controller->line.has_gone = false;
+        controller->line.is_parting = true;
         note_line(controller, WH_TRANSCRIPT_WENT, NULL, 0);
     }
 }
@@ -110,7 +114,7 @@ static void send_bytes(wh_controller_t *controller, const uint8_t *bytes, size_t
     if (!controller->line.is_open) {
         return;
     }
-    if (controller->dialect.timing.baud == 0) {
+    if (controller->dialect->timing.baud == 0) {
         wh_controller_note_port(controller, wh_port_send(&controller->line.port, bytes, size));
     } else if (!wh_ring_put(&controller->line.waiting, bytes, size)) {
         controller->line.port.counters.lost += size;
@@ -135,7 +139,7 @@ void wh_controller_send_due(wh_controller_t *controller, int64_t now_us) {
         send_bytes(controller, sent->bytes, sent->size);
         free(sent);
     }
-    if (controller->dialect.timing.baud > 0 && controller->line.is_open) {
+    if (controller->dialect->timing.baud > 0 && controller->line.is_open) {
         send_paced(controller, now_us);
     }
 }

@@ -20,10 +20,17 @@ static void end_faults(const wh_controller_t *controller) {
     }
 }
 
+/* Another run of the cell has begun, or an earlier state has come back. */
+static void forget_failures(wh_host_t *host) {
+    for (size_t i = 0; i < host->count; ++i) {
+        host->controllers[i]->action.failed = WH_OK;
+    }
+}
+
 void wh_controller_play(wh_controller_t *controller) {
     wh_host_t *host = controller->host;
     char *text = host->texts->played;
-    if (wh_host_plays_jobs(host)) {
+    if (wh_host_plays_jobs(host) && !wh_controller_needs_all(controller)) {
         wh_host_play_jobs(host);
         return;
     }
@@ -35,7 +42,7 @@ void wh_controller_play(wh_controller_t *controller) {
         return;
     }
     wh_host_begin_clock(host, controller);
-    controller->action.is_running = true;
+    controller->action.is_running = controller->action.has_begun = true;
     for (size_t i = 0; i < controller->action.lines.count && status == WH_OK; ++i) {
         const int64_t begin = wh_session_slice(session);
         status = wh_session_execute(host->session, controller->action.lines.lines[i], text,
@@ -47,6 +54,9 @@ void wh_controller_play(wh_controller_t *controller) {
         end_faults(controller);
     }
     wh_host_heed_stop(host, status);
+    if (status == WH_OK && wh_host_plays_jobs(host)) {
+        forget_failures(host);
+    }
     host->running = NULL;
     host->is_held = false;
     wh_controller_end(controller, status, text, (double)(slices * wh_session_slice_us(session)) / 1e6);

@@ -164,6 +164,14 @@ void wh_port_end_done(wh_port_t *port) {
     }
 }
 
+unsigned wh_port_hang_up(wh_port_t *port) {
+    if (!port->kind->is_connection || !wh_port_is_heard(port) || port->output.count > 0) {
+        return 0;
+    }
+    wh_ring_drop(&port->input, port->input.count);
+    return wh_port_lose_client(port, 0);
+}
+
 unsigned wh_port_end_idle(wh_port_t *port) {
     if (!port->kind->is_connection || !wh_port_is_heard(port)) {
         return 0;
@@ -182,7 +190,7 @@ bool wh_port_asks(const wh_port_t *port) {
 
 size_t wh_port_polls(const wh_port_t *port, struct pollfd polls[WH_PORT_POLLS]) {
     size_t count = 0;
-    if (port->listener >= 0) {
+    if (port->listener >= 0 && (port->second != WH_PORT_SHARE || !port->is_there)) {
         polls[count++] = (struct pollfd){.fd = port->listener, .events = POLLIN};
     }
     /* A client that hung up would wake poll again and again if nothing could be read from it. */

@@ -20,6 +20,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "allow.h"
 #include "ring.h"
 #include "transcript.h"
 
@@ -35,8 +36,9 @@
 
 /* The treatment of a second client. */
 typedef enum {
-    WH_PORT_REFUSE,  /* it is closed at once */
-    WH_PORT_TAKEOVER /* the first one is closed */
+    WH_PORT_REFUSE,   /* it is closed at once */
+    WH_PORT_TAKEOVER, /* the first one is closed */
+    WH_PORT_SHARE     /* it waits for another port that listens at the same place */
 } wh_port_second_t;
 
 /* The functions of a kind of port: see port_internal.h. */
@@ -80,6 +82,7 @@ typedef struct {
     const wh_transcript_entry_t *entry; /* the frame that it has handed out */
     int64_t slice;                      /* of the run: the caller sets it before it serves a transcript */
     wh_port_counters_t counters;
+    const wh_allow_t *allow; /* the caller's, set once it is open: others are closed at once; null: all may */
 
     const wh_port_kind_t *kind;
     wh_ring_t output;
@@ -96,6 +99,9 @@ typedef struct {
  * which `place` tells. Addresses are numbers: no names are looked up. False, and `problem` says why. */
 bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t second,
                       char problem[WH_PORT_PROBLEM_BYTES]);
+
+/* Another port for clients at the place of one that shares it. False, and `problem` says why. */
+bool wh_port_open_beside(wh_port_t *port, const wh_port_t *first, char problem[WH_PORT_PROBLEM_BYTES]);
 
 /* Makes a pty, raw, and a symbolic link to it at `link`, where nothing may be but the
  * link to a pty that is no more, which a server that was killed has left. False, and `problem` says why:
@@ -131,6 +137,10 @@ void wh_port_end_done(wh_port_t *port);
 
 /* True if somebody may read what is sent. */
 bool wh_port_is_heard(const wh_port_t *port);
+
+/* Closes a client over TCP once all that was sent to it is on its way; what it has sent is dropped. Does
+ * nothing to a pty. Returns what happened. */
+unsigned wh_port_hang_up(wh_port_t *port);
 
 /* Closes a client over TCP that has been silent for too long, and counts it. Does nothing to a pty, which has
  * no connection. Returns what happened. */

@@ -1,6 +1,7 @@
 /* A port that listens for TCP. */
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
@@ -10,6 +11,11 @@
 #include <unistd.h>
 
 #include "port_internal.h"
+
+/* Connections that wait at a listener: those of a second at a thousand a second. */
+#define BACKLOG 1024
+/* The most second clients that are refused in one go. */
+#define ACCEPTS 64
 
 /* ---------------------------------------------------------------------------------------------- addresses */
 
@@ -89,21 +95,10 @@ static void note_place(wh_port_t *port) {
 
 /* ------------------------------------------------------------------------------------------------ clients */
 
-/* Takes a client that waits at the listener, if there is one. Returns what happened to others. */
-static unsigned take_waiting(wh_port_t *port) {
+/* The connection takes the place of the client that is there, if there is one. */
+static unsigned welcome_client(wh_port_t *port, int fd) {
     const int on = 1;
-    address_t from = {.size = sizeof from.bytes};
-    const int fd =
-        accept4(port->listener, (struct sockaddr *)&from.bytes, &from.size, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (fd < 0) {
-        return 0;
-    }
-    unsigned told = wh_port_hear_client(port); /* which may have gone before this one came */
-    if (port->is_there && !port->is_done && port->second == WH_PORT_REFUSE) {
-        (void)close(fd);
-        port->counters.refused += 1;
-        return told | WH_PORT_REFUSED;
-    }
+    unsigned told = 0;
     if (port->is_there) {
         port->counters.taken += port->is_done ? 0 : 1;
         told |= wh_port_lose_client(port, port->is_done ? 0 : WH_PORT_TAKEN);
@@ -114,10 +109,38 @@ static unsigned take_waiting(wh_port_t *port) {
     return told;
 }
 
+/* Takes a client that waits at the listener, if there is one. Returns what happened to others. */
+static unsigned take_waiting(wh_port_t *port) {
+    address_t from = {.size = sizeof from.bytes};
+    if (port->is_there && port->second == WH_PORT_SHARE) {
+        return 0; /* the next one is for another port of this place */
+    }
+    const int fd =
+        accept4(port->listener, (struct sockaddr *)&from.bytes, &from.size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (fd < 0) {
+        return 0;
+    }
+    if (port->allow && !wh_allow_has(port->allow, (const struct sockaddr *)&from.bytes)) {
+        (void)close(fd);
+        port->counters.refused += 1;
+        return WH_PORT_REFUSED;
+    }
+    unsigned told = wh_port_hear_client(port); /* which may have gone before this one came */
+    if (port->is_there && !port->is_done && port->second == WH_PORT_REFUSE) {
+        (void)close(fd);
+        port->counters.refused += 1;
+        return told | WH_PORT_REFUSED;
+    }
+    return told | welcome_client(port, fd);
+}
 /* The client comes before the check of others, so that a client that hung up blocks nobody. */
 static unsigned serve_tcp(wh_port_t *port) {
     unsigned told = wh_port_hear_client(port);
-    told |= take_waiting(port);
+    unsigned taken = WH_PORT_REFUSED;
+    for (int i = 0; i < ACCEPTS && (taken & WH_PORT_REFUSED) != 0; ++i) {
+        taken = take_waiting(port);
+        told |= taken;
+    }
     return wh_port_finish_serving(port, told);
 }
 
@@ -166,9 +189,20 @@ bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t sec
     port->listener = socket(at.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (port->listener < 0 || setsockopt(port->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
         bind(port->listener, (const struct sockaddr *)&at.bytes, at.size) != 0 ||
-        listen(port->listener, 8) != 0) {
+        listen(port->listener, BACKLOG) != 0) {
         (void)snprintf(problem, WH_PORT_PROBLEM_BYTES, "%.200s: %s", address, strerror(errno));
         wh_port_close(port);
+        return false;
+    }
+    note_place(port);
+    return true;
+}
+
+bool wh_port_open_beside(wh_port_t *port, const wh_port_t *first, char problem[WH_PORT_PROBLEM_BYTES]) {
+    wh_port_begin(port, &tcp, first->second);
+    port->listener = fcntl(first->listener, F_DUPFD_CLOEXEC, 0);
+    if (port->listener < 0) {
+        (void)snprintf(problem, WH_PORT_PROBLEM_BYTES, "%.200s: %s", first->place, strerror(errno));
         return false;
     }
     note_place(port);

@@ -5,8 +5,10 @@
 #include "../text/clock.h"
 #include "journal.h"
 #include "line.h"
+#include "queue.h"
 #include "requests.h"
 #include "status.h"
+#include "telling.h"
 
 /* A frame that is too long is noted with the one byte that was too many. When it is read again, this byte
  * makes it too long again. */
@@ -18,9 +20,12 @@ static void take_frame(wh_controller_t *controller, const wh_frame_t *frame) {
 }
 
 /* True if there is time for Lua in this slice, and no accepted action has yet to begin: frames behind such an
- * action are heard while it runs. */
-static bool may_hear(const wh_host_t *host) {
-    return host->clock.lua_us < WH_HOST_LUA_US && (host->running || !wh_host_next_action(host));
+ * action are heard while it runs. Where answers come in order, nothing is heard before the last is told. */
+static bool may_hear(const wh_controller_t *controller) {
+    const wh_host_t *host = controller->host;
+    const bool is_parked = controller->dialect->clients.in_order && wh_controller_owes(controller);
+    return host->clock.lua_us < WH_HOST_LUA_US && (host->running || !wh_host_next_action(host)) &&
+           !is_parked && !controller->line.closes;
 }
 
 /* Takes at least one frame out of these bytes, if there is one. Returns how many bytes were taken. */
@@ -32,7 +37,7 @@ static size_t feed_bytes(wh_controller_t *controller, const uint8_t *bytes, size
         if (frame.kind != WH_FRAME_NONE) {
             take_frame(controller, &frame);
         }
-    } while (frame.kind != WH_FRAME_NONE && may_hear(controller->host));
+    } while (frame.kind != WH_FRAME_NONE && may_hear(controller));
     return at;
 }
 
@@ -54,7 +59,7 @@ static void hear_due(wh_controller_t *controller, int64_t now_us) {
     if (wh_framer_wait(&controller->line.before_chaos, now_us, &frame)) {
         wh_controller_enqueue(controller, false, frame.bytes, frame.size, now_us, false);
     }
-    while (may_hear(controller->host)) {
+    while (may_hear(controller)) {
         wh_sent_frame_t *sent = wh_sent_take_due(&controller->line.in, now_us);
         if (!sent) {
             break;
@@ -67,12 +72,12 @@ static void hear_due(wh_controller_t *controller, int64_t now_us) {
 }
 
 static void read_frames(wh_controller_t *controller, int64_t now_us) {
-    const bool has_chaos = wh_chaos_is_on(&controller->dialect.chaos);
+    const bool has_chaos = wh_chaos_is_on(&controller->dialect->chaos);
     wh_ring_t *input = &controller->line.port.input;
-    const bool is_paced = controller->dialect.timing.baud > 0;
+    const bool is_paced = controller->dialect->timing.baud > 0;
     size_t most = is_paced ? wh_pace_take(&controller->line.in_pace, input->count, now_us) : input->count;
     wh_frame_t frame;
-    for (size_t taken = 1; most > 0 && taken > 0 && may_hear(controller->host); most -= taken) {
+    for (size_t taken = 1; most > 0 && taken > 0 && may_hear(controller); most -= taken) {
         size_t size = 0;
         const uint8_t *bytes = wh_ring_front(input, &size);
         size = size < most ? size : most;
@@ -87,8 +92,8 @@ static void read_frames(wh_controller_t *controller, int64_t now_us) {
 
 /* Nothing is on its way to the client or from it, and no answer is to come. */
 static bool owes_nothing(const wh_controller_t *controller) {
-    return !controller->action.is_there && !controller->line.has_gone && !controller->line.out.first &&
-           !controller->line.in.first && controller->line.waiting.count == 0;
+    return !controller->action.is_there && !wh_controller_owes(controller) && !controller->line.has_gone &&
+           !controller->line.out.first && !controller->line.in.first && controller->line.waiting.count == 0;
 }
 
 /* Reads the bytes of an entry as one frame again. True, with the frame, if they are one. */
@@ -96,7 +101,7 @@ static bool frame_again(wh_controller_t *controller, const wh_transcript_entry_t
                         wh_frame_t *frame) {
     const int64_t now = wh_host_now(controller->host);
     const bool timed_out = entry->kind == WH_TRANSCRIPT_TIMED_OUT;
-    const int64_t later = now + controller->dialect.framing.timeout_us;
+    const int64_t later = now + controller->dialect->framing.timeout_us;
     *taken = wh_framer_feed(&controller->line.framer, entry->bytes, entry->size, now, frame);
     return frame->kind != WH_FRAME_NONE ||
            (timed_out && wh_framer_wait(&controller->line.framer, later, frame)) ||
@@ -106,7 +111,7 @@ static bool frame_again(wh_controller_t *controller, const wh_transcript_entry_t
 /* Hears the frame of a transcript's entry. The bytes behind a line that was too long have no entry: an end
  * stands for them. */
 static void hear_entry(wh_controller_t *controller, const wh_transcript_entry_t *entry) {
-    const wh_framing_mark_t *end = &controller->dialect.framing.ends[0];
+    const wh_framing_mark_t *end = &controller->dialect->framing.ends[0];
     size_t at = 0;
     wh_frame_t frame = {.kind = WH_FRAME_NONE};
     if (!frame_again(controller, entry, &at, &frame)) {
@@ -120,6 +125,18 @@ static void hear_entry(wh_controller_t *controller, const wh_transcript_entry_t 
     }
     if (is_over) {
         (void)wh_framer_feed(&controller->line.framer, end->bytes, end->size, now, &frame);
+    }
+}
+
+/* Tells the dialect of a client that has gone, and of one that has come. */
+static void heed_clients(wh_controller_t *controller, bool has_come) {
+    if (controller->line.is_parting) {
+        controller->line.is_parting = false;
+        wh_controller_part(controller);
+    }
+    if (has_come) {
+        controller->line.client = ++controller->leader->guests;
+        wh_controller_greet(controller);
     }
 }
 
@@ -150,8 +167,10 @@ static unsigned serve_port(wh_controller_t *controller) {
         hear_rest(controller);
     }
     wh_controller_note_port(controller, what);
+    heed_clients(controller, (what & WH_PORT_CAME) != 0);
     if (port->tells_all) {
         heed_told(controller, what);
+        heed_clients(controller, false);
         return what;
     }
     read_frames(controller, wh_host_now(controller->host));
@@ -160,14 +179,24 @@ static unsigned serve_port(wh_controller_t *controller) {
     }
     hear_rest(controller);
     wh_controller_note_going(controller);
+    heed_clients(controller, false);
     return what;
+}
+
+/* Closes a client whose last answer is on its way. */
+static void hang_up(wh_controller_t *controller) {
+    wh_port_line_t *line = &controller->line;
+    if (line->closes && line->is_open && !line->out.first && line->waiting.count == 0 &&
+        !wh_controller_owes(controller)) {
+        wh_controller_note_port(controller, wh_port_hang_up(&line->port));
+    }
 }
 
 /* When a silent client is to be closed; never while a command runs or an answer is on its way. */
 static int64_t idle_due(const wh_controller_t *controller) {
-    const bool counts = controller->line.is_open && controller->dialect.timing.idle_s > 0 &&
+    const bool counts = controller->line.is_open && controller->dialect->timing.idle_s > 0 &&
                         wh_port_is_heard(&controller->line.port) && owes_nothing(controller);
-    return counts ? controller->line.heard_us + (int64_t)(controller->dialect.timing.idle_s * 1e6)
+    return counts ? controller->line.heard_us + (int64_t)(controller->dialect->timing.idle_s * 1e6)
                   : INT64_MAX;
 }
 
@@ -192,6 +221,7 @@ unsigned wh_controller_serve(wh_controller_t *controller) {
         wh_controller_tick(controller);
     }
     wh_controller_send_due(controller, wh_host_now(controller->host));
+    hang_up(controller);
     if (controller->line.is_open && owes_nothing(controller)) {
         wh_port_end_done(&controller->line.port);
     }

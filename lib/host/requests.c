@@ -8,6 +8,7 @@
 
 #include "actions.h"
 #include "journal.h"
+#include "queue.h"
 #include "status.h"
 #include "telling.h"
 
@@ -16,18 +17,21 @@
 /* A command that is held in a phase belongs to the robot. */
 static bool may_give_up(const wh_controller_t *controller) {
     const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
-    return wh_host_plays_jobs(controller->host) ? is_robot : !controller->host->running;
+    const bool is_cell = controller->mechanism.kind == WH_MECHANISM_CELL && !controller->leader->is_tester;
+    return wh_host_plays_jobs(controller->host) ? is_robot || is_cell : !controller->host->running;
 }
 
 static void answer_stop(wh_controller_t *controller, const wh_request_t *request) {
     wh_host_t *host = controller->host;
-    if (controller->action.is_running) {
-        if (host->holder == controller) {
+    wh_controller_t *acting = wh_controller_acting(controller);
+    wh_controller_stop_queue(controller);
+    if (acting && acting->action.is_running) {
+        if (host->holder && host->holder->leader == controller->leader) {
             wh_host_release(host);
         }
-        wh_controller_stop_running(controller);
-    } else if (controller->action.is_there) {
-        controller->action.is_stopped = true;
+        wh_controller_stop_running(acting);
+    } else if (acting) {
+        acting->action.is_stopped = true;
     } else if (may_give_up(controller)) {
         wh_mcs_give_up(&host->session->mcs, controller->mechanism.index);
     }
@@ -36,8 +40,10 @@ static void answer_stop(wh_controller_t *controller, const wh_request_t *request
 
 static void answer_hold(wh_controller_t *controller, const wh_request_t *request, bool is_held) {
     wh_host_t *host = controller->host;
-    const bool is_its_turn = host->is_held ? host->holder == controller : is_held;
-    if (!controller->action.is_running || !is_its_turn) {
+    const wh_controller_t *acting = wh_controller_acting(controller);
+    const bool is_its_own = host->holder && host->holder->leader == controller->leader;
+    const bool is_its_turn = host->is_held ? is_its_own : is_held;
+    if (!acting || !acting->action.is_running || !is_its_turn) {
         wh_controller_refuse(controller, request, WH_STATUS_NOT_IN_PHASE,
                              is_held ? "no command of this controller runs" : "no HOLD stands");
         return;
@@ -45,6 +51,7 @@ static void answer_hold(wh_controller_t *controller, const wh_request_t *request
     host->is_held = is_held;
     host->holder = is_held ? controller : NULL;
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
+    wh_controller_tell_others(controller, WH_HOST_HOLD, is_held ? 1 : 0);
 }
 
 static void execute_query(wh_controller_t *controller, const wh_request_t *request, const char *line) {
@@ -52,7 +59,7 @@ static void execute_query(wh_controller_t *controller, const wh_request_t *reque
     wh_session_t *session = controller->host->session;
     const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
     const wh_mcs_asker_t asker = {
-        .controller = wh_host_plays_jobs(controller->host) ? (int32_t)controller->number + 1 : 0,
+        .controller = wh_host_plays_jobs(controller->host) ? wh_controller_job(controller) : 0,
         .robot = is_robot ? controller->mechanism.index + 1 : 0};
     const wh_status_t status = wh_session_execute_for(session, &asker, line, answer, WH_SESSION_ANSWER_BYTES);
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, status, answer, 0);
@@ -85,7 +92,7 @@ static void answer_request(wh_controller_t *controller, const wh_request_t *requ
 
 /* Why an action cannot be taken on now; null: it can. */
 static const char *find_busy(const wh_controller_t *controller) {
-    if (controller->action.is_there) {
+    if (wh_controller_acting(controller) || controller->leader->pending) {
         return "this controller's command has not ended";
     }
     if (controller->owed.due_us != INT64_MAX) {
@@ -100,12 +107,23 @@ static bool begins_another_run(const wh_host_t *host, const char *line) {
                                    wh_word_of(line) == wh_word_of("RESTORE"));
 }
 
-/* From here on the request belongs to the controller. */
-static void take_on_action(wh_controller_t *controller, wh_request_t *request, const wh_lines_t *lines) {
+/* An action is acknowledged at once, unless its only answer comes when it begins. True: its host waits for
+ * nothing more. */
+static bool acknowledge_action(wh_controller_t *controller, const wh_request_t *request) {
     const wh_told_t told = {.request = request};
+    if (request->command->when == WH_WHEN_AT_ONCE) {
+        return false;
+    }
     wh_controller_tell(controller, WH_ENCODE_ACKNOWLEDGE, &told, true);
+    return controller->dialect->encodes[WH_ENCODE_ACKNOWLEDGE];
+}
+
+/* From here on the request belongs to the controller. */
+static void take_on_action(wh_controller_t *controller, wh_request_t *request, const wh_lines_t *lines,
+                           bool is_answered) {
+    controller->action.is_answered = is_answered;
     controller->action.is_there = true;
-    controller->action.is_running = false;
+    controller->action.is_running = controller->action.has_begun = false;
     controller->action.is_stopped = false;
     controller->action.is_left = false;
     controller->action.order = ++controller->host->orders;
@@ -125,7 +143,13 @@ static bool is_on_purpose(const wh_controller_t *controller, const char *line, w
             return false;
         }
     }
-    return wh_mcs_take_alarm(&controller->host->session->mcs, error, (int32_t)controller->number + 1);
+    return wh_mcs_take_alarm(&controller->host->session->mcs, error, wh_controller_job(controller));
+}
+
+/* True if the action may wait behind what runs. */
+static bool may_queue(const wh_controller_t *controller, const wh_dialect_command_t *command) {
+    const bool is_behind = wh_controller_acting(controller) || controller->leader->pending;
+    return is_behind && controller->owed.due_us == INT64_MAX && wh_queue_actions(controller) < command->queue;
 }
 
 static void accept_action(wh_controller_t *controller, wh_request_t *request, const wh_lines_t *lines) {
@@ -142,11 +166,17 @@ static void accept_action(wh_controller_t *controller, wh_request_t *request, co
             return;
         }
     }
+    if (busy && may_queue(controller, request->command)) {
+        const bool is_answered = acknowledge_action(controller, request);
+        wh_queue_append(controller, request, lines)->is_answered = is_answered;
+        return;
+    }
     if (busy) {
         wh_controller_refuse(controller, request, WH_STATUS_BUSY, busy);
         return;
     }
-    take_on_action(controller, request, lines);
+    const bool is_answered = acknowledge_action(controller, request);
+    take_on_action(controller, request, lines, is_answered);
 }
 
 /* ------------------------------------------------------------------------------------------------- frames */
@@ -190,18 +220,32 @@ static bool does_command(const wh_controller_t *controller, const wh_dialect_com
     return true;
 }
 
-static void take_request(wh_controller_t *controller, wh_request_t *request) {
+/* "RATE 10": simulated time passes ten times as fast as the wall clock, from now on; 0: as fast as it can. A
+ * transcript that is played knows no wall clock. */
+static void set_rate(wh_controller_t *controller, const wh_request_t *request, const char *line) {
+    wh_host_t *host = controller->host;
+    char *end = NULL;
+    const double rate = strtod(line + strcspn(line, " "), &end);
+    if (*end != '\0' || !(rate == 0 || (rate >= 1e-3 && rate <= 1e3))) {
+        wh_controller_refuse(controller, request, WH_STATUS_BAD_ARGUMENT,
+                             "rate (expected 0 or 0.001 to 1000)");
+        return;
+    }
+    if (!host->played) {
+        host->rate = rate;
+        host->clock.base_wall_us = wh_host_now(host);
+        host->clock.base_run_us = wh_session_time_us(host->session);
+    }
+    wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
+}
+
+/* Makes the request's lines, and answers or accepts it. */
+static void carry_out(wh_controller_t *controller, wh_request_t *request) {
     wh_lines_t *lines = &controller->host->texts->lines;
     wh_failure_t failure;
     const wh_word_kind_t kind = request->command->kind;
-    if (!does_command(controller, request->command)) {
-        wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
-        return;
-    }
-    if (take_own(controller, request)) {
-        return;
-    }
-    const wh_decoded_t outcome = wh_dialect_run(&controller->dialect, request, lines, &failure);
+    const wh_decoded_t outcome =
+        wh_dialect_run(controller->dialect, request, wh_controller_tell_now, controller, lines, &failure);
     if (outcome == WH_DECODED_MISTAKE) {
         wh_controller_tell_mistake(controller, request);
     } else if (outcome == WH_DECODED_REFUSED) {
@@ -209,6 +253,8 @@ static void take_request(wh_controller_t *controller, wh_request_t *request) {
     } else if (kind != WH_WORD_LOCAL && kind != WH_WORD_ALWAYS &&
                is_on_purpose(controller, lines->lines[0], WH_STATUS_NO_SUCH_COMMAND)) {
         wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
+    } else if (kind == WH_WORD_RATE) {
+        set_rate(controller, request, lines->lines[0]);
     } else if (kind == WH_WORD_ACTION) {
         accept_action(controller, request, lines);
     } else {
@@ -216,14 +262,55 @@ static void take_request(wh_controller_t *controller, wh_request_t *request) {
     }
 }
 
+static void take_request(wh_controller_t *controller, wh_request_t *request) {
+    const wh_dialect_command_t *command = request->command;
+    const bool is_idle = !wh_controller_acting(controller) && !controller->leader->pending;
+    controller->line.closes = controller->line.closes || command->closes;
+    if (!does_command(controller, command)) {
+        wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, command->name);
+    } else if (command->when == WH_WHEN_IDLE && !is_idle) {
+        (void)wh_queue_append(controller, request, NULL);
+    } else if (!take_own(controller, request)) {
+        carry_out(controller, request);
+    }
+}
+
+/* Requests that wait at this dialect's ports go on, as far as they can. True if something did. */
+static bool go_on(wh_controller_t *leader) {
+    bool is_any = false;
+    while (!leader->host->is_ended && !wh_controller_acting(leader)) {
+        wh_pending_t *pending = wh_queue_take(leader);
+        if (!pending) {
+            break;
+        }
+        is_any = true;
+        if (pending->request.command->kind == WH_WORD_ACTION) {
+            take_on_action(pending->from, &pending->request, &pending->lines, pending->is_answered);
+        } else if (!take_own(pending->from, &pending->request)) {
+            carry_out(pending->from, &pending->request);
+        }
+        wh_queue_free(pending);
+    }
+    return is_any;
+}
+
+bool wh_host_go_on(wh_host_t *host) {
+    bool is_any = false;
+    for (size_t i = 0; i < host->count; ++i) {
+        is_any |= host->controllers[i]->leader == host->controllers[i] && go_on(host->controllers[i]);
+    }
+    return is_any;
+}
+
 /* The last frame again, with its number: the answer may have been lost. */
 static bool is_repeated(wh_controller_t *controller, const wh_request_t *request, const wh_frame_t *frame) {
-    const bool is_known = request->sequence[0] != '\0' && controller->repeat.reply.text &&
+    const bool is_known = request->sequence[0] != '\0' &&
+                          (controller->repeat.reply.text || wh_controller_owes(controller)) &&
                           frame->body_size == controller->repeat.last_size &&
                           memcmp(frame->body, controller->repeat.last, frame->body_size) == 0;
     if (is_known) {
         ++controller->counters.repeated;
-        wh_controller_tell_again(controller, &controller->repeat.reply);
+        wh_controller_tell_again(controller, &controller->repeat.reply); /* nothing if it is still to come */
     }
     return is_known;
 }
@@ -262,10 +349,11 @@ void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame) {
         return;
     }
     ++controller->counters.frames;
-    const wh_decoded_t decoded = wh_dialect_decode(&controller->dialect, (const char *)frame->body,
+    const wh_client_t client = {controller->role, controller->line.client};
+    const wh_decoded_t decoded = wh_dialect_decode(controller->dialect, &client, (const char *)frame->body,
                                                    frame->body_size, &request, &failure);
     take_decoded(controller, frame, decoded, &request, &failure);
-    wh_dialect_forget(&controller->dialect, &request);
+    wh_dialect_forget(controller->dialect, &request);
     controller->host->clock.lua_us += wh_host_now(controller->host) - begin_us;
 }
 
@@ -285,7 +373,7 @@ void wh_controller_give_up_waiting(wh_controller_t *controller) {
 void wh_controller_tick(wh_controller_t *controller) {
     const int64_t now = wh_host_now(controller->host);
     const bool is_over_time =
-        now - controller->action.since_us > (int64_t)(controller->dialect.timing.busy_s * 1e6);
+        now - controller->action.since_us > (int64_t)(controller->dialect->timing.busy_s * 1e6);
     if (controller->owed.due_us <= now || (is_over_time && wh_controller_waits(controller))) {
         wh_controller_give_up_waiting(controller);
     }

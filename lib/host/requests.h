@@ -7,6 +7,9 @@
 /* Takes a frame that has come. */
 void wh_controller_take(wh_controller_t *controller, const wh_frame_t *frame);
 
+/* Requests that wait for controllers which are idle now go on. True if something did. */
+bool wh_host_go_on(wh_host_t *host);
+
 /* Does what is due by time. */
 void wh_controller_tick(wh_controller_t *controller);
 

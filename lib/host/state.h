@@ -16,14 +16,16 @@
 #include "port.h"
 #include "transcript.h"
 
-/* The most ports of a cell. */
+/* The most ports of a cell, and their clients at a time. */
 #define WH_HOST_PORTS 8
+#define WH_HOST_CONTROLLERS (WH_HOST_PORTS * WH_DIALECT_SHARERS)
 /* The time for Lua of dialects in a slice; the rest waits for the next slice. */
 #define WH_HOST_LUA_US 2000
 /* Above all numbers of errors. */
 #define WH_HOST_NUMBERS 128
 
 typedef struct wh_host wh_host_t;
+typedef struct wh_controller wh_controller_t;
 
 /* A frame on its way, and the frames of a direction, which never overtake each other. */
 typedef struct wh_sent_frame {
@@ -67,15 +69,20 @@ typedef struct {
     uint64_t frames_out, frames_in; /* so far, before chaos */
     uint64_t told, broken;          /* frames to the host after chaos, and those without a whole copy */
     bool has_gone;                  /* the client has gone, and its last bytes are not read yet */
+    bool is_parting;                /* and the dialect has not been told of it */
+    bool closes;                    /* the client is to be closed once all was told */
+    uint64_t client;                /* its number among those of the dialect */
 } wh_port_line_t;
 
 /* The action that a controller has accepted, from then to its end. */
 typedef struct {
-    bool is_there;   /* an action was accepted and has not ended */
-    bool is_running; /* and has begun */
-    bool is_stopped; /* it must end, or must not begin */
-    bool is_left;    /* the client that asked for it has gone, and another one has come */
-    uint64_t order;  /* when, among all ports */
+    bool is_there;    /* an action was accepted and has not ended */
+    bool is_running;  /* and has begun */
+    bool has_begun;   /* at some time */
+    bool is_stopped;  /* it must end, or must not begin */
+    bool is_left;     /* the client that asked for it has gone, and another one has come */
+    bool is_answered; /* its host waits for nothing more */
+    uint64_t order;   /* when, among all ports */
     int64_t since_us;
     wh_request_t request;
     wh_lines_t lines;
@@ -88,6 +95,15 @@ typedef struct {
     wh_status_t failed; /* the last error of an action that was begun; WH_OK: none has failed */
     char failed_line[WH_DIALECT_LINE_BYTES];
 } wh_action_t;
+
+/* A request that waits behind the action that runs. */
+typedef struct wh_pending {
+    struct wh_pending *next;
+    wh_controller_t *from;
+    wh_request_t request;
+    bool is_answered; /* its acknowledgement was told */
+    wh_lines_t lines; /* of an action */
+} wh_pending_t;
 
 /* The acknowledgement that the host owes. */
 typedef struct {
@@ -104,8 +120,8 @@ typedef struct {
 } wh_repeat_t;
 
 /* One port's controller. Others read only the first group. */
-typedef struct {
-    wh_dialect_t dialect;
+struct wh_controller {
+    wh_dialect_t *dialect; /* the leader's */
     wh_port_mechanism_t mechanism;
     char name[WH_TRANSCRIPT_NAME + 1]; /* in messages and the transcript: robot, or its name if given, such as
                                         * VAC */
@@ -113,11 +129,16 @@ typedef struct {
     wh_port_line_t line;
 
     wh_host_t *host;
-    uint32_t number; /* among the ports, from 0 */
+    uint32_t number;         /* among the ports, from 0 */
+    wh_controller_t *leader; /* of the ports that share a dialect and its mechanism: the first one */
+    const char *role;        /* its name in the dialect's `ports` */
+    bool is_tester;          /* it stands for no mechanism: a tester beside the hosts */
+    wh_pending_t *pending;   /* of the leader: what waits, in its order */
+    uint64_t guests;         /* of the leader: clients at its dialect's ports, so far */
     wh_action_t action;
     wh_owed_ackn_t owed;
     wh_repeat_t repeat;
-} wh_controller_t;
+};
 
 /* The run's time beside the wall clock's. */
 typedef struct {
@@ -127,6 +148,7 @@ typedef struct {
     int64_t lua_us;                  /* used up in this slice */
     int64_t skipped_us; /* where a transcript is played: the time of the clock before it was set back */
     int64_t slice;      /* as of wh_host_heed_clock */
+    int64_t wall_us, run_us, held_us; /* of all commands: by the wall clock, simulated, and of HOLDs */
 } wh_host_clock_t;
 
 /* Room for texts that are made anew for each use. */
@@ -136,7 +158,8 @@ typedef struct {
     char asked[WH_SESSION_ANSWER_BYTES];   /* the answer to a query */
     char told[WH_MCS_DESCRIPTION_BYTES + 4];
     char status[WH_MCS_DESCRIPTION_BYTES], own_status[WH_MCS_DESCRIPTION_BYTES];
-    wh_lines_t lines; /* of the request that has come */
+    wh_lines_t lines;             /* of the request that has come */
+    wh_pose_t poses[WH_GRIPPERS]; /* of the blades, now */
 } wh_host_texts_t;
 
 struct wh_host {
@@ -149,13 +172,14 @@ struct wh_host {
     void (*tick)(void *user); /* called whenever ports were served, at least every 100 ms, but not within the
                                  link's exchange; may be null */
     void *tick_user;
-    FILE *transcript; /* null: none */
-    bool writes_json; /* the transcript has JSON lines */
+    const wh_allow_t *allow; /* who may connect from another machine; null: all */
+    FILE *transcript;        /* null: none */
+    bool writes_json;        /* the transcript has JSON lines */
     /* Its host's side is every port, and its clock is the run's; null: ports as the command line says. */
     wh_transcript_t *played;
 
-    wh_controller_t *controllers[WH_HOST_PORTS];
-    size_t count;
+    wh_controller_t *controllers[WH_HOST_CONTROLLERS];
+    size_t count, leaders;
     wh_controller_t *running; /* the controller whose action runs; with several, the one that began last;
                                * null: none */
     wh_controller_t *holder;  /* whose HOLD it is */
@@ -164,6 +188,7 @@ struct wh_host {
     bool is_ended;            /* the operator ended it: nothing is begun any more */
     uint64_t orders, turns;   /* accepted actions, and the times that ports were served, so far */
     wh_host_clock_t clock;
+    uint32_t sensors, valves;       /* of the last slice, by gripper: on, open */
     wh_event_kind_t last_complaint; /* of the cell, where session->complaints says that there was one */
     uint64_t *shown; /* how often a host was told our error of this number, of WH_HOST_NUMBERS */
     wh_host_texts_t *texts;

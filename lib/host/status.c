@@ -4,14 +4,31 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "queue.h"
 #include "values.h"
 
 bool wh_host_plays_jobs(const wh_host_t *host) {
-    return host->count > 1 || (host->count == 1 && host->controllers[0]->mechanism.name);
+    return host->leaders > 1 || (host->count > 0 && host->controllers[0]->mechanism.name);
+}
+
+bool wh_host_is_first_of_port(const wh_host_t *host, size_t i) {
+    return i == 0 || host->controllers[i]->leader != host->controllers[i - 1]->leader ||
+           host->controllers[i]->role != host->controllers[i - 1]->role;
 }
 
 int32_t wh_controller_job(const wh_controller_t *controller) {
-    return (int32_t)controller->number + 1;
+    return controller->leader->is_tester ? WH_MCS_NOBODYS_JOB : (int32_t)controller->leader->number + 1;
+}
+
+bool wh_controller_needs_all(const wh_controller_t *controller) {
+    static const char *const words[] = {"RESET", "SAVE", "RESTORE", "UNDO"};
+    bool needs = false;
+    for (size_t i = 0; i < controller->action.lines.count; ++i) {
+        for (size_t w = 0; w < sizeof words / sizeof words[0]; ++w) {
+            needs = needs || wh_word_of(controller->action.lines.lines[i]) == wh_word_of(words[w]);
+        }
+    }
+    return needs;
 }
 
 bool wh_controller_waits(const wh_controller_t *controller) {
@@ -51,7 +68,9 @@ static const char *spell_line(const char *line, char spelt[2 * WH_DIALECT_LINE_B
 }
 
 /* Its line, or the command that the robot holds. */
-static void put_phase(const wh_controller_t *controller, FILE *out) {
+static void put_phase(const wh_controller_t *asked, FILE *out) {
+    const wh_controller_t *acting = wh_controller_acting(asked);
+    const wh_controller_t *controller = acting ? acting : asked;
     const bool is_robot = controller->mechanism.kind == WH_MECHANISM_ROBOT;
     const wh_mcs_t *mcs = &controller->host->session->mcs;
     const wh_mcs_held_t *held = is_robot ? wh_mcs_find_held(mcs, controller->mechanism.index) : NULL;
@@ -68,11 +87,12 @@ static void put_phase(const wh_controller_t *controller, FILE *out) {
 }
 
 static void put_failed(const wh_controller_t *controller, FILE *out) {
+    const wh_action_t *action = &controller->leader->action;
     char spelt[2 * WH_DIALECT_LINE_BYTES];
-    (void)fprintf(out, " error=%d", (int)controller->action.failed);
-    if (controller->action.failed != WH_OK) {
-        (void)fprintf(out, " error_name=%s error_command=%s", wh_status_name(controller->action.failed),
-                      spell_line(controller->action.failed_line, spelt));
+    (void)fprintf(out, " error=%d", (int)action->failed);
+    if (action->failed != WH_OK) {
+        (void)fprintf(out, " error_name=%s error_command=%s", wh_status_name(action->failed),
+                      spell_line(action->failed_line, spelt));
     }
 }
 
@@ -85,8 +105,13 @@ void wh_controller_describe(const wh_controller_t *controller, char text[WH_MCS_
     if (!wh_host_plays_jobs(controller->host) || !end) {
         return;
     }
+    const bool is_cell = controller->mechanism.kind == WH_MECHANISM_CELL && !wh_controller_acting(controller);
     FILE *out = wh_memory_need(fmemopen(whole, WH_MCS_DESCRIPTION_BYTES, "w"));
-    put_phase(controller, out);
+    if (is_cell) {
+        (void)fprintf(out, "%.*s", (int)(begin - text), text); /* it may hold any robot in a phase */
+    } else {
+        put_phase(controller, out);
+    }
     (void)fprintf(out, "%.*s", (int)(end - begin), begin);
     put_failed(controller, out);
     (void)fclose(out);

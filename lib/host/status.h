@@ -7,11 +7,17 @@
 /* True if ports move side by side: there are several, or the one is not the cell's. */
 bool wh_host_plays_jobs(const wh_host_t *host);
 
-/* The number of a controller's job is one more than its port's. */
+/* The number of a controller's job is one more than that of the first port of its dialect. */
 int32_t wh_controller_job(const wh_controller_t *controller);
+
+/* True if this controller has a port of its own, and no further client's of a port that several share. */
+bool wh_host_is_first_of_port(const wh_host_t *host, size_t i);
 
 /* The action that was accepted first and has not begun; null: none. */
 wh_controller_t *wh_host_next_action(const wh_host_t *host);
+
+/* True if its action is one of the whole cell that nothing may go beside: RESET, SAVE, RESTORE or UNDO. */
+bool wh_controller_needs_all(const wh_controller_t *controller);
 
 /* True if the running action waits for something that another port has. */
 bool wh_controller_waits(const wh_controller_t *controller);

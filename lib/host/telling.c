@@ -27,7 +27,7 @@ static size_t take_body(const wh_controller_t *controller, const wh_reply_t *rep
     const char *end = memchr(begin, 0, reply->size - *at);
     const size_t length = end ? (size_t)(end - begin) : reply->size - *at;
     *at += length + 1;
-    return wh_framing_encode(&controller->dialect.replies, reply->start, (const uint8_t *)begin, length,
+    return wh_framing_encode(&controller->dialect->replies, reply->start, (const uint8_t *)begin, length,
                              frame);
 }
 
@@ -35,7 +35,7 @@ static size_t take_body(const wh_controller_t *controller, const wh_reply_t *rep
 static bool send_body(wh_controller_t *controller, const wh_reply_t *reply, bool is_reply) {
     uint8_t frame[WH_FRAMING_LINE];
     const int64_t due_us =
-        wh_host_now(controller->host) + (is_reply ? (int64_t)(controller->dialect.timing.ack_s * 1e6) : 0);
+        wh_host_now(controller->host) + (is_reply ? (int64_t)(controller->dialect->timing.ack_s * 1e6) : 0);
     for (size_t at = 0; at <= reply->size;) {
         if (take_body(controller, reply, &at, frame) == 0) {
             return false;
@@ -51,7 +51,7 @@ static bool send_body(wh_controller_t *controller, const wh_reply_t *reply, bool
 
 /* Keeps the reply for the case that the host repeats the request. */
 static void remember_reply(wh_controller_t *controller) {
-    const wh_dialect_t *dialect = &controller->dialect;
+    const wh_dialect_t *dialect = controller->dialect;
     if (controller->repeat.remembers) {
         controller->repeat.remembers = false;
         controller->repeat.reply.text = wh_array_new(dialect->text_size + 1, 1);
@@ -64,7 +64,7 @@ static void remember_reply(wh_controller_t *controller) {
 /* Encodes and sends. False: the dialect's mistake was reported, and its host was not told anything yet. */
 static bool encode_and_send(wh_controller_t *controller, wh_encoder_t encoder, const wh_told_t *told,
                             bool is_reply) {
-    wh_dialect_t *dialect = &controller->dialect;
+    wh_dialect_t *dialect = controller->dialect;
     const int64_t begin = wh_host_now(controller->host);
     wh_failure_t failure;
     bool made = wh_dialect_encode(dialect, encoder, told);
@@ -105,12 +105,35 @@ void wh_controller_tell(wh_controller_t *controller, wh_encoder_t encoder, const
         encoder == WH_ENCODE_UNACKNOWLEDGED) {
         return;
     }
-    wh_utf8_visible(failure.detail, sizeof failure.detail, controller->dialect.message);
-    (void)snprintf(code, sizeof code, "%s", wh_dialect_code(&controller->dialect, failure.number));
+    wh_utf8_visible(failure.detail, sizeof failure.detail, controller->dialect->message);
+    (void)snprintf(code, sizeof code, "%s", wh_dialect_code(controller->dialect, failure.number));
     const wh_reply_t bare = {code, strlen(code), 0};
     ++controller->host->shown[WH_STATUS_BAD_ARGUMENT];
     if (encoder == WH_ENCODE_REFUSE || !encode_and_send(controller, WH_ENCODE_REFUSE, &refusal, is_reply)) {
         (void)send_body(controller, &bare, is_reply);
+    }
+}
+
+void wh_controller_greet(wh_controller_t *controller) {
+    wh_dialect_t *dialect = controller->dialect;
+    const wh_client_t client = {controller->role, controller->line.client};
+    if (!dialect->clients.greets) {
+        return;
+    }
+    if (!wh_dialect_welcome(dialect, &client)) {
+        say_mistake(controller, dialect->message);
+        return;
+    }
+    const wh_reply_t reply = {dialect->text, dialect->text_size, dialect->text_start};
+    if (reply.text && !send_body(controller, &reply, false)) {
+        say_mistake(controller, "connected: its text is no body of a frame");
+    }
+}
+
+void wh_controller_part(wh_controller_t *controller) {
+    const wh_client_t client = {controller->role, controller->line.client};
+    if (controller->dialect->clients.heeds_going && !wh_dialect_part(controller->dialect, &client)) {
+        say_mistake(controller, controller->dialect->message);
     }
 }
 
@@ -149,42 +172,93 @@ void wh_controller_refuse(wh_controller_t *controller, const wh_request_t *reque
     wh_controller_refuse_as(controller, request, &failure);
 }
 
-void wh_controller_tell_result(wh_controller_t *controller, wh_encoder_t encoder, const wh_request_t *request,
-                               wh_status_t number, const char *answer, double seconds) {
+void wh_controller_tell_now(void *user, wh_result_t *now) {
+    const wh_controller_t *controller = user;
     char *status = controller->host->texts->status;
     const wh_session_t *session = controller->host->session;
     wh_controller_describe(controller, status);
-    const wh_result_t result = {.number = number,
-                                .answer = answer,
-                                .status = status,
-                                .seconds = seconds,
-                                .is_held = controller->host->is_held,
-                                .layout = wh_session_layout(session),
-                                .mechanism = &controller->mechanism,
-                                .sensors = wh_session_sensors(session)};
+    *now = (wh_result_t){.answer = "",
+                         .status = status,
+                         .is_held = controller->host->is_held,
+                         .layout = wh_session_layout(session),
+                         .mechanism = &controller->mechanism,
+                         .sensors = wh_session_sensors(session),
+                         .poses = controller->host->texts->poses};
+    wh_session_poses(session, controller->host->texts->poses);
+}
+
+void wh_controller_tell_result(wh_controller_t *controller, wh_encoder_t encoder, const wh_request_t *request,
+                               wh_status_t number, const char *answer, double seconds) {
+    wh_result_t result;
+    wh_controller_tell_now(controller, &result);
+    result.number = number;
+    result.answer = answer;
+    result.seconds = seconds;
     const wh_told_t told = {.request = request, .result = &result};
     tell_and_count(controller, encoder, &told, encoder == WH_ENCODE_ANSWER, number);
 }
 
 void wh_controller_tell_mistake(wh_controller_t *controller, const wh_request_t *request) {
     char message[WH_SANDBOX_MESSAGE_BYTES];
-    wh_utf8_visible(message, sizeof message, controller->dialect.message);
+    wh_utf8_visible(message, sizeof message, controller->dialect->message);
     say_mistake(controller, message);
     wh_controller_refuse(controller, request, WH_STATUS_BAD_ARGUMENT, message);
+}
+
+/* Tells an event to a port's client, if its dialect asks for that kind. */
+static void tell_event(wh_controller_t *controller, wh_host_event_kind_t kind, wh_host_event_t event) {
+    const wh_told_t told = {.event = &event};
+    const wh_dialect_t *dialect = controller->dialect;
+    event.client = (wh_client_t){controller->role, controller->line.client};
+    if (dialect->encodes[WH_ENCODE_EVENT] && (dialect->clients.events >> kind & 1U) != 0) {
+        wh_controller_tell(controller, WH_ENCODE_EVENT, &told, false);
+    }
 }
 
 void wh_controller_event(wh_controller_t *controller, const wh_event_t *event, double seconds) {
     const wh_layout_t *layout = wh_session_layout(controller->host->session);
     const bool has_wafer = event->wafer >= 0 && (size_t)event->wafer < layout->wafer_count;
     const bool has_gripper = event->gripper >= 0 && (size_t)event->gripper < layout->machine.gripper_count;
-    const wh_host_event_t told_event = {.kind = wh_event_name(event->kind),
-                                        .is_complaint = wh_record_is_complaint(event->kind),
-                                        .wafer = has_wafer ? layout->wafers[event->wafer].name : "",
-                                        .gripper = has_gripper ? layout->grippers[event->gripper].name : "",
-                                        .seconds = seconds};
-    const wh_told_t told = {.event = &told_event};
-    const bool is_its_own = !has_gripper || (controller->mechanism.grippers >> event->gripper & 1U) != 0;
-    if (controller->dialect.encodes[WH_ENCODE_EVENT] && is_its_own) {
-        wh_controller_tell(controller, WH_ENCODE_EVENT, &told, false);
+    const wh_host_event_t told = {.kind = wh_event_name(event->kind),
+                                  .is_complaint = wh_record_is_complaint(event->kind),
+                                  .wafer = has_wafer ? layout->wafers[event->wafer].name : "",
+                                  .gripper = has_gripper ? layout->grippers[event->gripper].name : "",
+                                  .seconds = seconds,
+                                  .value = -1};
+    if (!has_gripper || (controller->mechanism.grippers >> event->gripper & 1U) != 0) {
+        tell_event(controller, WH_HOST_WAFER, told);
+    }
+}
+
+void wh_host_tell_change(wh_host_t *host, wh_host_event_kind_t kind, size_t gripper, int value) {
+    const wh_layout_t *layout = wh_session_layout(host->session);
+    const wh_host_event_t told = {.kind = wh_host_event_names[kind],
+                                  .wafer = "",
+                                  .gripper = layout->grippers[gripper].name,
+                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
+                                  .value = value};
+    for (size_t i = 0; i < host->count; ++i) {
+        if ((host->controllers[i]->mechanism.grippers >> gripper & 1U) != 0) {
+            tell_event(host->controllers[i], kind, told);
+        }
+    }
+}
+
+void wh_controller_tell_others(const wh_controller_t *controller, wh_host_event_kind_t kind, int value) {
+    const wh_host_t *host = controller->host;
+    const wh_port_mechanism_t *mechanism = &controller->mechanism;
+    const wh_host_event_t told = {.kind = wh_host_event_names[kind],
+                                  .wafer = "",
+                                  .gripper = "",
+                                  .seconds = (double)wh_session_time_us(host->session) / 1e6,
+                                  .value = value,
+                                  .at = mechanism->name ? mechanism->name
+                                                        : wh_mechanism_names[mechanism->kind]};
+    for (size_t i = 0; i < host->count && !controller->leader->is_tester; ++i) {
+        const bool concerns =
+            host->controllers[i]->leader == controller->leader || host->controllers[i]->leader->is_tester;
+        if (concerns) {
+            tell_event(host->controllers[i], kind, told);
+        }
     }
 }

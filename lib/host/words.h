@@ -28,6 +28,7 @@ typedef enum {
     WH_WORD_STOP,   /* ends what runs */
     WH_WORD_HOLD,   /* the running command stands still after the present slice: time does not pass */
     WH_WORD_RESUME, /* and goes on */
+    WH_WORD_RATE,   /* the pace of simulated time */
     WH_WORD_ACKN,   /* the host has had the completion */
     WH_WORD_LOCAL   /* the dialect answers by itself */
 } wh_word_kind_t;
@@ -39,8 +40,8 @@ typedef struct {
     bool is_of_simulation; /* tells something that no controller knows, or how a line is typed */
 } wh_word_t;
 
-/* All of them. Behind the prompt's own words come those that only a port has: HOLD, RESUME, ACKN and
- * LOCAL. */
+/* All of them. Behind the prompt's own words come those that only a port has: HOLD, RESUME, RATE,
+ * ACKN and LOCAL. */
 extern const wh_word_t wh_words[];
 extern const size_t wh_word_count;
 

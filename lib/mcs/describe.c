@@ -317,6 +317,13 @@ void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     put_error(&to, mcs->recorder.record);
 }
 
+void wh_mcs_see_grippers(const wh_mcs_t *mcs, wh_pose_t poses[WH_GRIPPERS]) {
+    const wh_real_t *axes = mcs->wanted.partners.connect ? mcs->heard.seen.axes : mcs->track.axes;
+    if (mcs->layout) {
+        wh_machine_grippers(&mcs->layout->machine, axes, poses);
+    }
+}
+
 /* native.status(): the text of wh_mcs_describe. */
 static int push_description(lua_State *L) {
     char text[WH_MCS_DESCRIPTION_BYTES];

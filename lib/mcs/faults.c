@@ -75,7 +75,8 @@ static bool is_alarm(const wh_mcs_t *mcs, lua_Integer number) {
 /* An alarm that a host has armed waits for one of this host's commands. */
 static bool waits_for(const wh_mcs_t *mcs, size_t alarm, int32_t job) {
     return mcs->armed.alarms[alarm] != WH_OK &&
-           (mcs->armed.alarm_jobs[alarm] == 0 || mcs->armed.alarm_jobs[alarm] == job);
+           (mcs->armed.alarm_jobs[alarm] == 0 || mcs->armed.alarm_jobs[alarm] == WH_MCS_NOBODYS_JOB ||
+            mcs->armed.alarm_jobs[alarm] == job);
 }
 
 static int32_t current_job(const wh_mcs_t *mcs) {

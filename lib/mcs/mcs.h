@@ -114,6 +114,9 @@ char *wh_mcs_tell_never_came(const wh_mcs_t *mcs);
  * `error_name` and `error_command`, or 0. May be called from within the link's exchange. */
 void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 
+/* The poses of the grippers at the axes of that slice, base_from_gripper; none without a cell. */
+void wh_mcs_see_grippers(const wh_mcs_t *mcs, wh_pose_t poses[WH_GRIPPERS]);
+
 /* Room for the text of wh_mcs_name_mechanisms. */
 #define WH_MCS_MECHANISMS_BYTES ((WH_LAYOUT_ROBOTS + WH_GRIPPERS + WH_DOORS) * (WH_NAME_SIZE + 2))
 

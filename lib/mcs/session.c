@@ -147,6 +147,10 @@ uint32_t wh_session_sensors(const wh_session_t *session) {
     return session->mcs.state.sensors;
 }
 
+void wh_session_poses(const wh_session_t *session, wh_pose_t poses[WH_GRIPPERS]) {
+    wh_mcs_see_grippers(&session->mcs, poses);
+}
+
 bool wh_session_has_stop(const wh_session_t *session) {
     return session->mcs.stop.is_requested;
 }

@@ -90,6 +90,10 @@ uint64_t wh_session_hash(const wh_session_t *session);
 /* The vacuum sensors after the last slice: bit g of gripper g. */
 uint32_t wh_session_sensors(const wh_session_t *session);
 
+/* The grippers' commanded poses in the slice of which STATUS tells, base_from_gripper; without a cell
+ * nothing is written. */
+void wh_session_poses(const wh_session_t *session, wh_pose_t poses[WH_GRIPPERS]);
+
 /* True if a STOP has come that no command has taken yet. */
 bool wh_session_has_stop(const wh_session_t *session);
 

@@ -137,6 +137,9 @@ typedef struct {
     wh_lane_t of[WH_MCS_LANES]; /* the script's own first */
 } wh_lanes_t;
 
+/* The number of a job whose faults and errors on purpose are for any job: a tester's. */
+#define WH_MCS_NOBODYS_JOB (-1)
+
 /* The source of a prompt's lines that are played side by side. A job is a few lines, one after another; its
  * number is not 0. */
 typedef struct {

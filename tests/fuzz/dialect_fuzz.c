@@ -19,7 +19,9 @@
 #define AS_IT_IS 0x1D
 
 static const char *const paths[] = {"lua/dialects/prompt.lua", "lua/dialects/words.lua",
-                                    "lua/dialects/dollar.lua", "lua/dialects/verbs.lua"};
+                                    "lua/dialects/dollar.lua", "lua/dialects/verbs.lua",
+                                    "lua/dialects/control.lua"};
+static const wh_client_t client = {"", 1};
 static const char status[] =
     "phase=idle seq=1965 time=1.965 theta=0 r=300 z=900 yaw=-1.5 EE.holds=\"Wafer 1\" PA.holds=none "
     "error=42";
@@ -122,7 +124,7 @@ static void take_request(const wh_request_t *request, size_t size) {
     }
     const bool has_lines = kind != WH_WORD_STOP && kind != WH_WORD_HOLD && kind != WH_WORD_RESUME;
     const wh_decoded_t outcome =
-        has_lines ? wh_dialect_run(dialect, request, &lines, &failure) : WH_DECODED_REQUEST;
+        has_lines ? wh_dialect_run(dialect, request, NULL, NULL, &lines, &failure) : WH_DECODED_REQUEST;
     check_outcome(outcome);
     if (outcome == WH_DECODED_REFUSED) {
         refuse(request, &failure);
@@ -146,7 +148,7 @@ static void take(const wh_frame_t *frame) {
         return;
     }
     const wh_decoded_t outcome =
-        wh_dialect_decode(dialect, (const char *)frame->body, frame->body_size, &request, &failure);
+        wh_dialect_decode(dialect, &client, (const char *)frame->body, frame->body_size, &request, &failure);
     check_outcome(outcome);
     if (outcome == WH_DECODED_REFUSED) {
         refuse(&request, &failure);
@@ -178,7 +180,13 @@ static void take_piece(const uint8_t *data, size_t size) {
 }
 
 static void tell_of_events(void) {
-    const wh_host_event_t event = {"slot_occupied", true, "Wafer 1", "EE", 1.158};
+    const wh_host_event_t event = {.kind = "slot_occupied",
+                                   .is_complaint = true,
+                                   .wafer = "Wafer 1",
+                                   .gripper = "EE",
+                                   .seconds = 1.158,
+                                   .value = -1,
+                                   .client = client};
     const wh_told_t told = {.event = &event};
     const wh_told_t nothing = {.reason = NULL};
     tell(WH_ENCODE_EVENT, &told);

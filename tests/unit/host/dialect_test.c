@@ -19,6 +19,7 @@ static const wh_layout_t *layout;
 static wh_dialect_t dialect;
 static char path[40]; /* the path of a file in memory */
 static int file;
+static const wh_client_t client = {"", 1};
 
 static int load_layout(void **state) {
     (void)state;
@@ -73,7 +74,7 @@ static void a_name_that_fills_the_message(void **state) {
     assert_true(open_text(text));
     wh_request_t request;
     wh_failure_t failure;
-    assert_int_equal(wh_dialect_decode(&dialect, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
+    assert_int_equal(wh_dialect_decode(&dialect, &client, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
     assert_message(": xxx");
     wh_dialect_forget(&dialect, &request);
     wh_dialect_close(&dialect);
@@ -91,7 +92,7 @@ static void limits_that_are_spent(void **state) {
     assert_message(":1: memory");
     wh_dialect_close(&dialect);
     assert_true(open_text("return {" FRAMING COMMANDS ENCODE "decode = function() while true do end end }"));
-    assert_int_equal(wh_dialect_decode(&dialect, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
+    assert_int_equal(wh_dialect_decode(&dialect, &client, "A", 1, &request, &failure), WH_DECODED_MISTAKE);
     assert_message(": instruction budget");
     wh_dialect_forget(&dialect, &request);
     wh_dialect_close(&dialect);

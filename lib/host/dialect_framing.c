@@ -1,0 +1,95 @@
+/* Reads how a dialect's frames are made of bytes. */
+#include <stdio.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+#include "dialect_internal.h"
+
+static const wh_reader_field_t framing_fields[] = {{"start", "string", "", false},
+                                                   {"replies", "table", "", false},
+                                                   {"ends", "table", "", true},
+                                                   {"sum", "string", "", false},
+                                                   {"separator", "string", "", false},
+                                                   {"sums_start", "boolean", "", false},
+                                                   {"sums_separator", "boolean", "", false},
+                                                   {"skips_empty", "boolean", "", false},
+                                                   {"shortest", "number", "", false},
+                                                   {"longest", "number", "", false},
+                                                   {"timeout", "number", "", false},
+                                                   {0}};
+
+/* The text on top of the stack, which is popped. */
+static wh_framing_mark_t take_mark(wh_reader_t *reader, const char *field) {
+    wh_framing_mark_t mark = {.size = 0};
+    size_t size = 0;
+    const char *bytes = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tolstring(reader->L, -1, &size) : NULL;
+    if (!bytes || size < 1 || size > WH_FRAMING_MARK) {
+        wh_reader_fail(reader, field, "a text of 1 to %d bytes", WH_FRAMING_MARK);
+    }
+    memcpy(mark.bytes, bytes, size);
+    mark.size = size;
+    lua_pop(reader->L, 1);
+    return mark;
+}
+
+static wh_framing_mark_t read_mark(wh_reader_t *reader, const char *field) {
+    if (wh_reader_push(reader, field) == LUA_TNIL) {
+        lua_pop(reader->L, 1);
+        return (wh_framing_mark_t){.size = 0};
+    }
+    return take_mark(reader, field);
+}
+
+/* A list of marks. Returns how many there are. */
+static size_t read_marks(wh_reader_t *reader, const char *field, wh_framing_mark_t marks[]) {
+    if (!wh_reader_enter(reader, field)) {
+        return 0;
+    }
+    const size_t count = wh_reader_list(reader);
+    if (count < 1 || count > WH_FRAMING_MARKS) {
+        wh_reader_fail(reader, NULL, "1 to %d texts", WH_FRAMING_MARKS);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        char name[8];
+        (void)snprintf(name, sizeof name, "[%zu]", i + 1);
+        lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
+        marks[i] = take_mark(reader, name);
+    }
+    wh_reader_leave(reader);
+    return count;
+}
+
+static void validate_framing(const wh_reader_t *reader, const wh_framing_t *framing) {
+    char problem[WH_FRAMING_PROBLEM_BYTES];
+    if (!wh_framing_validate(framing, problem)) {
+        luaL_error(reader->L, "%s: framing.%s", reader->file, problem);
+    }
+}
+
+void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect) {
+    static const char *const sums[] = {"none", "add", "xor", "complement", NULL};
+    wh_framing_t *framing = &dialect->framing;
+    if (!wh_reader_open(reader, "framing", framing_fields)) {
+        wh_reader_fail(reader, "framing", "a table");
+    }
+    *framing = wh_framing_default();
+    framing->starts[0] = read_mark(reader, "start");
+    framing->start_count = framing->starts[0].size > 0 ? 1 : 0;
+    framing->end_count = read_marks(reader, "ends", framing->ends);
+    framing->sum = (wh_sum_kind_t)wh_reader_choice(reader, "sum", WH_SUM_NONE, sums);
+    framing->separator = read_mark(reader, "separator");
+    framing->sums_start = wh_reader_boolean(reader, "sums_start", false);
+    framing->sums_separator = wh_reader_boolean(reader, "sums_separator", false);
+    framing->skips_empty = wh_reader_boolean(reader, "skips_empty", true);
+    framing->shortest = (size_t)wh_reader_whole(reader, "shortest", 0, 0, WH_FRAMING_LINE);
+    framing->longest = (size_t)wh_reader_whole(reader, "longest", WH_FRAMING_LINE, 16, WH_FRAMING_LINE);
+    framing->timeout_us = (int64_t)(wh_reader_number(reader, "timeout", 0, 0, 3600) * 1e6);
+    dialect->replies = *framing;
+    const size_t replies = read_marks(reader, "replies", dialect->replies.starts);
+    dialect->replies.start_count = replies > 0 ? replies : framing->start_count;
+    dialect->replies.shortest = 0;
+    validate_framing(reader, framing);
+    validate_framing(reader, &dialect->replies);
+    wh_reader_leave(reader);
+}

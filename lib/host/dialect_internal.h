@@ -1,0 +1,21 @@
+/* Shared by the files of a dialect: how it is read, and what its functions are given. */
+#ifndef WH_HOST_DIALECT_INTERNAL_H
+#define WH_HOST_DIALECT_INTERNAL_H
+
+#include "../script/reader.h"
+#include "dialect.h"
+
+/* Reads the field `framing` of the dialect's table. */
+void wh_dialect_read_framing(wh_reader_t *reader, wh_dialect_t *dialect);
+
+/* Pushes a field of the dialect's table and of the table in it; `within` may be null. */
+void wh_dialect_push(lua_State *L, const char *field, const char *within);
+
+/* Sets ok, number, name, code and text of an error, or of none, in the table on top of the stack. */
+void wh_dialect_set_error(lua_State *L, const wh_dialect_t *dialect, wh_status_t number, const char *code);
+
+/* Pushes the result of a request, without its `reply`; `now` of a request: what STATUS tells. */
+void wh_dialect_push_result(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *result);
+void wh_dialect_push_now(lua_State *L, const wh_dialect_t *dialect, const wh_result_t *now);
+
+#endif

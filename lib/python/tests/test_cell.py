@@ -1,0 +1,99 @@
+"""The package against the program: what a test bench does with a cell."""
+
+import dataclasses
+import time
+
+import pytest
+
+from waferhand import Cell, CellError, Event, NotStarted, Port, Where
+
+PAPER = "lua/layouts/paper.lua"
+
+
+@pytest.mark.cell(PAPER, dialect="words")
+def test_a_pick_without_a_wafer(cell):
+    cell.alarm("WAFER_MISSING")
+    with cell.connect(end="\r") as host:
+        assert host.say("PICK A SLOT 1") == "_ERR 0401"
+        assert cell.where("Wafer 1").station == "A"
+        assert host.say("HOME") == "_RDY"
+        assert host.say("PICK A SLOT 1") == "_RDY"
+        where = cell.where("Wafer 1")
+        assert (where.station, where.slot, where.gripper) == (None, None, "EE")
+
+
+def test_it_starts_within_a_second():
+    begin = time.monotonic()
+    with Cell(PAPER) as cell:
+        assert cell.status()["phase"] == "idle"
+        assert time.monotonic() - begin < 1
+
+
+@pytest.mark.cell(PAPER)
+def test_errors_and_faults(cell):
+    with pytest.raises(CellError) as refused:
+        cell.where("Wafer 9")
+    assert (refused.value.number, refused.value.name) == (46, "NO_SUCH_WAFER")
+    with pytest.raises(CellError):
+        cell.alarm("NO_SUCH_ERROR")
+    with pytest.raises(CellError):
+        cell.ask('GET A 1"\\')
+    number = cell.fault("no_vacuum gripper=EE")
+    with cell.connect() as host:
+        assert "VACUUM_TIMEOUT" in host.say("GET A 1")
+        cell.clear(number)
+        assert host.say("RECOVER").startswith("OK")
+        assert host.say("GET A 1").startswith("OK")
+
+
+@pytest.mark.cell(PAPER, rate=10)
+def test_events_and_rate(cell):
+    with cell.events("picked", "sensor", "position") as events, cell.connect() as host:
+        host.send("GET A 1")
+        heard = [next(events) for _ in range(3)]
+        assert host.hear().startswith("OK")
+    assert [event.kind for event in heard] == ["picked", "sensor", "position"]
+    assert dataclasses.replace(heard[0], seconds=0) == Event("picked", 0, wafer="Wafer 1", gripper="EE")
+    assert heard[1].value == 1 and heard[2].port == "cell"
+    cell.set_rate(0)
+    with pytest.raises(CellError):
+        cell.set_rate(-1)
+
+
+def test_what_was_said_stays():
+    with Cell(PAPER, "prompt") as cell:
+        with cell.connect() as host:
+            for line in ("GET A 1", "PUT B 2", "GET B 1", "PUT B 10"):
+                assert host.say(line).startswith("OK")
+    assert cell.hash == "e4e148111c08e2e0"
+    said = [entry.bytes for entry in cell.transcript if entry.kind == "said" and entry.port == "cell"]
+    assert said == [b"GET A 1\n", b"PUT B 2\n", b"GET B 1\n", b"PUT B 10\n"]
+    with pytest.raises(RuntimeError):
+        cell.status()
+
+
+def test_ports_of_several_mechanisms():
+    ports = [Port("prompt", "robot"), Port("words", "P"), Port("words", "Q")]
+    with Cell("lua/layouts/two_aligners.lua", ports) as cell:
+        assert list(cell.ports) == ["robot", "P", "Q"]
+        with cell.connect("P", end="\r") as host:
+            assert host.say("PICK A SLOT 1").startswith("_ERR")
+
+
+def test_parameters_and_what_cannot_start():
+    with pytest.raises(NotStarted, match="no_such_layout.lua"):
+        Cell("no_such_layout.lua").__enter__()
+    with pytest.raises(NotStarted, match="no dialect nonsense"):
+        Cell(PAPER, "nonsense").__enter__()
+    with pytest.raises(NotStarted, match="nobody"):
+        Cell(PAPER, parameters={"nobody": 1}).__enter__()
+    with pytest.raises(ValueError, match="keep"):
+        Cell(PAPER, keep="talk.txt")
+
+
+@pytest.mark.cell(PAPER)
+def test_where_a_name_needs_quotes(cell):
+    assert isinstance(cell.where('Wafer 1'), Where)
+    with pytest.raises(CellError) as refused:
+        cell.where('a "b\\')
+    assert 'no such wafer; "a "b\\" (expected' in refused.value.text
