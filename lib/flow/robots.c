@@ -63,7 +63,7 @@ static void count_ahead(wh_flow_state_t *state, int32_t wafer) {
 static void head_for(wh_flow_state_t *state, int32_t wafer, int32_t place) {
     if (place != WH_FLOW_NONE) {
         state->wafers[wafer].heading = place;
-        state->places[place].coming = wafer;
+        wh_flow_come(state, place, wafer);
         count_ahead(state, wafer);
     }
 }
@@ -71,7 +71,7 @@ static void head_for(wh_flow_state_t *state, int32_t wafer, int32_t place) {
 /* The wafer is on its way into this place. */
 static void reserve(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t place) {
     state->robots[robot].to = place;
-    state->places[place].coming = wafer;
+    wh_flow_come(state, place, wafer);
     state->wafers[wafer].is_moving = true;
     count_ahead(state, wafer);
 }
@@ -79,6 +79,7 @@ static void reserve(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_
 static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t for_us) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
     state->places[at->place].leaving_us = state->now_us + for_us;
+    ++state->changes;
     state->robots[robot].from = at->place;
     state->wafers[wafer].taker = robot;
     ++state->leaving[wh_flow_step_index(state, wafer, at->step)];
@@ -258,7 +259,7 @@ static void take_out(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32
 static void put_in(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t number) {
     wh_flow_wafer_state_t *put = &state->wafers[wafer];
     state->robots[robot].arms[put->arm] = WH_FLOW_NONE;
-    state->places[number].coming = WH_FLOW_NONE;
+    wh_flow_come(state, number, WH_FLOW_NONE);
     state->places[number].wafer = wafer;
     put->robot = put->taker = WH_FLOW_NONE;
     put->place = number;

@@ -26,9 +26,36 @@ static bool entered_before(const wh_flow_state_t *state, int32_t a, int32_t b) {
     return a_us != b_us ? a_us < b_us : a < b;
 }
 
+/* With more slots than this the wafers of the steps are looked through, of which few lie in a station. */
+#define MANY_SLOTS 32
+
+/* Wafers of a step stand in the order in which they entered, and in their first places also in the plan's. */
+static void find_in_step(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line, size_t step,
+                         int32_t *best) {
+    for (int32_t w = state->heads[step]; w != WH_FLOW_NONE; w = state->wafers[w].next) {
+        if (wh_flow_station_of(state, w) == line->from && fits_line(state, robot, line, w)) {
+            *best = *best == WH_FLOW_NONE || entered_before(state, w, *best) ? w : *best;
+            if (state->wafers[w].step == 0) {
+                return;
+            }
+        }
+    }
+}
+
+static int32_t wafer_among_many(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
+    int32_t best = WH_FLOW_NONE;
+    for (size_t step = 0; step < state->plan->step_count; ++step) {
+        find_in_step(state, robot, line, step, &best);
+    }
+    return best;
+}
+
 /* The wafer that a line means, if it lies in the station: the one named, or the first that entered. */
 static int32_t wafer_in(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
     const wh_flow_station_t *station = &state->tool->stations[line->from];
+    if (station->slots > MANY_SLOTS) {
+        return wafer_among_many(state, robot, line);
+    }
     int32_t best = WH_FLOW_NONE;
     for (int32_t place = station->first_place; place < station->first_place + station->slots; ++place) {
         const int32_t wafer = state->places[place].wafer;
@@ -57,7 +84,7 @@ static int32_t kept_for(const wh_flow_state_t *state, int32_t robot, const wh_fl
 
 /* True if some wafer lies, or will lie, in the line's station before a step that the line serves. */
 static bool is_possible(const wh_flow_state_t *state, int32_t robot, const wh_flow_line_t *line) {
-    for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
+    for (int32_t w = state->first_open; w < (int32_t)state->plan->wafer_count; ++w) {
         const int32_t last = wh_flow_last_step(state->plan, w);
         if (state->wafers[w].is_over || (line->wafer != WH_FLOW_NONE && line->wafer != w)) {
             continue;

@@ -145,7 +145,7 @@ static int32_t choose_place(wh_flow_state_t *state, int32_t robot, int32_t wafer
         if (!is_full(&state->places[at->heading])) {
             return at->heading;
         }
-        state->places[at->heading].coming = WH_FLOW_NONE;
+        wh_flow_come(state, at->heading, WH_FLOW_NONE);
     }
     const wh_flow_target_t target =
         wh_flow_target(state, robot, wafer, state->robots[robot].station, 0, WH_FLOW_NONE);
@@ -159,7 +159,7 @@ static bool carry_on(wh_flow_state_t *state, int32_t robot, int32_t wafer, wh_fl
     if (at->heading == WH_FLOW_NONE) {
         return false;
     }
-    state->places[at->heading].coming = wafer;
+    wh_flow_come(state, at->heading, wafer);
     const int32_t station = state->tool->place_stations[at->heading];
     *order = (wh_flow_order_t){.what = WH_FLOW_BRING,
                                .wafer = wafer,

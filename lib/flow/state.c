@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "safe.h"
 
 static void open_stations(wh_flow_state_t *state) {
     const wh_flow_tool_t *tool = state->tool;
@@ -51,6 +52,8 @@ void wh_flow_state_open(wh_flow_state_t *state, const wh_flow_tool_t *tool, cons
         .leaving = wh_array_new(plan->step_count, sizeof *state->leaving),
         .heads = wh_array_new(plan->step_count, sizeof *state->heads),
         .tails = wh_array_new(plan->step_count, sizeof *state->tails),
+        .coming = wh_array_new(tool->place_count, sizeof *state->coming),
+        .safety = wh_flow_safety_open(tool),
     };
     open_stations(state);
     open_robots(state);
@@ -77,6 +80,8 @@ void wh_flow_state_close(wh_flow_state_t *state) {
     free(state->leaving);
     free(state->heads);
     free(state->tails);
+    free(state->coming);
+    wh_flow_safety_close(state->safety);
     free(state->cause);
     memset(state, 0, sizeof *state);
 }
@@ -89,6 +94,7 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer) {
     wh_flow_wafer_state_t *entering = &state->wafers[wafer];
     const size_t step = wh_flow_step_index(state, wafer, entering->step);
+    ++state->changes;
     entering->before = state->tails[step];
     entering->next = WH_FLOW_NONE;
     if (entering->before != WH_FLOW_NONE) {
@@ -102,6 +108,7 @@ void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer) {
 void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
     const wh_flow_wafer_state_t *leaving = &state->wafers[wafer];
     const size_t step = wh_flow_step_index(state, wafer, leaving->step);
+    ++state->changes;
     if (leaving->before != WH_FLOW_NONE) {
         state->wafers[leaving->before].next = leaving->next;
     } else {
@@ -111,6 +118,21 @@ void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer) {
         state->wafers[leaving->next].before = leaving->before;
     } else {
         state->tails[step] = leaving->before;
+    }
+}
+
+void wh_flow_come(wh_flow_state_t *state, int32_t place, int32_t wafer) {
+    const bool came = state->places[place].coming != WH_FLOW_NONE;
+    state->places[place].coming = wafer;
+    ++state->changes;
+    if (!came && wafer != WH_FLOW_NONE) {
+        state->coming[state->coming_count++] = place;
+    }
+    for (size_t i = 0; came && wafer == WH_FLOW_NONE && i < state->coming_count; ++i) {
+        if (state->coming[i] == place) {
+            state->coming[i] = state->coming[--state->coming_count];
+            return;
+        }
     }
 }
 

@@ -129,8 +129,13 @@ typedef struct wh_flow_state {
     int32_t *counts;        /* by step: from the begin of the transfer in to the end of the pick out */
     int32_t *leaving;       /* by step: those of them whose pick out runs */
     int32_t *heads, *tails; /* by step: the wafers that lie there */
+    int32_t *coming;        /* the places into which a wafer comes, in no order */
+    size_t coming_count;
+    struct wh_flow_safety *safety; /* see safe.h */
+    uint64_t changes;              /* of where wafers are, and where they go */
     size_t next_lot, next_down;
     size_t over;           /* wafers at their end */
+    int32_t first_open;    /* all wafers before this one are */
     int64_t next_start_us; /* by takt */
     int64_t last_us;       /* the end of the last placing */
     wh_flow_listener_t listener;
@@ -149,6 +154,9 @@ size_t wh_flow_step_index(const wh_flow_state_t *state, int32_t wafer, int32_t s
 /* Puts the wafer behind all others of its step, or takes it out. */
 void wh_flow_step_enter(wh_flow_state_t *state, int32_t wafer);
 void wh_flow_step_leave(wh_flow_state_t *state, int32_t wafer);
+
+/* This wafer comes into the place now; WH_FLOW_NONE: no wafer does. */
+void wh_flow_come(wh_flow_state_t *state, int32_t place, int32_t wafer);
 
 /* The next wafer behind this one in a step's list, WH_FLOW_NONE for the first, which lies there and nobody
  * has begun to take. A lot's wafers in their first places want the same: one stands for all, unless each

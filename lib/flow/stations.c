@@ -23,6 +23,10 @@ static void end_wafer(wh_flow_state_t *state, int32_t wafer) {
     wh_flow_step_leave(state, wafer);
     --state->counts[wh_flow_step_index(state, wafer, at->step)];
     ++state->over;
+    while (state->first_open < (int32_t)state->plan->wafer_count &&
+           state->wafers[state->first_open].is_over) {
+        ++state->first_open;
+    }
 }
 
 static bool is_last(const wh_flow_state_t *state, int32_t wafer) {

@@ -173,6 +173,22 @@ wh_flow_room_t wh_flow_room(const wh_flow_state_t *state, int32_t route, int32_t
     return room;
 }
 
+/* All places of a station; if the wafer must end in one, in that alone. */
+static void look_at_all(const wh_flow_state_t *state, int32_t robot, int32_t station, int32_t end,
+                        int64_t there_us, found_t *found) {
+    const int32_t first = state->tool->stations[station].first_place;
+    const int32_t behind = first + state->tool->stations[station].slots;
+    if (end != WH_FLOW_NONE) {
+        if (end >= first && end < behind) {
+            look_at(state, robot, end, there_us, found);
+        }
+        return;
+    }
+    for (int32_t place = first; place < behind; ++place) {
+        look_at(state, robot, place, there_us, found);
+    }
+}
+
 /* Fills `found`. `leaver`: see wh_flow_room. */
 static void find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t from,
                          int64_t loaded_us, int32_t station, int32_t leaver, found_t *found) {
@@ -194,12 +210,7 @@ static void find_targets(const wh_flow_state_t *state, int32_t robot, int32_t wa
                 continue;
             }
         }
-        const int32_t first = tool->stations[to].first_place;
-        for (int32_t place = first; place < first + tool->stations[to].slots; ++place) {
-            if (end == WH_FLOW_NONE || end == place) {
-                look_at(state, robot, place, there_us, found);
-            }
-        }
+        look_at_all(state, robot, to, end, there_us, found);
     }
 }
 

@@ -71,17 +71,46 @@ static void check_served(wh_reader_t *reader, const wh_flow_tool_t *tool, int32_
     }
 }
 
+/* Long lists are made of few tables, again and again: the lines that were read from the last ones. */
+#define KNOWN 64
+
+typedef struct {
+    const void *tables[KNOWN];
+    size_t lines[KNOWN];
+    size_t count;
+} known_t;
+
+/* The number of an equal line before it, or SIZE_MAX; it is noted where the line of this table stands. */
+static size_t find_known(known_t *known, const void *table, size_t line) {
+    for (size_t i = 0; table && i < KNOWN && i < known->count; ++i) {
+        if (known->tables[i] == table) {
+            return known->lines[i];
+        }
+    }
+    known->tables[known->count % KNOWN] = table;
+    known->lines[known->count++ % KNOWN] = line;
+    return SIZE_MAX;
+}
+
 static void read_list(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                       int32_t robot) {
     wh_flow_list_t *list = &plan->lists[robot];
     const size_t count = wh_reader_list(reader);
+    known_t known = {.count = 0};
     for (size_t i = 0; i < count; ++i) {
         list->lines = wh_array_grow(list->lines, list->count, &list->capacity, sizeof *list->lines);
-        (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
-        read_line(reader, tool, plan, &list->lines[i]);
-        check_served(reader, tool, robot, &list->lines[i]);
+        lua_rawgeti(reader->L, -1, (lua_Integer)i + 1);
+        const size_t equal = find_known(&known, lua_topointer(reader->L, -1), i);
+        lua_pop(reader->L, 1);
+        if (equal != SIZE_MAX) {
+            list->lines[i] = list->lines[equal];
+        } else {
+            (void)wh_reader_enter_item(reader, (lua_Integer)i + 1);
+            read_line(reader, tool, plan, &list->lines[i]);
+            check_served(reader, tool, robot, &list->lines[i]);
+            wh_reader_leave(reader);
+        }
         list->count = i + 1;
-        wh_reader_leave(reader);
     }
 }
 

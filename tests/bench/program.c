@@ -1,6 +1,6 @@
-/* Figures without a peer: how much faster than real time the program plays the transfer run and a
+/* Figures without a peer in C: how much faster than real time the program plays the transfer run and a
  * tool, the cost of its log's other readers beside a replay, the instructions of a step, as callgrind counts
- * them, and the time of a scan's estimate.
+ * them, the time of a scan's estimate; and a flow of 10,000 wafers, also against SimPy.
  * Start it at the root, after `make all tests`. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,6 +120,43 @@ static void time_counted(const char *row, double goal) {
     bench_figure(row, "x the full run", &spread, false, goal);
 }
 
+#define FLOW "build/waferhand run tests/bench/flow.lua --set wafers=10000"
+#define SIMPY "PYTHONPATH=build/pypi python3 tests/bench/peer_simpy.py 10000"
+
+/* Two robots, two locks, six modules, all by times alone: the whole program, its table included. */
+static void time_flow(const char *row, double goal) {
+    double times[FEW_RUNS];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        times[i] = cost_of(FLOW " >/dev/null");
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "s", &spread, true, goal);
+}
+
+static void race_simpy(const char *row, double goal) {
+    double times[FEW_RUNS];
+    if (!bench_wanted(row)) {
+        return;
+    }
+    if (system("PYTHONPATH=build/pypi python3 -c 'import simpy' 2>/dev/null") != 0) {
+        bench_note("SKIPPED SimPy: the wheel of tests/bench/requirements.txt");
+        return;
+    }
+    const double ours = ask(FLOW, "makespan_s "), peers = ask(SIMPY, "makespan_s ");
+    if (!(ours > 0) || ours < peers || ours > peers) {
+        bench_differ("SimPy", "the makespan");
+    }
+    for (size_t i = 0; i < FEW_RUNS; ++i) {
+        const double whole = cost_of(SIMPY " >/dev/null");
+        times[i] = whole / cost_of(FLOW " >/dev/null");
+    }
+    const bench_spread_t spread = bench_spread(times, FEW_RUNS);
+    bench_figure(row, "x SimPy", &spread, false, goal);
+}
+
 /* A log read by a command, against the same log replayed. */
 static void time_reading(const char *row, const char *command, double goal) {
     char line[200];
@@ -148,6 +185,8 @@ int main(int argc, char **argv) {
     /* Two robots; collisions between all parts and the smallest gaps are checked. */
     time_run("tool, real time", "27_tool", FEW_RUNS, 300);
     time_counted("counted, a long series", 5);
+    time_flow("flow, 10,000 wafers", 0.2);
+    race_simpy("flow, against SimPy", 5);
     time_reading("csv, of the tool's log", "csv -o", 4);
     time_reading("report, of the tool's log", "report -o", 0);
     count_step("step, 2 wafers", "step indexed 2 idle", 400);
