@@ -7,7 +7,7 @@
 #   WITHOUT="sweep index"   the library has no swept checking, no index over the wafers, or neither
 #   SHARED=1   the shared libraries are installed, too
 #   COLLISION=1  install-library installs collision, too; it needs libccd
-#   FOR="run test"  whose packages `make deps` installs: run, test, check, bench, verify, manual, spy, view, browser
+#   FOR="run test"  whose packages `make deps` installs: run, page, test, check, bench, verify, manual, spy, view, browser
 #   CCACHE=    does not use ccache, which is otherwise used if it is there
 #   WERROR=1   warnings are errors (always so if CI is set)
 #   V=1        shows the commands; 0 switches off what 1 switches on, and is the default

@@ -1,4 +1,6 @@
 /* waferhand run SCRIPT */
+#include <stdlib.h>
+
 #include "app.h"
 #include "broadcast.h"
 #include "connection.h"
@@ -8,6 +10,8 @@
 typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
+    wh_live_arguments_t page;
+    double rate; /* 0: not given */
     const char *url;
     bool lcm, watch;
 } arguments_t;
@@ -23,6 +27,9 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.history_path)},
     {"schedule", 0, "FILE", "Write the schedule that a flow played, as waferhand schedule reads it",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, run.schedule_path)},
+    {"rate", 0, "FACTOR",
+     "With --page: let simulated time pass so much faster than the wall clock (default 1)", WH_OPTION_REAL,
+     .variable = offsetof(arguments_t, rate), 1e-3, 1e3},
     {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
@@ -44,7 +51,8 @@ static const char *option_of_slices(const arguments_t *arguments) {
         const char *option;
     } options_of_slices[] = {{arguments->lcm, "--lcm"},
                              {arguments->record.slices, "--record"},
-                             {arguments->record.all, "--record-all"}};
+                             {arguments->record.all, "--record-all"},
+                             {arguments->page.address, "--page"}};
     for (size_t i = 0; i < sizeof options_of_slices / sizeof options_of_slices[0]; ++i) {
         if (options_of_slices[i].is_given) {
             return options_of_slices[i].option;
@@ -60,6 +68,16 @@ static void check_counted(const arguments_t *arguments, struct argp_state *state
     }
 }
 
+static void check_page(const arguments_t *arguments, struct argp_state *state) {
+    if (arguments->rate > 0 && !arguments->page.address) {
+        argp_error(state, "--rate: %g (goes with --page: without one nobody waits for the clock)",
+                   arguments->rate);
+    }
+    if (arguments->watch && arguments->page.address) {
+        argp_error(state, "--watch does not go with --page, which stays at one run");
+    }
+}
+
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->url && !arguments->lcm) {
@@ -67,6 +85,7 @@ static void check(const void *given, struct argp_state *state) {
     }
     check_errors(arguments, state);
     check_counted(arguments, state);
+    check_page(arguments, state);
     if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
         argp_error(state, "--watch goes neither with --lcm nor with a recording");
     }
@@ -79,6 +98,7 @@ static const wh_option_table_t tables[] = {
     {wh_run_counting_options, offsetof(arguments_t, run), NULL, wh_run_counting_check},
     {wh_run_error_options, offsetof(arguments_t, run), NULL, wh_run_errors_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {0}};
 
 static const wh_command_line_t command_line = {
@@ -101,6 +121,16 @@ static int run_published(arguments_t *arguments) {
     return wh_broadcast_close(&broadcast) ? status : WH_EXIT_USAGE;
 }
 
+static bool open_page(arguments_t *arguments, char **command) {
+    *command = wh_run_command(&arguments->run, false);
+    const wh_live_options_t wanted = {.speaker = "run",
+                                      .title = arguments->run.run.script,
+                                      .reproduce = *command,
+                                      .rate = arguments->rate > 0 ? arguments->rate : 1,
+                                      .paces = true};
+    return wh_live_open(&arguments->run.live, &arguments->page, &wanted);
+}
+
 static int play(void *user) {
     arguments_t *arguments = user;
     const bool published = arguments->lcm || arguments->run.record;
@@ -115,7 +145,13 @@ int wh_app_run(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
-    const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
+    char *command = NULL;
+    int status = WH_EXIT_USAGE;
+    if (open_page(&arguments, &command)) {
+        status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
+    }
+    wh_live_close(arguments.run.live);
+    free(command);
     wh_run_arguments_free(&arguments.run);
     return status;
 }

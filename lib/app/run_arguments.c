@@ -110,7 +110,7 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 }
 
 wh_mcs_listener_t wh_run_listener(wh_signals_t *signals) {
-    return (wh_mcs_listener_t){on_slice, on_boundary, signals};
+    return (wh_mcs_listener_t){.slice = on_slice, .boundary = on_boundary, .user = signals};
 }
 
 /* ------------------------------------------------------------------------------------------------- errors */
@@ -481,11 +481,19 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     if (wh_run_files_wanted(&arguments->files)) {
         arguments->run.listener = wh_run_listener(&signals);
     }
+    arguments->run.listener = wh_live_listener(arguments->live, &arguments->run.listener);
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.keep_ways = arguments->schedule_path || wh_run_files_wanted(&arguments->files);
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
-    const int status = hand_on(arguments, &run, &signals, outcome);
+    int status = hand_on(arguments, &run, &signals, outcome);
+    if (run.record.layout && wh_live_shows(arguments->live, run.record.layout)) {
+        wh_live_stay(arguments->live);
+    } else if (arguments->live) {
+        status = WH_EXIT_USAGE;
+    }
+    wh_live_close(arguments->live); /* it has the run's layout */
+    arguments->live = NULL;
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;

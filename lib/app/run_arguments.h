@@ -8,6 +8,7 @@
 #include "../print/record_print.h"
 #include "../report/document.h"
 #include "../text/options.h"
+#include "live.h"
 
 /* Zero it to begin with: null paths are not wanted. */
 typedef struct {
@@ -52,6 +53,7 @@ typedef struct {
     const char *command;           /* the subcommand that plays it again; null: run */
     wh_run_files_t files;
     wh_run_counting_t counting;
+    wh_live_t *live; /* its page; null: none */
 } wh_run_arguments_t;
 
 /* All options except those of files, into a wh_run_arguments_t; the script is the subcommand's operand. */

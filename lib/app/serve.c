@@ -26,6 +26,7 @@ typedef struct {
     wh_serve_cell_arguments_t cell;
     wh_serve_beside_t beside;
     wh_allow_t allow;
+    wh_live_arguments_t page;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -74,6 +75,7 @@ static const wh_option_table_t tables[] = {
     {wh_serve_cell_options, offsetof(arguments_t, cell), NULL, wh_serve_cell_check},
     {wh_record_options, offsetof(arguments_t, cell.record), NULL, wh_record_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
     {0}};
 
@@ -415,6 +417,7 @@ typedef struct {
     wh_host_t host;
     wh_signals_t signals;
     wh_serve_cell_t cell;
+    wh_live_t *live; /* its page; null: none */
 } served_t;
 
 static bool open_session(served_t *served, const arguments_t *arguments) {
@@ -437,6 +440,7 @@ static bool open_session(served_t *served, const arguments_t *arguments) {
 }
 
 static bool close_served(served_t *served) {
+    wh_live_close(served->live);
     wh_host_close(&served->host);
     wh_serve_cell_close_view(&served->cell);
     wh_signals_close(&served->signals);
@@ -467,6 +471,19 @@ static bool listen_all(wh_host_t *host, const arguments_t *arguments, int argc, 
            open_transcript(host, arguments) && wh_serve_beside_ready(&arguments->beside, host);
 }
 
+static bool open_page(served_t *served, const arguments_t *arguments) {
+    wh_host_t *host = &served->host;
+    const wh_live_options_t wanted = {
+        .speaker = "serve", .title = arguments->layout.path, .rate = rate_of(arguments)};
+    const bool opened = wh_live_open(&served->live, &arguments->page, &wanted);
+    if (served->live) {
+        host->next = wh_live_listener(served->live, &host->next);
+        host->heard = wh_live_heard;
+        host->heard_user = served->live;
+    }
+    return opened;
+}
+
 static int serve(arguments_t *arguments, int argc, char **argv) {
     static served_t served; /* most of it is for LCM, and not touched without that */
     wh_host_t *host = &served.host;
@@ -478,7 +495,8 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
         host->next = wh_run_listener(&served.signals);
     }
     host->allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
-    const bool may_begin = wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
+    const bool may_begin = open_page(&served, arguments) &&
+                           wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
                            check_coverage(arguments->coverage) && are_writable(arguments);
     const bool good = may_begin && open_session(&served, arguments) &&
                       listen_all(host, arguments, argc, argv) && run_host(&served, arguments);

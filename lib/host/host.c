@@ -179,8 +179,34 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
     }
 }
 
+static void on_begin(void *user, const wh_layout_t *layout) {
+    const wh_host_t *host = user;
+    if (host->next.begins) {
+        host->next.begins(host->next.user, layout);
+    }
+}
+
+static void on_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command) {
+    const wh_host_t *host = user;
+    if (host->next.tell) {
+        host->next.tell(host->next.user, mcs, news, command);
+    }
+}
+
+static void on_turn(void *user, const wh_mcs_t *mcs, const char *what) {
+    const wh_host_t *host = user;
+    if (host->next.turn) {
+        host->next.turn(host->next.user, mcs, what);
+    }
+}
+
 wh_mcs_listener_t wh_host_listener(wh_host_t *host) {
-    return (wh_mcs_listener_t){on_slice, on_boundary, host};
+    return (wh_mcs_listener_t){.slice = on_slice,
+                               .boundary = on_boundary,
+                               .begins = on_begin,
+                               .tell = on_news,
+                               .turn = on_turn,
+                               .user = host};
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */

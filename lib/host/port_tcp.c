@@ -1,15 +1,14 @@
 /* A port that listens for TCP. */
-#include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "address.h"
 #include "port_internal.h"
 
 /* Connections that wait at a listener: those of a second at a thousand a second. */
@@ -17,80 +16,12 @@
 /* The most second clients that are refused in one go. */
 #define ACCEPTS 64
 
-/* ---------------------------------------------------------------------------------------------- addresses */
-
-/* An address with its port, IPv4 or IPv6. */
-typedef struct {
-    struct sockaddr_storage bytes;
-    socklen_t size;
-} address_t;
-
-static bool read_number(const char *text, uint16_t *number) {
-    char *end = NULL;
-    const unsigned long value = strtoul(text, &end, 10);
-    *number = (uint16_t)value;
-    return text[0] >= '0' && text[0] <= '9' && *end == '\0' && value <= 65535;
-}
-
-/* The host in a text of `size` bytes, which has brackets if, and only if, there is a colon in it. */
-static bool take_host(const char *text, size_t size, char host[INET6_ADDRSTRLEN]) {
-    const bool has_brackets = size > 2 && text[0] == '[' && text[size - 1] == ']';
-    text += has_brackets ? 1 : 0;
-    size -= has_brackets ? 2 : 0;
-    if (size == 0 || size >= INET6_ADDRSTRLEN || has_brackets != (memchr(text, ':', size) != NULL)) {
-        return false;
-    }
-    (void)snprintf(host, INET6_ADDRSTRLEN, "%.*s", (int)size, text);
-    return true;
-}
-
-/* Splits "HOST:PORT", "[HOST]:PORT" and "PORT"; no host is 127.0.0.1. */
-static bool split_address(const char *text, char host[INET6_ADDRSTRLEN], uint16_t *number) {
-    const char *colon = strrchr(text, ':');
-    if (colon) {
-        return take_host(text, (size_t)(colon - text), host) && read_number(colon + 1, number);
-    }
-    (void)snprintf(host, INET6_ADDRSTRLEN, "127.0.0.1");
-    return read_number(text, number);
-}
-
-static bool read_address(const char *text, address_t *address) {
-    char host[INET6_ADDRSTRLEN];
-    uint16_t number = 0;
-    memset(address, 0, sizeof *address);
-    if (!split_address(text, host, &number)) {
-        return false;
-    }
-    struct sockaddr_in four = {.sin_family = AF_INET, .sin_port = htons(number)};
-    struct sockaddr_in6 six = {.sin6_family = AF_INET6, .sin6_port = htons(number)};
-    if (inet_pton(AF_INET, host, &four.sin_addr) == 1) {
-        memcpy(&address->bytes, &four, sizeof four);
-        address->size = sizeof four;
-    } else if (inet_pton(AF_INET6, host, &six.sin6_addr) == 1) {
-        memcpy(&address->bytes, &six, sizeof six);
-        address->size = sizeof six;
-    }
-    return address->size > 0;
-}
-
 /* Where the port listens, with the number that the system chose. */
 static void note_place(wh_port_t *port) {
-    address_t address = {.size = sizeof address.bytes};
-    char host[INET6_ADDRSTRLEN] = "";
-    struct sockaddr_in four = {0};
-    struct sockaddr_in6 six = {0};
+    wh_address_t address = {.size = sizeof address.bytes};
     (void)getsockname(port->listener, (struct sockaddr *)&address.bytes, &address.size);
-    if (address.bytes.ss_family == AF_INET) {
-        memcpy(&four, &address.bytes, sizeof four);
-        (void)inet_ntop(AF_INET, &four.sin_addr, host, sizeof host);
-        (void)snprintf(port->place, sizeof port->place, "%s:%u", host, (unsigned)ntohs(four.sin_port));
-        port->is_local = ntohl(four.sin_addr.s_addr) >> 24 == 127;
-    } else {
-        memcpy(&six, &address.bytes, sizeof six);
-        (void)inet_ntop(AF_INET6, &six.sin6_addr, host, sizeof host);
-        (void)snprintf(port->place, sizeof port->place, "[%s]:%u", host, (unsigned)ntohs(six.sin6_port));
-        port->is_local = memcmp(&six.sin6_addr, &in6addr_loopback, sizeof six.sin6_addr) == 0;
-    }
+    port->is_local = wh_address_is_local(&address);
+    wh_address_write(&address, port->place, sizeof port->place);
 }
 
 /* ------------------------------------------------------------------------------------------------ clients */
@@ -111,7 +42,7 @@ static unsigned welcome_client(wh_port_t *port, int fd) {
 
 /* Takes a client that waits at the listener, if there is one. Returns what happened to others. */
 static unsigned take_waiting(wh_port_t *port) {
-    address_t from = {.size = sizeof from.bytes};
+    wh_address_t from = {.size = sizeof from.bytes};
     if (port->is_there && port->second == WH_PORT_SHARE) {
         return 0; /* the next one is for another port of this place */
     }
@@ -175,15 +106,12 @@ static const wh_port_kind_t tcp = {.serve = serve_tcp,
 
 bool wh_port_open_tcp(wh_port_t *port, const char *address, wh_port_second_t second,
                       char problem[WH_PORT_PROBLEM_BYTES]) {
-    address_t at;
+    wh_address_t at;
     const int on = 1;
     wh_port_begin(port, &tcp, second);
-    if (!read_address(address, &at)) {
-        (void)snprintf(
-            problem, WH_PORT_PROBLEM_BYTES,
-            "%.200s: no address (expected ADDRESS:PORT in numbers, such as 127.0.0.1:5000, or PORT "
-            "from 0 to 65535)",
-            address);
+    if (!wh_address_read(address, &at)) {
+        (void)snprintf(problem, WH_PORT_PROBLEM_BYTES,
+                       "%.200s: no address (expected " WH_ADDRESS_EXPECTED ")", address);
         return false;
     }
     port->listener = socket(at.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);

@@ -168,7 +168,10 @@ struct wh_host {
     double rate;           /* 0: no waiting for the wall clock */
     bool shows_one_run;    /* RESET, RESTORE and UNDO are refused */
     const volatile sig_atomic_t *stop;
-    wh_mcs_listener_t next;   /* who else listens; may be all null */
+    wh_mcs_listener_t next; /* who else listens; may be all null */
+    /* Called with each entry of a transcript, whether one is written or not; may be null. */
+    void (*heard)(void *user, const wh_transcript_entry_t *entry);
+    void *heard_user;
     void (*tick)(void *user); /* called whenever ports were served, at least every 100 ms, but not within the
                                  link's exchange; may be null */
     void *tick_user;

@@ -188,6 +188,9 @@ static void tell_turn(const wh_mcs_t *mcs, const char *what) {
     if (mcs->wanted.partners.turn) {
         mcs->wanted.partners.turn(mcs->wanted.partners.user, mcs, what);
     }
+    if (mcs->wanted.listener.turn) {
+        mcs->wanted.listener.turn(mcs->wanted.listener.user, mcs, what);
+    }
 }
 
 /* native.waits(text): from now on the task waits for the thing that the text names; nil: it waits

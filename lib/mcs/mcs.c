@@ -33,6 +33,9 @@ void wh_mcs_tell(const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_recor
     if (mcs->wanted.partners.tell) {
         mcs->wanted.partners.tell(mcs->wanted.partners.user, mcs, news, command);
     }
+    if (mcs->wanted.listener.tell) {
+        mcs->wanted.listener.tell(mcs->wanted.listener.user, mcs, news, command);
+    }
 }
 
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
@@ -201,6 +204,9 @@ static int connect_cell(lua_State *L) {
     }
     if (mcs->local.collision.memory && mcs->link != &mcs->local.simulator.link) {
         wh_mcs_listen(mcs, hear_collisions, &mcs->local.collision);
+    }
+    if (mcs->wanted.listener.begins) {
+        mcs->wanted.listener.begins(mcs->wanted.listener.user, mcs->layout);
     }
     return 0;
 }

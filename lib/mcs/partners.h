@@ -73,6 +73,12 @@ typedef struct {
     wh_slice_listener_t *slice;
     /* A command of the record begins or has ended. Called before the first slice. */
     void (*boundary)(void *user, const wh_layout_t *layout);
+    /* A cell was set up, or is gone back to because another could not be set up. The layout of the run before
+     * is still there, and goes when this has returned. */
+    void (*begins)(void *user, const wh_layout_t *layout);
+    /* Like those of the partners. */
+    void (*tell)(void *user, const wh_mcs_t *mcs, wh_mcs_news_t news, const wh_command_record_t *command);
+    void (*turn)(void *user, const wh_mcs_t *mcs, const char *what);
     void *user;
 } wh_mcs_listener_t;
 

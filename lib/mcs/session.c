@@ -96,6 +96,9 @@ static bool reset_session(wh_session_t *session, char message[WH_SANDBOX_MESSAGE
         leave(before);
     } else {
         snprintf(message, WH_SANDBOX_MESSAGE_BYTES, "%s", session->message);
+        if (options.listener.begins && session->mcs.layout) {
+            options.listener.begins(options.listener.user, before->mcs.layout);
+        }
         wh_session_close(session);
         *session = *before;
     }

@@ -338,6 +338,14 @@ double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope) {
     return at_slice(&cubic, slice, slope);
 }
 
+bool wh_path_last(const wh_path_t *curve, double *value) {
+    if (curve->sample_count == 0) {
+        return false;
+    }
+    *value = curve->samples[curve->sample_count - 1].value;
+    return true;
+}
+
 void wh_path_insert(wh_path_t *curve, int64_t slice, double value) {
     wh_points_t *list = &curve->list;
     const bool forced = curve->is_forced;

@@ -65,6 +65,9 @@ void wh_path_insert(wh_path_t *curve, int64_t slice, double value);
  * `slope` (per slice) may be null. Cost: log n. */
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope);
 
+/* The last sample's value, whether it is a point or not. False before the first sample and in a break. */
+bool wh_path_last(const wh_path_t *curve, double *value);
+
 void wh_path_close(wh_path_t *curve);
 
 #endif

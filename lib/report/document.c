@@ -6,43 +6,14 @@
 #include "../layout/arms.h"
 #include "../layout/axes.h"
 #include "../math/config.h"
-#include "../record/quaternion.h"
 #include "../text/array.h"
-#include "../text/json.h"
 #include "../view/scene.h"
 #include "notes_document.h"
+#include "put.h"
 #include "scans_document.h"
+#include "tracks_document.h"
 
 #define FORMAT 2
-
-static void put_text(wh_json_text_t *text, const char *key, const char *value) {
-    wh_json_text_value(text, key, wh_json_text(value));
-}
-
-static void put_exact(wh_json_text_t *text, const char *key, double value) {
-    wh_json_text_number(text, key, value, 0, true);
-}
-
-static void put_list(wh_json_text_t *text, const char *key, const double values[], size_t count) {
-    wh_json_text_begin(text, key, '[');
-    for (size_t i = 0; i < count; ++i) {
-        put_exact(text, NULL, values[i]);
-    }
-    wh_json_text_end(text, ']');
-}
-
-static void put_point(wh_json_text_t *text, const char *key, const wh_vec3_t *point) {
-    const double values[] = {point->x, point->y, point->z};
-    put_list(text, key, values, 3);
-}
-
-/* The members r and q. */
-static void put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
-    double q[4];
-    wh_quaternion_from_matrix(&pose->R, NULL, q);
-    put_point(text, "r", &pose->r);
-    put_list(text, "q", q, 4);
-}
 
 /* A list: `put` writes each of its elements, from 0 to count - 1. */
 typedef void put_t(wh_json_text_t *text, const wh_document_t *document, size_t i);
@@ -54,11 +25,6 @@ static void put_each(wh_json_text_t *text, const wh_document_t *document, const 
         put(text, document, i);
     }
     wh_json_text_end(text, ']');
-}
-
-/* Null for WH_NONE. */
-static void put_index(wh_json_text_t *text, const char *key, int32_t index) {
-    put_exact(text, key, index == WH_NONE ? HUGE_VAL : index);
 }
 
 /* --------------------------------------------------------------------------------------------------- head */
@@ -78,23 +44,23 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
 static void put_span(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
     if (!signals) {
-        put_exact(text, "begin_s", 0);
-        put_exact(text, "duration_s", document->record->simulated_s);
+        wh_put_exact(text, "begin_s", 0);
+        wh_put_exact(text, "duration_s", document->record->simulated_s);
         return;
     }
-    put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
+    wh_put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
-    put_exact(text, "begin_s", wh_signals_seconds(signals, signals->first));
-    put_exact(text, "duration_s", wh_signals_seconds(signals, signals->last));
+    wh_put_exact(text, "begin_s", wh_signals_seconds(signals, signals->first));
+    wh_put_exact(text, "duration_s", wh_signals_seconds(signals, signals->last));
 }
 
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     wh_json_text_integer(text, "format", FORMAT);
-    put_text(text, "title", document->title);
-    put_text(text, "version", WH_VERSION);
-    put_text(text, "reproduce", document->reproduce);
+    wh_put_text(text, "title", document->title);
+    wh_put_text(text, "version", WH_VERSION);
+    wh_put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
-    put_text(text, "source", document->source);
+    wh_put_text(text, "source", document->source);
     wh_notes_document_put(text, document);
     wh_json_text_value(text, "run", json_incref(document->run));
     put_span(text, document);
@@ -113,28 +79,28 @@ static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t
     char name[WH_NAME_SIZE + 8];
     wh_layout_name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
-    put_text(text, "name", name);
-    put_text(text, "unit", wh_layout_axis_unit(layout, axis));
-    put_exact(text, "low", travel.max > travel.min ? travel.min : HUGE_VAL);
-    put_exact(text, "high", travel.max > travel.min ? travel.max : HUGE_VAL);
-    put_exact(text, "speed", speed > 0 ? speed : HUGE_VAL);
+    wh_put_text(text, "name", name);
+    wh_put_text(text, "unit", wh_layout_axis_unit(layout, axis));
+    wh_put_exact(text, "low", travel.max > travel.min ? travel.min : HUGE_VAL);
+    wh_put_exact(text, "high", travel.max > travel.min ? travel.max : HUGE_VAL);
+    wh_put_exact(text, "speed", speed > 0 ? speed : HUGE_VAL);
     wh_json_text_end(text, '}');
 }
 
 static void put_wafer_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    put_text(text, NULL, document->signals->layout->wafers[i].name);
+    wh_put_text(text, NULL, document->signals->layout->wafers[i].name);
 }
 
 static void put_gripper_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    put_text(text, NULL, document->signals->layout->grippers[i].name);
+    wh_put_text(text, NULL, document->signals->layout->grippers[i].name);
 }
 
 static void put_door_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    put_text(text, NULL, document->signals->layout->door_list[i].name);
+    wh_put_text(text, NULL, document->signals->layout->door_list[i].name);
 }
 
 static void put_station_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    put_text(text, NULL, document->signals->layout->stations[i].name);
+    wh_put_text(text, NULL, document->signals->layout->stations[i].name);
 }
 
 static void put_names(wh_json_text_t *text, const wh_document_t *document) {
@@ -154,10 +120,10 @@ static void put_names(wh_json_text_t *text, const wh_document_t *document) {
 
 static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_begin(text, "wafer", '{');
-    put_exact(text, "diameter", layout->wafer_diameter);
-    put_exact(text, "thickness", layout->wafer_thickness);
+    wh_put_exact(text, "diameter", layout->wafer_diameter);
+    wh_put_exact(text, "thickness", layout->wafer_thickness);
     if (layout->notch_depth > 0) {
-        put_exact(text, "notch", layout->notch);
+        wh_put_exact(text, "notch", layout->notch);
     }
     wh_json_text_end(text, '}');
 }
@@ -169,22 +135,22 @@ static void put_mount(wh_json_text_t *text, const wh_document_t *document, size_
     const wh_pose_t identity = wh_pose_identity();
     const wh_pose_t *on_robot = mount->is_shifted ? &mount->effector_from_gripper : &identity;
     wh_json_text_begin(text, NULL, '{');
-    put_index(text, "axis", mount->axis);
+    wh_put_index(text, "axis", mount->axis);
     if (mount->arm > 0) {
-        put_index(text, "arm", mount->arm);
+        wh_put_index(text, "arm", mount->arm);
     }
     if (mount->axis == WH_NONE && mount->robot > 0) {
-        put_index(text, "robot", mount->robot);
+        wh_put_index(text, "robot", mount->robot);
     }
-    put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
+    wh_put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
     wh_json_text_end(text, '}');
 }
 
 static void put_door(wh_json_text_t *text, const wh_document_t *document, size_t d) {
     const wh_machine_t *machine = &document->signals->layout->machine;
     wh_json_text_begin(text, NULL, '{');
-    put_index(text, "axis", (int32_t)wh_machine_door_axis(machine, d));
-    put_point(text, "way", &machine->doors[d].way);
+    wh_put_index(text, "axis", (int32_t)wh_machine_door_axis(machine, d));
+    wh_put_point(text, "way", &machine->doors[d].way);
     wh_json_text_end(text, '}');
 }
 
@@ -214,16 +180,16 @@ static void put_chain(wh_json_text_t *text, const wh_machine_t *machine, const w
     const wh_chain_t *chain = &carrier->chain;
     const wh_pose_t identity = wh_pose_identity();
     wh_json_text_begin(text, "chain", '{');
-    put_pose(text, chain->is_placed ? &chain->base_from_robot : &identity);
+    wh_put_pose(text, chain->is_placed ? &chain->base_from_robot : &identity);
     wh_json_text_begin(text, "axes", '[');
     for (size_t own = 0; own < carrier->axis_count; ++own) {
         wh_json_text_string(text, NULL, wh_axis_name(machine, first + own));
     }
     wh_json_text_end(text, ']');
-    put_exact(text, "flip_height", chain->flip_height);
+    wh_put_exact(text, "flip_height", chain->flip_height);
     wh_json_text_begin(text, "links", '[');
     for (size_t i = 0; chain->kind == WH_CHAIN_SCARA && i < 2; ++i) {
-        put_exact(text, NULL, chain->links[i]);
+        wh_put_exact(text, NULL, chain->links[i]);
     }
     wh_json_text_end(text, ']');
     wh_json_text_end(text, '}');
@@ -231,8 +197,8 @@ static void put_chain(wh_json_text_t *text, const wh_machine_t *machine, const w
 
 static void put_lengths(wh_json_text_t *text, const wh_arm_t *arm) {
     wh_json_text_begin(text, "arm", '{');
-    put_exact(text, "reach", arm->reach);
-    put_exact(text, "link", arm->link);
+    wh_put_exact(text, "reach", arm->reach);
+    wh_put_exact(text, "link", arm->link);
     wh_json_text_value(text, "right_handed", json_boolean(arm->right_handed));
     wh_json_text_end(text, '}');
 }
@@ -275,11 +241,11 @@ static void put_machine(wh_json_text_t *text, const wh_document_t *document) {
 
 static void put_limits(wh_json_text_t *text, const wh_grasp_config_t *grasp) {
     wh_json_text_begin(text, "limits", '{');
-    put_exact(text, "projz", grasp->tolerance.projz);
-    put_exact(text, "projxy", grasp->tolerance.projxy);
-    put_exact(text, "planar", grasp->tolerance.planar);
-    put_exact(text, "near_projz", grasp->near_projz);
-    put_exact(text, "near_projxy", grasp->near_projxy);
+    wh_put_exact(text, "projz", grasp->tolerance.projz);
+    wh_put_exact(text, "projxy", grasp->tolerance.projxy);
+    wh_put_exact(text, "planar", grasp->tolerance.planar);
+    wh_put_exact(text, "near_projz", grasp->near_projz);
+    wh_put_exact(text, "near_projxy", grasp->near_projxy);
     wh_json_text_end(text, '}');
 }
 
@@ -291,65 +257,14 @@ static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
             wh_json_text_begin(text, NULL, '{');
             wh_json_text_integer(text, "station", (long long)s);
             wh_json_text_integer(text, "slot", slot);
-            put_pose(text, &pose);
+            wh_put_pose(text, &pose);
             wh_json_text_end(text, '}');
         }
     }
     wh_json_text_end(text, ']');
 }
 
-/* -------------------------------------------------------------------------------------------------- marks */
-
-static void append(char *text, size_t size, const char *before, const char *part) {
-    const size_t length = strlen(text);
-    if (part) {
-        (void)snprintf(text + length, size - length, "%s%s", before, part);
-    }
-}
-
-/* Writes, for example, "near miss: Wafer 1, EE" or "hit: A ledge 3 left and EE finger right". */
-static void describe(const wh_record_t *record, const wh_event_t *event, char *text, size_t size) {
-    wh_text_words(text, size, wh_event_name(event->kind));
-    if (wh_record_is_contact(event->kind)) {
-        append(text, size, ": ", wh_layout_part_name(record->layout, event->parts[0]));
-        append(text, size, " and ", wh_layout_part_name(record->layout, event->parts[1]));
-        return;
-    }
-    const char *wafer = wh_record_wafer_name(record, event->wafer);
-    append(text, size, ": ", wafer);
-    append(text, size, wafer ? ", " : ": ", wh_record_gripper_name(record, event->gripper));
-}
-
-static void put_mark(wh_json_text_t *text, const wh_document_t *document, size_t i) {
-    const wh_mark_t *mark = &document->signals->marks[i];
-    char words[3 * WH_PART_NAME_SIZE];
-    describe(document->record, &mark->event, words, sizeof words);
-    wh_json_text_begin(text, NULL, '{');
-    wh_json_text_number(text, "t", (double)mark->utime / 1e6, 6, false);
-    wh_json_text_string(text, "kind", wh_event_name(mark->event.kind));
-    put_text(text, "text", words);
-    if (mark->has_place) {
-        put_point(text, "at", &mark->at);
-    } else {
-        wh_json_text_value(text, "at", json_null());
-    }
-    wh_json_text_end(text, '}');
-}
-
-/* ---------------------------------------------------------------- tracks: all that changes over time */
-
-/* With these numbers of decimals rounding adds at most a hundredth of what thinning leaves. A slope's error
- * counts for up to 4 s. */
-enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
-
-typedef struct {
-    int value, slope;
-} decimals_t;
-
-static const decimals_t decimals_mm = {4, 3};
-static const decimals_t decimals_rad = {7, 6};
-static const decimals_t decimals_level = {5, 4};
-static const decimals_t decimals_measure[WH_MEASURES] = {{6, 5}, {4, 3}, {9, 9}};
+/* ----------------------------------------------------------------------------------------------- thinning */
 
 typedef struct {
     double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
@@ -416,187 +331,22 @@ static void put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, '}');
 }
 
-static void put_second(wh_json_text_t *text, const char *key, const wh_signals_t *signals, int64_t slice) {
-    wh_json_text_number(text, key, wh_signals_seconds(signals, slice), DECIMALS_S, false);
-}
-
-/* Where a curve breaks off, a null stands one slice after its last point. */
-static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_points_t *list) {
-    wh_json_text_begin(text, "t", '[');
-    for (size_t i = 0; i < list->count; ++i) {
-        put_second(text, NULL, signals, list->points[i].slice);
-        if (list->points[i].ends) {
-            put_second(text, NULL, signals, list->points[i].slice + 1);
-        }
-    }
-    wh_json_text_end(text, ']');
-}
-
-/* `count` of each point's numbers from `first` on, times `scale`. */
-typedef struct {
-    const char *key;
-    size_t first, count;
-    double scale;
-    int decimals;
-    bool exact; /* as the points are; otherwise always rounded */
-} column_t;
-
-static void put_numbers(wh_json_text_t *text, const wh_points_t *list, const column_t *of) {
-    wh_json_text_begin(text, of->key, '[');
-    for (size_t i = 0; i < list->count; ++i) {
-        const double *numbers = wh_points_numbers(list, i) + of->first;
-        for (size_t k = 0; k < of->count; ++k) {
-            wh_json_text_number(text, NULL, numbers[k] * of->scale, of->decimals,
-                                of->exact && list->points[i].exact);
-        }
-        if (list->points[i].ends) {
-            put_index(text, NULL, WH_NONE);
-        }
-    }
-    wh_json_text_end(text, ']');
-}
-
-static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
-                      const wh_path_t *curve, decimals_t decimals) {
-    const double slices_a_second = 1e6 / (double)signals->layout->slice_us;
-    const column_t values = {"v", 0, 1, 1, decimals.value, true};
-    const column_t slopes = {"slope", 1, 1, slices_a_second, decimals.slope, false};
-    wh_json_text_begin(text, key, '{');
-    put_times(text, signals, &curve->list);
-    put_numbers(text, &curve->list, &values);
-    put_numbers(text, &curve->list, &slopes);
-    wh_json_text_end(text, '}');
-}
-
-static void put_axis_track(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
-    put_curve(text, document->signals, NULL, &document->signals->axes[axis],
-              wh_layout_axis_turns(document->signals->layout, axis) ? decimals_rad : decimals_mm);
-}
-
-static void put_own(wh_json_text_t *text, const wh_document_t *document, size_t g) {
-    static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
-    static const column_t turns = {"q", 3, 4, 1, DECIMALS_OWN, true};
-    const wh_points_t *own = &document->signals->own[g].list;
-    wh_json_text_begin(text, NULL, '{');
-    put_times(text, document->signals, own);
-    put_numbers(text, own, &places);
-    put_numbers(text, own, &turns);
-    wh_json_text_end(text, '}');
-}
-
-/* ------------------------------------------------------------------------------------------------- wafers */
-
-/* The list of stays is sorted by time alone. Looking through it for each wafer costs less than writing it. */
-static void put_stays(wh_json_text_t *text, const wh_document_t *document, size_t w) {
-    const wh_signals_t *signals = document->signals;
-    wh_json_text_begin(text, NULL, '[');
-    for (size_t i = 0; i < signals->stay_count; ++i) {
-        const wh_stay_t *stay = &signals->stays[i];
-        if (stay->wafer == (int32_t)w) {
-            wh_json_text_begin(text, NULL, '{');
-            put_second(text, "t", signals, stay->slice);
-            put_index(text, "holder", stay->holder);
-            put_pose(text, &stay->pose);
-            wh_json_text_end(text, '}');
-        }
-    }
-    wh_json_text_end(text, ']');
-}
-
-/* WH_NONE is null. */
-/* Passive pads have no valve. */
-static size_t count_steps(const wh_signals_t *signals, const wh_steps_t lists[], size_t g) {
-    const bool has_none = lists == signals->valves && signals->layout->grips[g].kind == WH_GRIP_PASSIVE;
-    return has_none ? 0 : lists[g].count;
-}
-
-static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
-                      const wh_steps_t lists[]) {
-    wh_json_text_begin(text, key, '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        const size_t count = count_steps(signals, lists, g);
-        wh_json_text_begin(text, NULL, '{');
-        wh_json_text_begin(text, "t", '[');
-        for (size_t i = 0; i < count; ++i) {
-            put_second(text, NULL, signals, lists[g].steps[i].slice);
-        }
-        wh_json_text_end(text, ']');
-        wh_json_text_begin(text, "v", '[');
-        for (size_t i = 0; i < count; ++i) {
-            put_index(text, NULL, lists[g].steps[i].value);
-        }
-        wh_json_text_end(text, ']');
-        wh_json_text_end(text, '}');
-    }
-    wh_json_text_end(text, ']');
-}
-
-static void put_vacuum(wh_json_text_t *text, const wh_document_t *document, size_t g) {
-    put_curve(text, document->signals, NULL, &document->signals->vacuum[g], decimals_level);
-}
-
-static void put_proximity(wh_json_text_t *text, const wh_document_t *document, size_t g) {
-    static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
-    const wh_path_t *curves = document->signals->proximity[g];
-    wh_json_text_begin(text, NULL, '{');
-    for (size_t m = 0; m < WH_MEASURES; ++m) {
-        put_curve(text, document->signals, names[m], &curves[m], decimals_measure[m]);
-    }
-    wh_json_text_end(text, '}');
-}
-
-/* A pair that never came near is not in the document. */
-static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
-    if (document->record->clearances[kind].parts[0] == WH_NONE) {
-        return;
-    }
-    const wh_curves_t *curves = document->record->curves;
-    const wh_signals_t *signals = document->signals;
-    const double limit = signals->layout->world.limits[kind];
-    wh_json_text_begin(text, NULL, '{');
-    wh_json_text_string(text, "pair", wh_clearance_name((wh_clearance_kind_t)kind));
-    wh_json_text_number(text, "limit", limit > 0 ? limit : HUGE_VAL, 0, true);
-    wh_json_text_begin(text, "t", '[');
-    for (size_t bin = 0; bin < curves->count; ++bin) {
-        put_second(text, NULL, signals, (int64_t)wh_curves_end(curves, bin));
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "gap", '[');
-    for (size_t bin = 0; bin < curves->count; ++bin) {
-        const double gap = curves->gaps[kind][bin];
-        wh_json_text_number(text, NULL, gap < WH_CLEARANCE_RANGE ? gap : HUGE_VAL, 0, true);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_end(text, '}');
-}
-
-static void put_tracks(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_signals_t *signals = document->signals;
-    const size_t grippers = signals->layout->machine.gripper_count;
-    const bool has_gaps = document->record->curves && wh_notes_document_looked(document->record);
-    wh_json_text_begin(text, "tracks", '{');
-    put_each(text, document, "axes", signals->axis_count, put_axis_track);
-    put_each(text, document, "grippers", grippers, put_own);
-    put_each(text, document, "wafers", signals->layout->wafer_count, put_stays);
-    put_steps(text, signals, "valves", signals->valves);
-    put_steps(text, signals, "sensors", signals->sensors);
-    put_steps(text, signals, "nearest", signals->nearest);
-    put_each(text, document, "vacuum", grippers, put_vacuum);
-    put_each(text, document, "proximity", grippers, put_proximity);
-    put_each(text, document, "clearances", has_gaps ? WH_CLEARANCES : 0, put_clearance);
-    wh_json_text_end(text, '}');
-}
-
 static void put_cell(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
+    wh_tracks_written_t written = {0};
     put_names(text, document);
     put_wafer(text, signals->layout);
     put_machine(text, document);
     put_limits(text, &signals->layout->grasp);
     put_slots(text, signals->layout);
-    put_thinning(text, signals);
-    put_tracks(text, document);
-    put_each(text, document, "marks", signals->mark_count, put_mark);
+    if (document->is_live) {
+        wh_json_text_value(text, "thinning", json_null());
+        wh_tracks_put_now(text, "now", signals);
+    } else {
+        put_thinning(text, signals);
+    }
+    wh_tracks_put(text, document, &written);
+    wh_marks_put(text, document, &written);
     wh_scans_document_put(text, signals, document->record);
     wh_json_text_value(text, "scene", wh_scene_make(signals, document->title, false));
 }

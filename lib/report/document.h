@@ -3,8 +3,8 @@
  * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q
  * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
- *   source       "run", "log" or "session"; notes: [text], what a log did not tell, and what was not looked
- *                at or for
+ *   source       "run", "log", "session" or "live"; notes: [text], what a log did not tell, and what was
+ *                not looked at or for
  *   run          what `run --json` prints, whole (print/record_print.h), with centrings on the way; of a log
  *                what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s. A flow by times alone
@@ -51,6 +51,9 @@
  *                circle) }]
  *   scans_left_out   the number of further scans, more than a document holds
  *   scene        glTF 2.0 (view/scene.h), without animation
+ *   now          only of a run that goes on: the last sample of each curve (report/tracks_document.h). Its
+ *                source is "live"; thinning is null, as the curves are samples some 60 times a second;
+ *                `run` has the lists alone
  */
 #ifndef WH_REPORT_DOCUMENT_H
 #define WH_REPORT_DOCUMENT_H
@@ -70,7 +73,8 @@ typedef struct {
     size_t note_count;
     json_t *run;                 /* borrowed */
     const wh_record_t *record;   /* for its curves and limits; its layout is the signals' */
-    const wh_signals_t *signals; /* finished; null: of a flow by times alone */
+    const wh_signals_t *signals; /* finished, unless is_live; null: of a flow by times alone */
+    bool is_live;                /* the run goes on; its signals are samples now and then */
 } wh_document_t;
 
 /* 0, or -1 when `out` does not take it. Ends the program if out of memory. */

@@ -104,11 +104,25 @@ static bool write_foreign(const page_t *page, size_t i) {
 
 /* -------------------------------------------------------------------------------------------------- names */
 
+static bool is_template(const char *name) {
+    const size_t length = strlen(name);
+    return length > 3 && strcmp(name + length - 3, ".in") == 0;
+}
+
+static bool write_template(const page_t *page, const char *text);
+
+static bool write_ours(const page_t *page, const wh_embedded_t *ours) {
+    if (is_template(ours->name)) {
+        return write_template(page, (const char *)ours->text);
+    }
+    write_inlined(page->out, (const char *)ours->text, ours->size);
+    return true;
+}
+
 static bool write_named(const page_t *page, const char *name) {
     const wh_embedded_t *ours = find_ours(name);
     if (ours) {
-        write_inlined(page->out, (const char *)ours->text, ours->size);
-        return true;
+        return write_ours(page, ours);
     }
     if (strcmp(name, "title") == 0) {
         write_title(page->out, page->title);
@@ -136,6 +150,27 @@ static size_t name_length(const char *text) {
     return length < NAME_BYTES && text[length] == '@' ? length : 0;
 }
 
+/* A template may name another one; none names itself. */
+static bool write_template(const page_t *page, const char *text) {
+    const char *from = text;
+    for (const char *at = strchr(from, '@'); at; at = strchr(at, '@')) {
+        const size_t length = name_length(at + 1);
+        char part[NAME_BYTES];
+        if (length == 0) {
+            ++at;
+            continue;
+        }
+        fwrite(from, 1, (size_t)(at - from), page->out);
+        (void)snprintf(part, sizeof part, "%.*s", (int)length, at + 1);
+        if (!write_named(page, part)) {
+            return false;
+        }
+        from = at = at + length + 2;
+    }
+    fputs(from, page->out);
+    return true;
+}
+
 bool wh_page_write(FILE *out, const char *name, const char *title, const char *document, size_t size,
                    char message[WH_PAGE_MESSAGE_BYTES]) {
     const page_t page = {out, title, document, size, message};
@@ -144,21 +179,5 @@ bool wh_page_write(FILE *out, const char *name, const char *title, const char *d
         (void)snprintf(message, WH_PAGE_MESSAGE_BYTES, "the program was built without its page");
         return false;
     }
-    const char *from = (const char *)template->text;
-    for (const char *at = strchr(from, '@'); at; at = strchr(at, '@')) {
-        const size_t length = name_length(at + 1);
-        char part[NAME_BYTES];
-        if (length == 0) {
-            ++at;
-            continue;
-        }
-        fwrite(from, 1, (size_t)(at - from), out);
-        (void)snprintf(part, sizeof part, "%.*s", (int)length, at + 1);
-        if (!write_named(&page, part)) {
-            return false;
-        }
-        from = at = at + length + 2;
-    }
-    fputs(from, out);
-    return true;
+    return write_template(&page, (const char *)template->text);
 }

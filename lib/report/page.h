@@ -1,13 +1,14 @@
 /* The page of a report, of a study or of a flow by times alone is one HTML file with everything that it
- * needs, because it is read from disk, without a network.
+ * needs, because it is read from disk, without a network. The page of a live cell is several files, which
+ * its server hands out: so the browser can be told to run nothing else.
  *
- * It is lib/report/page/report.html.in, study.html.in or flow.html.in, built into the program. A name
- * between two @ in it stands for a file: another one of lib/report/page, or JavaScript that others wrote
- * (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css). The program reads the
- * latter when it makes the page, from where the distribution puts them: /usr/share/javascript, unless the
- * program was built with another JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the
- * page's title. @document@ is the object of report/document.h or report/study_document.h, packed
- * (text/packed.h): an hour's run shrinks to a seventh.
+ * A page is a template such as lib/report/page/report.html.in, built into the program. A name between two @
+ * in it stands for a file: another one of lib/report/page, which may be a template too, or JavaScript that
+ * others wrote (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js, dygraph.min.css). The
+ * program reads the latter when it makes the page, from where the distribution puts them:
+ * /usr/share/javascript, unless the program was built with another JAVASCRIPT= or the environment has
+ * WAFERHAND_JAVASCRIPT. @title@ is the page's title. @document@ is the object of report/document.h or
+ * report/study_document.h, packed (text/packed.h): an hour's run shrinks to a seventh.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H
@@ -21,6 +22,11 @@
 #define WH_PAGE_REPORT "report.html.in"
 #define WH_PAGE_STUDY "study.html.in"
 #define WH_PAGE_FLOW "flow.html.in"
+/* A live cell's page, and what it asks for: /page.js, /page.css and /foreign.js. */
+#define WH_PAGE_LIVE "live.html.in"
+#define WH_PAGE_SCRIPTS "live.js.in"
+#define WH_PAGE_STYLE "style.css.in"
+#define WH_PAGE_FOREIGN "foreign.js.in"
 
 /* Writes the page of this name. `document` is text of `size` bytes, as wh_document_write or
  * wh_study_document_write makes it. Returns false, and the reason in `message`, when a file is missing. The

@@ -90,8 +90,25 @@ static void add_item(wh_option_list_t *list, const char *text) {
     list->items[list->count++] = text;
 }
 
-static void take(const wh_option_t *option, void *variable, char *text, const struct argp_state *state) {
+/* True for a text such as 127.0.0.1:8000, [::1]:8000 or 8000. */
+static bool is_address(const char *text) {
+    return text && text[0] != '\0' && text[strspn(text, "0123456789abcdefABCDEF.:[]")] == '\0' &&
+           strpbrk(text, "0123456789") && (strchr(text, ':') || !strpbrk(text, "abcdefABCDEF.[]"));
+}
+
+/* The value of an option that may lack it. argp hands out only what stands behind '='. */
+static const char *take_address(const char *text, struct argp_state *state) {
+    if (text || state->next >= state->argc || !is_address(state->argv[state->next])) {
+        return text ? text : "";
+    }
+    return state->argv[state->next++];
+}
+
+static void take(const wh_option_t *option, void *variable, char *text, struct argp_state *state) {
     switch (option->kind) {
+    case WH_OPTION_ADDRESS:
+        *(const char **)variable = take_address(text, state);
+        break;
     case WH_OPTION_FLAG:
         *(bool *)variable = true;
         break;
@@ -216,7 +233,7 @@ static bool check_name(const parser_t *parser, const char *text, struct argp_sta
     if (!option && !is_own_name(text + 2, length)) {
         refuse_name(parser, text, state);
     }
-    return option && option->arg && text[2 + length] == '\0';
+    return option && option->arg && option->flags == 0 && text[2 + length] == '\0';
 }
 
 /* Refuses an unknown name before argp does, because argp suggests no other. */
@@ -277,7 +294,7 @@ static void add(parser_t *parser, const wh_option_t *option, char *base) {
     parser->variables[i] = base + option->variable;
     parser->known[i] =
         (struct argp_option){option->name,     option->letter != '\0' ? option->letter : FIRST_KEY + (int)i,
-                             option->argument, 0,
+                             option->argument, option->kind == WH_OPTION_ADDRESS ? OPTION_ARG_OPTIONAL : 0,
                              option->help,     0};
 }
 

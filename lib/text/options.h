@@ -20,8 +20,12 @@
 #include <stdint.h>
 
 typedef enum {
-    WH_OPTION_FLAG,  /* bool: becomes true */
-    WH_OPTION_TEXT,  /* const char * */
+    WH_OPTION_FLAG, /* bool: becomes true */
+    WH_OPTION_TEXT, /* const char * */
+    /* const char *: what stands behind '=', or the next argument if that is an address in numbers, such as
+     * 127.0.0.1:8000 or 8000; otherwise an empty text. Its `argument` is the text without the brackets that
+     * --help shows. */
+    WH_OPTION_ADDRESS,
     WH_OPTION_LIST,  /* wh_option_list_t: all, in order */
     WH_OPTION_REAL,  /* double, from `least` to `most` */
     WH_OPTION_WHOLE, /* uint64_t, from `least` to `most`, which a double must hold: 1000000 or 1e6 */

@@ -13,7 +13,7 @@ from documents import FOLDER
 
 # Root in a container has no sandbox. No name is looked up, whatever the page asks for. The driver talks to the browser through
 # a pipe; a port would make it look up the address of localhost.
-FLAGS = ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND",
+FLAGS = ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
          "--force-device-scale-factor=1", "--hide-scrollbars",
          # Software GL is used for WebGL only: for text and plots it would take more time than for the cell.
          "--disable-gpu-rasterization", "--disable-accelerated-2d-canvas"]
@@ -99,9 +99,13 @@ class Browser:
 
     def open(self, path):
         """Shows a page, and waits until all of it is there."""
+        self.visit(path.as_uri())
+
+    def visit(self, url):
+        """Likewise a page that a server gives."""
         self.drain()
         self.requests, self.errors, self.kept = [], [], None
-        self.driver.get(path.as_uri())
+        self.driver.get(url)
         self.wait("return performance.getEntriesByName('complete').length > 0")
         self.wait("return !(Waferhand.plots && Waferhand.plots.panels.some((panel) => !panel.graph))")
         self.settle()

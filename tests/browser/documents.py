@@ -52,14 +52,20 @@ def text_of(name, document):
     if name == "title":
         return html.escape(document.get("title", "Report"))
     path = pathlib.Path(LIBRARIES.get(name, PAGE / name))
+    if name.endswith(".in"):
+        return fill(path.read_text(encoding="utf-8"), document)
     return path.read_text(encoding="utf-8").replace("</script", "<\\/script")
+
+
+def fill(template, document):
+    """A template with its names replaced; some stand for templates themselves."""
+    return re.sub(r"@([A-Za-z._]+)@", lambda found: text_of(found[1], document), template)
 
 
 def assemble(document, path, template="report.html.in"):
     """Writes the page that shows the document."""
-    template = (PAGE / template).read_text(encoding="utf-8")
-    page = re.sub(r"@([A-Za-z._]+)@", lambda found: text_of(found[1], document), template)
-    pathlib.Path(path).write_text(page, encoding="utf-8")
+    text = (PAGE / template).read_text(encoding="utf-8")
+    pathlib.Path(path).write_text(fill(text, document), encoding="utf-8")
 
 
 def report(script, *options):

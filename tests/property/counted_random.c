@@ -203,10 +203,11 @@ static void axes_keep_their_bounds(void **state) {
     for (size_t i = 0; i < sizeof scripts / sizeof *scripts; ++i) {
         static bounds_t bounds;
         memset(&bounds, 0, sizeof bounds);
-        const wh_script_run_options_t options = {.script = scripts[i],
-                                                 .without_collisions = true,
-                                                 .listener = {check_slice, set_up_bounds, &bounds},
-                                                 .limits.print_to = nowhere};
+        const wh_script_run_options_t options = {
+            .script = scripts[i],
+            .without_collisions = true,
+            .listener = {.slice = check_slice, .boundary = set_up_bounds, .user = &bounds},
+            .limits.print_to = nowhere};
         (void)wh_script_run(&run, &options);
         wh_script_run_close(&run);
         assert_true(bounds.moved > 1000 && bounds.flat > 1000);

@@ -85,8 +85,11 @@
         return Array.from(lanes.values());
     }
 
+    /* Without an end yet, it goes on. */
+    const endOf = (end, doc) => (typeof end === 'number' ? end : doc.duration);
+
     /* The waits of a script with tasks: who waits, and for what. */
-    const waits = (doc) => (doc.run.waits || []).map((wait) => ({ from: wait.from_s, to: wait.to_s,
+    const waits = (doc) => (doc.run.waits || []).map((wait) => ({ from: wait.from_s, to: endOf(wait.to_s, doc),
         text: `${wait.task > 0 ? `task ${wait.task}` : 'script'}: ${wait.for}`, colour: COLOURS.waiting }));
 
     /* Gives bars that overlap lanes of their own. */
@@ -112,7 +115,7 @@
         doc.commands.filter((command) => typeof command.begin_s === 'number').forEach((command) => {
             const robot = robotOf(command.text);
             by.set(robot, by.get(robot) || []);
-            by.get(robot).push({ from: command.begin_s, to: command.end_s, text: command.text,
+            by.get(robot).push({ from: command.begin_s, to: endOf(command.end_s, doc), text: command.text,
                 colour: command.error ? 'bad' : 's0', alternate: true });
         });
         const names = Array.from(by.keys()).filter((name) => name).sort();

@@ -2,11 +2,15 @@
 (function (W) {
     'use strict';
 
-    const listeners = { time: [], window: [], play: [] };
+    const listeners = { time: [], window: [], play: [], growth: [] };
     const pending = new Set();
     let begun = null;
 
-    const clock = { now: 0, begin: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [] };
+    const clock = { now: 0, begin: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [],
+        grows: false, following: false, tied: true };
+
+    /* A document that grows is shown over this time at its end, unless a reader chooses another window, s. */
+    const SHOWN = 30;
 
     /* Calls the listeners once a frame, however often something changes. */
     function changed(what) {
@@ -28,8 +32,16 @@
     clock.time = (number) => number * Math.round(clock.slice * 1e6) / 1e6;
     clock.number = (t) => Math.round(t / clock.slice);
 
+    /* The end of a document that grows is the present: there the shown time goes along. */
     clock.seek = function (t) {
+        const wasFollowing = clock.following;
         clock.now = W.clamp(t, clock.begin, clock.end);
+        clock.following = clock.grows && clock.now >= clock.end;
+        if (clock.following !== wasFollowing) {
+            clock.tied = clock.following;
+            clock.playing = false;
+            changed('play');
+        }
         if (clock.now < clock.window[0] || clock.now > clock.window[1]) {
             follow();
         }
@@ -48,7 +60,26 @@
         const width = W.clamp(to - from, Math.min(10 * clock.slice, most), most);
         const low = W.clamp(from, clock.begin, clock.end - width);
         clock.window = [low, low + width];
+        clock.tied = low + width >= clock.end - clock.slice;
         changed('window');
+    };
+
+    /* The document has grown to this time. `all`: by more than a sample of the present. A window that ended at the end is
+     * tied to it. */
+    clock.grow = function (end, all) {
+        clock.end = Math.max(end, clock.end);
+        if (clock.following) {
+            clock.now = clock.end;
+            changed('time');
+        }
+        if (all && clock.following && clock.tied) {
+            const width = Math.max(clock.window[1] - clock.window[0], Math.min(SHOWN, clock.end - clock.begin));
+            clock.window = [Math.max(clock.end - width, clock.begin), clock.end];
+            changed('window');
+        }
+        if (all) {
+            changed('growth');
+        }
     };
 
     clock.zoom = function (factor) {
@@ -76,18 +107,21 @@
         const passed = begun === null ? 0 : (stamp - begun) / 1000;
         begun = stamp;
         clock.seek(clock.now + clock.speed * passed);
-        if (clock.now >= clock.end) {
+        if (clock.now >= clock.end && !clock.following) {
             clock.pause();
         }
         requestAnimationFrame(frame);
     }
 
     clock.play = function () {
-        if (clock.playing) {
+        if (clock.playing || clock.following) {
             return;
         }
         if (clock.now >= clock.end) {
-            clock.seek(clock.begin);
+            clock.seek(clock.grows ? clock.end : clock.begin);
+        }
+        if (clock.following) {
+            return;
         }
         clock.playing = true;
         begun = null;
@@ -97,10 +131,11 @@
 
     clock.pause = function () {
         clock.playing = false;
+        clock.following = false;
         changed('play');
     };
 
-    clock.toggle = () => (clock.playing ? clock.pause() : clock.play());
+    clock.toggle = () => (clock.playing || clock.following ? clock.pause() : clock.play());
 
     clock.setSpeed = function (speed) {
         clock.speed = speed;
@@ -113,6 +148,17 @@
         clock.begin = Math.min(doc.begin, doc.duration);
         clock.now = clock.begin;
         clock.window = [clock.begin, doc.duration];
+        clock.grows = doc.grows;
+        clock.following = doc.grows;
+        clock.setStops(doc);
+        if (doc.grows) {
+            clock.now = clock.end;
+            clock.window = [Math.max(clock.end - SHOWN, clock.begin), clock.end];
+        }
+    };
+
+    /* The times that one steps to. */
+    clock.setStops = function (doc) {
         clock.stops = Array.from(new Set(doc.events.map((event) => event.t))).sort((a, b) => a - b);
     };
 

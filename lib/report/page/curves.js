@@ -51,7 +51,7 @@
 
     function proximity(doc) {
         const panels = [];
-        doc.tracks.proximity.forEach((track, i) => MEASURES.filter((measure) => some(track[measure.key]))
+        doc.tracks.proximity.forEach((track, i) => MEASURES.filter((measure) => doc.grows || some(track[measure.key]))
             .forEach((measure) => panels.push(
                 proximityPanel(doc, track, doc.names.grippers[i] || `gripper ${i + 1}`, measure, i))));
         return { id: 'proximity', title: 'Proximity of each gripper to its nearest wafer', panels,

@@ -65,32 +65,18 @@
             wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),
             thinning: from.thinning, tracks: tracks(object(from.tracks), object(from.machine)),
             scene: from.scene, scansLeftOut: from.scans_left_out || 0, slices: from.slices,
-            slice: from.slice_s > 0 ? from.slice_s : 0.001, begin: Math.max(from.begin_s, 0),
+            slice: from.slice_s > 0 ? from.slice_s : 0.001, begin: Math.max(from.begin_s, 0), grows: false,
         });
         doc.duration = from.duration_s > 0 ? from.duration_s : lastTime(doc);
+        if (from.now) {
+            W.growth.begin(doc, from.now);
+        }
         return doc;
     }
 
-    function bytes(text) {
-        const made = new Uint8Array(text.length);
-        for (let i = 0; i < text.length; ++i) {
-            made[i] = text.charCodeAt(i);
-        }
-        return made;
-    }
-
-    /* Inflates a text that was deflated and written as base64. */
-    function inflate(packed) {
-        if (!window.DecompressionStream) {
-            throw new Error('it takes a browser of 2023 or later to unpack it');
-        }
-        const stream = new Blob([bytes(atob(packed))]).stream().pipeThrough(new window.DecompressionStream('deflate'));
-        return new Response(stream).text();
-    }
-
-    /* Promises the text that the page carries. */
+    /* Promises what the source has. */
     async function unpack() {
-        return object(JSON.parse(await inflate(document.getElementById('document').textContent.trim())));
+        return object(await W.source.take());
     }
 
     /* Promises the document, or null; `W.fault` then tells why. */

@@ -230,11 +230,19 @@
     }
 
     lanes.section = function (group) {
-        const body = group.lanes.length > 0 ? make(group) : [W.why(group.why)];
-        if (group.note && group.lanes.length > 0) {
+        const body = group.lanes.length > 0 || W.clock.grows ? make(group) : [W.why(group.why)];
+        if (group.note && group.lanes.length > 0 && !W.clock.grows) {
             body.push(W.why(group.note));
         }
         return W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
+    };
+
+    /* The lanes of a document that has grown. */
+    lanes.renew = function (groups) {
+        charts.forEach((chart) => {
+            chart.group = groups.find((group) => group.id === chart.group.id) || chart.group;
+            draw(chart);
+        });
     };
 
     lanes.start = function () {

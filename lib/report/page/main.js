@@ -21,9 +21,12 @@
         const bars = W.bars.groups(doc);
         host('plots').append(W.plots.section(curves[0]), ...bars.map(W.lanes.section),
             ...curves.slice(1).map(W.plots.section));
-        W.scans.start(doc, host('plots'));
-        W.centrings.start(doc, host('plots'));
+        if (!doc.grows) {
+            W.scans.start(doc, host('plots'));
+            W.centrings.start(doc, host('plots'));
+        }
         W.plots.fill(false);
+        W.clock.on('growth', () => W.lanes.renew(W.bars.groups(doc)));
     }
 
     function tables(doc) {
@@ -48,6 +51,7 @@
         W.shown = doc;
         W.clock.start(doc);
         W.cycle.start(doc);
+        host('head').replaceChildren();
         part(host('head'), () => W.summary.start(doc));
         W.lanes.start();
         part(host('flow'), () => W.flow.start(doc, host('flow')));
@@ -55,8 +59,14 @@
         part(host('transport'), () => W.transport.start(doc));
         part(host('now'), () => W.now.start(doc));
         part(host('measure'), () => W.measure.start(doc));
+        if (doc.grows) {
+            part(host('cards'), () => W.cards.start(doc, host('cards')));
+        }
         W.keys.start();
         W.link.start();
+        if (doc.grows) {
+            W.live.start(doc);
+        }
         requestAnimationFrame(() => setTimeout(() => {
             performance.mark('interactive');
             rest(doc);

@@ -14,15 +14,21 @@
 
     /* The marks in a scene of three.js. */
     function make(scene, doc, label) {
-        const shown = placed(doc).map((mark) => {
+        const add = (mark) => {
             const shape = W.shapes.mark(0.012);
             shape.position.fromArray(mark.at).multiplyScalar(0.001);
             shape.renderOrder = colourName(mark) === 'bad' ? 11 : 10;
             scene.add(shape);
             return { mark, shape, label: label('mark ' + colourName(mark), text(mark)) };
-        });
+        };
+        const shown = placed(doc).map(add);
         return {
             shown,
+            /* Adds the new marks of a document that has grown. */
+            grow() {
+                shown.push(...placed(doc).slice(shown.length).map(add));
+                this.paint();
+            },
             update(t) {
                 shown.forEach((each) => {
                     const near = isNear(each.mark, t);

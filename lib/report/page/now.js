@@ -73,7 +73,7 @@
             ['dr_proj_z', '|dr_proj_z| mm', measured('dr_proj_z', 'projz', 4), near(tracks.proximity)],
             ['dr_proj_xy', '|dr_proj_xy| mm', measured('dr_proj_xy', 'projxy', 4), near(tracks.proximity)],
             ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', 'planar', 6), near(tracks.proximity)],
-        ].filter(([, , , there]) => there);
+        ].filter(([, , , there]) => there || doc.grows);
     }
 
     function cell(name, gripper, look) {

@@ -77,6 +77,7 @@
         };
         panel.curves.forEach((curve) => W.reduce.range(curve).forEach(take));
         panel.limits.forEach((limit) => take(limit.value));
+        [low, high] = low > high ? [0, 1] : [low, high];
         [low, high] = panel.most ? [Math.max(low, panel.most[0]), Math.min(high, panel.most[1])] : [low, high];
         const air = panel.most ? (high - low || 1) * 0.06 : airOf(low, high);
         return [panel.zero && low === 0 ? 0 : low - air, high + air];
@@ -137,7 +138,7 @@
         const pixels = Math.max(panel.host.clientWidth - W.axis.gutter(), 100);
         const rows = W.reduce.rows(panel.curves, W.clock.window, pixels, panel.bands);
         panel.banded.hidden = !panel.bands.some(Boolean);
-        return rows;
+        return rows.length > 0 ? rows : [[W.clock.window[0]].concat(panel.curves.map(() => null))];
     }
 
     function legendItem(panel, curve, i) {
@@ -175,6 +176,16 @@
         follow(panel);
     }
 
+    /* The range of values of a document that grows, unless a reader has chosen another one. */
+    function widened(panel) {
+        const [low, high] = panel.graph.yAxisRange();
+        if (!W.clock.grows || low !== panel.range[0] || high !== panel.range[1]) {
+            return {};
+        }
+        panel.range = valueRange(panel);
+        return { valueRange: panel.range };
+    }
+
     function refresh(panel) {
         if (!panel.graph || !panel.seen) {
             panel.stale = true;
@@ -182,7 +193,7 @@
         }
         panel.stale = false;
         panel.busy = true;
-        panel.graph.updateOptions({ file: data(panel), dateWindow: W.clock.window.slice() });
+        panel.graph.updateOptions(Object.assign({ file: data(panel), dateWindow: W.clock.window.slice() }, widened(panel)));
         panel.busy = false;
         follow(panel);
     }
@@ -246,6 +257,7 @@
         plots.seen = new IntersectionObserver(observe, { rootMargin: '200px' });
         W.clock.on('time', () => plots.panels.forEach(follow));
         W.clock.on('window', () => plots.panels.forEach(refresh));
+        W.clock.on('growth', () => plots.panels.forEach(refresh));
         W.theme.on(repaint);
         window.addEventListener('resize', () => requestAnimationFrame(() => plots.panels.forEach(follow)));
     };

@@ -7,7 +7,7 @@
 
     const TAKEN = [['link', 'Link', 'l', () => W.link.take()], ['picture', 'Picture', 'p', () => W.link.picture()]];
 
-    const stage = { view: null, shown: 'whole', rider: 0, buttons: {},
+    const stage = { view: null, shown: 'whole', rider: 0, buttons: {}, marked: 0,
         options: { names: false, frames: false, trail: false, shadows: true } };
 
     function button(name, text, key, pressed) {
@@ -125,6 +125,7 @@
     stage.start = function (doc) {
         const host = document.getElementById('canvas');
         stage.doc = doc;
+        stage.marked = doc.marks.length;
         stage.view = picture(host, doc);
         if (!stage.view) {
             document.getElementById('view').classList.add('empty');
@@ -137,6 +138,14 @@
         legend();
         stage.buttons.whole.setAttribute('aria-pressed', 'true');
         W.clock.on('time', (clock) => stage.view.update(clock.now));
+        W.clock.on('growth', () => {
+            if (stage.view.marks && stage.view.marks.grow && doc.marks.length > stage.marked) {
+                stage.marked = doc.marks.length;
+                stage.view.marks.grow();
+                stage.view.update(W.clock.now);
+                legend();
+            }
+        });
         W.theme.on(() => stage.view.paint());
     };
 

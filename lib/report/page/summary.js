@@ -13,6 +13,9 @@
     }
 
     function verdict(doc) {
+        if (doc.grows) {
+            return ''; /* the line below has it */
+        }
         if (doc.source === 'session' && doc.run.ok && doc.commands.length > 0) {
             return ofSession(doc);
         }
@@ -116,16 +119,23 @@
     }
 
     function duration(doc) {
-        const slices = typeof doc.slices === 'number' ? `${doc.slices.toLocaleString('en')} slices of ` : 'slices of ';
+        const slices = typeof doc.slices === 'number' && !doc.grows
+            ? `${doc.slices.toLocaleString('en')} slices of ` : 'slices of ';
         return tile('simulated', W.seconds(doc.duration), `${slices}${W.figure(1000 * doc.slice)}\u00a0ms`);
     }
 
-    W.summary = {
+    const notes = (doc) => doc.notes.map((note) => W.why(note));
+
+    function tiles(doc) {
+        const flow = W.flow.tiles(doc);
+        const isFlowAlone = flow.length > 0 && !doc.scene;
+        return flow.concat(expectations(doc), isFlowAlone ? [] : [commands(doc), events(doc), throughput(doc), duration(doc),
+            recording(doc)]).filter(Boolean);
+    }
+
+    W.summary = { notes,
         start(doc) {
-            const flow = W.flow.tiles(doc);
-            const isFlowAlone = flow.length > 0 && !doc.scene;
-            const tiles = flow.concat(expectations(doc), isFlowAlone ? [] : [commands(doc), events(doc), throughput(doc),
-                duration(doc), recording(doc)]);
+            const host = W.element('div', { class: 'tiles' }, ...tiles(doc));
             const theme = W.element('button', { type: 'button', id: 'theme', title: 'Light or dark (t)',
                 'aria-keyshortcuts': 't', click: W.theme.toggle }, 'Light / dark');
             const help = W.element('button', { type: 'button', id: 'helping', title: 'Keys (?)',
@@ -135,8 +145,9 @@
                     W.element('span', { class: 'space' }), help, theme),
                 ...displacements(doc),
                 ...reasons(doc),
-                ...doc.notes.map((note) => W.why(note)),
-                W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
+                ...(doc.grows ? [] : notes(doc)),
+                host);
+            W.clock.on('growth', () => host.replaceChildren(...tiles(doc)));
         },
     };
 }(window.Waferhand));

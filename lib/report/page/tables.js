@@ -22,7 +22,8 @@
     const num = (text) => ({ numeric: text });
 
     /* A section with a table; rows after the first few hundred wait for a button. */
-    function section(id, title, heads, rows, reason) {
+    function section(id, title, heads, all, reason) {
+        const rows = W.shown && W.shown.grows ? all.slice().reverse() : all;
         const made = W.element('section', { class: 'group', id }, W.element('h2', {}, title));
         if (rows.length === 0) {
             made.append(W.why(reason));
@@ -62,10 +63,16 @@
             'The script states no expectations.');
     }
 
+    function result(command) {
+        const going = typeof command.end_s === 'number' ? 'done' : 'runs';
+        return command.error ? `${command.error}: ${command.message || 'error'}` : going;
+    }
+
     function commands(doc) {
         const rows = doc.commands.map((each) => () => row([num(String(each.line)), each.text, goTo(each.begin_s),
-            num(W.number(each.end_s, 3)), num(W.number(each.end_s - each.begin_s, 3)),
-            each.error ? `${each.error}: ${each.message || 'error'}` : 'done'], each.error ? 'bad' : null));
+            num(W.number(each.end_s, 3)),
+            num(typeof each.end_s === 'number' ? W.number(each.end_s - each.begin_s, 3) : W.DASH),
+            result(each)], each.error ? 'bad' : null));
         return section('commands', 'Commands', ['line', 'command', 'begins (s)', 'ends (s)', 'takes (s)', 'result'], rows,
             'The document holds no commands: a log of moves alone has none.');
     }
@@ -139,8 +146,28 @@
             'Clearances are not shown: collisions were not checked in this run.');
     }
 
+    /* The tables of a document that grows are made anew when their lists have grown; others are known only at its end. */
+    const GROWING = [expectations, commands, events];
+    const counts = (doc) => [doc.expectations, doc.commands, doc.events].map((list) => list.length)
+        .concat(doc.commands.filter((command) => typeof command.end_s === 'number').length).join();
+
+    function renew(doc, host, kept) {
+        if (kept.counts !== counts(doc) && !host.contains(document.activeElement)) {
+            kept.counts = counts(doc);
+            host.replaceChildren(...GROWING.map((table) => table(doc)));
+        }
+    }
+
     W.tables = { section, row, num, expectations,
         start(doc, host) {
+            if (doc.grows) {
+                const kept = {};
+                const own = W.element('div');
+                host.append(own, ...W.summary.notes(doc));
+                renew(doc, own, kept);
+                W.clock.on('growth', () => renew(doc, own, kept));
+                return;
+            }
             host.append(wafers(doc), expectations(doc), commands(doc), events(doc), clearances(doc), throughput(doc));
         } };
 }(window.Waferhand));

@@ -65,17 +65,20 @@
     function showTime(clock) {
         const events = eventsAt(clock.now);
         const here = events.map(W.events.tell).join(', ');
+        transport.range.max = clock.number(clock.end);
         transport.range.value = clock.number(clock.now);
         transport.range.setAttribute('aria-valuetext', `${clock.now.toFixed(3)} seconds. ${here}`);
         transport.time.textContent = W.number(clock.now, 3);
+        transport.whole.textContent = ` / ${W.number(clock.end, 3)} s`;
         transport.here.textContent = here || `slice ${clock.number(clock.now)}`;
         transport.here.className = 'here ' + (here ? W.events.colour(events[0].kind) : '');
         transport.here.title = here;
     }
 
     function showPlay(clock) {
-        transport.play.replaceChildren(W.icon(clock.playing ? ICONS.pause : ICONS.play));
-        transport.play.setAttribute('aria-label', clock.playing ? 'Pause' : 'Play');
+        const goes = clock.playing || clock.following;
+        transport.play.replaceChildren(W.icon(goes ? ICONS.pause : ICONS.play));
+        transport.play.setAttribute('aria-label', goes ? 'Pause' : 'Play');
         transport.speed.value = clock.speed;
     }
 
@@ -88,18 +91,21 @@
         transport.ticks = W.element('canvas', { class: 'ticks', 'aria-hidden': 'true' });
         transport.time = W.element('output', { id: 'time', for: 'scrubber' });
         transport.here = W.element('span', { class: 'here' });
+        transport.whole = W.element('span');
         host.append(
             W.element('div', { class: 'buttons' },
                 tool('before', 'Event before', 'Shift+ArrowLeft', () => W.clock.stepStop(-1)), transport.play,
                 tool('next', 'Next event', 'Shift+ArrowRight', () => W.clock.stepStop(1)), transport.speed),
             W.element('div', { class: 'line' }, transport.range, transport.ticks),
             W.element('div', { class: 'clock' },
-                W.element('span', {}, transport.time, ` / ${W.number(doc.duration, 3)} s`), transport.here));
+                W.element('span', {}, transport.time, transport.whole), transport.here));
         W.clock.on('time', showTime);
         W.clock.on('play', showPlay);
+        W.clock.on('growth', ticks);
         W.theme.on(ticks);
         new ResizeObserver(ticks).observe(transport.ticks);
         showTime(W.clock);
+        showPlay(W.clock);
     };
 
     W.transport = transport;

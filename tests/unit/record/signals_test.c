@@ -69,8 +69,9 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 }
 
 static void play(const char *script) {
-    const wh_script_run_options_t options = {
-        .script = script, .limits = {.print_to = stderr}, .listener = {on_slice, on_boundary, NULL}};
+    const wh_script_run_options_t options = {.script = script,
+                                             .limits = {.print_to = stderr},
+                                             .listener = {.slice = on_slice, .boundary = on_boundary}};
     slice_count = 0;
     assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
     wh_signals_finish(&signals);

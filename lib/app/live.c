@@ -1,0 +1,449 @@
+#include "live.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "../report/page.h"
+#include "../text/array.h"
+#include "../text/clock.h"
+#include "../view/http.h"
+#include "connection.h"
+#include "live_browser.h"
+#include "live_kept.h"
+#include "live_pace.h"
+
+/* A look at least so long after the one before, and what is told that may wait, us. */
+#define LOOK_US 16000
+#define GROWTH_US 250000
+
+/* Room for an entry of a port in its written form. */
+#define FRAME_BYTES 2000
+
+/* The files of the page. */
+enum { FILE_PAGE, FILE_SCRIPTS, FILE_STYLE, FILE_FOREIGN, FILES };
+
+struct wh_live {
+    wh_live_options_t options;
+    wh_mcs_listener_t next;
+    wh_live_pace_t pace;   /* the stepping thread's */
+    wh_showing_t *showing; /* null: no cell. The stepping thread changes it, with the lock */
+    pthread_t thread;
+    int wake;             /* ends a wait of the page's thread */
+    bool is_ending;       /* atomic */
+    pthread_mutex_t lock; /* of all below: the page's thread has it while it works */
+    wh_live_kept_t kept;
+    wh_feed_t feed;
+    wh_http_t *http;
+    char id[40];
+    wh_http_file_t files[FILES];
+    int64_t looked_us, told_us; /* by the wall clock */
+    wh_live_meter_t meter;
+};
+
+const wh_option_t wh_live_options[] = {
+    {"page", 0, "ADDRESS:PORT",
+     "Show the cell live in a browser: serve its page there, in this machine alone unless another address is "
+     "given (default 127.0.0.1:8765)",
+     WH_OPTION_ADDRESS, .variable = offsetof(wh_live_arguments_t, address)},
+    {"open", 0, NULL, "With --page: open it in the browser", WH_OPTION_FLAG,
+     .variable = offsetof(wh_live_arguments_t, opens)},
+    {0}};
+
+void wh_live_check(const void *filled, struct argp_state *state) {
+    const wh_live_arguments_t *arguments = filled;
+    if (arguments->opens && !arguments->address) {
+        argp_error(state, "--open goes with --page");
+    }
+}
+
+/* -------------------------------------------------------------------------------------- the page's thread */
+
+static wh_live_state_t state_of(const wh_live_t *live) {
+    return (wh_live_state_t){live->options.title, live->options.reproduce, live->id, live->options.rate,
+                             live->meter.pace};
+}
+
+static void tell_growth(wh_live_t *live) {
+    const wh_live_state_t state = state_of(live);
+    char *text = wh_live_kept_growth(&live->kept, &state);
+    wh_feed_add(&live->feed, "growth", text);
+    free(text);
+    live->told_us = wh_clock_us(CLOCK_MONOTONIC);
+}
+
+/* The messages so far do not count any more: browsers fetch the document. */
+static void tell_anew(wh_live_t *live) {
+    const wh_live_state_t state = state_of(live);
+    if (live->kept.record.layout) {
+        free(wh_live_kept_growth(&live->kept, &state)); /* so that nothing is due */
+    }
+    live->kept.is_anew = false;
+    wh_feed_add(&live->feed, "anew", "{}");
+}
+
+static void take_all(wh_live_t *live) {
+    const wh_glimpse_t *look = wh_showing_take(live->showing);
+    wh_news_t *news = wh_showing_take_news(live->showing);
+    while (news) {
+        wh_news_t *next = news->next;
+        wh_live_kept_news(&live->kept, news);
+        wh_news_free(news);
+        news = next;
+    }
+    if (look) {
+        wh_live_kept_look(&live->kept, look);
+    }
+    wh_showing_ask(live->showing);
+}
+
+/* Tells what is new since `before`, the last slice shown. */
+static void tell(wh_live_t *live, int64_t before) {
+    wh_live_kept_t *kept = &live->kept;
+    const bool has_moved = kept->signals.last > before;
+    const bool is_due = live->looked_us - live->told_us >= GROWTH_US;
+    if (kept->is_anew || wh_tracks_are_anew(&kept->signals, &kept->written)) {
+        tell_anew(live);
+    } else if (kept->has_news || wh_tracks_have_news(&kept->signals, &kept->written) ||
+               (has_moved && is_due) || wh_live_meter_has_stopped(&live->meter)) {
+        tell_growth(live);
+    } else if (has_moved) {
+        char *text = wh_live_kept_now(kept);
+        wh_feed_add(&live->feed, "frame", text);
+        free(text);
+    }
+}
+
+static void look(wh_live_t *live) {
+    const int64_t now = wh_clock_us(CLOCK_MONOTONIC);
+    if (now - live->looked_us < LOOK_US) {
+        return;
+    }
+    const int64_t before = live->kept.signals.last;
+    live->looked_us = now;
+    if (live->showing) {
+        take_all(live);
+        wh_live_meter_add(&live->meter, now, live->kept.signals.last * live->kept.record.layout->slice_us);
+        tell(live, before);
+    } else if (live->kept.is_anew) {
+        tell_anew(live);
+    }
+}
+
+static char *make_document(void *user, size_t *size) {
+    wh_live_t *live = user;
+    const wh_live_state_t state = state_of(live);
+    if (!live->showing) {
+        return NULL;
+    }
+    take_all(live);
+    if (live->kept.is_anew) {
+        tell_anew(live);
+    } else {
+        tell_growth(live); /* so that nothing in the document is told again */
+    }
+    return wh_live_kept_document(&live->kept, &state, live->feed.last + 1, size);
+}
+
+static void *serve(void *user) {
+    wh_live_t *live = user;
+    while (!__atomic_load_n(&live->is_ending, __ATOMIC_ACQUIRE)) {
+        wh_http_wait(live->http, LOOK_US, live->wake);
+        pthread_mutex_lock(&live->lock);
+        look(live);
+        wh_http_serve(live->http);
+        pthread_mutex_unlock(&live->lock);
+    }
+    return NULL;
+}
+
+/* ------------------------------------------------------------------------------------ the stepping thread */
+
+static void begin(void *user, const wh_layout_t *layout) {
+    wh_live_t *live = user;
+    if (live->next.begins) {
+        live->next.begins(live->next.user, layout);
+    }
+    pthread_mutex_lock(&live->lock);
+    wh_showing_close(live->showing);
+    live->showing = layout && !layout->tool ? wh_showing_open(layout) : NULL;
+    wh_live_kept_begin(&live->kept, live->showing ? layout : NULL);
+    live->meter = (wh_live_meter_t){.pace = -1};
+    pthread_mutex_unlock(&live->lock);
+    wh_live_pace_begin(&live->pace);
+}
+
+static void take_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_live_t *live = user;
+    if (live->next.slice) {
+        live->next.slice(live->next.user, command, state);
+    }
+    if (live->showing) {
+        wh_showing_slice(live->showing, command, state);
+    }
+    if (live->options.paces && state->status == WH_OK) {
+        wh_live_pace_wait(&live->pace, live->options.rate, state->utime);
+    }
+}
+
+static void rest(void *user, const wh_layout_t *layout) {
+    wh_live_t *live = user;
+    if (live->next.boundary) {
+        live->next.boundary(live->next.user, layout);
+    }
+    wh_live_rest(live);
+}
+
+void wh_live_rest(void *user) {
+    wh_live_t *live = user;
+    if (live && live->showing) {
+        wh_showing_rest(live->showing);
+    }
+}
+
+static int64_t time_of(const wh_mcs_t *mcs) {
+    return mcs->track.slice * mcs->track.slice_us;
+}
+
+static wh_news_t *news_of_command(const wh_mcs_t *mcs, wh_mcs_news_t what,
+                                  const wh_command_record_t *command) {
+    wh_news_t *news =
+        wh_news_make(what == WH_MCS_COMMAND_BEGINS ? WH_NEWS_COMMAND_BEGINS : WH_NEWS_COMMAND_ENDED,
+                     time_of(mcs), command->text, command->message);
+    news->task = command->task;
+    news->line = command->line;
+    news->begin_s = command->begin_s;
+    news->end_s = command->end_s;
+    news->error = command->error;
+    return news;
+}
+
+static wh_news_t *news_of_expectation(const wh_mcs_t *mcs) {
+    const wh_record_t *record = wh_mcs_record(mcs);
+    const wh_expectation_record_t *last = &record->expectations[record->expectation_count - 1];
+    wh_news_t *news = wh_news_make(WH_NEWS_EXPECTED, time_of(mcs), last->text, NULL);
+    news->line = last->line;
+    news->good = last->ok;
+    return news;
+}
+
+static wh_news_t *news_of_station(const wh_mcs_t *mcs) {
+    const wh_record_t *record = wh_mcs_record(mcs);
+    wh_news_t *news = wh_news_make(WH_NEWS_STATION, time_of(mcs), NULL, NULL);
+    news->station = record->station_events[record->station_event_count - 1];
+    return news;
+}
+
+static wh_news_t *news_of_end(const wh_mcs_t *mcs) {
+    const wh_record_t *record = wh_mcs_record(mcs);
+    char reason[1000] = "";
+    if (!record->ok) {
+        wh_record_reason(record, reason, sizeof reason);
+    }
+    wh_news_t *news = wh_news_make(WH_NEWS_ENDED, time_of(mcs), record->ok ? NULL : reason, NULL);
+    news->good = record->ok;
+    return news;
+}
+
+/* Null for what the page does not show. */
+static wh_news_t *news_of(const wh_mcs_t *mcs, wh_mcs_news_t what, const wh_command_record_t *command) {
+    switch ((int)what) {
+    case WH_MCS_COMMAND_BEGINS:
+    case WH_MCS_COMMAND_ENDED:
+        return news_of_command(mcs, what, command);
+    case WH_MCS_EXPECTED:
+        return news_of_expectation(mcs);
+    case WH_MCS_STATION_TOLD:
+        return news_of_station(mcs);
+    case WH_MCS_FINISHED:
+        return news_of_end(mcs);
+    default:
+        return NULL;
+    }
+}
+
+static void hear_news(void *user, const wh_mcs_t *mcs, wh_mcs_news_t what,
+                      const wh_command_record_t *command) {
+    wh_live_t *live = user;
+    if (live->next.tell) {
+        live->next.tell(live->next.user, mcs, what, command);
+    }
+    wh_news_t *news = live->showing ? news_of(mcs, what, command) : NULL;
+    if (news) {
+        wh_showing_rest(live->showing);
+        wh_showing_tell(live->showing, news);
+    }
+}
+
+static void hear_turn(void *user, const wh_mcs_t *mcs, const char *what) {
+    wh_live_t *live = user;
+    if (live->next.turn) {
+        live->next.turn(live->next.user, mcs, what);
+    }
+    if (live->showing) {
+        wh_news_t *news = wh_news_make(what ? WH_NEWS_WAITS : WH_NEWS_GOES_ON, time_of(mcs), what, NULL);
+        news->task = mcs->recorder.number;
+        wh_showing_tell(live->showing, news);
+    }
+}
+
+wh_mcs_listener_t wh_live_listener(wh_live_t *live, const wh_mcs_listener_t *next) {
+    if (!live) {
+        return *next;
+    }
+    live->next = *next;
+    return (wh_mcs_listener_t){.slice = take_slice,
+                               .boundary = rest,
+                               .begins = begin,
+                               .tell = hear_news,
+                               .turn = hear_turn,
+                               .user = live};
+}
+
+void wh_live_heard(void *user, const wh_transcript_entry_t *entry) {
+    wh_live_t *live = user;
+    char text[FRAME_BYTES];
+    if (live->showing) {
+        text[0] = '\0';
+        if (entry->size > 0) {
+            (void)wh_transcript_escape(text, sizeof text, entry->bytes, entry->size);
+        }
+        wh_news_t *news = wh_news_make(WH_NEWS_FRAME, entry->time_us, text, entry->port);
+        news->line = entry->kind;
+        wh_showing_tell(live->showing, news);
+    }
+}
+
+bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout) {
+    if (!live || !layout->tool) {
+        return true;
+    }
+    fprintf(stderr, "%s: --page: nothing to show (expected robots with axes: here they are times alone)\n",
+            layout->path);
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------ opening */
+
+static bool make_file(wh_http_file_t *file, const char *path, const char *type, const char *name,
+                      const char *title) {
+    char message[WH_PAGE_MESSAGE_BYTES] = "";
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    const bool made = wh_page_write(out, name, title, "", 0, message);
+    (void)fclose(out);
+    *file = (wh_http_file_t){path, type, wh_memory_need(text), size};
+    if (!made) {
+        fprintf(stderr, "--page: %s\n", message);
+    }
+    return made;
+}
+
+static bool make_files(wh_live_t *live) {
+    const char *title = live->options.title;
+    return make_file(&live->files[FILE_PAGE], "/", "text/html; charset=utf-8", WH_PAGE_LIVE, title) &&
+           make_file(&live->files[FILE_SCRIPTS], "/page.js", "text/javascript; charset=utf-8",
+                     WH_PAGE_SCRIPTS, title) &&
+           make_file(&live->files[FILE_STYLE], "/page.css", "text/css; charset=utf-8", WH_PAGE_STYLE,
+                     title) &&
+           make_file(&live->files[FILE_FOREIGN], "/foreign.js", "text/javascript; charset=utf-8",
+                     WH_PAGE_FOREIGN, title);
+}
+
+static bool open_server(wh_live_t *live, const char *address) {
+    char problem[WH_HTTP_PROBLEM_BYTES];
+    const wh_http_source_t source = {.files = live->files,
+                                     .file_count = FILES,
+                                     .feed = &live->feed,
+                                     .id = live->id,
+                                     .document = make_document,
+                                     .user = live};
+    live->http = wh_http_open(address, &source, problem);
+    if (!live->http) {
+        fprintf(stderr, "--page: %s\n", problem);
+    }
+    return live->http;
+}
+
+/* Signals are the stepping thread's. */
+static bool start(wh_live_t *live) {
+    sigset_t all;
+    sigset_t before;
+    (void)sigfillset(&all);
+    (void)pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int problem = pthread_create(&live->thread, NULL, serve, live);
+    (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (problem != 0) {
+        fprintf(stderr, "--page: no thread: %s\n", strerror(problem));
+    }
+    return problem == 0;
+}
+
+static void free_live(wh_live_t *live) {
+    wh_http_close(live->http);
+    wh_showing_close(live->showing);
+    wh_live_kept_begin(&live->kept, NULL);
+    wh_feed_close(&live->feed);
+    for (size_t i = 0; i < FILES; ++i) {
+        free((char *)(uintptr_t)live->files[i].text);
+    }
+    if (live->wake >= 0) {
+        (void)close(live->wake);
+    }
+    (void)pthread_mutex_destroy(&live->lock);
+    free(live);
+}
+
+bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const wh_live_options_t *options) {
+    *made = NULL;
+    if (!arguments->address) {
+        return true;
+    }
+    wh_live_t *live = wh_array_new(1, sizeof *live);
+    live->options = *options;
+    live->meter.pace = -1;
+    (void)snprintf(live->id, sizeof live->id, "%" PRIx64 "-%x", (uint64_t)wh_clock_us(CLOCK_REALTIME),
+                   (unsigned)getpid());
+    live->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    (void)pthread_mutex_init(&live->lock, NULL);
+    if (live->wake < 0 || !make_files(live) || !open_server(live, arguments->address) || !start(live)) {
+        free_live(live);
+        return false;
+    }
+    const char *place = wh_http_place(live->http);
+    fprintf(stderr, "%s: page at http://%s/%s\n", options->speaker, place,
+            wh_http_is_local(live->http) ? "" : ": whoever reaches this machine can see the cell");
+    if (arguments->opens) {
+        wh_live_browse(options->speaker, place);
+    }
+    *made = live;
+    return true;
+}
+
+void wh_live_stay(const wh_live_t *live) {
+    if (live) {
+        wh_catch_signals();
+        fprintf(stderr, "%s: the run is over; its page stays until Ctrl-C\n", live->options.speaker);
+        while (!wh_stop_requested) {
+            (void)pause();
+        }
+    }
+}
+
+void wh_live_close(wh_live_t *live) {
+    const uint64_t one = 1;
+    if (!live) {
+        return;
+    }
+    __atomic_store_n(&live->is_ending, true, __ATOMIC_RELEASE);
+    (void)!write(live->wake, &one, sizeof one);
+    (void)pthread_join(live->thread, NULL);
+    free_live(live);
+}

@@ -1,0 +1,32 @@
+/* The source of the page's document: the page itself carries it. The page of a live cell has stream.js in its place, and no
+ * other part asks which. A source has
+ *   take()          promises the document, or fails with the reason
+ *   follow(heard)   calls `heard(kind, what)` from then on: "frame", "growth" and "anew" with their object, "state" with what is
+ *                   known of the program and of the connection. A file never calls it. */
+(function (W) {
+    'use strict';
+
+    function bytes(text) {
+        const made = new Uint8Array(text.length);
+        for (let i = 0; i < text.length; ++i) {
+            made[i] = text.charCodeAt(i);
+        }
+        return made;
+    }
+
+    /* Inflates a text that was deflated and written as base64. */
+    function inflate(packed) {
+        if (!window.DecompressionStream) {
+            throw new Error('it takes a browser of 2023 or later to unpack it');
+        }
+        const inflated = new Blob([bytes(atob(packed))]).stream().pipeThrough(new window.DecompressionStream('deflate'));
+        return new Response(inflated).text();
+    }
+
+    W.source = {
+        async take() {
+            return JSON.parse(await inflate(document.getElementById('document').textContent.trim()));
+        },
+        follow() {},
+    };
+}(window.Waferhand));

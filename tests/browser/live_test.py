@@ -1,0 +1,173 @@
+"""The page of a cell that moves: it follows, goes back in time and returns to the present, and outlives its program."""
+import os
+import pathlib
+import sys
+import time
+import unittest
+
+import browser
+import documents
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "end_to_end/page"))
+import page as pages  # noqa: E402  its folder was just named
+
+SCRAPE = "lua/examples/04_scrape.lua"
+HOSTILE = '"><img src=x onerror=alert(1)><script>alert(2)</script>&amp;'
+
+
+class Live(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.page = browser.shared(True)
+
+    def show(self, *arguments):
+        served = pages.Served(*arguments)
+        self.addCleanup(served.kill)
+        self.addCleanup(self.page.driver.get, "about:blank")
+        self.page.visit(f"http://{served.place}/")
+        return served
+
+    def state(self, name):
+        return self.page.js("return Waferhand.clock[arguments[0]]", name)
+
+    def test_follows(self):
+        """From the first picture on, at the pace of the cell, and to its end."""
+        page = self.page
+        served = self.show("run", "lua/examples/01_transfer.lua", "--page", "0")
+        first = page.taken()
+        began, at = time.monotonic(), page.now()
+        page.shoot("live")
+        page.wait("return Waferhand.clock.now > arguments_at".replace("arguments_at", str(at + 2)))
+        passed = time.monotonic() - began
+        self.assertAlmostEqual(page.now() - at, passed, delta=0.5)
+        self.assertTrue(self.state("following"))
+        self.assertEqual(page.text("#live"), "\u25cf live")
+        self.assertIn("pace: ", page.text("#liveline"))
+        self.assertIn("GET A 1", page.text("#tables"))
+        page.wait("return document.getElementById('live').textContent.includes('over')")
+        page.settle()
+        time.sleep(0.5)
+        self.assertEqual(page.text("#live"), "\u2713 over: passed")
+        self.assertEqual(page.now(), 8.283)
+        self.assertEqual(page.js("return Waferhand.shown.events.length"), 4)
+        self.assertIn("2: Wafer 1, 10: Wafer 2", page.text("#card-stations"))
+        self.assertIn("picked Wafer 2 by EE", page.text("#card-last"))
+        self.assertEqual(page.faults(), [])
+        self.assertEqual([url for url in page.outside() if not url.startswith(f"http://{served.place}/")], [])
+        page.shoot("live_over")
+        print(f"live page: interactive after {first:.0f} ms, machine's load {os.getloadavg()[0]:.1f}")
+        self.assertLess(first, 10000)
+
+    def test_back_in_time(self):
+        """The slider goes back while the cell goes on; the button and the key return to the present."""
+        page = self.page
+        self.show("run", "lua/examples/12_three_foups.lua", "--page", "0", "--rate", "5")
+        page.wait("return Waferhand.clock.end > 6")
+        left, top, width, _ = page.box("#scrubber")
+        begin = self.state("end")
+        page.click(left + width / 2, top + 11)
+        page.wait("return !Waferhand.clock.following")
+        there, end = page.now(), self.state("end")
+        self.assertTrue(0.4 * begin < there < 0.6 * end, (begin, there, end))
+        page.wait(f"return Waferhand.clock.end > {end + 3}")
+        self.assertEqual(page.now(), there)
+        pose = page.js("return Waferhand.robot.gripper(Waferhand.shown.tracks, 0, arguments[0])", there)
+        self.assertEqual(len(pose["r"]), 3)
+        page.js("document.getElementById('back').click()")
+        page.settle()
+        self.assertTrue(self.state("following"))
+        page.key(" ", code="Space")
+        self.assertFalse(self.state("following"))
+        page.wait(f"return Waferhand.clock.end > {self.state('end') + 1}")
+        self.assertLess(page.now(), self.state("end"))
+        page.key("End")
+        self.assertTrue(self.state("following"))
+        self.assertTrue(page.js("return document.getElementById('back').hidden"))
+        # Playing from the past ends in the present.
+        page.js("Waferhand.clock.setSpeed(100); Waferhand.clock.seek(0); Waferhand.clock.play()")
+        page.wait("return Waferhand.clock.following", 20)
+        self.assertEqual(page.faults(), [])
+
+    def test_stops_at_a_hit(self):
+        """The shown time stays there, and the place has its mark."""
+        page = self.page
+        self.show("run", SCRAPE, "--page", "0")
+        page.js("document.getElementById('hits').click()")
+        page.wait("return !Waferhand.clock.following && Waferhand.shown.events.some((event) => event.kind === 'hit')", 40)
+        page.settle()
+        at = page.js("return Waferhand.shown.events.find((event) => ['hit', 'too_close'].includes(event.kind)).t")
+        self.assertEqual(page.now(), at)
+        page.wait("return Waferhand.stage.view.marks.shown.some((each) => each.mark.kind === 'hit')")
+        page.wait("return Array.from(document.querySelectorAll('.tag.mark:not([hidden])'), (tag) => tag.textContent).some("
+                  "(text) => text.startsWith('hit: '))")
+        page.shoot("live_hit")
+        self.assertEqual(page.faults(), [])
+
+    def test_outlives_its_program(self):
+        """It says that it is alone, and goes on by itself when the program is there again."""
+        page = self.page
+        served = self.show("run", "lua/examples/12_three_foups.lua", "--page", "0", "--rate", "5")
+        page.wait("return Waferhand.clock.end > 3")
+        served.kill()
+        page.wait("return document.getElementById('live').textContent.includes('no connection')")
+        page.js("Waferhand.clock.seek(1)")
+        self.assertEqual(page.now(), 1)
+        again = pages.Served("run", "lua/examples/01_transfer.lua", "--page", served.place)
+        self.addCleanup(again.kill)
+        page.wait("return document.title.includes('01_transfer') && performance.getEntriesByName('complete').length > 0", 30)
+        page.wait("return document.getElementById('live').textContent.includes('live')")
+        self.assertTrue(self.state("following"))
+
+    def test_names_are_text(self):
+        """Whatever a layout calls its things."""
+        page = self.page
+        folder = documents.FOLDER
+        layout = (documents.ROOT / "lua/layouts/paper.lua").read_text()
+        for name in ("Wafer 1", "EE"):
+            self.assertIn(f'"{name}"', layout)
+        layout = layout.replace('"Wafer 1"', repr(HOSTILE[:40])).replace('"EE"', repr("</script><b>"))
+        (folder / "hostile_cell.lua").write_text(layout)
+        (folder / "hostile.lua").write_text('cell "hostile_cell.lua"\nget("A", 1)\nput("B", 2)\n')
+        self.show("run", folder / "hostile.lua", "--page", "0", "--rate", "20")
+        page.wait("return document.getElementById('live').textContent.includes('over')")
+        page.key("n")
+        page.settle()
+        self.assertIn(HOSTILE[:40], page.text("#card-last"))
+        self.assertEqual(page.js("return [document.querySelectorAll('b b, img, main script').length, document.scripts.length]"), [0, 2])
+        self.assertEqual(page.faults(), [])
+
+    def test_another_site_gets_nothing(self):
+        """A page of another origin can neither read the document nor the stream, nor show the page in a frame."""
+        page = self.page
+        served = self.show("run", "lua/examples/12_three_foups.lua", "--page", "0")
+        other = pages.Served("run", "lua/examples/01_transfer.lua", "--page", "0")
+        self.addCleanup(other.kill)
+        page.driver.get("about:blank")
+        # A page without a policy of its own, from disk: its origin is null.
+        (documents.FOLDER / "evil.html").write_text("<!DOCTYPE html><title>evil</title>")
+        for start in ((documents.FOLDER / "evil.html").as_uri(), "data:text/html,evil"):
+            page.driver.get(start)
+            got = page.driver.execute_async_script("""const [place, done] = arguments;
+                const tell = (promise) => promise.then((text) => 'got ' + text, () => 'refused');
+                const events = new Promise((good, bad) => {
+                    const source = new EventSource(`http://${place}/stream?from=0`);
+                    source.onmessage = source.onopen = () => good('events');
+                    source.onerror = () => { source.close(); bad(); };
+                });
+                const script = new Promise((good, bad) => {
+                    const made = document.createElement('script');
+                    made.src = `http://${place}/page.js`;
+                    made.onload = () => good('script');
+                    made.onerror = bad;
+                    document.head.append(made);
+                });
+                Promise.all([tell(fetch(`http://${place}/document`).then((answer) => answer.text())), tell(events), tell(script),
+                    tell(fetch(`http://${place}/control`, { method: 'POST', body: '{}' }).then((answer) => answer.text()))])
+                    .then(done)""", served.place)
+            self.assertEqual(got, ["refused"] * 4, start)
+        page.drain()
+        page.errors = []
+
+
+if __name__ == "__main__":
+    unittest.main()

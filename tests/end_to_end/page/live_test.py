@@ -1,0 +1,205 @@
+"""A live cell: late joiners, slow ones, what is told, and that the run does not notice."""
+import json
+import re
+import socket
+import subprocess
+import time
+import unittest
+
+import page
+
+TRANSFER = "lua/examples/01_transfer.lua"
+HASH = "e4e148111c08e2e0"
+
+
+def value(curve, t):
+    """A curve of cubics at a time."""
+    i = max(k for k, at in enumerate(curve["t"]) if at <= t)
+    if i + 1 == len(curve["t"]):
+        return curve["v"][i]
+    width = curve["t"][i + 1] - curve["t"][i]
+    x = (t - curve["t"][i]) / width
+    a, b = curve["v"][i:i + 2]
+    p, q = (width * slope for slope in curve["slope"][i:i + 2])
+    return a + x * (p + x * (3 * (b - a) - 2 * p - q + x * (p + q - 2 * (b - a))))
+
+
+class Live(unittest.TestCase):
+    def serve(self, *arguments, **more):
+        served = page.Served(*arguments, **more)
+        self.addCleanup(served.kill)
+        return served
+
+    def plain(self, script):
+        """What the run prints without a page, and its document."""
+        path = page.ROOT / "build/live_page.json"
+        ran = subprocess.run([page.PROGRAM, "run", script, "--data", path], cwd=page.ROOT, capture_output=True, text=True, check=False)
+        return ran.stdout, json.loads(path.read_text())
+
+    def test_run_is_the_same(self):
+        """Its table, its status and its hash; it stays until it is ended."""
+        plain, _ = self.plain(TRANSFER)
+        served = self.serve("run", TRANSFER, "--page", "0", "--rate", "50")
+        stream = page.Stream(served, served.document())
+        served.said("its page stays until Ctrl-C")
+        stream.wait(lambda told: any(what.get("state", {}).get("over") for _, _, what in told))
+        status, out = served.end()
+        self.assertEqual(status, 0)
+        self.assertIn(HASH, out)
+        wall = re.compile(r"[0-9.]+ s of wall.*|.*wall.*\n")
+        self.assertEqual(wall.sub("", out), wall.sub("", plain))
+
+    def test_whole_past(self):
+        """A browser that comes after the end gets all events and commands, and curves that are those of --report."""
+        _, wanted = self.plain(TRANSFER)
+        served = self.serve("run", TRANSFER, "--page", "127.0.0.1:0")
+        served.said("its page stays until Ctrl-C")
+        time.sleep(0.2)
+        got = served.document()
+        document = got["document"]
+        self.assertEqual(got["state"]["good"], True)
+        self.assertEqual(document["run"]["events"], wanted["run"]["events"])
+        self.assertEqual([each["text"] for each in document["run"]["commands"]],
+                         [each["text"] for each in wanted["run"]["commands"]])
+        self.assertEqual(document["run"]["expectations"], wanted["run"]["expectations"])
+        self.assertEqual(document["duration_s"], wanted["duration_s"])
+        for axis, curve in enumerate(wanted["tracks"]["axes"][:3]):
+            # A busy machine may leave out some looks; half of them are there in any case.
+            off = sorted(abs(value(document["tracks"]["axes"][axis], t) - value(curve, t))
+                         for t in (k / 100 * wanted["duration_s"] for k in range(100)))
+            self.assertLess(off[50], 0.5 if axis else 0.002)
+        for event in wanted["run"]["events"]:
+            t = event["utime"] / 1e6
+            for axis, curve in enumerate(wanted["tracks"]["axes"]):
+                self.assertAlmostEqual(value(document["tracks"]["axes"][axis], t), value(curve, t), places=3)
+        self.assertEqual(document["names"], wanted["names"])
+        self.assertEqual(document["scene"], wanted["scene"])
+
+    def test_joins_in_the_middle(self):
+        """What a stream adds to a document is what a later document has."""
+        served = self.serve("run", TRANSFER, "--page", "0", "--rate", "4")
+        time.sleep(0.7)
+        first = served.document()
+        stream = page.Stream(served, first)
+        served.said("its page stays until Ctrl-C")
+        stream.wait(lambda told: any(what.get("state", {}).get("over") for _, _, what in told))
+        last = served.document()["document"]
+        numbers = [number for number, _, _ in stream.told]
+        self.assertEqual(numbers, sorted(set(numbers)))
+        self.assertGreater(sum(kind == "frame" for _, kind, _ in stream.told), 20)
+        lists = {name: list(entries) for name, entries in first["document"]["run"].items()}
+        stays = [list(each) for each in first["document"]["tracks"]["wafers"]]
+        valves = [each["v"][:] for each in first["document"]["tracks"]["valves"]]
+        for _, kind, what in stream.told:
+            if kind == "growth":
+                for name, more in what["lists"].items():
+                    lists[name][more["from"]:] = more["list"]
+                for i, more in enumerate(what["tracks"]["wafers"]):
+                    stays[i] += more
+                for i, more in enumerate(what["tracks"]["valves"]):
+                    valves[i] += more["v"]
+        self.assertEqual(lists, last["run"])
+        self.assertEqual(stays, last["tracks"]["wafers"])
+        self.assertEqual(valves, [each["v"] for each in last["tracks"]["valves"]])
+
+    def test_slow_reader_disturbs_nobody(self):
+        """One that never reads, and ten that do: the latter get all, the run keeps its pace."""
+        served = self.serve("run", "lua/examples/12_three_foups.lua", "--page", "0", "--rate", "10")
+        first = served.document()
+        slow = [page.Stream(served, first, reads=False) for _ in range(3)]
+        quick = [page.Stream(served, first) for _ in range(10)]
+        before = page.processor(served.process)
+        time.sleep(4)
+        after = page.processor(served.process)
+        self.assertEqual([stream.told[0][0] for stream in quick], [quick[0].told[0][0]] * 10)
+        for stream in quick:
+            kinds = [kind for _, kind, _ in stream.told]
+            self.assertNotIn("anew", kinds)
+            self.assertGreater(kinds.count("frame"), 100)
+        paces = [what["state"]["pace"] for _, kind, what in quick[0].told if kind == "growth" and what["state"]["pace"]]
+        self.assertGreater(paces[-1], 9)
+        print(f"\nstepping at 10x: {(after[0] - before[0]) / 4:.3f} of a core; the page with 10 readers and 3 that sleep: "
+              f"{sum(after[1:]) / 4 - sum(before[1:]) / 4:.3f}")
+        for stream in slow + quick:
+            stream.close()
+
+    def test_one_page_takes_little(self):
+        """At most 5 % of a core at the pace of the wall clock, with one browser."""
+        served = self.serve("run", "lua/examples/23_two_robots.lua", "--page", "0")
+        stream = page.Stream(served, served.document())
+        before = page.processor(served.process)
+        time.sleep(4)
+        after = page.processor(served.process)
+        taken = (sum(after[1:]) - sum(before[1:])) / 4
+        print(f"\nthe page's thread, one reader, two robots: {taken:.3f} of a core; {len(stream.told) / 4:.0f} messages a second")
+        self.assertLess(taken, 0.05)
+        stream.close()
+
+    def test_host_and_frames(self):
+        """serve: the frames at its port, a command that fails, and RESET, by which all begins anew."""
+        served = self.serve("serve", "lua/layouts/paper.lua", "--dialect", "lua/dialects/prompt.lua", "--tcp", "127.0.0.1:0",
+                            "--lockstep", "--page", "0")
+        served.said("prompt, at ")
+        host = next(line.rsplit(" at ", 1)[1].strip() for line in served.lines if "prompt, at " in line)
+        address, port = host.split(":")
+        stream = page.Stream(served, served.document())
+        line = socket.create_connection((address, int(port)), 20)
+        answers = line.makefile("r")
+        for command, begin in (("GET A 1", "OK"), ("GET B 7", "ERROR"), ("PUT B 2", "OK")):
+            line.sendall((command + "\r\n").encode())
+            self.assertTrue(answers.readline().startswith(begin))
+        stream.wait(lambda told: sum(len(what["lists"].get("frames", {"list": []})["list"]) for _, kind, what in told
+                                     if kind == "growth") >= 7)
+        run = served.document()["document"]["run"]
+        self.assertEqual([each["text"] for each in run["frames"] if each["kind"] == ">"], ["GET A 1\\r\\n", "GET B 7\\r\\n", "PUT B 2\\r\\n"])
+        self.assertEqual([each["error"] != 0 for each in run["commands"]], [False, True, False])
+        self.assertEqual([each["kind"] for each in run["events"]], ["picked", "released"])
+        line.sendall(b"RESET\r\n")
+        self.assertTrue(answers.readline().startswith("OK"))
+        stream.wait(lambda told: told[-1][1] == "anew" or any(kind == "anew" for _, kind, _ in told))
+        self.assertEqual(served.document()["document"]["run"]["commands"], [])
+        line.sendall(b"GET A 1\r\n")
+        self.assertTrue(answers.readline().startswith("OK"))
+        time.sleep(0.2)
+        self.assertEqual([each["text"] for each in served.document()["document"]["run"]["commands"]], ["GET A 1"])
+        self.assertEqual(served.end()[0], 0)
+
+    def test_restart(self):
+        """The same port again at once; a reader with numbers of the run before is told to begin anew."""
+        served = self.serve("run", TRANSFER, "--page", "0", "--rate", "20")
+        place, first = served.place, served.document()
+        served.kill()
+        again = self.serve("run", TRANSFER, "--page", place, "--rate", "20")
+        again.document()
+        stream = page.Stream(again, first)
+        stream.wait(lambda told: told and told[0][1] == "anew")
+        stream.close()
+        stream = page.Stream(again, dict(again.document(), next=1 << 60))
+        stream.wait(lambda told: told and told[0][1] == "anew")
+        stream.close()
+
+    def test_refusals(self):
+        """What cannot be offered is refused by name."""
+        for arguments, message in (
+                (("run", TRANSFER, "--open"), "--open goes with --page"),
+                (("run", TRANSFER, "--rate", "2"), "--rate: 2 (goes with --page"),
+                (("run", TRANSFER, "--page", "--counted"), "--counted does not go with --page"),
+                (("run", TRANSFER, "--page", "--watch"), "--watch does not go with --page"),
+                (("run", TRANSFER, "--page=localhost:80"), "--page: localhost:80: no address"),
+                (("run", "lua/examples/33_lots_and_locks.lua", "--page", "0"), "nothing to show (expected robots with axes"),
+        ):
+            ran = subprocess.run([page.PROGRAM, *arguments], cwd=page.ROOT, capture_output=True, text=True, timeout=30, check=False)
+            self.assertEqual(ran.returncode, 2, arguments)
+            self.assertIn(message, ran.stderr)
+        taken = socket.socket()
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        ran = subprocess.run([page.PROGRAM, "run", TRANSFER, "--page", f"127.0.0.1:{taken.getsockname()[1]}"], cwd=page.ROOT,
+                             capture_output=True, text=True, timeout=30, check=False)
+        taken.close()
+        self.assertEqual(ran.returncode, 2)
+        self.assertIn("Address already in use", ran.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
