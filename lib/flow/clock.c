@@ -77,7 +77,8 @@ static void end_process(const wh_flow_station_t *of, wh_clock_place_t *place, in
 
 /* A wafer in a place: it waits for its process, or there is none for it. */
 static void settle(const wh_flow_station_t *of, wh_clock_place_t *place) {
-    place->phase = of->process_us > 0 || cleans_around(of, place) ? WH_CLOCK_WAITING : WH_CLOCK_DONE;
+    place->phase =
+        wh_clock_process_us(of, place) > 0 || cleans_around(of, place) ? WH_CLOCK_WAITING : WH_CLOCK_DONE;
 }
 
 /* A wafer around which a place was cleaned is still to leave. */
@@ -203,6 +204,9 @@ static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t 
     place->wafer = seen->wafer;
     place->done_us = now_us;
     place->is_cut = place->is_forced = false;
+    place->has_own = place->has_next;
+    place->own_us = place->next_us;
+    place->has_next = false;
     if (place->phase == WH_CLOCK_CLEANING) {
         tell_place(teller, WH_CLOCK_CLEAN_MISSED, slot, place->wafer, now_us, (int64_t)place->left_us);
     } else {
@@ -216,12 +220,13 @@ static void enter(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t 
 static void begin(const wh_flow_station_t *of, wh_clock_place_t *place, int32_t slot, bool is_awaited,
                   int64_t now_us, const wh_clock_teller_t *teller) {
     const bool may_begin = place->phase == WH_CLOCK_WAITING && !place->is_away && !place->is_bad;
-    if (may_begin && of->process_us > 0) {
+    const int64_t process_us = wh_clock_process_us(of, place);
+    if (may_begin && process_us > 0) {
         place->phase = WH_CLOCK_PROCESSING;
         place->is_cut = false;
-        place->left_us = (double)of->process_us;
+        place->left_us = (double)process_us;
         place->begun_us = now_us;
-        tell_place(teller, WH_CLOCK_PROCESS_BEGINS, slot, place->wafer, now_us, of->process_us);
+        tell_place(teller, WH_CLOCK_PROCESS_BEGINS, slot, place->wafer, now_us, process_us);
     } else if (may_begin || is_due_unless(of, place, is_awaited, now_us)) {
         begin_clean(of, place, slot, now_us, teller);
     }
@@ -305,7 +310,7 @@ double wh_clock_left_us(const wh_flow_station_t *of, const wh_clock_place_t *pla
     const double around = cleans_around(of, place) ? (double)of->clean_us : 0;
     switch (place->phase) {
     case WH_CLOCK_WAITING:
-        return (double)of->process_us + around;
+        return (double)wh_clock_process_us(of, place) + around;
     case WH_CLOCK_PROCESSING:
         return place->left_us + around;
     case WH_CLOCK_CLEANING:

@@ -30,11 +30,13 @@ typedef struct {
     int32_t wafer;       /* that has come and not left, or WH_FLOW_NONE */
     int32_t since_clean; /* wafers that have left it since */
     bool is_clean_due;
-    bool is_around;    /* CLEANING: around the wafer that was processed there */
-    bool is_away;      /* the wafer was lifted or moved, and has not left the station */
-    bool is_bad;       /* it lies there, but not so that a process may begin */
-    bool is_cut;       /* WAITING: its process had begun, and was cut */
-    bool is_forced;    /* a command may take it though its process has not begun */
+    bool is_around;         /* CLEANING: around the wafer that was processed there */
+    bool is_away;           /* the wafer was lifted or moved, and has not left the station */
+    bool is_bad;            /* it lies there, but not so that a process may begin */
+    bool is_cut;            /* WAITING: its process had begun, and was cut */
+    bool is_forced;         /* a command may take it though its process has not begun */
+    bool has_own, has_next; /* its wafer's process takes `own_us`, that of the next wafer `next_us` */
+    int64_t own_us, next_us;
     double left_us;    /* of the process or the clean that runs */
     int64_t begun_us;  /* when that began */
     int64_t done_us;   /* when the wafer's process ended; without one, when the wafer came */
@@ -110,6 +112,11 @@ void wh_clock_pass(const wh_flow_station_t *of, wh_clock_t *clock, wh_clock_plac
  * while a wafer is away: it may leave at any time. */
 double wh_clock_quiet_us(const wh_flow_station_t *of, const wh_clock_t *clock,
                          const wh_clock_place_t places[], int64_t now_us);
+
+/* How long the place's wafer is processed there. */
+static inline int64_t wh_clock_process_us(const wh_flow_station_t *of, const wh_clock_place_t *place) {
+    return place->has_own ? place->own_us : of->process_us;
+}
 
 /* This is seen of its slots now. `is_closed`: no blade is in it and its doors are shut. All that can begin
  * then begins. */

@@ -27,7 +27,8 @@ typedef struct {
     bool is_over;    /* the wafer in it is at its end */
 } place_t;
 
-typedef struct {
+struct wh_flow_measure {
+    wh_flow_engine_t engine;
     wh_flow_figures_t *figures;
     place_t *places;
     aside_t *asides;       /* by place */
@@ -35,7 +36,9 @@ typedef struct {
     wh_flow_visit_t *open; /* by wafer: the transfer that runs */
     wh_flow_log_t log;
     bool keeps_ways;
-} measure_t;
+};
+
+typedef wh_flow_measure_t measure_t;
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
@@ -71,7 +74,6 @@ static void go_to(measure_t *measure, const wh_flow_state_t *state, int32_t numb
 /* The time of a wafer in a place up to now: shutting, process, and waiting. */
 static void account_wafer(measure_t *measure, const wh_flow_state_t *state, int32_t wafer, int64_t now_us) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    const int32_t station = state->tool->place_stations[at->place];
     if (at->step == 0) {
         go_to(measure, state, at->place, at->entered_us,
               measure->places[at->place].is_over ? WH_FLOW_STATION_STORED : WH_FLOW_STATION_EMPTY);
@@ -80,7 +82,7 @@ static void account_wafer(measure_t *measure, const wh_flow_state_t *state, int3
         return;
     }
     const int64_t processed_us = at->done_us - at->clean_us;
-    const int64_t begin_us = processed_us - wh_flow_process_us(state, wafer, station);
+    const int64_t begin_us = processed_us - at->process_us;
     go_to(measure, state, at->place, begin_us < now_us ? begin_us : now_us, WH_FLOW_STATION_HANDLED);
     go_to(measure, state, at->place, processed_us < now_us ? processed_us : now_us, WH_FLOW_STATION_PROCESS);
     go_to(measure, state, at->place, at->done_us < now_us ? at->done_us : now_us, WH_FLOW_STATION_CLEAN);
@@ -154,12 +156,20 @@ static void end_visit(measure_t *measure, const wh_flow_event_t *event, int32_t 
     keep_visit(measure, wafer);
 }
 
+/* A real door opens for the robot that takes the wafer. */
+static bool is_real_door_opening(const wh_flow_state_t *state, const wh_flow_wafer_state_t *wafer) {
+    const wh_flow_robot_state_t *robot = &state->robots[wafer->taker];
+    return robot->action == WH_FLOW_OPENING &&
+           state->tool->doors[wh_flow_of(state->tool, wafer->taker, robot->station)].is_real;
+}
+
 /* Those of wafers that are under way when the flow ends; a door that opens is no visit yet. */
 static void keep_open_visits(measure_t *measure, const wh_flow_state_t *state) {
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
         const wh_flow_wafer_state_t *wafer = &state->wafers[w];
         note_coming(measure->figures, state, w);
-        if (wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us) {
+        const bool is_taken = wafer->taker != WH_FLOW_NONE && measure->open[w].pick_us <= state->now_us;
+        if (is_taken && !(wafer->robot == WH_FLOW_NONE && is_real_door_opening(state, wafer))) {
             measure->open[w].arm =
                 wafer->robot != WH_FLOW_NONE ? wafer->arm : state->robots[wafer->taker].arm;
             keep_visit(measure, w);
@@ -178,13 +188,13 @@ static void note_process(measure_t *measure, const wh_flow_event_t *event) {
 static void note_doing(wh_flow_figures_t *figures, const wh_flow_event_t *event) {
     figures->doings = wh_array_grow(figures->doings, figures->doing_count, &figures->doing_capacity,
                                     sizeof *figures->doings);
-    figures->doings[figures->doing_count++] = (wh_flow_doing_t){event->kind, event->station,  event->place,
-                                                                event->side, event->begin_us, event->end_us};
+    figures->doings[figures->doing_count++] = (wh_flow_doing_t){
+        event->kind, event->station, event->place, event->robot, event->side, event->begin_us, event->end_us};
 }
 
 static void note_way(measure_t *measure, const wh_flow_event_t *event) {
     wh_flow_figures_t *figures = measure->figures;
-    if (measure->keeps_ways && event->end_us > event->begin_us) {
+    if (measure->keeps_ways && event->end_us > event->begin_us && event->from != WH_FLOW_NONE) {
         figures->ways =
             wh_array_grow(figures->ways, figures->way_count, &figures->way_capacity, sizeof *figures->ways);
         figures->ways[figures->way_count++] =
@@ -198,6 +208,8 @@ static void hear_stay(measure_t *measure, const wh_flow_state_t *state, const wh
     account_wafer(measure, state, event->wafer, event->end_us);
     if (event->step > 0) {
         blame(measure, state, event);
+    }
+    if (event->step > 0 && !state->tool->stations[event->station].is_real) {
         wh_flow_stays_add(&measure->figures->stays, state, event);
     }
     if (measure->open) {
@@ -233,10 +245,17 @@ static uint64_t hash_event(uint64_t hash, const wh_flow_event_t *event) {
     return hash;
 }
 
+/* Timed ones open and shut in the times of the tool. */
+static bool is_real_door(const wh_flow_tool_t *tool, const wh_flow_event_t *event) {
+    return event->kind == WH_FLOW_EVENT_SHUT ||
+           (event->kind == WH_FLOW_EVENT_OPEN &&
+            tool->doors[wh_flow_of(tool, event->robot, event->station)].is_real);
+}
+
 /* Where visits are kept: what else they tell, and what happened beside them. */
 static void note_event(measure_t *measure, const wh_flow_event_t *event) {
     const bool is_doing = event->kind == WH_FLOW_EVENT_CLEAN || event->kind == WH_FLOW_EVENT_PUMP ||
-                          event->kind == WH_FLOW_EVENT_DOWN;
+                          event->kind == WH_FLOW_EVENT_DOWN || is_real_door(measure->figures->tool, event);
     wh_flow_log_add(&measure->log, event);
     if (event->kind == WH_FLOW_EVENT_PICK) {
         measure->open[event->wafer].picked_us = event->end_us;
@@ -254,6 +273,8 @@ static void hear(void *context, const wh_flow_state_t *state, const wh_flow_even
     measure->figures->hash = hash_event(measure->figures->hash, event);
     if (event->kind == WH_FLOW_EVENT_STAY) {
         hear_stay(measure, state, event);
+    } else if (event->kind == WH_FLOW_EVENT_LEFT) {
+        wh_flow_stays_add(&measure->figures->stays, state, event);
     } else if (event->kind == WH_FLOW_EVENT_PICK) {
         go_to(measure, state, event->place, event->end_us, WH_FLOW_STATION_HANDLED);
     } else if (event->kind == WH_FLOW_EVENT_PLACE || event->kind == WH_FLOW_EVENT_SWAP) {
@@ -331,7 +352,7 @@ static void end(void *context, const wh_flow_state_t *state) {
     measure_t *measure = context;
     wh_flow_event_t stay;
     for (int32_t w = 0; w < (int32_t)state->plan->wafer_count; ++w) {
-        if (wh_flow_open_stay(state, w, &stay)) {
+        if (wh_flow_open_stay(state, w, &stay) && !state->tool->stations[stay.station].is_real) {
             wh_flow_stays_add(&measure->figures->stays, state, &stay);
         }
     }
@@ -368,30 +389,60 @@ static void open_figures(wh_flow_figures_t *figures, const wh_flow_tool_t *tool,
     wh_flow_stays_open(&figures->stays, tool);
 }
 
-void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
-                     wh_flow_figures_t *figures) {
-    measure_t measure = {.figures = figures,
-                         .keeps_ways = keeps == WH_FLOW_WAYS,
-                         .places = wh_array_new(tool->place_count, sizeof *measure.places),
-                         .asides = wh_array_new(tool->place_count, sizeof *measure.asides)};
+/* Room for visits, and for the transfers that run. */
+static void keep_visits(measure_t *measure, wh_flow_figures_t *figures, size_t wafers) {
+    measure->visits = wh_array_new(wafers, sizeof *measure->visits);
+    figures->came_us = wh_array_new(wafers, sizeof *figures->came_us);
+    for (size_t w = 0; w < wafers; ++w) {
+        figures->came_us[w] = WH_FLOW_NEVER;
+    }
+    measure->open = wh_array_new(wafers, sizeof *measure->open);
+    memset(measure->visits, 0xff, wafers * sizeof *measure->visits);
+}
+
+wh_flow_measure_t *wh_flow_measure_open(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+                                        wh_flow_keep_t keeps, const wh_flow_outside_t *outside,
+                                        wh_flow_figures_t *figures) {
+    measure_t *measure = wh_array_new(1, sizeof *measure);
+    *measure = (measure_t){.figures = figures,
+                           .keeps_ways = keeps == WH_FLOW_WAYS,
+                           .places = wh_array_new(tool->place_count, sizeof *measure->places),
+                           .asides = wh_array_new(tool->place_count, sizeof *measure->asides)};
     open_figures(figures, tool, plan);
     if (keeps != WH_FLOW_SUMS) {
-        measure.visits = wh_array_new(plan->wafer_count, sizeof *measure.visits);
-        figures->came_us = wh_array_new(plan->wafer_count, sizeof *figures->came_us);
-        for (size_t w = 0; w < plan->wafer_count; ++w) {
-            figures->came_us[w] = WH_FLOW_NEVER;
-        }
-        measure.open = wh_array_new(plan->wafer_count, sizeof *measure.open);
-        memset(measure.visits, 0xff, plan->wafer_count * sizeof *measure.visits);
+        keep_visits(measure, figures, plan->wafer_count);
     }
-    const wh_flow_listener_t listener = {&measure, hear, advance, end};
-    wh_flow_play(tool, plan, &listener, &figures->result);
-    figures->parts = wh_flow_path(tool, plan, &measure.log, &figures->part_count);
-    free(measure.log.events);
-    free(measure.places);
-    free(measure.asides);
-    free(measure.visits);
-    free(measure.open);
+    const wh_flow_listener_t listener = {measure, hear, advance, end};
+    wh_flow_engine_open(&measure->engine, tool, plan, &listener, outside);
+    return measure;
+}
+
+wh_flow_engine_t *wh_flow_measure_engine(wh_flow_measure_t *measure) {
+    return &measure->engine;
+}
+
+void wh_flow_measure_close(wh_flow_measure_t *measure) {
+    wh_flow_figures_t *figures = measure->figures;
+    if (measure->engine.is_over) {
+        wh_flow_engine_result(&measure->engine, &figures->result);
+        figures->parts = wh_flow_path(figures->tool, figures->plan, &measure->log, &figures->part_count);
+    }
+    wh_flow_engine_close(&measure->engine);
+    free(measure->log.events);
+    free(measure->places);
+    free(measure->asides);
+    free(measure->visits);
+    free(measure->open);
+    free(measure);
+}
+
+void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
+                     wh_flow_figures_t *figures) {
+    measure_t *measure = wh_flow_measure_open(tool, plan, keeps, NULL, figures);
+    for (int64_t next_us = 0; !measure->engine.is_over;) {
+        next_us = wh_flow_engine_step(&measure->engine, next_us);
+    }
+    wh_flow_measure_close(measure);
 }
 
 void wh_flow_figures_close(wh_flow_figures_t *figures) {

@@ -3,6 +3,7 @@
 #ifndef WH_FLOW_FIGURES_H
 #define WH_FLOW_FIGURES_H
 
+#include "engine.h"
 #include "path.h"
 #include "stays.h"
 #include "waiting.h"
@@ -33,9 +34,12 @@ typedef struct {
 
 /* A station's own doing. */
 typedef struct {
-    wh_flow_event_kind_t kind; /* WH_FLOW_EVENT_CLEAN, WH_FLOW_EVENT_PUMP, WH_FLOW_EVENT_DOWN */
-    int32_t station, place;    /* place: of a clean */
-    wh_flow_side_t side;       /* of a pump: to which it went */
+    /* WH_FLOW_EVENT_CLEAN, WH_FLOW_EVENT_PUMP, WH_FLOW_EVENT_DOWN; of real doors WH_FLOW_EVENT_OPEN and
+     * WH_FLOW_EVENT_SHUT */
+    wh_flow_event_kind_t kind;
+    int32_t station, place; /* place: of a clean */
+    int32_t robot;          /* of a door, or WH_FLOW_NONE */
+    wh_flow_side_t side;    /* of a pump: to which it went */
     int64_t begin_us, end_us;
 } wh_flow_doing_t;
 
@@ -71,8 +75,10 @@ typedef struct {
 
 /* A flow that a run has played: it owns the plan. */
 typedef struct {
-    int line; /* of the script */
+    int line;         /* of the script */
+    int64_t began_us; /* in a cell with axes: when it began; times of the figures count from then on */
     const wh_flow_tool_t *tool;
+    bool is_played;        /* in a cell with axes, slice by slice */
     bool has_gains;        /* what less time of each robot and station brings is asked for */
     bool is_lateness_told; /* a stay beyond a window is told, and does not fail the run */
     wh_flow_plan_t plan;
@@ -94,6 +100,16 @@ typedef enum { WH_FLOW_SUMS, WH_FLOW_VISITS, WH_FLOW_WAYS } wh_flow_keep_t;
 /* wh_flow_play, with figures. Close them in any case. */
 void wh_flow_measure(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan, wh_flow_keep_t keeps,
                      wh_flow_figures_t *figures);
+
+/* Likewise instant by instant: open it, step its engine until that is over, close it. Closed before that it
+ * has no result. All that is given must outlive it. */
+typedef struct wh_flow_measure wh_flow_measure_t;
+wh_flow_measure_t *wh_flow_measure_open(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
+                                        wh_flow_keep_t keeps, const wh_flow_outside_t *outside,
+                                        wh_flow_figures_t *figures);
+wh_flow_engine_t *wh_flow_measure_engine(wh_flow_measure_t *measure);
+void wh_flow_measure_close(wh_flow_measure_t *measure);
+
 void wh_flow_figures_close(wh_flow_figures_t *figures);
 
 #endif

@@ -8,13 +8,16 @@ const char *const wh_flow_path_words[WH_FLOW_PATH_WORDS] = {
     "move", "door", "pick", "place", "swap", "process", "clean", "pump", "down", "lot", "takt", "wait"};
 
 void wh_flow_log_add(wh_flow_log_t *log, const wh_flow_event_t *event) {
-    if (event->kind != WH_FLOW_EVENT_STAY) {
+    if (event->kind != WH_FLOW_EVENT_STAY && event->kind != WH_FLOW_EVENT_LEFT) {
         log->events = wh_array_grow(log->events, log->count, &log->capacity, sizeof *log->events);
         size_t at = log->count++;
         for (; at > 0 && log->events[at - 1].end_us > event->end_us; --at) {
             log->events[at] = log->events[at - 1];
         }
         log->events[at] = *event; /* a process with a clean around its wafer is told at the clean's end */
+        if (event->kind == WH_FLOW_EVENT_SHUT) {
+            log->events[at].robot = WH_FLOW_NONE; /* the robot goes on meanwhile */
+        }
     }
 }
 
@@ -37,7 +40,8 @@ static const wh_flow_path_word_t words_of_events[] = {
     [WH_FLOW_EVENT_PICK] = WH_FLOW_PATH_PICK,   [WH_FLOW_EVENT_PLACE] = WH_FLOW_PATH_PLACE,
     [WH_FLOW_EVENT_SWAP] = WH_FLOW_PATH_SWAP,   [WH_FLOW_EVENT_PROCESS] = WH_FLOW_PATH_PROCESS,
     [WH_FLOW_EVENT_CLEAN] = WH_FLOW_PATH_CLEAN, [WH_FLOW_EVENT_PUMP] = WH_FLOW_PATH_PUMP,
-    [WH_FLOW_EVENT_DOWN] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_STAY] = WH_FLOW_PATH_WAIT};
+    [WH_FLOW_EVENT_DOWN] = WH_FLOW_PATH_DOWN,   [WH_FLOW_EVENT_STAY] = WH_FLOW_PATH_WAIT,
+    [WH_FLOW_EVENT_SHUT] = WH_FLOW_PATH_DOOR,   [WH_FLOW_EVENT_LEFT] = WH_FLOW_PATH_WAIT};
 
 static void add_part(path_t *path, wh_flow_path_word_t word, int32_t robot, int32_t station, int64_t us) {
     for (size_t i = 0; i < path->count; ++i) {
@@ -319,18 +323,36 @@ static cause_t cause_of_choice(const path_t *path, const wh_flow_event_t *event,
     return best;
 }
 
+static bool is_own_process(const wh_flow_event_t *before, const wh_flow_event_t *event) {
+    return before->kind == WH_FLOW_EVENT_PROCESS && before->wafer == event->wafer;
+}
+
+/* A real door, behind which something began. */
+static void offer_shut(const wh_flow_event_t *event, const wh_flow_event_t *shut, cause_t *best) {
+    if (shut->end_us == event->begin_us) {
+        offer_end(best, shut->station == event->station ? NEEDED : UNKNOWN, shut);
+    }
+}
+
 /* Something that ended before a process, or before the clean around its wafer, and let that begin. */
 static void offer_before_process(const path_t *path, const wh_flow_event_t *event,
                                  const wh_flow_event_t *before, cause_t *best) {
     const int64_t us = event->begin_us;
+    if (before->kind == WH_FLOW_EVENT_SHUT) {
+        offer_shut(event, before, best);
+        return;
+    }
     const int32_t placed = before->kind == WH_FLOW_EVENT_SWAP ? before->other : before->wafer;
-    const bool is_process = before->kind == WH_FLOW_EVENT_PROCESS && before->wafer == event->wafer;
     if (brings(before) && placed == event->wafer && shut_us(path, before) == us) {
         offer(best, &(cause_t){NEEDED, WH_FLOW_PATH_DOOR, event->station, before, false});
     }
     if (before->end_us == us) {
         const bool is_failure = before->kind == WH_FLOW_EVENT_DOWN && before->station == event->station;
-        offer_end(best, is_process ? NEEDED_FIRST : is_failure ? NEEDED_ONWARD : UNKNOWN, before);
+        offer_end(best,
+                  is_own_process(before, event) ? NEEDED_FIRST
+                  : is_failure                  ? NEEDED_ONWARD
+                                                : UNKNOWN,
+                  before);
     }
 }
 

@@ -147,6 +147,12 @@ static void find_back(wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t 
 static char *check_end(const wh_flow_plan_t *plan, const wh_flow_tool_t *tool, int32_t w) {
     const int32_t k = wh_flow_last_step(plan, w);
     const wh_flow_step_t *last = wh_flow_step_of(plan, w, k);
+    if (last->work != WH_FLOW_WORK_NONE) {
+        return problem_of(
+            "route %s: in its last step, %d, wafers are aligned or turned over (expected one more step "
+            "where they end, or back in the lot)",
+            route_of(plan, w)->name, (int)k);
+    }
     for (size_t i = 0; i < last->station_count; ++i) {
         const wh_flow_station_t *station = &tool->stations[last->stations[i]];
         const int64_t process_us = wh_flow_step_us(last, station);

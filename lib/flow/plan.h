@@ -17,7 +17,8 @@ typedef struct {
     int32_t route, priority;
     int64_t arrives_us;
     size_t first_wafer, wafer_count;
-    bool is_dummy; /* its wafers are moved, and not counted */
+    bool is_dummy;  /* its wafers are moved, and not counted */
+    bool is_mapped; /* a real robot maps the station before it takes the first one */
 } wh_flow_lot_t;
 
 typedef struct {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "outside.h"
 
 /* The numbers of a robot and of a station that say what it does next. */
 #define OF_ROBOT 5
@@ -33,7 +34,7 @@ static bool is_any_under_way(const wh_flow_state_t *state) {
 static bool is_any_to_come(const wh_flow_state_t *state) {
     const wh_flow_plan_t *plan = state->plan;
     bool found =
-        is_ahead(state, state->next_start_us) ||
+        wh_flow_is_real_busy(state) || is_ahead(state, state->next_start_us) ||
         (state->next_lot < plan->lot_count && is_ahead(state, plan->lots[state->next_lot].arrives_us)) ||
         state->next_down < plan->down_count;
     for (size_t i = 0; i < state->tool->station_count; ++i) {

@@ -1,13 +1,18 @@
 #include "robots.h"
 
+#include "locks.h"
+#include "outside.h"
 #include "stations.h"
 #include "transfer.h"
 
+/* A real robot's action ends when somebody tells it. */
 static void act(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action, int64_t for_us) {
     wh_flow_robot_state_t *at = &state->robots[robot];
     at->action = action;
     at->since_us = state->now_us;
-    at->until_us = for_us == WH_FLOW_NEVER ? WH_FLOW_NEVER : state->now_us + for_us;
+    at->is_begun = state->tool->robots[robot].is_real;
+    at->until_us = for_us == WH_FLOW_NEVER || at->is_begun ? WH_FLOW_NEVER
+                                                           : wh_flow_slice_us(state, state->now_us + for_us);
 }
 
 static void rest(wh_flow_state_t *state, int32_t robot) {
@@ -27,7 +32,8 @@ static void enter(wh_flow_state_t *state, int32_t robot, wh_flow_action_t action
     state->stations[at->station].user = robot;
     state->stations[at->station].busy_us = state->now_us + open_us + for_us + close_us;
     at->then = action;
-    act(state, robot, open_us > 0 ? WH_FLOW_OPENING : action, open_us > 0 ? open_us : for_us);
+    const bool opens = open_us > 0 || door->is_real;
+    act(state, robot, opens ? WH_FLOW_OPENING : action, opens ? open_us : for_us);
 }
 
 static int64_t time_of(const wh_flow_state_t *state, int32_t robot, wh_flow_action_t action) {
@@ -76,21 +82,13 @@ static void reserve(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_
     count_ahead(state, wafer);
 }
 
-static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t for_us) {
+/* The wafer's stay ends when its door is open. */
+static void tell_stay(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t open_us) {
     const wh_flow_wafer_state_t *at = &state->wafers[wafer];
-    state->places[at->place].leaving_us = state->now_us + for_us;
-    ++state->changes;
-    state->robots[robot].from = at->place;
-    state->wafers[wafer].taker = robot;
-    ++state->leaving[wh_flow_step_index(state, wafer, at->step)];
-    if (at->step == 0 && state->plan->takt_us > 0) {
-        state->next_start_us = state->now_us + state->plan->takt_us;
-    }
     const int32_t station = state->tool->place_stations[at->place];
-    const size_t of = wh_flow_of(state->tool, robot, station);
     const wh_flow_event_t stay = {.kind = WH_FLOW_EVENT_STAY,
                                   .begin_us = at->done_us,
-                                  .end_us = state->now_us + state->tool->doors[of].open_us,
+                                  .end_us = state->now_us + open_us,
                                   .robot = robot,
                                   .wafer = wafer,
                                   .other = WH_FLOW_NONE,
@@ -99,9 +97,27 @@ static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t 
                                   .step = at->step};
     wh_flow_tell(state, &stay);
     const int64_t over_us = wh_flow_over_window_us(state, &stay);
-    if (over_us > 0) {
+    if (over_us > 0 && !state->tool->stations[station].is_real) {
         const wh_flow_problem_t late = {WH_FLOW_LATE, robot, wafer, station, over_us};
         wh_flow_tell_problem(state, &late);
+    }
+}
+
+/* Nobody knows how long a real door opens: the stay is told when it has. */
+static void leave(wh_flow_state_t *state, int32_t robot, int32_t wafer, int64_t for_us) {
+    const wh_flow_wafer_state_t *at = &state->wafers[wafer];
+    const int32_t station = state->tool->place_stations[at->place];
+    const wh_flow_door_t *door = &state->tool->doors[wh_flow_of(state->tool, robot, station)];
+    state->places[at->place].leaving_us = state->now_us + for_us;
+    ++state->changes;
+    state->robots[robot].from = at->place;
+    state->wafers[wafer].taker = robot;
+    ++state->leaving[wh_flow_step_index(state, wafer, at->step)];
+    if (at->step == 0 && state->plan->takt_us > 0) {
+        state->next_start_us = state->now_us + state->plan->takt_us;
+    }
+    if (!door->is_real) {
+        tell_stay(state, robot, wafer, door->open_us);
     }
 }
 
@@ -180,7 +196,7 @@ static bool begin_swap(wh_flow_state_t *state, int32_t robot, const wh_flow_orde
 }
 
 static bool begin_pump(wh_flow_state_t *state, int32_t robot, const wh_flow_order_t *order) {
-    if (!wh_flow_station_pump(state, order->station, order->side)) {
+    if (!wh_flow_lock_pump(state, order->station, order->side)) {
         return false;
     }
     state->robots[robot].mark = order->mark;
@@ -273,11 +289,16 @@ static void put_in(wh_flow_state_t *state, int32_t robot, int32_t wafer, int32_t
 
 /* The blade is out. */
 static void come_out(wh_flow_state_t *state, int32_t robot) {
-    const int32_t station = state->robots[robot].station;
-    state->stations[station].user = WH_FLOW_NONE;
-    ++state->stations[station].accesses;
-    state->stations[station].shut_us =
-        state->now_us + state->tool->doors[wh_flow_of(state->tool, robot, station)].close_us;
+    wh_flow_station_state_t *station = &state->stations[state->robots[robot].station];
+    const wh_flow_door_t *door =
+        &state->tool->doors[wh_flow_of(state->tool, robot, state->robots[robot].station)];
+    station->user = WH_FLOW_NONE;
+    ++station->accesses;
+    station->is_shutting = door->is_real;
+    station->shutter = robot;
+    station->shutting_us = state->now_us;
+    station->busy_us = state->now_us + door->close_us;
+    station->shut_us = door->is_real ? state->now_us : wh_flow_slice_us(state, station->busy_us);
 }
 
 static void end_pick(wh_flow_state_t *state, int32_t robot) {
@@ -320,8 +341,19 @@ static void end_swap(wh_flow_state_t *state, int32_t robot) {
     rest(state, robot);
 }
 
+/* A real door is open for a pick or a swap. */
+static void tell_opened_stay(wh_flow_state_t *state, int32_t robot) {
+    const wh_flow_robot_state_t *at = &state->robots[robot];
+    const wh_flow_door_t *door = &state->tool->doors[wh_flow_of(state->tool, robot, at->station)];
+    if (door->is_real && at->then != WH_FLOW_PLACING) {
+        tell_stay(state, robot, at->then == WH_FLOW_PICKING ? at->order.wafer : state->places[at->to].wafer,
+                  0);
+    }
+}
+
 void wh_flow_robot_end(wh_flow_state_t *state, int32_t robot) {
     wh_flow_robot_state_t *at = &state->robots[robot];
+    wh_flow_learn(state, robot);
     switch (at->action) {
     case WH_FLOW_MOVING:
         tell_action(state, robot, WH_FLOW_EVENT_MOVE, WH_FLOW_NONE, WH_FLOW_NONE);
@@ -337,6 +369,7 @@ void wh_flow_robot_end(wh_flow_state_t *state, int32_t robot) {
         break;
     case WH_FLOW_OPENING:
         tell_action(state, robot, WH_FLOW_EVENT_OPEN, WH_FLOW_NONE, WH_FLOW_NONE);
+        tell_opened_stay(state, robot);
         act(state, robot, at->then, time_of(state, robot, at->then));
         break;
     case WH_FLOW_PICKING:

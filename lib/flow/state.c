@@ -6,17 +6,25 @@
 #include "../text/array.h"
 #include "safe.h"
 
+/* A real station begins its cleans by itself. */
+static int64_t idle_of(const wh_flow_station_t *station) {
+    return station->is_real ? WH_FLOW_NEVER : station->idle_us;
+}
+
 static void open_stations(wh_flow_state_t *state) {
     const wh_flow_tool_t *tool = state->tool;
     for (size_t i = 0; i < tool->place_count; ++i) {
-        const int64_t idle_us = tool->stations[tool->place_stations[i]].idle_us;
+        const int64_t idle_us = idle_of(&tool->stations[tool->place_stations[i]]);
         state->places[i] = (wh_flow_place_t){
             WH_FLOW_NONE, WH_FLOW_NONE, -1, WH_FLOW_NEVER, WH_FLOW_NEVER, idle_us, 0, WH_FLOW_NONE, false};
     }
     for (size_t i = 0; i < tool->station_count; ++i) {
         state->stations[i] = (wh_flow_station_state_t){.user = WH_FLOW_NONE,
+                                                       .shutter = WH_FLOW_NONE,
+                                                       .work_wafer = WH_FLOW_NONE,
+                                                       .closed_us = -1,
                                                        .clean_us = WH_FLOW_NEVER,
-                                                       .idle_us = tool->stations[i].idle_us,
+                                                       .idle_us = idle_of(&tool->stations[i]),
                                                        .down_us = WH_FLOW_NEVER,
                                                        .pump_us = WH_FLOW_NEVER,
                                                        .done_us = WH_FLOW_NEVER,

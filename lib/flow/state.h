@@ -34,6 +34,11 @@ typedef struct {
     int32_t accesses; /* picks, places and swaps that have ended */
     int32_t turned;   /* turns of its own list that have begun */
     bool has_due;     /* one of its places must be cleaned, and is not yet */
+    /* what is real: its door shuts behind that robot, or before the first one; a wafer is worked on */
+    bool is_shutting, has_shut, has_worked, runs;
+    int32_t shutter, work_wafer;
+    int64_t shutting_us, work_us; /* since when */
+    int64_t closed_us;            /* when something began there behind shut doors */
 } wh_flow_station_state_t;
 
 typedef struct {
@@ -42,6 +47,7 @@ typedef struct {
     int32_t step;              /* in which it counts, or from which it comes */
     int64_t entered_us;        /* when it was placed there */
     int64_t done_us;           /* from then on it may be taken; WH_FLOW_NEVER: not known yet */
+    int64_t process_us;        /* how long its process takes there */
     int64_t clean_us;          /* how long its place is cleaned around it before that, after its process */
     int32_t next, before;      /* in its step, by the time of entering */
     int32_t heading;           /* swap: the place, perhaps a full one, for which a robot has taken it */
@@ -84,6 +90,8 @@ typedef struct {
     int32_t mark;         /* backward: where the round goes on; lists: the next line */
     wh_flow_order_t wish; /* the first answer of the rule when it was asked last */
     bool has_wish;
+    /* Real ones: the action has begun, and nobody has taken it up yet; it has ended, and that was told. */
+    bool is_begun, is_ended;
 } wh_flow_robot_state_t;
 
 typedef enum {
@@ -96,7 +104,9 @@ typedef enum {
     WH_FLOW_EVENT_CLEAN,
     WH_FLOW_EVENT_PUMP,
     WH_FLOW_EVENT_DOWN,
-    WH_FLOW_EVENT_STAY,
+    WH_FLOW_EVENT_STAY, /* of what is done in a place, up to the pick */
+    WH_FLOW_EVENT_SHUT, /* a real door */
+    WH_FLOW_EVENT_LEFT, /* a stay in a real station: until the wafer was lifted */
 } wh_flow_event_kind_t;
 
 /* One thing that took time, told when it has ended, so by the order of the ends. */
@@ -117,6 +127,21 @@ typedef struct {
                     int64_t to_us); /* before time goes on */
     void (*end)(void *context, const struct wh_flow_state *state);
 } wh_flow_listener_t;
+
+/* The player of all that is real. */
+typedef struct {
+    void *context;
+    /* Tells what real stations have done up to this instant, before robots end. */
+    void (*hear)(void *context, struct wh_flow_state *state);
+    /* Robots have ended: sees how real stations stand. */
+    void (*look)(void *context, struct wh_flow_state *state);
+    /* A lock that nobody uses is to pump. False: it cannot begin yet. */
+    bool (*pump)(void *context, int32_t station, wh_flow_side_t side);
+    /* From now on nothing begins in the station, or it may again. */
+    void (*down)(void *context, int32_t station, bool is_down);
+    wh_flow_tool_t *tool; /* the same one: receives the times of what was played */
+    int64_t slice_us;     /* what ends by itself ends with a slice */
+} wh_flow_outside_t;
 
 typedef struct wh_flow_state {
     const wh_flow_tool_t *tool;
@@ -139,6 +164,7 @@ typedef struct wh_flow_state {
     int64_t next_start_us; /* by takt */
     int64_t last_us;       /* the end of the last placing */
     wh_flow_listener_t listener;
+    const wh_flow_outside_t *outside; /* null: nothing is real */
     bool checks_safety; /* rules leave out transfers after which wafers could block each other */
     bool is_relaxed;    /* nobody could go on: shipped rules wait for no fuller step now */
     char *cause;        /* why the flow ended early, or null; freed by wh_flow_state_close */
@@ -198,6 +224,12 @@ int64_t wh_flow_stay_us(const wh_flow_state_t *state, const wh_flow_event_t *sta
 
 /* How much longer than its station's window that is; below 0: it is not. */
 int64_t wh_flow_over_window_us(const wh_flow_state_t *state, const wh_flow_event_t *stay);
+
+/* The end of the slice in which this time is; the time itself where no slices are stepped. */
+static inline int64_t wh_flow_slice_us(const wh_flow_state_t *state, int64_t us) {
+    const int64_t slice_us = state->outside ? state->outside->slice_us : 1;
+    return us >= WH_FLOW_FOR_EVER ? us : (us + slice_us - 1) / slice_us * slice_us;
+}
 
 /* Tells the plan's own function, if there is one; it may end the flow. */
 void wh_flow_tell_problem(wh_flow_state_t *state, const wh_flow_problem_t *problem);

@@ -1,5 +1,7 @@
 #include "stations.h"
 
+#include "locks.h"
+#include "outside.h"
 #include "transfer.h"
 
 /* Told for a station alone. */
@@ -47,6 +49,12 @@ static void plan_cleans(wh_flow_state_t *state, int32_t number) {
     }
 }
 
+static void plan_own_cleans(wh_flow_state_t *state, int32_t number) {
+    if (wh_flow_is_cleaned(&state->tool->stations[number])) {
+        plan_cleans(state, number);
+    }
+}
+
 void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
     wh_flow_wafer_state_t *at = &state->wafers[wafer];
     const int32_t number = state->tool->place_stations[at->place];
@@ -57,17 +65,19 @@ void wh_flow_station_entered(wh_flow_state_t *state, int32_t wafer) {
         end_wafer(state, wafer);
         return;
     }
+    if (wh_flow_begin_real(state, wafer, number)) {
+        return;
+    }
     const int64_t for_us = wh_flow_process_us(state, wafer, number);
     const wh_flow_station_t *of = &state->tool->stations[number];
+    at->process_us = for_us;
     at->clean_us = of->cleans_full && wh_flow_is_clean_next(state, at->place) ? of->clean_us : 0;
     const int64_t lasts_us = for_us + at->clean_us;
     const int64_t begin_us = station->down_us != WH_FLOW_NEVER && station->down_us > station->shut_us
                                  ? station->down_us
                                  : station->shut_us;
     at->done_us = lasts_us == 0 ? station->shut_us : begin_us + lasts_us;
-    if (wh_flow_is_cleaned(&state->tool->stations[number])) {
-        plan_cleans(state, number);
-    }
+    plan_own_cleans(state, number);
     if (lasts_us > 0 && at->done_us < station->done_us) {
         station->done_us = at->done_us;
     }
@@ -78,6 +88,9 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[station];
     wh_flow_place_t *place = &state->places[number];
     --state->stations[station].wafers;
+    if (of->is_real) {
+        return;
+    }
     const bool is_due = wh_flow_is_clean_next(state, number);
     ++place->since_clean;
     if (wh_flow_is_cleaned(of)) {
@@ -94,7 +107,7 @@ void wh_flow_station_left(wh_flow_state_t *state, int32_t number) {
 static void tell_process(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
     const int64_t end_us = state->wafers[wafer].done_us - state->wafers[wafer].clean_us;
     const wh_flow_event_t event = {.kind = WH_FLOW_EVENT_PROCESS,
-                                   .begin_us = end_us - wh_flow_process_us(state, wafer, station),
+                                   .begin_us = end_us - state->wafers[wafer].process_us,
                                    .end_us = end_us,
                                    .robot = WH_FLOW_NONE,
                                    .wafer = wafer,
@@ -152,174 +165,36 @@ static void end_cleans(wh_flow_state_t *state, int32_t number) {
     plan_cleans(state, number);
 }
 
-static int64_t pump_us(const wh_flow_state_t *state, int32_t number, wh_flow_side_t to) {
-    return wh_flow_pump_us(&state->tool->stations[number], to, state->stations[number].wafers == 0);
+static void end_doings(wh_flow_state_t *state, int32_t number) {
+    wh_flow_station_state_t *station = &state->stations[number];
+    if (station->done_us == state->now_us) {
+        end_processes(state, number);
+    }
+    if (station->clean_us == state->now_us) {
+        end_cleans(state, number);
+    }
+    if (station->pump_us == state->now_us) {
+        station->side = station->pump_to;
+        station->pump_us = WH_FLOW_NEVER;
+        tell(state, WH_FLOW_EVENT_PUMP, number, station->pump_began_us);
+    }
 }
 
 void wh_flow_stations_end(wh_flow_state_t *state) {
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
         wh_flow_station_state_t *station = &state->stations[i];
-        if (station->done_us == state->now_us) {
-            end_processes(state, i);
-        }
-        if (station->clean_us == state->now_us) {
-            end_cleans(state, i);
-        }
-        if (station->pump_us == state->now_us) {
-            station->side = station->pump_to;
-            station->pump_us = WH_FLOW_NEVER;
-            tell(state, WH_FLOW_EVENT_PUMP, i, station->pump_began_us);
+        if (!state->tool->stations[i].is_real) {
+            end_doings(state, i);
         }
         if (station->down_us == state->now_us) {
             station->down_us = WH_FLOW_NEVER;
             tell(state, WH_FLOW_EVENT_DOWN, i, station->down_began_us);
+            wh_flow_set_down(state, i, false);
         }
     }
 }
 
 /* --------------------------------------------------------------------------------------------- beginnings */
-
-bool wh_flow_station_pump(wh_flow_state_t *state, int32_t number, wh_flow_side_t side) {
-    wh_flow_station_state_t *station = &state->stations[number];
-    if (station->pump_us != WH_FLOW_NEVER && station->pump_to == side) {
-        return true;
-    }
-    if (station->pump_us == WH_FLOW_NEVER && station->side == side) {
-        return true;
-    }
-    if (station->pump_us != WH_FLOW_NEVER || station->user != WH_FLOW_NONE ||
-        station->shut_us > state->now_us || station->down_us != WH_FLOW_NEVER) {
-        return false;
-    }
-    station->pump_to = side;
-    station->pump_us = state->now_us + pump_us(state, number, side);
-    station->pump_began_us = state->now_us;
-    return true;
-}
-
-/* Since when a side waits for a lock; WH_FLOW_NEVER: it does not. */
-typedef struct {
-    int64_t since_us[2];
-} wants_t;
-
-static void want(wants_t *wants, wh_flow_side_t side, int64_t since_us) {
-    if (side != WH_FLOW_BOTH && since_us < wants->since_us[side]) {
-        wants->since_us[side] = since_us;
-    }
-}
-
-static bool is_swapping(const wh_flow_state_t *state, int32_t robot) {
-    return state->plan->rule == WH_FLOW_SWAPPING && state->tool->robots[robot].arms > 1;
-}
-
-/* Transfers into the lock that have begun: their place is or will be empty, or an exchange. */
-static void want_begun(const wh_flow_state_t *state, int32_t lock, wants_t *wants) {
-    const wh_flow_station_t *of = &state->tool->stations[lock];
-    for (int32_t p = of->first_place; p < of->first_place + of->slots; ++p) {
-        const wh_flow_place_t *place = &state->places[p];
-        if (place->coming == WH_FLOW_NONE) {
-            continue;
-        }
-        const int32_t robot = state->wafers[place->coming].taker;
-        const bool is_empty = place->wafer == WH_FLOW_NONE || place->leaving_us != WH_FLOW_NEVER;
-        if (is_empty || (is_swapping(state, robot) && wh_flow_is_carrier(state, robot, place->wafer))) {
-            want(wants, state->tool->sides[wh_flow_of(state->tool, robot, lock)],
-                 state->wafers[place->coming].done_us);
-        }
-    }
-}
-
-/* True if a robot could begin to carry the wafer into or out of the lock but for pressure and where it
- * stands. */
-static bool is_able(const wh_flow_state_t *state, int32_t lock, int32_t robot, int32_t wafer) {
-    const int32_t station = wh_flow_station_of(state, wafer);
-    if (is_swapping(state, robot)) {
-        const int32_t place = wh_flow_swap_way(state, robot, wafer, WH_FLOW_NEVER);
-        return place != WH_FLOW_NONE && (station == lock || state->tool->place_stations[place] == lock);
-    }
-    return wh_flow_safe_place(state, robot, wafer, WH_FLOW_NEVER, station == lock ? WH_FLOW_NONE : lock) !=
-           WH_FLOW_NONE;
-}
-
-static void want_wafer(const wh_flow_state_t *state, int32_t lock, int32_t wafer, wants_t *able,
-                       wants_t *lying) {
-    const wh_flow_step_t *next = wh_flow_step_of(state->plan, wafer, state->wafers[wafer].step + 1);
-    const bool is_out = wh_flow_station_of(state, wafer) == lock;
-    if (state->wafers[wafer].done_us > state->now_us || (!is_out && !wh_flow_step_has(next, lock))) {
-        return;
-    }
-    for (int32_t r = 0; r < (int32_t)state->tool->robot_count; ++r) {
-        const wh_flow_side_t side = state->tool->sides[wh_flow_of(state->tool, r, lock)];
-        if (!state->tool->serves[wh_flow_of(state->tool, r, lock)] || !wh_flow_is_carrier(state, r, wafer)) {
-            continue;
-        }
-        if (is_able(state, lock, r, wafer)) {
-            want(able, side, state->wafers[wafer].done_us);
-        } else if (is_out) {
-            want(lying, side, state->wafers[wafer].done_us);
-        }
-    }
-}
-
-static void want_all(const wh_flow_state_t *state, int32_t lock, wants_t *able, wants_t *lying) {
-    for (size_t step = 0; step < state->plan->step_count; ++step) {
-        for (int32_t w = wh_flow_next_in(state, step, WH_FLOW_NONE); w != WH_FLOW_NONE;
-             w = wh_flow_next_in(state, step, w)) {
-            want_wafer(state, lock, w, able, lying);
-        }
-    }
-}
-
-/* The side to which the lock should turn, or that it has: for transfers into it that have begun, else for
- * wafers that could be carried into or out of it, else for those in it; among several the one done longest
- * decides. */
-static wh_flow_side_t turn_to(const wh_flow_state_t *state, int32_t lock) {
-    const wh_flow_side_t side = state->stations[lock].side;
-    const wh_flow_side_t other = side == WH_FLOW_VACUUM ? WH_FLOW_ATMOSPHERE : WH_FLOW_VACUUM;
-    wants_t kinds[3];
-    for (size_t i = 0; i < 3; ++i) {
-        kinds[i] = (wants_t){{WH_FLOW_NEVER, WH_FLOW_NEVER}};
-    }
-    want_begun(state, lock, &kinds[0]);
-    if (kinds[0].since_us[side] != WH_FLOW_NEVER) {
-        return side;
-    }
-    if (kinds[0].since_us[other] == WH_FLOW_NEVER) {
-        want_all(state, lock, &kinds[1], &kinds[2]);
-    }
-    for (size_t i = 0; i < 3; ++i) {
-        if (kinds[i].since_us[0] != WH_FLOW_NEVER || kinds[i].since_us[1] != WH_FLOW_NEVER) {
-            return kinds[i].since_us[other] < kinds[i].since_us[side] ? other : side;
-        }
-    }
-    return side;
-}
-
-/* By the lock's own list: the next turn as soon as all that comes before it has been. */
-static void turn_by_list(wh_flow_state_t *state, int32_t number) {
-    const wh_flow_turns_t *list = &state->plan->turns[number];
-    wh_flow_station_state_t *station = &state->stations[number];
-    while ((size_t)station->turned < list->count &&
-           list->turns[station->turned].behind <= station->accesses && station->pump_us == WH_FLOW_NEVER) {
-        (void)wh_flow_station_pump(state, number, list->turns[station->turned++].side);
-    }
-}
-
-static void turn(wh_flow_state_t *state, int32_t number) {
-    const wh_flow_station_state_t *station = &state->stations[number];
-    if (station->is_listed || station->pump_us != WH_FLOW_NEVER || station->user != WH_FLOW_NONE ||
-        station->shut_us > state->now_us || station->down_us != WH_FLOW_NEVER) {
-        return;
-    }
-    if (state->plan->turns) {
-        turn_by_list(state, number);
-        return;
-    }
-    const wh_flow_side_t side = turn_to(state, number);
-    if (side != station->side) {
-        (void)wh_flow_station_pump(state, number, side);
-    }
-}
 
 static void begin_cleans(wh_flow_state_t *state, int32_t number) {
     const wh_flow_station_t *of = &state->tool->stations[number];
@@ -413,14 +288,24 @@ static void put_off(wh_flow_state_t *state, int32_t number) {
 
 static void begin_down(wh_flow_state_t *state, const wh_flow_down_t *down) {
     wh_flow_station_state_t *station = &state->stations[down->station];
-    const int64_t until_us =
-        down->for_us == WH_FLOW_FOR_EVER ? WH_FLOW_FOR_EVER : state->now_us + down->for_us;
+    const int64_t until_us = down->for_us == WH_FLOW_FOR_EVER
+                                 ? WH_FLOW_FOR_EVER
+                                 : wh_flow_slice_us(state, state->now_us + down->for_us);
     station->down_began_us = station->down_us == WH_FLOW_NEVER ? state->now_us : station->down_began_us;
     station->down_us =
         station->down_us == WH_FLOW_NEVER || station->down_us < until_us ? until_us : station->down_us;
-    put_off(state, down->station);
+    if (state->tool->stations[down->station].is_real) {
+        wh_flow_set_down(state, down->station, true);
+    } else {
+        put_off(state, down->station);
+    }
     const wh_flow_problem_t fails = {WH_FLOW_FAILS, WH_FLOW_NONE, WH_FLOW_NONE, down->station, down->for_us};
     wh_flow_tell_problem(state, &fails);
+}
+
+static bool is_any_clean_due(const wh_flow_state_t *state, int32_t number) {
+    const wh_flow_station_state_t *station = &state->stations[number];
+    return !state->tool->stations[number].is_real && (station->has_due || station->idle_us <= state->now_us);
 }
 
 void wh_flow_stations_begin(wh_flow_state_t *state) {
@@ -433,11 +318,11 @@ void wh_flow_stations_begin(wh_flow_state_t *state) {
         begin_down(state, &plan->downs[state->next_down++]);
     }
     for (int32_t i = 0; i < (int32_t)state->tool->station_count; ++i) {
-        if (state->stations[i].has_due || state->stations[i].idle_us <= state->now_us) {
+        if (is_any_clean_due(state, i)) {
             begin_cleans(state, i);
         }
         if (state->tool->stations[i].is_lock) {
-            turn(state, i);
+            wh_flow_lock_turn(state, i);
         }
     }
 }
@@ -454,12 +339,14 @@ int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us) {
     *idle_us = WH_FLOW_NEVER;
     for (size_t i = 0; i < state->tool->station_count; ++i) {
         const wh_flow_station_state_t *station = &state->stations[i];
-        next_us = sooner(state, next_us, station->done_us);
-        next_us = sooner(state, next_us, station->clean_us);
-        next_us = sooner(state, next_us, station->pump_us);
         next_us = sooner(state, next_us, station->shut_us);
         next_us = sooner(state, next_us, station->down_us);
-        *idle_us = sooner(state, *idle_us, station->idle_us);
+        if (!state->tool->stations[i].is_real) {
+            next_us = sooner(state, next_us, station->done_us);
+            next_us = sooner(state, next_us, station->clean_us);
+            next_us = sooner(state, next_us, station->pump_us);
+            *idle_us = sooner(state, *idle_us, station->idle_us);
+        }
     }
     next_us = sooner(state, next_us, state->next_start_us);
     if (state->next_lot < plan->lot_count) {

@@ -14,10 +14,6 @@ void wh_flow_stations_end(wh_flow_state_t *state);
 /* Lots arrive, failures, cleans and pumps begin. */
 void wh_flow_stations_begin(wh_flow_state_t *state);
 
-/* Begins to pump a lock. False while it pumps already, a blade is in it, or its door is not shut. A lock
- * that has this pressure needs nothing: true. */
-bool wh_flow_station_pump(wh_flow_state_t *state, int32_t station, wh_flow_side_t side);
-
 /* The next instant after now at which something ends or begins in the stations by itself. Cleans for want
  * of wafers are left out: they bring nobody further. `idle_us` receives the next of them. */
 int64_t wh_flow_stations_next(const wh_flow_state_t *state, int64_t *idle_us);

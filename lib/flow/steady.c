@@ -8,24 +8,39 @@
 /* The longest period that is looked for, in wafers. */
 #define LONGEST 24
 
-/* True if the differences over k wafers differ by at most 1 us from the first of the middle third. */
-static bool is_steady(const int64_t *ends_us, size_t begin, size_t end, size_t k) {
-    const int64_t first_us = ends_us[begin + k] - ends_us[begin];
+/* The ends of wafers, in order. Real robots go to slots at different heights: their ends repeat about. */
+typedef struct {
+    const int64_t *us;
+    size_t count;
+    bool are_real;
+} ends_t;
+
+/* True if the differences over k wafers differ by at most 1 us from the first of the middle third; with real
+ * robots by at most a hundredth of it. */
+static bool is_steady(const ends_t *ends, size_t begin, size_t end, size_t k) {
+    const int64_t first_us = ends->us[begin + k] - ends->us[begin];
+    const int64_t most_us = ends->are_real ? first_us / 100 : 1;
     for (size_t i = begin; i + k < end; ++i) {
-        const int64_t off_us = ends_us[i + k] - ends_us[i] - first_us;
-        if (off_us > 1 || off_us < -1) {
+        const int64_t off_us = ends->us[i + k] - ends->us[i] - first_us;
+        if (off_us > most_us || off_us < -most_us) {
             return false;
         }
     }
     return true;
 }
 
-static int32_t find_period(const int64_t *ends_us, size_t count, int64_t *cycle_us) {
-    const size_t begin = count / 3, end = count - count / 3;
+/* With real robots the mean over whole periods of the middle third. */
+static int64_t measure_cycle(const ends_t *ends, size_t begin, size_t end, size_t k) {
+    const size_t periods = ends->are_real ? (end - 1 - begin) / k : 1;
+    return (ends->us[begin + periods * k] - ends->us[begin]) / (int64_t)periods;
+}
+
+static int32_t find_period(const ends_t *ends, int64_t *cycle_us) {
+    const size_t begin = ends->count / 3, end = ends->count - ends->count / 3;
     *cycle_us = WH_FLOW_NEVER;
     for (size_t k = 1; k <= LONGEST && begin + 3 * k < end; ++k) {
-        if (is_steady(ends_us, begin, end, k)) {
-            *cycle_us = ends_us[begin + k] - ends_us[begin];
+        if (is_steady(ends, begin, end, k)) {
+            *cycle_us = measure_cycle(ends, begin, end, k);
             return (int32_t)k;
         }
     }
@@ -87,23 +102,24 @@ static size_t wafers_for(size_t k) {
 }
 
 /* A period for which there are too few wafers, and which ends show all the same; 0: there is none. */
-static size_t find_likely(const int64_t *ends_us, size_t count, size_t shortest) {
+static size_t find_likely(const ends_t *ends, size_t shortest) {
+    const size_t count = ends->count;
     for (size_t k = shortest; k <= LONGEST && count / 3 + 2 * k <= count; ++k) {
         const size_t third = count - count / 3, twice = count / 3 + 2 * k;
-        if (is_steady(ends_us, count / 3, twice > third ? twice : third, k)) {
+        if (is_steady(ends, count / 3, twice > third ? twice : third, k)) {
             return k;
         }
     }
     return 0;
 }
 
-static char *tell_no_period(const int64_t *ends_us, size_t count) {
+static char *tell_no_period(const ends_t *ends) {
     char text[200];
     size_t shortest = 1;
-    while (shortest <= LONGEST && wafers_for(shortest) <= count) {
+    while (shortest <= LONGEST && wafers_for(shortest) <= ends->count) {
         ++shortest;
     }
-    const size_t likely = find_likely(ends_us, count, shortest);
+    const size_t likely = find_likely(ends, shortest);
     if (shortest > LONGEST) {
         return wh_text_copy("the wafers' ends do not repeat within their middle third");
     }
@@ -122,9 +138,10 @@ char *wh_flow_find_cycle(const wh_flow_tool_t *tool, const wh_flow_plan_t *plan,
                          size_t count, int32_t *period, int64_t *cycle_us) {
     char text[400];
     double least_us;
-    *period = find_period(ends_us, count, cycle_us);
+    const ends_t ends = {ends_us, count, tool->robot_count > 0 && tool->robots[0].is_real};
+    *period = find_period(&ends, cycle_us);
     if (*period == 0) {
-        return tell_no_period(ends_us, count);
+        return tell_no_period(&ends);
     }
     const double wafer_us = (double)*cycle_us / *period;
     const int32_t station = find_outrun(tool, plan, wafer_us, &least_us);

@@ -1,8 +1,11 @@
-/* A tool as its schedule sees it: stations that hold wafers and take time, robots that are times alone. All
+/* A tool as its schedule sees it: stations that hold wafers and take time, robots that carry them. All
  * times are whole microseconds.
  *
- * Stations have numbers from 0 on, in the layout's order; robots have numbers in the order of their names. A
- * place is one slot of one station; places are numbered through, station after station. */
+ * What is real is played by somebody else, who tells when it has ended: see outside.h. The times of real
+ * robots and doors are estimates, 0 until the first of a kind has ended.
+ *
+ * Stations have numbers from 0 on, in the layout's order; robots have numbers in the order of their names.
+ * A place is one slot of one station; places are numbered through, station after station. */
 #ifndef WH_FLOW_TOOL_H
 #define WH_FLOW_TOOL_H
 
@@ -22,6 +25,13 @@
 /* Two pressures, and what a robot or a slot without a side has. */
 typedef enum { WH_FLOW_ATMOSPHERE, WH_FLOW_VACUUM, WH_FLOW_BOTH } wh_flow_side_t;
 
+/* The work on a wafer in a step, beside its process. In cells with axes alone. */
+typedef enum {
+    WH_FLOW_WORK_NONE,
+    WH_FLOW_WORK_ALIGN, /* the station's own chuck aligns it */
+    WH_FLOW_WORK_FLIP   /* the station's own clamp turns it over */
+} wh_flow_work_t;
+
 typedef struct {
     char *name;
     int32_t slots, first_place;
@@ -33,20 +43,24 @@ typedef struct {
         cleans_full; /* the clean after wafers comes at the end of the last process, with that wafer inside */
     int64_t idle_us; /* without a wafer, then a clean; WH_FLOW_NEVER: none */
     bool is_lock, is_load_port;
-    int32_t less_ppm;    /* processes of steps, too, take so much less: see wh_flow_shorten */
-    wh_flow_side_t side; /* of a lock, at the beginning */
+    bool is_real;         /* its processes, cleans and pumps are told from outside */
+    wh_flow_work_t works; /* its own chuck or clamp can do this; else WH_FLOW_WORK_NONE */
+    int32_t less_ppm;     /* processes of steps, too, take so much less: see wh_flow_shorten */
+    wh_flow_side_t side;  /* of a lock, at the beginning */
     int64_t pump_us[2], empty_pump_us[2]; /* to atmosphere, to vacuum; without a wafer */
 } wh_flow_station_t;
 
 typedef struct {
     char *name;
     int32_t arms;       /* 1 or 2 */
-    int32_t at;         /* the station in front of which it stands at the beginning */
+    int32_t at;         /* the station in front of which it stands at the beginning; real: or WH_FLOW_NONE */
     bool is_at_assumed; /* nobody says where: at the first one that it serves */
+    bool is_real;
 } wh_flow_robot_t;
 
 typedef struct {
     int64_t open_us, close_us;
+    bool is_real;
 } wh_flow_door_t;
 
 /* Step 0 of a route is where the lot lies at first; its steps count from 1 on. */
@@ -56,6 +70,10 @@ typedef struct {
     int64_t process_us; /* WH_FLOW_NONE: that of the station */
     int32_t kept_empty; /* places of the step that stay empty */
     bool second_arm;    /* the second arm alone takes out of it */
+    wh_flow_work_t work;
+    double align_deg; /* where the notch points then */
+    bool centres;     /* beams centre it on its way in */
+    bool maps;        /* the robot that has brought it maps the station */
 } wh_flow_step_t;
 
 typedef struct {
@@ -112,9 +130,11 @@ static inline size_t wh_flow_of(const wh_flow_tool_t *tool, int32_t robot, int32
     return (size_t)robot * tool->station_count + (size_t)station;
 }
 
-/* How long a robot takes from one station to another; 0 if they are the same one. */
+/* How long a robot takes from one station to another; 0 if they are the same one, or if it stands nowhere. */
 static inline int64_t wh_flow_move_us(const wh_flow_tool_t *tool, int32_t robot, int32_t from, int32_t to) {
-    return from == to ? 0 : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
+    return from == to || from == WH_FLOW_NONE
+               ? 0
+               : tool->move_us[wh_flow_of(tool, robot, from) * tool->station_count + (size_t)to];
 }
 
 /* True if a robot of the one side may use what is for the other. */

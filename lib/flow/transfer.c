@@ -26,7 +26,8 @@ int64_t wh_flow_process_us(const wh_flow_state_t *state, int32_t wafer, int32_t 
 
 bool wh_flow_may_enter(const wh_flow_state_t *state, int32_t robot, int32_t station) {
     const wh_flow_station_state_t *now = &state->stations[station];
-    if (now->user != WH_FLOW_NONE || now->shut_us > state->now_us || now->down_us != WH_FLOW_NEVER) {
+    if (now->user != WH_FLOW_NONE || now->is_shutting || now->shut_us > state->now_us ||
+        now->down_us != WH_FLOW_NEVER) {
         return false;
     }
     return !state->tool->stations[station].is_lock ||

@@ -8,7 +8,7 @@ static wh_flow_robot_class_t entrance(const wh_flow_state_t *state, int32_t stat
     if (at->down_us != WH_FLOW_NEVER) {
         return WH_FLOW_ROBOT_WAITS_DOWN;
     }
-    if (at->user != WH_FLOW_NONE || at->shut_us > state->now_us) {
+    if (at->user != WH_FLOW_NONE || at->is_shutting || at->shut_us > state->now_us) {
         return WH_FLOW_ROBOT_WAITS_ROBOT;
     }
     return WH_FLOW_ROBOT_WAITS_PUMP;

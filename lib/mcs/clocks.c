@@ -31,7 +31,8 @@ static void number_stations(struct wh_clocks *clocks, const wh_layout_t *real) {
         clocks->by_station[s] = WH_NONE;
         if (times) {
             clocks->by_station[s] = (int32_t)clocks->count;
-            clocks->of[clocks->count] = (wh_clocked_t){(int32_t)s, times, times->of, clocks->place_count};
+            clocks->of[clocks->count] =
+                (wh_clocked_t){(int32_t)s, times, times->of, clocks->place_count, false};
             draw_process(clocks, &clocks->of[clocks->count++]);
             clocks->place_count += (size_t)times->of.slots;
         }
@@ -74,7 +75,7 @@ static int32_t find_open_door(const wh_mcs_t *mcs, uint32_t doors) {
 }
 
 static bool is_closed(const struct wh_clocks *clocks, const wh_clocked_t *of) {
-    bool is_free = true;
+    bool is_free = !of->is_down;
     for (size_t r = 0; r < WH_MCS_ROBOTS; ++r) {
         is_free = is_free && clocks->state->inside[r] != of->station;
     }
@@ -436,21 +437,37 @@ static int lift_anew(lua_State *L) {
     return 0;
 }
 
+static bool pump_lock(const struct wh_clocks *clocks, int32_t number, wh_flow_side_t to) {
+    const wh_clocked_t *of = &clocks->of[number];
+    wh_clocks_telling_t telling = {clocks, of};
+    const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
+    return wh_clock_pump(&of->of, &clocks->clocks[number], &clocks->places[of->first], to,
+                         clocks->state->utime, &teller);
+}
+
 /* native.pump(station, "vacuum" or "atmosphere"): the lock begins to pump there. True, unless it is on its
  * way to the other one. */
 static int begin_pump(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t number = clocked_argument(L, mcs, 1);
     luaL_argcheck(L, number != WH_NONE, 1, "no lock");
-    struct wh_clocks *clocks = mcs->clocks;
-    const wh_clocked_t *of = &clocks->of[number];
     const bool is_vacuum = strcmp(luaL_checkstring(L, 2), "vacuum") == 0;
-    wh_clocks_telling_t telling = {clocks, of};
-    const wh_clock_teller_t teller = {wh_clocks_tell, &telling};
-    lua_pushboolean(L, wh_clock_pump(&of->of, &clocks->clocks[number], &clocks->places[of->first],
-                                     is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE, clocks->state->utime,
-                                     &teller));
+    lua_pushboolean(L, pump_lock(mcs->clocks, number, is_vacuum ? WH_FLOW_VACUUM : WH_FLOW_ATMOSPHERE));
     return 1;
+}
+
+bool wh_mcs_pump(const wh_mcs_t *mcs, int32_t station, wh_flow_side_t to) {
+    const int32_t number = number_of(mcs, station);
+    return number != WH_NONE && is_closed(mcs->clocks, &mcs->clocks->of[number]) &&
+           pump_lock(mcs->clocks, number, to);
+}
+
+void wh_mcs_set_down(const wh_mcs_t *mcs, int32_t station, bool is_down) {
+    const int32_t number = number_of(mcs, station);
+    if (number != WH_NONE) {
+        mcs->clocks->of[number].is_down = is_down;
+        look(mcs->clocks, (size_t)number, &mcs->state, WH_NONE);
+    }
 }
 
 /* native.tell_late(tells): stays beyond windows fail the run, or not. */

@@ -17,6 +17,7 @@ typedef struct {
     const wh_layout_times_t *times;
     wh_flow_station_t of; /* as it truly is: a study draws times */
     size_t first;         /* of its places */
+    bool is_down;         /* a flow has it fail: nothing begins in it */
 } wh_clocked_t;
 
 /* All that changes, one block of memory; the arrays follow it. */
@@ -80,6 +81,13 @@ void wh_mcs_clocks_pass(const wh_mcs_t *mcs, int64_t slices);
 
 /* True if nothing runs in the station, and nothing is to begin. */
 bool wh_mcs_is_station_idle(const wh_mcs_t *mcs, int32_t station);
+
+/* The lock begins to pump. False: a door of it is not shut, or a blade is in it, or it is on its way to the
+ * other side. */
+bool wh_mcs_pump(const wh_mcs_t *mcs, int32_t station, wh_flow_side_t to);
+
+/* From now on nothing begins in the station, or it may again. */
+void wh_mcs_set_down(const wh_mcs_t *mcs, int32_t station, bool is_down);
 
 bool wh_mcs_is_pumping(const wh_mcs_t *mcs, int32_t station);
 

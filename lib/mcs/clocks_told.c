@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "clocks.h"
+#include "flow_played.h"
 
 #define TEXT_BYTES 500
 
@@ -50,11 +51,12 @@ static void judge_stay(const struct wh_clocks *clocks, const wh_clocked_t *of, i
 static void judge_cut(const struct wh_clocks *clocks, const wh_clocked_t *of, const wh_clock_event_t *event) {
     char text[TEXT_BYTES];
     const bool is_clean = event->kind == WH_CLOCK_CLEAN_CUT;
+    const wh_clock_place_t *place = &clocks->places[of->first + (size_t)event->slot];
     const bool lies = clocks->seen[of->first + (size_t)event->slot].wafer == event->wafer;
     snprintf(text, sizeof text, "the %s %s in %s comes to its end; the wafer %s after %.10g of %.10g s",
              is_clean ? "clean around" : "process of", wafer_name(clocks, event->wafer),
              station_name(clocks, of), lies ? "came to lie badly" : "was taken", (double)event->us / 1e6,
-             (double)(is_clean ? of->of.clean_us : of->of.process_us) / 1e6);
+             (double)(is_clean ? of->of.clean_us : wh_clock_process_us(&of->of, place)) / 1e6);
     imply(clocks, text, false);
 }
 
@@ -86,7 +88,8 @@ void wh_clocks_tell(void *user, const wh_clock_event_t *event) {
     wh_record_add_station_event(clocks->mcs->recorder.record,
                                 &(wh_station_event_record_t){telling->of->station, *event});
     wh_mcs_tell(clocks->mcs, WH_MCS_STATION_TOLD, NULL);
-    if (event->kind == WH_CLOCK_TAKEN) {
+    const bool is_judged = wh_flow_played_hear(clocks->mcs, telling, event);
+    if (event->kind == WH_CLOCK_TAKEN && !is_judged) {
         judge_stay(clocks, telling->of, event->wafer, (double)event->us);
     } else if (event->kind == WH_CLOCK_PROCESS_CUT || event->kind == WH_CLOCK_CLEAN_CUT) {
         judge_cut(clocks, telling->of, event);

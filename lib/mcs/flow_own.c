@@ -9,11 +9,9 @@
 #include "../text/array.h"
 #include "flow_seen.h"
 
-/* It is at the stack index `index` of L while the flow runs. */
 typedef struct {
     wh_flow_seen_t seen; /* the first member: its address is the userdata's */
-    lua_State *L;
-    int index;
+    lua_State *L;        /* on which the flow goes on */
     bool has_failed;
 } own_t;
 
@@ -119,7 +117,7 @@ static bool call_own(own_t *own, const wh_flow_state_t *state, int32_t robot, in
         return true;
     }
     own->has_failed = true;
-    lua_setiuservalue(L, own->index, FAILURE);
+    wh_flow_seen_keep_value(L, &own->seen, FAILURE);
     return false;
 }
 
@@ -128,7 +126,7 @@ static int ask_rule(void *context, const wh_flow_state_t *state, int32_t robot, 
     own_t *own = context;
     const int top = lua_gettop(own->L);
     const int count = call_own(own, state, robot, RULE, 1) ? read_answers(own, lines, why) : -1;
-    own->seen.state = NULL;
+    own->seen.state = own->seen.asked;
     lua_settop(own->L, top);
     return count;
 }
@@ -147,47 +145,73 @@ static char *tell_problem(void *context, const wh_flow_state_t *state, const wh_
     lua_setfield(L, -2, "seconds");
     lua_pushstring(L, problem->wafer == WH_FLOW_NONE ? NULL : own->seen.plan->wafers[problem->wafer].name);
     lua_setfield(L, -2, "wafer");
+    lua_pushstring(L, problem->robot == WH_FLOW_NONE ? NULL : own->seen.tool->robots[problem->robot].name);
+    lua_setfield(L, -2, "robot");
     if (!call_own(own, state, problem->robot, ON_ERROR, 2)) {
         why = wh_text_copy("on_error failed");
     } else if (lua_type(L, -1) == LUA_TSTRING) {
         why = wh_text_copy(lua_tostring(L, -1));
     }
-    own->seen.state = NULL;
+    own->seen.state = own->seen.asked;
     lua_settop(L, top);
     return why;
 }
 
 /* -------------------------------------------------------------------------------------------------- whole */
 
-/* Takes the function of this name, if it is one. */
-static bool take_function(lua_State *L, int own, const char *name, int which) {
+/* Takes the function of this name, if it is one, out of the description at stack index 1. */
+static bool take_function(lua_State *L, own_t *own, const char *name, int which) {
     lua_getfield(L, 1, name);
     const bool is_function = lua_isfunction(L, -1);
-    lua_setiuservalue(L, own, which);
+    wh_flow_seen_keep_value(L, &own->seen, which);
     return is_function;
 }
 
 void wh_flow_own_open(lua_State *L, const wh_flow_tool_t *tool, wh_flow_plan_t *plan) {
     own_t *own = lua_newuserdatauv(L, sizeof *own, FAILURE);
-    const int at = lua_gettop(L);
-    *own = (own_t){.seen = {.tool = tool, .plan = plan, .robot = WH_FLOW_NONE}, .L = L, .index = at};
-    wh_flow_seen_open(L, at);
+    *own = (own_t){.seen = {.tool = tool, .plan = plan, .robot = WH_FLOW_NONE}, .L = L};
+    wh_flow_seen_open(L, lua_gettop(L));
+    lua_pop(L, 1);
     plan->own_context = own;
-    if (take_function(L, at, "rule", RULE)) {
+    if (take_function(L, own, "rule", RULE)) {
         plan->own = ask_rule;
     }
-    if (take_function(L, at, "on_error", ON_ERROR)) {
+    if (take_function(L, own, "on_error", ON_ERROR)) {
         plan->on_problem = tell_problem;
     }
 }
 
-bool wh_flow_own_close(lua_State *L, int index, wh_flow_plan_t *plan) {
-    const own_t *own = lua_touserdata(L, index);
+void wh_flow_own_use(lua_State *L, const wh_flow_plan_t *plan) {
+    own_t *own = plan->own_context;
+    own->L = L;
+}
+
+bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state) {
+    own_t *own = plan->own_context;
+    if (!plan->on_problem) {
+        return false;
+    }
+    own->seen.asked = state;
+    own->seen.state = state;
+    own->seen.robot = WH_FLOW_NONE;
+    wh_flow_seen_push_value(L, &own->seen, ON_ERROR);
+    wh_flow_seen_push(L, &own->seen);
+    return true;
+}
+
+void wh_flow_own_end_on_error(const wh_flow_plan_t *plan) {
+    own_t *own = plan->own_context;
+    own->seen.asked = own->seen.state = NULL;
+}
+
+bool wh_flow_own_close(lua_State *L, wh_flow_plan_t *plan) {
+    own_t *own = plan->own_context;
     plan->own = NULL;
     plan->on_problem = NULL;
     plan->own_context = NULL;
+    own->seen.asked = own->seen.state = NULL;
     if (own->has_failed) {
-        (void)lua_getiuservalue(L, index, FAILURE);
+        wh_flow_seen_push_value(L, &own->seen, FAILURE);
     }
     return own->has_failed;
 }

@@ -5,14 +5,22 @@
 #include <lua.h>
 #include <stdbool.h>
 
-#include "../flow/plan.h"
+#include "../flow/state.h"
 
 /* Takes the functions `rule` and `on_error`, where they are functions, out of the description at stack
- * index 1 into the plan, and pushes one value, which must stay on the stack until wh_flow_own_close. */
+ * index 1 into the plan. Close it before the plan. */
 void wh_flow_own_open(lua_State *L, const wh_flow_tool_t *tool, wh_flow_plan_t *plan);
 
+/* From now on the functions are called on this thread. */
+void wh_flow_own_use(lua_State *L, const wh_flow_plan_t *plan);
+
+/* Pushes on_error and the tool, which can be read until wh_flow_own_end_on_error; false and nothing: there is
+ * none. So the caller can call it where commands may wait. */
+bool wh_flow_own_push_on_error(lua_State *L, const wh_flow_plan_t *plan, const wh_flow_state_t *state);
+void wh_flow_own_end_on_error(const wh_flow_plan_t *plan);
+
 /* The flow is over: what the functions kept of the tool tells nothing any more. Pushes the error that
- * ended one of them and returns true, if there was one. `index` is that of the value that was pushed. */
-bool wh_flow_own_close(lua_State *L, int index, wh_flow_plan_t *plan);
+ * ended one of them and returns true, if there was one. */
+bool wh_flow_own_close(lua_State *L, wh_flow_plan_t *plan);
 
 #endif

@@ -45,6 +45,8 @@ const wh_reader_field_t wh_flow_lot_fields[] = {
     {"priority", "integer", "the higher one wins ties; 0", false},
     {"back", "string", "the station where each wafer ends in a slot of its number", false},
     {"dummy", "boolean", "true: its wafers are moved and not counted", false},
+    {"map", "boolean",
+     "true: a robot maps the station before it takes the first wafer; robots with axes alone", false},
     END};
 
 const wh_reader_field_t wh_flow_down_fields[] = {
@@ -131,6 +133,10 @@ static void read_lot(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_t
     lot->lot.arrives_us = wh_flow_read_us(reader, "arrives", 0);
     lot->lot.priority = wh_reader_whole(reader, "priority", 0, -1000, 1000);
     lot->lot.is_dummy = wh_reader_boolean(reader, "dummy", false);
+    lot->lot.is_mapped = wh_reader_boolean(reader, "map", false);
+    if (lot->lot.is_mapped && !tool->robots[0].is_real) {
+        wh_reader_refuse(reader, "map", NULL, "nothing: the robots are times alone");
+    }
     lot->back = WH_FLOW_NONE;
     if (wh_reader_has(reader, "back")) {
         char back[WH_NAME_SIZE];
@@ -333,6 +339,9 @@ void wh_flow_read(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_t *fl
     plan->takt_us = wh_flow_read_us(reader, "takt", 0);
     plan->is_safe = wh_reader_boolean(reader, "safe", true);
     flow->has_gains = wh_reader_boolean(reader, "gains", false);
+    if (flow->has_gains && tool->robots[0].is_real) {
+        wh_reader_refuse(reader, "gains", NULL, "nothing: a cell with axes would be played again for each");
+    }
     if (flow->has_gains && plan->rule == WH_FLOW_OWN) {
         wh_reader_refuse(reader, "gains", NULL,
                          "a rule by name or lists: a function could answer otherwise each time");

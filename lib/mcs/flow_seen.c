@@ -25,6 +25,13 @@ void wh_flow_seen_push_value(lua_State *L, const wh_flow_seen_t *seen, int which
     lua_remove(L, -2);
 }
 
+void wh_flow_seen_keep_value(lua_State *L, const wh_flow_seen_t *seen, int which) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, seen);
+    lua_rotate(L, -2, 1);
+    (void)lua_setiuservalue(L, -2, which);
+    lua_pop(L, 1);
+}
+
 /* Pushes a part; it is made once. */
 static void push_part(lua_State *L, wh_flow_seen_t *seen, kind_t kind, int32_t number) {
     wh_flow_seen_push_value(L, seen, PARTS);

@@ -22,6 +22,7 @@ typedef struct {
     const wh_flow_tool_t *tool;
     const wh_flow_plan_t *plan;
     const wh_flow_state_t *state; /* null but while a function is called */
+    const wh_flow_state_t *asked; /* the same while a function may wait, else null */
     int32_t robot;                /* that is asked, or WH_FLOW_NONE */
     size_t count;
     wh_flow_choice_t choices[WH_FLOW_SEEN_CHOICES];
@@ -36,8 +37,9 @@ void wh_flow_seen_open(lua_State *L, int index);
 /* Pushes the tool. */
 void wh_flow_seen_push(lua_State *L, wh_flow_seen_t *seen);
 
-/* Pushes one of the userdata's user values, also while the userdata is not on the stack. */
+/* Pushes one of the userdata's user values, or pops a value into one. */
 void wh_flow_seen_push_value(lua_State *L, const wh_flow_seen_t *seen, int which);
+void wh_flow_seen_keep_value(lua_State *L, const wh_flow_seen_t *seen, int which);
 
 /* True if the value at this stack index is a part of a tool. It is then this choice of the question, or null
  * if it is none of them. */

@@ -1,4 +1,5 @@
-/* flow: a script's lots through a tool of times alone. */
+#include "flow_word.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -8,7 +9,6 @@
 #include "../text/array.h"
 #include "flow_own.h"
 #include "flow_plan.h"
-#include "native.h"
 
 static double seconds(int64_t us) {
     return (double)us / 1e6;
@@ -176,46 +176,49 @@ static void judge(wh_mcs_t *mcs, const wh_flow_t *flow, const char *error) {
     }
 }
 
-/* native.flow(description): plays it and returns its figures. */
-static int play_flow(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+wh_flow_t *wh_flow_read_word(lua_State *L, wh_mcs_t *mcs, const wh_flow_tool_t *tool) {
     wh_record_t *record = mcs->recorder.record;
     wh_reader_t reader;
-    const wh_flow_tool_t *tool = mcs->layout->tool;
-    if (!tool) {
-        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                            "flow: this cell's robots have axes (expected robots of kind \"timed\")");
-    }
+    char where[300];
     if (record->flow) {
-        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                            "flow: there was one before (expected one in a run)");
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, "flow: there was one before (expected one in a run)");
     }
     if (!lua_istable(L, 1)) {
-        return wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                            "flow: a table was expected, as in flow { lots = ... }");
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, "flow: a table was expected, as in flow { lots = ... }");
     }
     lua_settop(L, 1);
-    char where[300];
     record->flow = wh_array_new(1, sizeof *record->flow);
     record->flow->tool = tool;
     record->flow->line = wh_sandbox_line(L, mcs->script);
     (void)snprintf(where, sizeof where, "%.200s:%d: flow", mcs->script, record->flow->line);
     wh_reader_start(&reader, L, where);
     wh_flow_read(&reader, tool, record->flow);
-    wh_flow_own_open(L, tool, &record->flow->plan);
-    const int own = lua_gettop(L);
-    wh_flow_measure(tool, &record->flow->plan, mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
-                    &record->flow->figures);
-    const bool has_failed = wh_flow_own_close(L, own, &record->flow->plan);
-    judge(mcs, record->flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
+    return record->flow;
+}
+
+int wh_flow_return_word(lua_State *L, wh_mcs_t *mcs, bool has_failed) {
+    wh_flow_t *flow = mcs->recorder.record->flow;
+    judge(mcs, flow, has_failed && lua_isstring(L, -1) ? lua_tostring(L, -1) : NULL);
     if (has_failed) {
         return lua_error(L);
     }
-    if (record->flow->has_gains) {
-        record->flow->figures.gains = wh_flow_gains(tool, &record->flow->plan);
-    }
-    push_result(L, &record->flow->figures);
+    push_result(L, &flow->figures);
     return 1;
+}
+
+/* native.flow(description): plays it by times alone, and returns its figures. */
+static int play_flow(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_flow_tool_t *tool = mcs->layout->tool;
+    wh_flow_t *flow = wh_flow_read_word(L, mcs, tool);
+    wh_flow_own_open(L, tool, &flow->plan);
+    wh_flow_measure(tool, &flow->plan, mcs->wanted.keeps_ways ? WH_FLOW_WAYS : WH_FLOW_VISITS,
+                    &flow->figures);
+    const bool has_failed = wh_flow_own_close(L, &flow->plan);
+    if (flow->has_gains && !has_failed) {
+        flow->figures.gains = wh_flow_gains(tool, &flow->plan);
+    }
+    return wh_flow_return_word(L, mcs, has_failed);
 }
 
 const luaL_Reg wh_mcs_flow_functions[] = {{"flow", play_flow}, {NULL, NULL}};

@@ -133,8 +133,9 @@ typedef struct {
 typedef struct {
     int32_t current;        /* the lane whose functions run */
     const char *stopped_by; /* why segments were given up, a constant text; null: the link refused a slice */
-    size_t count;           /* lanes from here on were never used */
-    wh_lane_t of[WH_MCS_LANES]; /* the script's own first */
+    struct wh_flow_played *flow; /* whose robots' commands are played in them, see flow_played.h; or null */
+    size_t count;                /* lanes from here on were never used */
+    wh_lane_t of[WH_MCS_LANES];  /* the script's own first */
 } wh_lanes_t;
 
 /* The number of a job whose faults and errors on purpose are for any job: a tester's. */

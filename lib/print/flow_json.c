@@ -36,7 +36,7 @@ static json_t *robot(const void *subject, size_t r) {
     const wh_flow_robot_t *of = &figures->tool->robots[r];
     return wh_json_add(
         wh_json_set(json_object(), "name %s begins_at %s begin_assumed %i", of->name,
-                    figures->tool->stations[of->at].name, of->is_at_assumed),
+                    of->at == WH_FLOW_NONE ? NULL : figures->tool->stations[of->at].name, of->is_at_assumed),
         "shares",
         shares(figures->robots[r], wh_flow_robot_class_names, WH_FLOW_ROBOT_CLASSES, (double)figures->end_us),
         NULL);
@@ -150,6 +150,8 @@ static json_t *doing(const void *subject, size_t i) {
     const wh_flow_doing_t *of = &figures->doings[i];
     const char *what = of->kind == WH_FLOW_EVENT_CLEAN  ? "clean"
                        : of->kind == WH_FLOW_EVENT_DOWN ? "down"
+                       : of->kind == WH_FLOW_EVENT_OPEN ? "open"
+                       : of->kind == WH_FLOW_EVENT_SHUT ? "shut"
                        : of->side == WH_FLOW_VACUUM     ? "pump"
                                                         : "vent";
     return wh_json_set(json_object(), "station %s slot %lld what %s begin_s %g end_s %g",
@@ -240,8 +242,8 @@ json_t *wh_flow_to_json(const wh_flow_t *flow) {
         flow->line, ends[result->end], result->why, (long long)result->over, (long long)result->left,
         (double)result->makespan_us / 1e6, cycle_s,
         result->period > 0 ? (long long)result->period : WH_JSON_NONE, 3600 / cycle_s);
-    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g", result->no_cycle, result->may_block,
-                      (double)figures->end_us / 1e6);
+    (void)wh_json_set(object, "no_cycle %s may_block %i counted_s %g began_s %g", result->no_cycle,
+                      result->may_block, (double)figures->end_us / 1e6, (double)flow->began_us / 1e6);
     const size_t gain_count = figures->gains ? figures->tool->robot_count + figures->tool->station_count : 0;
     (void)wh_json_add(object, "textbook busiest longest_stay_s path gains waits windows gaps",
                       textbook(figures), busiest(figures), seconds(figures->stays.longest_us),

@@ -16,6 +16,11 @@
 const wh_reader_field_t wh_flow_step_fields[] = {
     {"process", "number", "s, in place of the station's", false},
     {"hot", "boolean", "true: the second arm alone takes from it", false},
+    {"align", "number", "degrees: a prealigner turns the wafer's notch there; robots with axes alone", false},
+    {"flip", "boolean", "true: a flipper turns the wafer over; robots with axes alone", false},
+    {"centre", "boolean", "true: beams centre the wafer on its way in; robots with axes alone", false},
+    {"map", "boolean", "true: the robot that brought the wafer maps the station; robots with axes alone",
+     false},
     END};
 
 const wh_reader_field_t wh_flow_route_fields[] = {
@@ -79,6 +84,50 @@ static void add_station(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow
     step->stations[step->station_count++] = station;
 }
 
+static bool is_real(const wh_flow_tool_t *tool) {
+    return tool->robot_count > 0 && tool->robots[0].is_real;
+}
+
+/* Each station of the step must be one that can do it. */
+static void check_work(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_step_t *step,
+                       const char *field, const char *expected) {
+    for (size_t i = 0; i < step->station_count; ++i) {
+        const wh_flow_station_t *station = &tool->stations[step->stations[i]];
+        if (station->works != step->work) {
+            wh_reader_refuse(reader, field, station->name, "%s", expected);
+        }
+    }
+}
+
+/* Wafers are aligned, turned over, centred and mapped where something stands. */
+static void read_work(wh_reader_t *reader, const wh_flow_tool_t *tool, wh_flow_step_t *step) {
+    static const char *const fields[] = {"align", "flip", "centre", "map"};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0] && !is_real(tool); ++i) {
+        wh_layout_refuse_field(reader, fields[i], "nothing: the robots are times alone");
+    }
+    if (wh_reader_has(reader, "align")) {
+        step->work = WH_FLOW_WORK_ALIGN;
+        step->align_deg = (double)wh_reader_number(reader, "align", 0, -360, 360);
+        check_work(reader, tool, step, "align",
+                   "prealigners with an edge sensor alone in a step with `align`");
+    } else if (wh_reader_boolean(reader, "flip", false)) {
+        step->work = WH_FLOW_WORK_FLIP;
+        check_work(reader, tool, step, "flip", "flippers alone in a step with `flip`");
+    }
+    step->centres = wh_reader_boolean(reader, "centre", false);
+    step->maps = wh_reader_boolean(reader, "map", false);
+}
+
+/* Its clock lets a process begin behind shut doors, and refuses a GET before the end. */
+static void check_clocks(wh_reader_t *reader, const wh_flow_tool_t *tool, const wh_flow_step_t *step) {
+    for (size_t i = 0; i < step->station_count && is_real(tool) && step->process_us > 0; ++i) {
+        if (!tool->stations[step->stations[i]].is_real) {
+            wh_reader_refuse(reader, "process", tool->stations[step->stations[i]].name,
+                             "a station that takes time: one with `process` in the layout");
+        }
+    }
+}
+
 static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t index, wh_flow_step_t *step) {
     char name[WH_NAME_SIZE], field[32];
     (void)snprintf(field, sizeof field, "[%zu]", index);
@@ -103,6 +152,8 @@ static void read_step(wh_reader_t *reader, const wh_flow_tool_t *tool, size_t in
     step->process_us =
         wh_reader_has(reader, "process") ? wh_flow_read_us(reader, "process", 0) : WH_FLOW_NONE;
     step->second_arm = wh_reader_boolean(reader, "hot", false);
+    check_clocks(reader, tool, step);
+    read_work(reader, tool, step);
     wh_reader_leave(reader);
 }
 

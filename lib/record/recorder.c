@@ -271,7 +271,7 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     record->simulated_s = wh_recorder_now(recorder);
     record->hash = end->hash;
     record->missed = end->missed;
-    if (record->flow && record->flow->figures.tool) {
+    if (record->flow && record->flow->figures.tool && !record->flow->is_played) {
         record->hash = record->flow->figures.hash;
         record->simulated_s = (double)record->flow->figures.end_us / 1e6;
     }

@@ -49,7 +49,7 @@ static void add_access(lines_t *lines, wh_schedule_action_t action, const wh_flo
     const wh_flow_tool_t *tool = lines->figures->tool;
     const int32_t station = tool->place_stations[place];
     const wh_flow_door_t *door = &tool->doors[wh_flow_of(tool, visit->robot, station)];
-    const bool has_door = door->open_us > 0 || door->close_us > 0;
+    const bool has_door = !door->is_real && (door->open_us > 0 || door->close_us > 0);
     if (has_door) {
         line_t *open = add_line(lines, WH_SCHEDULE_OPEN, begin_us - door->open_us, begin_us);
         open->robot = visit->robot;
@@ -162,6 +162,12 @@ static void add_doings(lines_t *lines) {
             line_t *line = add_line(lines, WH_SCHEDULE_PUMP, doing->begin_us, doing->end_us);
             line->station = doing->station;
             line->side = doing->side;
+        } else if (doing->kind != WH_FLOW_EVENT_DOWN && doing->robot != WH_FLOW_NONE) {
+            const bool opens = doing->kind == WH_FLOW_EVENT_OPEN;
+            line_t *line =
+                add_line(lines, opens ? WH_SCHEDULE_OPEN : WH_SCHEDULE_CLOSE, doing->begin_us, doing->end_us);
+            line->robot = doing->robot;
+            line->station = doing->station;
         }
     }
 }

@@ -497,6 +497,37 @@ return function(native, lookup)
     return table.unpack(results, 1, results.n or 0)
   end
 
+  -- Waits as a command's segment does.
+  module.wait = wait_until
+
+  -- Plays these side by side until all are over: a list of { name, line, body }. In a slice they go on in this
+  -- order. Raises the first error.
+  function module.beside(list)
+    local begun = {}
+    if #tasks + #list > MOST then
+      native.fail("BAD_ARGUMENT", ("%d tasks are needed (expected at most %d)"):format(#tasks + #list, MOST))
+    end
+    for place, entry in ipairs(list) do
+      local task = begin(entry.body)
+      task.name, task.line, begun[place] = entry.name, entry.line, task
+    end
+    wait_until(function()
+      return all_over(begun)
+    end, function()
+      return "the end of " .. begun[1].name
+    end)
+    local failure
+    for _, task in ipairs(begun) do
+      if not task.results then
+        forget_failed(task)
+        failure = failure or task
+      end
+    end
+    if failure then
+      error(failure.problem, 0)
+    end
+  end
+
   local function check_name(name)
     if type(name) ~= "string" then
       native.fail("BAD_ARGUMENT", ("name: %s (expected a text)"):format(lookup.quote(name)))

@@ -36,7 +36,7 @@ words.scripts = {
                 does = "Before cell: the patterns of this file take the place of the shipped ones, or come beside them." },
   { "flow", takes = { { "description", "waferhand.flow", "lots, routes and rule" } },
             gives = { { "waferhand.flowed", "figures" } },
-            does = "Takes lots along their routes, in a cell whose robots are times alone." },
+            does = "Takes lots along their routes." },
   { "study", takes = { { "errors", "waferhand.study", "what is drawn" } },
              does = "Before cell: what a study draws, in place of the layout's." },
   at_slot("get", "get_options", "Takes the wafer there, or fails with WAFER_MISSING and the reason."),

@@ -1,0 +1,171 @@
+/* Stations' clocks, as the engine of a flow hears and asks them. */
+#include <stdio.h>
+
+#include "../text/array.h"
+#include "flow_played.h"
+
+/* How much longer than described something may take in a station, us: as wait_for has it. */
+#define GRACE_US INT64_C(60000000)
+
+int64_t wh_flow_played_now(const wh_flow_played_t *played) {
+    const wh_track_t *track = &played->mcs->track;
+    return track->slice * track->slice_us - played->flow->began_us;
+}
+
+static int32_t number_of(const wh_flow_played_t *played, int32_t wafer) {
+    return wafer == WH_FLOW_NONE ? WH_FLOW_NONE : played->numbers[wafer];
+}
+
+bool wh_flow_played_hear(const wh_mcs_t *mcs, const wh_clocks_telling_t *telling,
+                         const wh_clock_event_t *event) {
+    wh_flow_played_t *played = mcs->lanes ? mcs->lanes->flow : NULL;
+    if (!played) {
+        return false;
+    }
+    played->heard =
+        wh_array_grow(played->heard, played->heard_count, &played->heard_capacity, sizeof *played->heard);
+    wh_flow_heard_t *heard = &played->heard[played->heard_count++];
+    *heard = (wh_flow_heard_t){telling->of->station, *event, 0};
+    if (event->kind == WH_CLOCK_TAKEN) {
+        heard->lifted_us = telling->clocks->places[telling->of->first + (size_t)event->slot].lifted_us;
+    }
+    played->is_due = true;
+    wh_mcs_call(played->mcs);
+    return number_of(played, event->wafer) != WH_FLOW_NONE;
+}
+
+/* ------------------------------------------------------------------------------------------------ telling */
+
+/* True if the wafer lies in a place of this station, as the engine has it. */
+static bool lies_in(const wh_flow_state_t *state, int32_t wafer, int32_t station) {
+    return wafer != WH_FLOW_NONE && wh_flow_station_of(state, wafer) == station;
+}
+
+/* Beginnings are seen; whatever goes wrong fails the run by itself. */
+static void tell(const wh_flow_played_t *played, wh_flow_state_t *state, const wh_flow_heard_t *heard) {
+    const wh_clock_event_t *event = &heard->event;
+    const int64_t end_us = event->at_us - played->flow->began_us, begin_us = end_us - event->us;
+    const int32_t wafer = number_of(played, event->wafer);
+    const bool is_its = lies_in(state, wafer, heard->station);
+    if (event->kind == WH_CLOCK_PROCESS_BEGINS || event->kind == WH_CLOCK_CLEAN_BEGINS ||
+        event->kind == WH_CLOCK_PUMP_BEGINS) {
+        wh_flow_tell_closed(state, heard->station, end_us);
+    } else if (event->kind == WH_CLOCK_PROCESS_ENDS && is_its) {
+        wh_flow_tell_process(state, wafer, begin_us, end_us);
+    } else if (event->kind == WH_CLOCK_CLEAN_ENDS) {
+        wh_flow_tell_clean(state, played->tool->stations[heard->station].first_place + event->slot, wafer,
+                           begin_us, end_us);
+    } else if (event->kind == WH_CLOCK_PUMP_ENDS) {
+        state->stations[heard->station].side = event->side;
+        wh_flow_tell_pump(state, heard->station, begin_us, end_us);
+    } else if (event->kind == WH_CLOCK_TAKEN && is_its) {
+        const int64_t lifted_us = heard->lifted_us - played->flow->began_us;
+        wh_flow_tell_left(state, wafer, lifted_us - event->us, lifted_us);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- stalling */
+
+static void stall(wh_flow_state_t *state, const char *station, const char *what) {
+    char text[300];
+    (void)snprintf(text, sizeof text, "STATION_TIMEOUT: %s: %s takes 60 s longer than described", station,
+                   what);
+    state->cause = state->cause ? state->cause : wh_text_copy(text);
+}
+
+/* Something in the place lasts too long: a fault keeps it up. */
+static bool is_stalled(const wh_flow_station_t *of, const wh_clock_place_t *place, int64_t now_us) {
+    const int64_t lasts_us = now_us - place->begun_us - GRACE_US;
+    return (place->phase == WH_CLOCK_PROCESSING && lasts_us > wh_clock_process_us(of, place)) ||
+           (place->phase == WH_CLOCK_CLEANING && lasts_us > of->clean_us);
+}
+
+static void check_stall(const wh_flow_played_t *played, wh_flow_state_t *state, const wh_clocked_t *of,
+                        const wh_clock_t *clock) {
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    const char *name = played->tool->stations[of->station].name;
+    const int64_t now_us = clocks->state->utime;
+    for (int32_t slot = 0; slot < of->of.slots; ++slot) {
+        const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
+        if (is_stalled(&of->of, place, now_us)) {
+            stall(state, name, place->phase == WH_CLOCK_PROCESSING ? "a process" : "a clean");
+        }
+    }
+    if (clock->is_pumping &&
+        now_us - clock->begun_us - GRACE_US > wh_flow_pump_us(&of->of, clock->pump_to, false)) {
+        stall(state, name, "pumping");
+    }
+}
+
+static void say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state, const wh_clocked_t *of) {
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    for (int32_t slot = 0; slot < of->of.slots && !state->cause && !of->is_down; ++slot) {
+        const wh_clock_place_t *place = &clocks->places[of->first + (size_t)slot];
+        const int32_t wafer = number_of(played, place->wafer);
+        char text[400], why[WH_CLOCKS_WHY_BYTES];
+        if (place->phase != WH_CLOCK_WAITING || wafer == WH_FLOW_NONE || state->wafers[wafer].is_over) {
+            continue;
+        }
+        const char *bad = wh_clocks_why_bad(clocks, of, slot, why);
+        (void)snprintf(text, sizeof text, "the process of %s in %s slot %d has not begun: %s",
+                       played->flow->plan.wafers[wafer].name, played->tool->stations[of->station].name,
+                       (int)slot + 1, bad ? bad : "a door of it is not shut");
+        state->cause = wh_text_copy(text);
+    }
+}
+
+void wh_flow_say_unbegun(const wh_flow_played_t *played, wh_flow_state_t *state) {
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    for (size_t i = 0; clocks && i < clocks->count; ++i) {
+        say_unbegun(played, state, &clocks->of[i]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ looking */
+
+void wh_flow_hear(void *context, wh_flow_state_t *state) {
+    wh_flow_played_t *played = context;
+    for (size_t i = 0; i < played->heard_count; ++i) {
+        tell(played, state, &played->heard[i]);
+    }
+    played->heard_count = 0;
+}
+
+void wh_flow_look(void *context, wh_flow_state_t *state) {
+    const wh_flow_played_t *played = context;
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    for (size_t i = 0; clocks && i < clocks->count; ++i) {
+        const wh_clocked_t *of = &clocks->of[i];
+        wh_flow_see_station(state, of->station, &of->of, &clocks->clocks[i], &clocks->places[of->first],
+                            played->flow->began_us);
+        check_stall(played, state, of, &clocks->clocks[i]);
+    }
+}
+
+bool wh_flow_pump_lock(void *context, int32_t station, wh_flow_side_t side) {
+    const wh_flow_played_t *played = context;
+    return wh_mcs_pump(played->mcs, station, side);
+}
+
+void wh_flow_hold_station(void *context, int32_t station, bool is_down) {
+    const wh_flow_played_t *played = context;
+    wh_mcs_set_down(played->mcs, station, is_down);
+}
+
+/* A study's error of the station's process is that of a step's own, too. */
+void wh_flow_set_process(const wh_flow_played_t *played, int32_t wafer, int32_t place) {
+    const wh_flow_state_t *state = &played->engine->state;
+    const struct wh_clocks *clocks = played->mcs->clocks;
+    const int32_t station = played->tool->place_stations[place];
+    const int32_t next = state->wafers[wafer].step + 1;
+    const int64_t own_us = wh_flow_step_of(&played->flow->plan, wafer, next)->process_us;
+    const int32_t number = clocks ? clocks->by_station[station] : WH_NONE;
+    if (number == WH_NONE) {
+        return;
+    }
+    const wh_clocked_t *of = &clocks->of[number];
+    const int64_t error_us = of->of.process_us - of->times->of.process_us;
+    wh_clock_place_t *clock = &clocks->places[of->first + (size_t)wh_flow_slot(played->tool, place) - 1];
+    clock->has_next = own_us != WH_FLOW_NONE;
+    clock->next_us = own_us <= 0 ? 0 : own_us + error_us > 1 ? own_us + error_us : 1;
+}
