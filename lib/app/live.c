@@ -293,6 +293,14 @@ static void hear_turn(void *user, const wh_mcs_t *mcs, const char *what) {
     }
 }
 
+void wh_live_tell(wh_live_t *live, wh_news_t *news) {
+    if (live->showing) {
+        wh_showing_tell(live->showing, news);
+    } else {
+        wh_news_free(news);
+    }
+}
+
 wh_mcs_listener_t wh_live_listener(wh_live_t *live, const wh_mcs_listener_t *next) {
     if (!live) {
         return *next;
@@ -428,7 +436,7 @@ bool wh_live_open(wh_live_t **made, const wh_live_arguments_t *arguments, const 
 }
 
 void wh_live_stay(const wh_live_t *live) {
-    if (live) {
+    if (live && live->options.stays) {
         wh_catch_signals();
         fprintf(stderr, "%s: the run is over; its page stays until Ctrl-C\n", live->options.speaker);
         while (!wh_stop_requested) {

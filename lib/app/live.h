@@ -10,6 +10,7 @@
 #include "../host/transcript.h"
 #include "../mcs/partners.h"
 #include "../text/options.h"
+#include "../view/showing.h"
 
 /* Zero it to begin with. */
 typedef struct {
@@ -27,6 +28,7 @@ typedef struct {
     const char *title;     /* the script's or layout's path */
     const char *reproduce; /* the command that makes the run again; null: none does */
     double rate;           /* of simulated time to the wall clock; 0: as fast as it goes */
+    bool stays;            /* the page stays when a script's run has ended, until a signal comes */
     bool paces;            /* slices wait for that rate here; otherwise somebody else sees to it */
 } wh_live_options_t;
 
@@ -40,6 +42,9 @@ bool wh_live_open(wh_live_t **live, const wh_live_arguments_t *arguments, const 
  * `next`. */
 wh_mcs_listener_t wh_live_listener(wh_live_t *live, const wh_mcs_listener_t *next);
 
+/* Tells the page news; it takes them over. */
+void wh_live_tell(wh_live_t *live, wh_news_t *news);
+
 /* Shows what was said at a port; `user` is the wh_live_t. */
 void wh_live_heard(void *user, const wh_transcript_entry_t *entry);
 
@@ -49,7 +54,8 @@ void wh_live_rest(void *user);
 /* False if a page is wanted of this cell, and it has nothing to show; standard error says so. */
 bool wh_live_shows(const wh_live_t *live, const wh_layout_t *layout);
 
-/* Keeps the page open until SIGINT or SIGTERM, for a run that has ended; says so on standard error. */
+/* Keeps the page of a run that has ended open until SIGINT or SIGTERM, if it stays; says so on standard
+ * error. */
 void wh_live_stay(const wh_live_t *live);
 
 /* Call it before the layout goes. */

@@ -10,6 +10,7 @@
 typedef struct {
     wh_run_arguments_t run;
     wh_mcs_link_options_t link;
+    wh_live_arguments_t page;
     const char *layout;
     double timeout_s;     /* 0: for ever */
     uint64_t most_missed; /* NO_LIMIT: any number */
@@ -43,6 +44,7 @@ static const wh_option_table_t tables[] = {
     {wh_record_options, offsetof(arguments_t, link.record), NULL, wh_record_arguments_check},
     {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {0}};
 
 /* True if an output is wanted that only a script's run has. */
@@ -151,6 +153,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
         .partners = wh_mcs_process_partners(&link->control),
     };
     int status = WH_EXIT_USAGE;
+    wanted.listener = wh_live_listener(arguments->run.live, &wanted.listener);
     /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
@@ -158,6 +161,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     } else {
         fprintf(stderr, "%s\n", session.message);
     }
+    wh_live_close(arguments->run.live); /* it has the session's layout */
     wh_session_close(&session);
     return status;
 }
@@ -176,6 +180,18 @@ static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
     return wh_run_and_print(&arguments->run);
 }
 
+/* With a page, if one is wanted, which ends with the run. */
+static int run(arguments_t *arguments, wh_mcs_link_t *link) {
+    const wh_live_options_t wanted = {.speaker = "mcs",
+                                      .title =
+                                          arguments->layout ? arguments->layout : arguments->run.run.script,
+                                      .rate = arguments->link.client.rate};
+    if (!wh_live_open(&arguments->run.live, &arguments->page, &wanted)) {
+        return WH_EXIT_USAGE;
+    }
+    return arguments->layout ? run_prompt(arguments, link) : run_script(arguments, link);
+}
+
 int wh_app_mcs(int argc, char **argv) {
     static wh_mcs_link_t link;
     arguments_t arguments = {
@@ -189,7 +205,7 @@ int wh_app_mcs(int argc, char **argv) {
     int status = WH_EXIT_USAGE;
     if (wh_run_files_are_apart(&arguments.run, arguments.layout) &&
         wh_mcs_link_open(&link, &arguments.link)) {
-        status = arguments.layout ? run_prompt(&arguments, &link) : run_script(&arguments, &link);
+        status = run(&arguments, &link);
         if (status == WH_EXIT_MET && link.control.client.counters.disturbed > 0) {
             status = WH_EXIT_FAILED;
         }

@@ -484,6 +484,13 @@ static bool open_page(served_t *served, const arguments_t *arguments) {
     return opened;
 }
 
+/* Opens the page, and tests what would be too late at the end. */
+static bool may_begin(served_t *served, arguments_t *arguments) {
+    served->host.allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
+    return open_page(served, arguments) && wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
+           check_coverage(arguments->coverage) && are_writable(arguments);
+}
+
 static int serve(arguments_t *arguments, int argc, char **argv) {
     static served_t served; /* most of it is for LCM, and not touched without that */
     wh_host_t *host = &served.host;
@@ -494,11 +501,7 @@ static int serve(arguments_t *arguments, int argc, char **argv) {
     if (wh_run_files_wanted(&arguments->run.files)) {
         host->next = wh_run_listener(&served.signals);
     }
-    host->allow = arguments->beside.allowed.count > 0 ? &arguments->allow : NULL;
-    const bool may_begin = open_page(&served, arguments) &&
-                           wh_serve_beside_allow(&arguments->beside, &arguments->allow) &&
-                           check_coverage(arguments->coverage) && are_writable(arguments);
-    const bool good = may_begin && open_session(&served, arguments) &&
+    const bool good = may_begin(&served, arguments) && open_session(&served, arguments) &&
                       listen_all(host, arguments, argc, argv) && run_host(&served, arguments);
     return close_served(&served) && good ? WH_EXIT_MET : WH_EXIT_USAGE;
 }

@@ -17,12 +17,14 @@
 #include "broadcast.h"
 #include "connection.h"
 #include "layout_arguments.h"
+#include "live_sim.h"
 
 typedef struct {
     wh_layout_arguments_t layout;
     wh_record_arguments_t record;
     const char *url, *outputs;
     bool view, json, log_time, one_sender;
+    wh_live_arguments_t page;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -45,6 +47,7 @@ static const wh_option_t options[] = {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
+    {wh_live_options, offsetof(arguments_t, page), NULL, wh_live_check},
     {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
     {0}};
 
@@ -150,6 +153,7 @@ typedef struct {
     wh_sim_process_t simulation;
     wh_outputs_t outputs;
     wh_viewer_t view;
+    wh_live_sim_t live;
 } served_t;
 
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
@@ -165,7 +169,8 @@ static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *la
         return false;
     }
     return open_outputs(&served->outputs, arguments->outputs, layout->machine.gripper_count) &&
-           (!arguments->view || wh_app_open_view(&served->view, node, layout));
+           (!arguments->view || wh_app_open_view(&served->view, node, layout)) &&
+           wh_live_sim_open(&served->live, &arguments->page, &served->simulation);
 }
 
 static void close_served(served_t *served) {
@@ -173,6 +178,7 @@ static void close_served(served_t *served) {
         wh_outputs_close(&served->outputs);
     }
     wh_viewer_close(&served->view);
+    wh_live_sim_close(&served->live);
     wh_sim_process_close(&served->simulation);
 }
 
@@ -191,6 +197,7 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
     while (!wh_stop_requested && handled >= 0) {
         handled = wait_and_handle(node, &served.outputs, simulation);
         wh_sim_process_tick(simulation);
+        wh_live_sim_tick(&served.live);
         if (arguments->view) {
             wh_viewer_tick(&served.view, &simulation->server);
         }

@@ -207,6 +207,9 @@ static void on_mcs(void *user, const void *data, size_t size) {
     }
     const bool is_ours = message.run == simulation->server.identity.run;
     note_command(simulation, &message);
+    if (simulation->heard && (is_ours || message.run == 0)) {
+        simulation->heard(simulation->heard_user, &message);
+    }
     if (is_ours && message.phase == WH_LINK_PHASE_OVER && simulation->running && !is_stranger(simulation)) {
         simulation->running = false;
         simulation->bound = 0;

@@ -47,6 +47,9 @@ typedef struct {
     bool silent;          /* motion control has fallen silent in it */
     wh_sim_process_command_t commands[WH_SIMULATION_COMMANDS]; /* those that run, by motion control */
     size_t command_count;
+    /* Called with what motion control says of the present run; may be null. */
+    void (*heard)(void *user, const waferhand_mcs *message);
+    void *heard_user;
     char command[WH_LINK_LINE]; /* the commands' lines, cut to this length; empty: none */
     wh_sim_process_counters_t counters;
     uint8_t encoded[WH_LINK_DATAGRAM];

@@ -1,5 +1,6 @@
 """A live cell: late joiners, slow ones, what is told, and that the run does not notice."""
 import json
+import os
 import re
 import socket
 import subprocess
@@ -163,6 +164,40 @@ class Live(unittest.TestCase):
         time.sleep(0.2)
         self.assertEqual([each["text"] for each in served.document()["document"]["run"]["commands"]], ["GET A 1"])
         self.assertEqual(served.end()[0], 0)
+
+    @unittest.skipIf(os.environ.get("WH_NETWORK") == "none", "processes do not reach each other")
+    def test_two_processes(self):
+        """sim and mcs, each with its page: both show the run; a second one begins anew, also after the simulator was killed."""
+        simulator = self.serve("sim", "lua/layouts/paper.lua", "--page", "0")
+        control = self.serve("mcs", TRANSFER, "--page", "0")
+        document = control.document()
+        stream = page.Stream(simulator, simulator.document())
+        out = control.process.stdout.read()
+        control.process.wait(20)
+        self.assertIn(HASH, out)
+        self.assertEqual(document["document"]["source"], "live")
+        stream.wait(lambda told: sum(len(what["lists"].get("events", {"list": []})["list"]) for _, kind, what in told
+                                     if kind == "growth") >= 4)
+        time.sleep(0.3)
+        shown = simulator.document()["document"]
+        self.assertEqual(shown["duration_s"], 8.283)
+        self.assertEqual([each["kind"] for each in shown["run"]["events"]], ["picked", "released"] * 2)
+        self.assertEqual([(each["text"], each["error"]) for each in shown["run"]["commands"]],
+                         [("GET A 1", 0), ("PUT B 2", 0), ("GET B 1", 0), ("PUT B 10", 0)])
+        place = simulator.place
+        simulator.kill()
+        simulator = self.serve("sim", "lua/layouts/paper.lua", "--page", place)
+        prompt = self.serve("mcs", "--layout", "lua/layouts/paper.lua", "--page", "0", stdin=subprocess.PIPE)
+        seen = page.Stream(prompt, prompt.document())
+        for line in ("GET A 1", "GET B 9", "RESET", "GET A 1"):
+            prompt.process.stdin.write(line + "\n")
+        prompt.process.stdin.flush()
+        seen.wait(lambda told: any(kind == "anew" for _, kind, _ in told))
+        time.sleep(1)
+        self.assertEqual([each["text"] for each in prompt.document()["document"]["run"]["commands"]], ["GET A 1"])
+        self.assertEqual([each["kind"] for each in simulator.document()["document"]["run"]["events"]], ["picked"])
+        prompt.process.stdin.close()
+        prompt.process.wait(20)
 
     def test_restart(self):
         """The same port again at once; a reader with numbers of the run before is told to begin anew."""
