@@ -47,6 +47,7 @@ static const wh_reader_field_t dialect_fields[] = {
     {"events", "table", "the kinds of events that it is told", false},
     {"connected", "function", "a client has come", false},
     {"gone", "function", "a client has gone", false},
+    {"tester", "function", "a tester tells it something", false},
     {"idle", "number", "s after which a silent client is closed", false},
     {"completes_to", "string", "who hears of a command's end", false},
     {"chaos", "table", "what befalls frames on the line", false},
@@ -367,6 +368,7 @@ static void read_clients(wh_reader_t *reader, wh_dialect_t *dialect) {
     clients->second = (wh_port_second_t)wh_reader_choice(reader, "second_client", 0, seconds);
     clients->in_order = wh_reader_boolean(reader, "in_order", false);
     clients->greets = has_function(reader, &(wh_reader_field_t){"connected", "function", "", false});
+    clients->hears_testers = has_function(reader, &(wh_reader_field_t){"tester", "function", "", false});
     clients->heeds_going = has_function(reader, &(wh_reader_field_t){"gone", "function", "", false});
 }
 

@@ -108,6 +108,7 @@ typedef struct {
     bool completes_to_next; /* the end of a command is told to whoever is there; else only to the client that
                              * asked */
     bool in_order;          /* the next frame of a port is read once all before it are answered */
+    bool hears_testers;     /* it has the function `tester` */
     bool greets, heeds_going; /* the dialect has the functions `connected` and `gone` */
     unsigned events;          /* it is told these: bits, 1 << WH_HOST_WAFER */
     size_t port_count;        /* at least 1 */
@@ -238,6 +239,11 @@ bool wh_dialect_encode(wh_dialect_t *dialect, wh_encoder_t encoder, const wh_tol
  * mistake, see `message`. */
 bool wh_dialect_welcome(wh_dialect_t *dialect, const wh_client_t *client);
 bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client);
+
+/* Calls tester(text): a tester tells the controller something that only hands can do, such as to press an
+ * emergency stop. It is a request, or nothing without such a function, or refused, or a mistake. `stops`: the
+ * function returned true, and what runs stops. */
+wh_decoded_t wh_dialect_tell(wh_dialect_t *dialect, const char *text, bool *stops, wh_failure_t *failure);
 
 /* True if the last call failed because the dialect refused by host.refuse: then `failure` says why. An
  * `answer` may refuse so, too. */

@@ -27,6 +27,7 @@ typedef struct {
     const wh_client_t *client;
     const char *frame;
     size_t size;
+    bool *stops;
     wh_now_t *ask;
     void *user;
     wh_request_t *request;
@@ -460,4 +461,24 @@ bool wh_dialect_part(wh_dialect_t *dialect, const wh_client_t *client) {
     call_t it = {.dialect = dialect, .client = client};
     drop_text(dialect);
     return !dialect->clients.heeds_going || call_dialect(dialect, call_gone, &it);
+}
+
+/* Runs protected. */
+static int call_tester(lua_State *L) {
+    const call_t *it = lua_touserdata(L, 1);
+    wh_dialect_push(L, "tester", NULL);
+    lua_pushstring(L, it->frame);
+    lua_call(L, 1, 1);
+    *it->stops = lua_toboolean(L, -1) != 0;
+    return 0;
+}
+
+wh_decoded_t wh_dialect_tell(wh_dialect_t *dialect, const char *text, bool *stops, wh_failure_t *failure) {
+    call_t it = {.dialect = dialect, .frame = text, .stops = stops};
+    *stops = false;
+    memset(failure, 0, sizeof *failure);
+    if (!dialect->clients.hears_testers) {
+        return WH_DECODED_NOTHING;
+    }
+    return outcome_of(dialect, call_dialect(dialect, call_tester, &it), failure);
 }

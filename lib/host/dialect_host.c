@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "../layout/axes.h"
 #include "../math/trig.h"
 #include "../record/record.h"
 #include "../script/wh_module_values.h"
@@ -256,6 +257,14 @@ static const wh_layout_t *find_layout(lua_State *L) {
     return layout;
 }
 
+static void push_point(lua_State *L, const wh_pose_t *pose) {
+    lua_createtable(L, 0, 4);
+    wh_lua_set_number(L, "x", pose->r.x);
+    wh_lua_set_number(L, "y", pose->r.y);
+    wh_lua_set_number(L, "z", pose->r.z);
+    wh_lua_set_number(L, "yaw", wh_atan2(pose->R.m[1][0], pose->R.m[0][0]) * 180 / WH_PI);
+}
+
 /* The station with this name as it is typed; the count: there is none. */
 static size_t find_spelt_station(const wh_layout_t *layout, const char *name) {
     char spelt[WH_DIALECT_LINE_BYTES];
@@ -284,11 +293,32 @@ static int slot_pose(lua_State *L) {
         }
         pose = wh_station_slot(&layout->places[s], (int32_t)slot);
     }
-    lua_createtable(L, 0, 4);
-    wh_lua_set_number(L, "x", pose.r.x);
-    wh_lua_set_number(L, "y", pose.r.y);
-    wh_lua_set_number(L, "z", pose.r.z);
-    wh_lua_set_number(L, "yaw", wh_atan2(pose.R.m[1][0], pose.R.m[0][0]) * 180 / WH_PI);
+    push_point(L, &pose);
+    return 1;
+}
+
+/* host.forward(axes): where the first gripper is with these axes of the first robot, by name, degrees and mm;
+ * others are at home. Without a cell all are 0. */
+static int find_forward(lua_State *L) {
+    const wh_layout_t *layout = find_layout(L);
+    wh_real_t axes[WH_AXES];
+    wh_pose_t poses[WH_GRIPPERS] = {{.R = wh_mat3_identity()}};
+    luaL_checktype(L, 1, LUA_TTABLE);
+    if (layout) {
+        const wh_machine_t *machine = &layout->machine;
+        wh_machine_home(machine, axes);
+        for (size_t axis = 0; axis < wh_machine_robot_axes(machine); ++axis) {
+            size_t own;
+            if (wh_machine_robot_of(machine, axis, &own) == 0 &&
+                lua_getfield(L, 1, wh_axis_name(machine, axis)) == LUA_TNUMBER) {
+                const double value = lua_tonumber(L, -1);
+                axes[axis] = wh_axis_turns(machine, axis) ? value * WH_PI / 180 : value;
+            }
+            lua_settop(L, 1);
+        }
+        wh_machine_grippers(machine, axes, poses);
+    }
+    push_point(L, &poses[0]);
     return 1;
 }
 
@@ -418,6 +448,7 @@ int wh_dialect_open_host(lua_State *L) {
                                          {"length", their_length},
                                          {"angle", their_angle},
                                          {"nearest", find_nearest},
+                                         {"forward", find_forward},
                                          {"pose", slot_pose},
                                          {"name", their_name},
                                          {"code", their_code},

@@ -21,18 +21,25 @@ static bool may_give_up(const wh_controller_t *controller) {
     return wh_host_plays_jobs(controller->host) ? is_robot || is_cell : !controller->host->running;
 }
 
-static void answer_stop(wh_controller_t *controller, const wh_request_t *request) {
-    wh_host_t *host = controller->host;
+static void stop_acting(const wh_controller_t *controller) {
     wh_controller_t *acting = wh_controller_acting(controller);
-    wh_controller_stop_queue(controller);
+    wh_controller_stop_queue(controller->leader);
     if (acting && acting->action.is_running) {
-        if (host->holder && host->holder->leader == controller->leader) {
-            wh_host_release(host);
-        }
         wh_controller_stop_running(acting);
     } else if (acting) {
         acting->action.is_stopped = true;
-    } else if (may_give_up(controller)) {
+    }
+}
+
+static void answer_stop(wh_controller_t *controller, const wh_request_t *request) {
+    wh_host_t *host = controller->host;
+    const bool is_holder = host->holder && host->holder->leader == controller->leader;
+    const bool is_any = wh_controller_acting(controller);
+    if (is_any && is_holder) {
+        wh_host_release(host);
+    }
+    stop_acting(controller);
+    if (!is_any && may_give_up(controller)) {
         wh_mcs_give_up(&host->session->mcs, controller->mechanism.index);
     }
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
@@ -239,6 +246,43 @@ static void set_rate(wh_controller_t *controller, const wh_request_t *request, c
     wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
 }
 
+/* Tells a dialect, once for all of its ports. A running action stops if the dialect says so. */
+static wh_decoded_t tell_leader(const wh_controller_t *controller, const char *text, wh_failure_t *failure) {
+    bool stops = false;
+    if (controller->leader != controller) {
+        return WH_DECODED_NOTHING;
+    }
+    const wh_decoded_t outcome = wh_dialect_tell(controller->dialect, text, &stops, failure);
+    if (outcome == WH_DECODED_REQUEST && stops) {
+        stop_acting(controller);
+    }
+    return outcome;
+}
+
+/* "TELL estop on": each controller whose dialect hears testers is told the rest. */
+static void tell_controllers(wh_controller_t *controller, const wh_request_t *request, const char *line) {
+    const wh_host_t *host = controller->host;
+    const char *text = line + strcspn(line, " ");
+    size_t heard = 0;
+    for (size_t i = 0; i < host->count; ++i) {
+        wh_controller_t *other = host->controllers[i];
+        wh_failure_t failure;
+        const wh_decoded_t outcome = tell_leader(other, text + strspn(text, " "), &failure);
+        if (outcome == WH_DECODED_REFUSED || outcome == WH_DECODED_MISTAKE) {
+            wh_controller_refuse(controller, request, WH_STATUS_BAD_ARGUMENT,
+                                 outcome == WH_DECODED_REFUSED ? failure.detail : other->dialect->message);
+            return;
+        }
+        heard += outcome == WH_DECODED_REQUEST ? 1 : 0;
+    }
+    if (heard == 0) {
+        wh_controller_refuse(controller, request, WH_STATUS_BAD_ARGUMENT,
+                             "no dialect hears testers (expected one with a function `tester`)");
+        return;
+    }
+    wh_controller_tell_result(controller, WH_ENCODE_ANSWER, request, WH_OK, "OK", 0);
+}
+
 /* Makes the request's lines, and answers or accepts it. */
 static void carry_out(wh_controller_t *controller, wh_request_t *request) {
     wh_lines_t *lines = &controller->host->texts->lines;
@@ -255,6 +299,8 @@ static void carry_out(wh_controller_t *controller, wh_request_t *request) {
         wh_controller_refuse(controller, request, WH_STATUS_NO_SUCH_COMMAND, request->command->name);
     } else if (kind == WH_WORD_RATE) {
         set_rate(controller, request, lines->lines[0]);
+    } else if (kind == WH_WORD_TELL) {
+        tell_controllers(controller, request, lines->lines[0]);
     } else if (kind == WH_WORD_ACTION) {
         accept_action(controller, request, lines);
     } else {

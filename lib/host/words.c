@@ -60,6 +60,7 @@ const wh_word_t wh_words[] = {{"GET", WH_WORD_ACTION, ROBOT, false},
                               {"HOLD", WH_WORD_HOLD, ANY, false},
                               {"RESUME", WH_WORD_RESUME, ANY, false},
                               {"RATE", WH_WORD_RATE, ANY, true},
+                              {"TELL", WH_WORD_TELL, 0, true},
                               {"ACKN", WH_WORD_ACKN, ANY, false},
                               {"LOCAL", WH_WORD_LOCAL, ANY, false}};
 

@@ -29,6 +29,7 @@ typedef enum {
     WH_WORD_HOLD,   /* the running command stands still after the present slice: time does not pass */
     WH_WORD_RESUME, /* and goes on */
     WH_WORD_RATE,   /* the pace of simulated time */
+    WH_WORD_TELL,   /* a tester tells the other controllers something */
     WH_WORD_ACKN,   /* the host has had the completion */
     WH_WORD_LOCAL   /* the dialect answers by itself */
 } wh_word_kind_t;
@@ -41,7 +42,7 @@ typedef struct {
 } wh_word_t;
 
 /* All of them. Behind the prompt's own words come those that only a port has: HOLD, RESUME, RATE,
- * ACKN and LOCAL. */
+ * TELL, ACKN and LOCAL. */
 extern const wh_word_t wh_words[];
 extern const size_t wh_word_count;
 

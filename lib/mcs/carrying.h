@@ -22,10 +22,15 @@ bool wh_carrying_matters(const wh_layout_t *layout);
  * open. */
 void wh_carrying_start(wh_track_t *track, const wh_layout_t *layout);
 
-/* wh_track_begin for the segment, slowed as needed while the grippers of `loaded` (bits) carry wafers.
- * `slices` counts the slices that were looked at. */
+/* The parts of all axes' limits that a motion may use, above 0 to 1; the jerk's is the acceleration's. */
+typedef struct {
+    wh_real_t speed, acceleration;
+} wh_motion_share_t;
+
+/* wh_track_begin for the segment with these parts of the limits, slowed as needed while the grippers of
+ * `loaded` (bits) carry wafers. `slices` counts the slices that were looked at. */
 wh_status_t wh_carrying_begin(wh_track_t *track, const wh_layout_t *layout, const wh_segment_t *segment,
-                              uint32_t loaded, int64_t *slices);
+                              const wh_motion_share_t *share, uint32_t loaded, int64_t *slices);
 
 /* An acceleration that passive pads do not hold. */
 typedef struct {

@@ -3,6 +3,7 @@
 --     {"id": 1, "line": "WHERE \"Wafer 1\""}        a line of the prompt
 --     {"rate": 10}                                  the pace of simulated time; 0: as fast as possible
 --     {"subscribe": ["picked", "sensor", "error"]}  events that are told here from now on; [] none
+--     {"tell": "estop on"}                          to the controllers whose dialect has a function `tester`
 --
 -- Answers have `ok`, `answer` and, of an error, `number`, `name` and `text`; `id` comes back. An event is {"event": "picked", ...}.
 
@@ -130,7 +131,7 @@ end
 
 -- ------------------------------------------------------------------------------------------------------------ requests
 
-local KINDS = { line = "string", rate = "number", subscribe = "table" }
+local KINDS = { line = "string", rate = "number", subscribe = "table", tell = "string" }
 
 local function decode(frame, client)
   local at = skip(frame, 1)
@@ -145,7 +146,7 @@ local function decode(frame, client)
   for name, value in pairs(given) do
     if name ~= "id" then
       if what or KINDS[name] == nil or type(value) ~= KINDS[name] then
-        fail(("%s (one of line, rate, subscribe)"):format(name))
+        fail(("%s (one of line, rate, subscribe, tell)"):format(name))
       end
       what = name
     elseif type(value) == "table" then
@@ -159,11 +160,12 @@ local function decode(frame, client)
     end
     return { command = line:match("^%S+"):upper(), line = line, id = given.id }
   end
-  return { command = what or fail("no line, rate or subscribe"), value = given[what], id = given.id, client = client.number }
+  return { command = what or fail("no line, rate, subscribe or tell"), value = given[what], id = given.id, client = client.number }
 end
 
 local commands = {
   rate = { does = "RATE", run = function(request) return ("RATE %.17g"):format(request.value) end },
+  tell = { does = "TELL", run = function(request) return "TELL " .. request.value:gsub("[%c]", " ") end },
   subscribe = { does = "LOCAL", run = function(request)
     local wanted = {}
     for _, kind in ipairs(request.value) do

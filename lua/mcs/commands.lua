@@ -2,7 +2,7 @@
 -- lua/mcs/transfer.lua.
 
 -- Local copies: a script may set globals of these names.
-local ipairs, math, pairs, type = ipairs, math, pairs, type
+local ipairs, math, pairs, table, type = ipairs, math, pairs, table, type
 
 return function(native, patterns, lookup, arm, ways, player, tasks, alarms, align, mechanisms, flippers, stations)
   local commands = {}
@@ -64,8 +64,8 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
     arm.move(needs_of_gripper(gripper), lookup.command("VALVE", gripper, level), valve, gripper, level)
   end
 
-  -- The values of these fields by name, each checked.
-  local function read_fields(what, description, known)
+  -- The values of these fields by name, each checked; `ranges`: of those that mean something else here.
+  local function read_fields(what, description, known, ranges)
     local values, is_known = {}, {}
     for _, name in ipairs(known) do
       is_known[name] = true
@@ -74,29 +74,75 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
       if not is_known[name] then
         lookup.refuse_field(name, value, known)
       end
-      values[name] = lookup.number(name, value)
+      values[name] = lookup.number(name, value, ranges and ranges[name])
     end
     return values
   end
 
+  -- The parts of the limits that a motion may use; nil: all of them.
+  local function share_of(speed, acceleration)
+    speed, acceleration = speed or 1, acceleration or 1
+    return (speed ~= 1 or acceleration ~= 1) and { speed, acceleration } or nil
+  end
+
+  local ELBOWS = { left = 1, right = 2 }
+
+  -- The axes with the first gripper at this pose: x, y, z and the direction of its x axis, yaw; what is not named is
+  -- as it is. `axes` are where they stand, with other ones that are named where they go.
+  local function axes_at(to, axes, elbow)
+    local gripper = lookup.on_robot()[1]
+    local pose, robot = native.gripper_pose(gripper), tasks.current().robot
+    local heading = to.yaw and math.rad(to.yaw) or math.atan(pose.R[2][1], pose.R[1][1])
+    local point = { x = to.x or pose.r[1], y = to.y or pose.r[2], z = to.z or pose.r[3], heading = heading, gripper = gripper }
+    local rail = lookup.axis("rail", robot)
+    point.place = { rail = rail and axes[rail.index] or 0, elbow = elbow }
+    return native.inverse { from = axes, to = point, where = ("to x=%.10g y=%.10g z=%.10g"):format(point.x, point.y, point.z) }
+  end
+
+  local function read_elbow(positions, robot)
+    local word = positions.elbow
+    local elbow = word == nil and 0 or ELBOWS[word]
+    if not elbow or elbow > 0 and not lookup.axis("forearm", robot) then
+      native.fail("BAD_ARGUMENT", ('elbow: %s (expected "left" or "right", of an arm that folds)'):format(lookup.quote(word)))
+    end
+    return elbow
+  end
+
+  -- A pose is meant where x, y or the elbow is named: then z and yaw are the pose's, too.
+  local POSE = { x = true, y = true, z = true, yaw = true }
+
   local function move(positions)
-    local known, own = {}, native.layout.robots[tasks.current().robot].axes
+    local known, robot = {}, tasks.current().robot
+    local own, elbow, fields = native.layout.robots[robot].axes, nil, {}
+    for name, value in pairs(lookup.table("move", positions)) do
+      fields[name] = name ~= "elbow" and value or nil
+    end
+    elbow = read_elbow(positions, robot)
     for place, axis in ipairs(own) do
       known[place] = axis.name
     end
-    local axes, to = native.axes(), read_fields("move", positions, known)
+    for _, list in ipairs({ lookup.pose_fields, { lookup.axis("forearm", robot) and "elbow" or nil }, lookup.shares }) do
+      table.move(list, 1, #list, #known + 1, known)
+    end
+    local axes, to = native.axes(), read_fields("move", fields, known, { speed = lookup.ranges.speed_share })
+    local share, is_pose = share_of(to.speed, to.acceleration), to.x or to.y or elbow > 0
     for _, axis in ipairs(own) do
-      local value = to[axis.name]
+      local value = not (is_pose and POSE[axis.name]) and to[axis.name]
       axes[axis.index] = value and (axis.turns and math.rad(value) or value) or axes[axis.index]
     end
     arm.check_homed()
-    play { axes = axes }
+    play { axes = is_pose and axes_at(to, axes, elbow) or axes, share = share }
+  end
+
+  local MOVE_FIELDS = {}
+  for _, list in ipairs({ lookup.axes, { "x", "y", "elbow" }, lookup.shares }) do
+    table.move(list, 1, #list, #MOVE_FIELDS + 1, MOVE_FIELDS)
   end
 
   -- move { theta = , r = , z = , yaw = }, or other axes that the robot has: degrees and mm; axes that are not
-  -- named stay.
+  -- named stay. With x, y or elbow it goes to a pose. Shares are parts of the limits of all axes.
   function commands.move(positions)
-    arm.move(arm.needs(true), lookup.command("MOVE", lookup.fields_text(positions, lookup.axes)), move, positions)
+    arm.move(arm.needs(true), lookup.command("MOVE", lookup.fields_text(positions, MOVE_FIELDS)), move, positions)
   end
 
   -- Refuses to turn passive pads with a wafer over: they hold nothing then.
@@ -138,12 +184,19 @@ return function(native, patterns, lookup, arm, ways, player, tasks, alarms, alig
 
   local function line(by)
     local parts = read_fields("line", by, lookup.line_fields)
+    local share, at, way = share_of(1, parts.acceleration), native.gripper_pose(lookup.on_robot()[1]).r, {}
+    for place, name in ipairs({ "x", "y", "z" }) do
+      if parts[name] and parts["d" .. name] then
+        native.fail("BAD_ARGUMENT", ("d%s: %.10g (expected none beside %s)"):format(name, parts["d" .. name], name))
+      end
+      way[place] = parts[name] and parts[name] - at[place] or parts["d" .. name] or 0
+    end
     arm.check_homed()
-    play { line = { parts.dx or 0, parts.dy or 0, parts.dz or 0 }, speed = parts.speed or 0 }
+    play { line = way, speed = parts.speed or 0, share = share }
   end
 
-  -- line { dx = , dy = , dz = , speed = }: moves the end-effector straight by these mm in base, with constant
-  -- heading; without a speed as fast as the axes allow.
+  -- line { dx = , dy = , dz = , speed = }: moves the end-effector straight by these mm in base, or to x, y, z, with
+  -- constant heading; without a speed as fast as the axes allow.
   function commands.line(by)
     arm.move(arm.needs(true), lookup.command("LINE", lookup.fields_text(by, lookup.line_fields)), line, by)
   end

@@ -104,6 +104,20 @@ return function(native, lookup, targets, words, wh)
     close()
   end
 
+  -- The fields of MOVE by name.
+  local function move_fields()
+    local fields = { elbow = { values = { "left", "right" } } }
+    for _, list in ipairs({ lookup.axes, lookup.pose_fields }) do
+      for _, name in ipairs(list) do
+        fields[name] = lookup.ranges[name]
+      end
+    end
+    for _, name in ipairs(lookup.shares) do
+      fields[name] = lookup.ranges.speed_share
+    end
+    return fields
+  end
+
   local function add_options(name, text, ...)
     open(name, text)
     for _, kinds in ipairs({ ... }) do
@@ -127,7 +141,8 @@ return function(native, lookup, targets, words, wh)
     add_options("align_options", "Options of ALIGN.", lookup.align_fields)
     add_options("calibrate_options", "Options of CALIBRATE.", lookup.calibrate_fields,
       { robot = lookup.options.robot })
-    add_numbers("positions", "Where axes go: degrees and mm.", lookup.axes)
+    add_options("positions", "Where axes go, or the gripper, degrees and mm, and with what part of the limits.",
+      move_fields())
     add_options("served_by", "The robot whose way into a station this is.", served)
     add_options("standing", "Where axes stand with a gripper in slot 1: degrees and mm.", axes, served)
     add_numbers("way", "How far the end-effector goes: mm, and mm/s.", lookup.line_fields)

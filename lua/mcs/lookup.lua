@@ -39,12 +39,14 @@ return function(native, errors)
   lookup.axes = { "theta", "r", "z", "yaw", "forearm", "rail", "tilt_x", "tilt_y", "flip", "r2", "yaw2" }
   -- The axes that tell where a station is; r and yaw are those of the gripper's own arm or wrist.
   lookup.standing = { "theta", "r", "z", "yaw", "forearm" }
-  lookup.line_fields = { "dx", "dy", "dz", "speed" }
-  local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
+  -- And those of a pose, and the parts of the limits.
+  lookup.pose_fields, lookup.shares = { "x", "y" }, { "speed", "acceleration" }
+  lookup.line_fields = { "dx", "dy", "dz", "x", "y", "z", "speed", "acceleration" }
+  local way, turn, share = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }, { 1e-3, 1, "of the limits" }
   lookup.ranges = {
     theta = turn, r = { nil, nil, "mm" }, z = { nil, nil, "mm" }, yaw = turn, degrees = turn,
     forearm = turn, rail = { nil, nil, "mm" }, tilt_x = turn, tilt_y = turn, flip = turn, r2 = { nil, nil, "mm" }, yaw2 = turn,
-    dx = way, dy = way, dz = way, speed = lookup.parameters.pickup_speed, seconds = { 0, 1e6, "s" },
+    dx = way, dy = way, dz = way, x = way, y = way, acceleration = share, speed_share = share, speed = lookup.parameters.pickup_speed, seconds = { 0, 1e6, "s" },
   }
 
   -- The most names that an error lists.

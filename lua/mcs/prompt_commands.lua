@@ -60,6 +60,7 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
     mode = function() return lookup.align_fields.mode.values end,
     teaching = function() return { "beam", "touch" } end,
     mark = function() return lookup.align_fields.mark.values end,
+    elbow = function() return { "left", "right" } end,
     up_or_down = function() return lookup.up_or_down.values end,
     side = function() return lookup.sides end,
     pattern = own.names, door = names_of "doors", robot = names_of "robots", flips = flips_names,
@@ -379,6 +380,9 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
           own[axis.name] = options[axis.name]
         end
       end
+      for name, kind in pairs(command.beside or {}) do
+        own[name] = kind
+      end
       options = own
     end
     return options
@@ -577,14 +581,15 @@ return function(native, commands, queries, lookup, tokens, states, keep, backgro
              does = "UP: pins lift what lies on a prealigner's chuck; DOWN: they set it down there again" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
               does = "0 opens it (vacuum on), 1 closes it" },
-    MOVE = { takes = {}, options = fields(lookup.axes), of_axes = true, needs_option = true,
+    MOVE = { takes = {}, options = fields(lookup.axes, fields(lookup.pose_fields, fields(lookup.shares, { elbow = "elbow" }))),
+             beside = fields(lookup.pose_fields, fields(lookup.shares, { elbow = "elbow" })), of_axes = true, needs_option = true,
              run = moving_by_name(commands.move),
-             does = "moves the named axes to these positions, degrees and mm" },
+             does = "moves the named axes to these positions, degrees and mm; with x, y or elbow the gripper to that pose" },
     FLIP = { takes = { "flips" }, run = moving(commands.flip),
              does = "turns the blade over, or back; of a flipper the wafer in its clamp" },
     LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
              run = moving_by_name(commands.line),
-             does = "moves the end-effector straight by so much, mm and mm/s; "
+             does = "moves the end-effector straight by so much, or to x, y, z, mm and mm/s; "
                .. "without a speed as fast as the axes go" },
     WAIT_FOR = { takes = { "station", "seconds" }, optional = true, run = moving(commands.wait_for),
                  does = "waits until nothing runs in the station by itself, at most so long" },

@@ -208,6 +208,10 @@ class Cell:
         """Simulated time passes so much faster than the clock from now on; 0: as fast as possible."""
         self._running().request(rate=rate)
 
+    def tell(self, text: str) -> None:
+        """Tells the controllers something that only hands can do, as their dialect's `tester` has it: "estop on"."""
+        self._running().request(tell=text)
+
     def events(self, *kinds: str) -> Events:
         """Events of these kinds, on a connection of their own."""
         self._running()

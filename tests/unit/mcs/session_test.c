@@ -196,7 +196,7 @@ static void bad_arguments(void **state) {
         "GET A 1 stroke=0",
         "PUT P 1 handover=maybe",
         "MOVE",
-        "MOVE x=1",
+        "MOVE q=1",
         "MOVE 10",
         "LINE",
         "LINE dx=1 dx=1",
@@ -585,7 +585,9 @@ static void completion(void **state) {
     assert_candidates("GET A 1 g", 8, "gripper=|");
     assert_candidates("GET A 1 gripper=", 8, "gripper=EE|gripper=PA|");
     assert_candidates("PUT P 1 stroke=3 handover=s", 17, "handover=same_slice|");
-    assert_candidates("MOVE ", 5, "flip=|forearm=|r=|r2=|rail=|theta=|tilt_x=|tilt_y=|yaw=|yaw2=|z=|");
+    assert_candidates("MOVE ", 5,
+                      "acceleration=|elbow=|flip=|forearm=|r=|r2=|rail=|speed=|theta=|tilt_x=|tilt_y=|x=|y=|"
+                      "yaw=|yaw2=|z=|");
     assert_candidates("HOLDER W", 7, "\"Wafer 1\"|\"Wafer 2\"|");
     assert_candidates("HOLDER \"Wafer 1", 7, "\"Wafer 1\"|");
     assert_candidates("OFFSET \"Wafer 1\" ", 17, "A|B|P|");
