@@ -8,10 +8,11 @@
 #include "apart.h"
 #include "app.h"
 #include "run_arguments.h"
+#include "sweep_best.h"
 
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
-    uint64_t threads;
+    uint64_t threads, best;
     const char *svg, *by;
     bool counted;
     wh_option_list_t each;
@@ -28,6 +29,11 @@ static const wh_option_t options[] = {
      "Run once as it is, and once for each mechanism and station of the cell, which takes PERCENT less time; "
      "tell what each gains, the greatest first",
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, by)},
+    {"best", 0, "N",
+     "Search for the shortest schedule of the script's flow, a small one of timed robots, with at most N "
+     "nodes a "
+     "level, such as 1000; tell it as lists, and a bound that no schedule is below",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, best), 1, 1000000},
     {"svg", 0, "FILE", "Also draw what the runs measure over the first parameter", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, svg)},
     {"counted", 0, NULL, WH_RUN_COUNTED_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, counted)},
@@ -50,14 +56,24 @@ static double read_percent(const char *text) {
     return end != text && *end == '\0' && percent >= 0.01 && percent <= 90 ? percent : -1;
 }
 
+/* --by and --best do not vary parameters. */
+static void check_alone(const arguments_t *arguments, struct argp_state *state, const char *option) {
+    const char *other = arguments->svg ? "--svg" : arguments->each.count > 0 ? "--each" : NULL;
+    if (other) {
+        argp_error(state, "%s does not go with %s, which varies parameters", option, other);
+    }
+    if (arguments->by && arguments->best > 0) {
+        argp_error(state, "--by does not go with --best");
+    }
+}
+
 static void check(const void *filled, struct argp_state *state) {
     const arguments_t *arguments = filled;
     if (arguments->by && read_percent(arguments->by) < 0) {
         argp_error(state, "--by: %s (expected percent, 0.01 to 90)", arguments->by);
     }
-    if (arguments->by && (arguments->svg || arguments->each.count > 0)) {
-        argp_error(state, "--by does not go with %s: each run differs in the time of one mechanism alone",
-                   arguments->svg ? "--svg" : "--each");
+    if (arguments->by || arguments->best > 0) {
+        check_alone(arguments, state, arguments->by ? "--by" : "--best");
     }
 }
 
@@ -140,8 +156,8 @@ static int hand_on_paces(const arguments_t *arguments, const wh_paces_t *paces) 
 static bool has_range(const arguments_t *arguments) {
     for (size_t i = 0; i < arguments->run.parameters.count; ++i) {
         if (wh_sweep_is_range(arguments->run.parameters.items[i])) {
-            fprintf(stderr, "--set %s: a range does not go with --by (expected one value)\n",
-                    arguments->run.parameters.items[i]);
+            fprintf(stderr, "--set %s: a range does not go with %s (expected one value)\n",
+                    arguments->run.parameters.items[i], arguments->by ? "--by" : "--best");
             return true;
         }
     }
@@ -152,7 +168,7 @@ static int hasten_all(const arguments_t *arguments, FILE *nowhere) {
     wh_paces_t paces = {.run = arguments->run.run, .share = read_percent(arguments->by) / 100};
     int status = WH_EXIT_USAGE;
     paces.run.limits.print_to = nowhere;
-    if (!has_range(arguments) && wh_paces_play(&paces, wh_study_threads((size_t)arguments->threads))) {
+    if (wh_paces_play(&paces, wh_study_threads((size_t)arguments->threads))) {
         status = hand_on_paces(arguments, &paces);
     }
     wh_paces_close(&paces);
@@ -166,7 +182,13 @@ static int play(const arguments_t *arguments) {
         perror("/dev/null");
         return WH_EXIT_USAGE;
     }
-    const int status = arguments->by ? hasten_all(arguments, nowhere) : sweep_all(arguments, nowhere);
+    int status = WH_EXIT_USAGE;
+    if (!arguments->by && arguments->best == 0) {
+        status = sweep_all(arguments, nowhere);
+    } else if (!has_range(arguments)) {
+        status = arguments->by ? hasten_all(arguments, nowhere)
+                               : wh_app_sweep_best(&arguments->run, (size_t)arguments->best, nowhere);
+    }
     (void)fclose(nowhere);
     return status;
 }

@@ -163,27 +163,33 @@ typedef struct {
     int32_t kept_empty;
 } room_t;
 
+/* Adds a place to the room of its station, if it is free: WH_FLOW_NONE, that one, or SEVERAL. */
+static int32_t look_at_place(const world_t *world, const inside_t *at, int32_t place, int32_t room,
+                             room_t *found) {
+    if (!is_free(world, at, place)) {
+        return room;
+    }
+    ++found->free_places;
+    if (room == SEVERAL || !is_carried(world, place)) {
+        return room;
+    }
+    found->first = found->first == WH_FLOW_NONE ? place : found->first;
+    return room == WH_FLOW_NONE ? place : SEVERAL;
+}
+
 /* The places of a station with room, as SEVERAL or one, or WH_FLOW_NONE; adds to those that are free. `end`:
  * that place alone, or WH_FLOW_NONE. */
 static int32_t find_room(const world_t *world, const inside_t *at, const wh_flow_station_t *station,
                          int32_t end, room_t *found) {
     const int32_t behind = station->first_place + station->slots;
     int32_t room = WH_FLOW_NONE;
-    int32_t p = end == WH_FLOW_NONE ? station->first_place : end;
-    if (p < station->first_place) {
-        return room;
+    if (end != WH_FLOW_NONE) {
+        return end < station->first_place || end >= behind ? room
+                                                           : look_at_place(world, at, end, room, found);
     }
-    for (; p < behind && (room != SEVERAL || found->free_places <= found->kept_empty); ++p) {
-        if (is_free(world, at, p)) {
-            ++found->free_places;
-            if (room != SEVERAL && is_carried(world, p)) {
-                found->first = found->first == WH_FLOW_NONE ? p : found->first;
-                room = room == WH_FLOW_NONE ? p : SEVERAL;
-            }
-        }
-        if (end != WH_FLOW_NONE) {
-            break;
-        }
+    for (int32_t p = station->first_place;
+         p < behind && (room != SEVERAL || found->free_places <= found->kept_empty); ++p) {
+        room = look_at_place(world, at, p, room, found);
     }
     return room;
 }
